@@ -1,0 +1,39 @@
+# make run: set up and open the dashboard.  make test: set up and run every check.
+PYTHON ?= python3
+BIN := .venv/bin
+RUN_ARGS ?=
+export UV_PROJECT_ENVIRONMENT := .venv
+
+.PHONY: run test setup lock clean
+
+run: setup
+	@$(BIN)/ratslam $(RUN_ARGS)
+
+test: setup .venv/.dev
+	@$(BIN)/python tests/run_checks.py
+
+setup: .venv/.ready
+
+.venv/bin/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "Python 3.11 or newer is needed, '$(PYTHON)' is $$($(PYTHON) --version). Try: make $(MAKECMDGOALS) PYTHON=python3.12"; exit 1; }
+	@echo "[setup] making .venv with $$($(PYTHON) --version)"
+	@if command -v uv >/dev/null; then uv venv --quiet --python $(PYTHON) .venv; \
+	 else $(PYTHON) -m venv .venv && $(BIN)/python -m pip install --quiet --disable-pip-version-check 'uv>=0.8,<1'; fi
+
+.venv/.ready: requirements.lock pyproject.toml | .venv/bin/python
+	@echo "[setup] installing the packages of requirements.lock"
+	@PATH="$$PWD/$(BIN):$$PATH" uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements.lock
+	@PATH="$$PWD/$(BIN):$$PATH" uv pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
+	@touch $@
+
+.venv/.dev: requirements-dev.lock .venv/.ready
+	@echo "[setup] installing the packages of requirements-dev.lock (tests, linters)"
+	@PATH="$$PWD/$(BIN):$$PATH" uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements-dev.lock
+	@touch $@
+
+lock: | .venv/bin/python
+	@PATH="$$PWD/$(BIN):$$PATH" tests/lock.sh
+
+clean:
+	rm -rf .venv

@@ -1,0 +1,92 @@
+"""The small frozen values that go into and come out of the engine. SI units, radians, counter-clockwise positive."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+def wrap_angle(angle_rad: float) -> float:
+    """The same direction in (-pi, pi]."""
+    wrapped = math.remainder(angle_rad, 2 * math.pi)
+    return math.pi if wrapped == -math.pi else wrapped
+
+
+def require_finite(name: str, value: float) -> float:
+    """`value` as float, or a ValueError that names it."""
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"{name} must be a finite number, got {value!r}")
+    return number
+
+
+@dataclass(frozen=True, slots=True)
+class Odometry:
+    """What the wheels report for one step: forward speed (m/s), yaw rate (rad/s), duration (s)."""
+
+    speed: float
+    yaw_rate: float
+    dt: float
+
+    def __post_init__(self) -> None:
+        require_finite("odometry.speed", self.speed)
+        require_finite("odometry.yaw_rate", self.yaw_rate)
+        if not (math.isfinite(self.dt) and self.dt > 0):
+            raise ValueError(f"odometry.dt must be a positive number of seconds, got {self.dt!r}")
+
+
+@dataclass(frozen=True, slots=True)
+class Pose2:
+    """A planar pose: metres and a heading in (-pi, pi]. Composes like SE(2)."""
+
+    x: float
+    y: float
+    heading_rad: float
+
+    def compose(self, local: Pose2) -> Pose2:
+        """`self` followed by `local`, which is given in the frame of `self`."""
+        c, s = math.cos(self.heading_rad), math.sin(self.heading_rad)
+        return Pose2(
+            self.x + c * local.x - s * local.y,
+            self.y + s * local.x + c * local.y,
+            wrap_angle(self.heading_rad + local.heading_rad),
+        )
+
+    def inverse(self) -> Pose2:
+        c, s = math.cos(self.heading_rad), math.sin(self.heading_rad)
+        return Pose2(-c * self.x - s * self.y, s * self.x - c * self.y, wrap_angle(-self.heading_rad))
+
+
+IDENTITY = Pose2(0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Packet:
+    """A packet of pose-cell activity: centre in cells (fractions), heading, share of all activity."""
+
+    x: float
+    y: float
+    heading_rad: float
+    mass: float
+
+
+@dataclass(frozen=True, slots=True)
+class Recognition:
+    """What the local view says of one image."""
+
+    view: int  # the active local view cell, -1 when there is nothing to see
+    recruited: bool  # the cell is new
+    best_view: int  # the most similar view known before, -1 when there was none
+    difference: float  # mean absolute grey difference to it, inf when there was none
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """What the engine believes after one step."""
+
+    experience: int  # the active experience
+    created: bool  # it is new
+    pose_map_robot: Pose2  # in the frame of the experience map
+    packet: Packet  # the winning packet
+    recognition: Recognition
+    relocalised: bool  # the winning packet jumped in this step

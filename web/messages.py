@@ -1,0 +1,303 @@
+"""What crosses between the engine's thread and the browser's: `Snapshot` out, `Command` in. Nothing else is shared.
+
+Snapshots are immutable: frozen dataclasses over fresh read-only arrays. Parts that change seldom (world, map, times,
+parameters, events) are the same object in the next snapshot while they are unchanged, so that `is` tells what to redraw.
+Frames: `office` is the simulator's true frame, `map` the experience map's own (first experience at its origin), `cells`
+are pose-cell indices [theta, y, x], one layer 10 degrees. SI units and radians.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+# ---------------------------------------------------------------- out
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A place and a heading: metres and radians in (-pi, pi], counter-clockwise, 0 = +x."""
+
+    x: float
+    y: float
+    heading_rad: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WorldDrawing:
+    """All that the stage needs to draw an office. Office frame."""
+
+    name: str
+    title: str
+    bounds: tuple[float, float, float, float]  # min x, min y, max x, max y
+    walls: NDArray[np.float32]  # (n, 4): x1 y1 x2 y2
+    wall_height_m: NDArray[np.float32]  # (n,)
+    wall_kind: tuple[str, ...]  # (n,): "wall", "partition", "desk", "door", "window", ...
+    panels: NDArray[np.float32]  # (m, 6): x1 y1 x2 y2 bottom top of posters, doors and windows on walls
+    panel_rgb: NDArray[np.uint8]  # (m, 3)
+    places: tuple[tuple[str, float, float], ...]  # named places
+    robot_radius_m: float
+    camera_fov_rad: float
+    sonar_angles_rad: NDArray[np.float32]  # (8,), from the robot's heading
+
+
+@dataclass(frozen=True, slots=True)
+class Packet:
+    """One packet of pose-cell activity: its centre in cells (fractions), its heading and its share of the activity."""
+
+    x: float
+    y: float
+    heading_rad: float
+    mass: float
+
+
+@dataclass(frozen=True, slots=True)
+class Snap:
+    """A relocalisation: the winning packet's centre went from start S to end F (pose-cell frame, cells)."""
+
+    time_s: float
+    start: Packet
+    end: Packet
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PoseCellLayer:
+    shape: tuple[int, int, int]  # n_theta, n_y, n_x
+    cell_m: float
+    cells: NDArray[np.int32]  # (k, 3): theta, y, x of the strongest active cells, strongest first, k <= 500
+    activity: NDArray[np.float32]  # (k,)
+    active_cells: int  # how many are active in all
+    packets: tuple[Packet, ...]  # strongest first
+    path: NDArray[np.float32]  # (p, 3): x, y (cells), heading (rad) of the winner over the last two minutes
+    last_snap: Snap | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Senses:
+    """What the robot sees now and what it reminds it of."""
+
+    camera: NDArray[np.uint8]  # (h, w, 3) RGB
+    template: NDArray[np.uint8]  # (8, 12)
+    best: NDArray[np.uint8] | None  # (8, 12) the best stored view
+    best_view: int  # its number, -1 when there is none
+    difference: float  # mean absolute grey difference to it; inf when there is none
+    threshold: float
+    active_view: int  # the view that is active now, -1 when there is nothing to see
+    recruited: bool  # the active view is new
+    ranges_m: NDArray[np.float32]  # (8,) sonar
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapLayer:
+    """The experience map. Map frame."""
+
+    ids: NDArray[np.int32]  # (n,)
+    xy: NDArray[np.float32]  # (n, 2)
+    heading_rad: NDArray[np.float32]  # (n,)
+    links: NDArray[np.int32]  # (m, 2): rows into ids
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TimesLayer:
+    """The temporal map: seconds to the goal when there is one, else from the robot. inf = no way known."""
+
+    to_goal: bool
+    seconds: NDArray[np.float32]  # (n,), rows as in the MapLayer of the same snapshot
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Goal:
+    experience: int
+    x: float  # map frame
+    y: float
+    state: str  # "tracking", "coasting", "exploring", "arrived", "unreachable"
+    eta_s: float | None
+    remaining_m: float | None
+    route_xy: NDArray[np.float32]  # (r, 2) map frame, from the robot to the goal; empty when none is known
+    route_arrival_s: NDArray[np.float32]  # (r,) seconds from now
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One mark on the timeline."""
+
+    number: int
+    time_s: float
+    kind: str  # "snap", "kidnap", "recovered", "goal", "arrived", "lost", "link", "fault", "parameter"
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    name: str  # dotted, as in `ratslam config`
+    value: float | int | bool | str
+    default: float | int | bool | str
+    symbol: str
+    unit: str
+    low: float | None
+    high: float | None
+    meaning: str
+    source: str
+    live: bool  # False: takes effect with the next reset
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Series:
+    """Errors against time since the reset, at most 600 points, evenly thinned."""
+
+    time_s: NDArray[np.float64]
+    map_error_m: NDArray[np.float64]
+    odometry_error_m: NDArray[np.float64]
+    views: NDArray[np.float64]
+    experiences: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Snapshot:
+    """The session at the end of one tick."""
+
+    run: int  # grows with each reset
+    tick: int
+    time_s: float
+    mode: Literal["explore", "manual", "goal"]
+    doing: str  # what the pilot does now, for people: "following the wall", "looking back", ...
+    running: bool
+    speed: float  # asked-for multiple of real time; inf = as fast as possible
+    real_time_factor: float  # measured
+    seed: int
+    fault: str | None  # why the session stopped by itself
+    lost: bool  # packets compete
+    world: WorldDrawing
+    worlds: tuple[tuple[str, str], ...]  # (name, title) of all that reset can load
+    truth: Pose  # office frame
+    trail: NDArray[np.float32]  # (t, 2) true path of the last two minutes, office frame
+    estimate: Pose  # map frame
+    senses: Senses
+    pose_cells: PoseCellLayer
+    map: MapLayer
+    times: TimesLayer
+    goal: Goal | None
+    views: int
+    experiences: int
+    links: int
+    relocalisations: int
+    error_map_m: float
+    error_odometry_m: float
+    revisit_consistency: float | None  # share of revisits within half a metre
+    series: Series
+    stage_ms: dict[str, float]  # running mean of each stage's time per tick
+    events: tuple[Event, ...]
+    parameters: tuple[Parameter, ...]
+
+
+# ---------------------------------------------------------------- in
+
+
+class _Command(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class SetGoal(_Command):
+    """Go to the experience nearest to this place of the map (metres, map frame)."""
+
+    type: Literal["set_goal"]
+    x: Finite
+    y: Finite
+
+
+class CancelGoal(_Command):
+    type: Literal["cancel_goal"]
+
+
+class SetMode(_Command):
+    type: Literal["set_mode"]
+    mode: Literal["explore", "manual", "goal"]
+
+
+class Drive(_Command):
+    """Drive by hand; expires 0.3 s after the last one. m/s forwards, rad/s counter-clockwise."""
+
+    type: Literal["drive"]
+    speed: Annotated[float, Field(ge=-0.5, le=0.5)]
+    yaw_rate: Annotated[float, Field(ge=-1.6, le=1.6)]
+
+
+class Kidnap(_Command):
+    """Put the robot elsewhere (office frame) without telling it. Without a place: a free one by chance."""
+
+    type: Literal["kidnap"]
+    x: Finite | None = None
+    y: Finite | None = None
+    heading_rad: Finite | None = None
+
+
+class Pause(_Command):
+    type: Literal["pause"]
+
+
+class Resume(_Command):
+    type: Literal["resume"]
+
+
+class Step(_Command):
+    """Pause and advance by so many ticks of 0.1 s."""
+
+    type: Literal["step"]
+    ticks: Annotated[int, Field(ge=1, le=1000)] = 1
+
+
+class SetSpeed(_Command):
+    """Simulated seconds per second; 0 = as fast as possible."""
+
+    type: Literal["set_speed"]
+    factor: Annotated[float, Field(ge=0.0, le=1000.0)]
+
+
+class Reset(_Command):
+    """Start anew; what is left out stays as it is."""
+
+    type: Literal["reset"]
+    world: Annotated[str, Field(max_length=64)] | None = None
+    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] | None = None
+
+
+class SetParameter(_Command):
+    type: Literal["set_parameter"]
+    name: Annotated[str, Field(max_length=64)]
+    value: float | int | bool | Annotated[str, Field(max_length=64)]
+
+
+Command = Annotated[
+    SetGoal | CancelGoal | SetMode | Drive | Kidnap | Pause | Resume | Step | SetSpeed | Reset | SetParameter,
+    Field(discriminator="type"),
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Accepted:
+    tick: int  # the tick before which the command took effect
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """Why a command did nothing: which field, its value, and what would be right."""
+
+    field: str
+    value: object
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Request:
+    """A command on its way to the engine, with the place where its answer will appear."""
+
+    command: Command
+    answer: Future[Accepted | Refused]
