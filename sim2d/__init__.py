@@ -1,0 +1,30 @@
+"""The simulated office: worlds as data, a robot in pymunk, its camera, sonars and odometry."""
+
+from sim2d.drawing import Drawing, draw_world
+from sim2d.free_space import FreeSpace
+from sim2d.params import SimParams
+from sim2d.ranges import SONAR_ANGLES_RAD
+from sim2d.simulator import Drive, SensorFrame, Simulator, Truth
+from sim2d.world import Panel, Place, Start, Wall, World
+from sim2d.world_file import DEFAULT_WORLD, WorldError, load_world, world_names
+
+__all__ = [
+    "DEFAULT_WORLD",
+    "SONAR_ANGLES_RAD",
+    "Drawing",
+    "Drive",
+    "FreeSpace",
+    "Panel",
+    "Place",
+    "SensorFrame",
+    "SimParams",
+    "Simulator",
+    "Start",
+    "Truth",
+    "Wall",
+    "World",
+    "WorldError",
+    "draw_world",
+    "load_world",
+    "world_names",
+]

@@ -1,0 +1,124 @@
+"""Where the robot fits, and how long the shortest drive between two places is. For placing it and for judging it."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import label
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
+
+from sim2d.geometry import clearance_grid, inside_ring, nearest_segment
+from sim2d.world import World
+
+# Eight neighbours and eight knight's moves, one of each opposite pair.
+_MOVES = ((1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (1, 2), (2, -1), (1, -2))
+
+
+class FreeSpace:
+    """The floor on which a disc of `radius` metres can stand and which it can reach from the world's first start."""
+
+    def __init__(self, world: World, radius: float, cell_m: float = 0.05) -> None:
+        self._world = world
+        self._radius = radius
+        self._cell = cell_m
+        self._segments = world.segments()[list(world.obstacles)]
+        self._ring = world.outline
+        x0, y0, x1, y1 = world.bounds
+        self._xs = np.arange(x0 + 0.5 * cell_m, x1, cell_m)
+        self._ys = np.arange(y0 + 0.5 * cell_m, y1, cell_m)
+        grid = clearance_grid(self._segments, self._ring, self._xs, self._ys)
+        numbers, _ = label(grid >= radius, structure=np.ones((3, 3)))
+        starts = {numbers[self._nearest_open(numbers, s.x, s.y)] for s in world.starts}
+        self._reachable: NDArray[np.bool_] = np.isin(numbers, list(starts))
+
+    def is_free(self, x: float, y: float) -> bool:
+        """Whether the robot can stand there and could have driven there."""
+        return self.refusal(x, y) is None
+
+    def refusal(self, x: float, y: float) -> str | None:
+        """Why the robot cannot be at (x, y), or None when it can."""
+        if not (math.isfinite(x) and math.isfinite(y)):
+            return f"({x}, {y}) is not a place; both must be finite"
+        if not inside_ring(self._ring, x, y):
+            x0, y0, x1, y1 = self._world.bounds
+            return (
+                f"({x:g}, {y:g}) is outside of {self._world.name}, which spans {x0:g} to {x1:g} by {y0:g} to {y1:g} m"
+            )
+        nearest, distance = nearest_segment(self._segments, x, y)
+        if distance < self._radius:
+            number = self._world.obstacles[nearest]
+            return (
+                f"({x:g}, {y:g}) is {distance:.3f} m from walls[{number}] ({self._world.walls[number].kind}); "
+                f"the robot needs {self._radius:g} m"
+            )
+        i, j = self._cell_of(x, y)
+        if not self._reachable[max(j - 1, 0) : j + 2, max(i - 1, 0) : i + 2].any():
+            return f"({x:g}, {y:g}) is closed in: no way leads there from {self._world.starts[0].name}"
+        return None
+
+    def clearance(self, x: float, y: float) -> float:
+        """Metres from (x, y) to the nearest wall that stands on the floor."""
+        return nearest_segment(self._segments, x, y)[1]
+
+    def random_point(self, rng: np.random.Generator) -> tuple[float, float]:
+        """A free place, uniform over the cells' centres."""
+        rows, columns = self._open
+        k = int(rng.integers(rows.size))
+        return float(self._xs[columns[k]]), float(self._ys[rows[k]])
+
+    def shortest_m(self, a: tuple[float, float], b: tuple[float, float]) -> float:
+        """Metres of the shortest drivable way from a to b, inf when there is none. At most 3 % too long.
+
+        The grid's 16 directions make ways longer than they are by 2.7 % at worst.
+        """
+        if not (self.is_free(*a) and self.is_free(*b)):
+            return math.inf
+        straight = math.dist(a, b)
+        if straight <= 2 * self._cell:
+            return straight
+        nodes, graph = self._graph
+        start, goal = nodes[self._nearest_open(nodes + 1, *a)], nodes[self._nearest_open(nodes + 1, *b)]
+        return max(straight, float(dijkstra(graph, directed=False, indices=start)[goal]))
+
+    @cached_property
+    def _open(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        rows, columns = np.nonzero(self._reachable)
+        return rows, columns
+
+    @cached_property
+    def _graph(self) -> tuple[NDArray[np.int32], csr_matrix]:
+        """Node numbers (n_y, n_x), -1 where not reachable, and the lengths between neighbours."""
+        nodes = np.full(self._reachable.shape, -1, np.int32)
+        count = self._open[0].size
+        nodes[self._open] = np.arange(count)
+        heads, tails, lengths = [], [], []
+        for dx, dy in _MOVES:
+            here, there = _shifted(nodes, dx, dy)
+            both = (here >= 0) & (there >= 0)
+            heads.append(here[both])
+            tails.append(there[both])
+            lengths.append(np.full(heads[-1].size, math.hypot(dx, dy) * self._cell))
+        data, ends = np.concatenate(lengths), (np.concatenate(heads), np.concatenate(tails))
+        return nodes, csr_matrix((data, ends), shape=(count, count))
+
+    def _cell_of(self, x: float, y: float) -> tuple[int, int]:
+        x0, y0 = self._world.bounds[:2]
+        i, j = int((x - x0) / self._cell), int((y - y0) / self._cell)
+        return min(max(i, 0), self._xs.size - 1), min(max(j, 0), self._ys.size - 1)
+
+    def _nearest_open(self, numbers: NDArray[np.integer], x: float, y: float) -> tuple[int, int]:
+        """Row and column of the cell with a positive number that is nearest to (x, y)."""
+        rows, columns = np.nonzero(numbers > 0)
+        k = int(np.argmin((self._xs[columns] - x) ** 2 + (self._ys[rows] - y) ** 2))
+        return int(rows[k]), int(columns[k])
+
+
+def _shifted(nodes: NDArray[np.int32], dx: int, dy: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Two equally large parts of the grid, the second (dx, dy) cells further; dx >= 0."""
+    n_y, n_x = nodes.shape
+    low, high = max(0, -dy), min(n_y, n_y - dy)
+    return nodes[low:high, : n_x - dx], nodes[low + dy : high + dy, dx:]

@@ -1,0 +1,48 @@
+"""What wheel encoders and gyro report: the true motion of one tick with the errors of real ones."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from sim2d.params import SimParams
+
+STILL_SPEED = 1e-3  # m/s; below this and STILL_YAW_RATE no encoder gives a count
+STILL_YAW_RATE = 2e-3  # rad/s
+
+
+def wrap_angle(angle: float) -> float:
+    """The same direction in (-pi, pi]."""
+    wrapped = math.remainder(angle, 2 * math.pi)
+    return math.pi if wrapped == -math.pi else wrapped
+
+
+def true_motion(
+    before: tuple[float, float, float], after: tuple[float, float, float], dt: float
+) -> tuple[float, float]:
+    """Mean forward speed (m/s) and yaw rate (rad/s) between two poses (x, y, heading), `dt` apart.
+
+    Speed is along the arc: the chord, seen along the middle heading, over sinc of half the turn.
+    """
+    turn = wrap_angle(after[2] - before[2])
+    middle = before[2] + 0.5 * turn
+    chord = (after[0] - before[0]) * math.cos(middle) + (after[1] - before[1]) * math.sin(middle)
+    half = 0.5 * turn
+    arc = chord * half / math.sin(half) if abs(half) > 1e-9 else chord
+    return arc / dt, turn / dt
+
+
+def report(speed: float, yaw_rate: float, params: SimParams, rng: np.random.Generator) -> tuple[float, float]:
+    """Reported speed and yaw rate. Two draws from `rng`, moving or not.
+
+    A robot that stands gives no counts: it reports (0, 0) exactly, and the yaw-rate bias, which a robot at rest would
+    calibrate away, acts only while the wheels turn. The scale error is the wheels' and touches the speed alone.
+    """
+    speed_error, yaw_error = rng.standard_normal(2)
+    if abs(speed) < STILL_SPEED and abs(yaw_rate) < STILL_YAW_RATE:
+        return 0.0, 0.0
+    return (
+        speed * (1.0 + params.odometry_scale_error) * (1.0 + params.odometry_noise * speed_error),
+        yaw_rate * (1.0 + params.odometry_noise * yaw_error) + params.gyro_bias,
+    )

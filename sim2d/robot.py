@@ -1,0 +1,62 @@
+"""The robot's body: a disc on two driven wheels, in pymunk.
+
+A kinematic body moves as the wheels are told; a pivot and a gear with bounded force drag the disc along. Pushing against
+a wall the force gives way, so that the disc stops there. Setting velocities directly would press it 10 cm into the wall.
+"""
+
+from __future__ import annotations
+
+import math
+
+import pymunk
+
+from sim2d.params import SimParams
+
+_MASS_KG = 8.0
+_GRIP_N = 80.0  # the wheels slip beyond it: 10 m/s^2, far above what the motors ask for
+_GRIP_NM = 20.0
+
+
+class Robot:
+    """Owned by one simulator. Poses in metres and radians."""
+
+    def __init__(self, space: pymunk.Space, params: SimParams, x: float, y: float, heading_rad: float) -> None:
+        radius = params.robot_radius_m
+        self.body = pymunk.Body(_MASS_KG, pymunk.moment_for_circle(_MASS_KG, 0.0, radius))
+        disc = pymunk.Circle(self.body, radius)
+        disc.friction = 0.3
+        self._wheels = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        pivot = pymunk.PivotJoint(self._wheels, self.body, (0.0, 0.0), (0.0, 0.0))
+        gear = pymunk.GearJoint(self._wheels, self.body, 0.0, 1.0)
+        pivot.max_bias = gear.max_bias = 0.0  # only velocities are passed on, never positions
+        pivot.max_force, gear.max_force = _GRIP_N, _GRIP_NM
+        space.add(self.body, disc, self._wheels, pivot, gear)
+        self.speed = 0.0  # what the wheels do now, m/s
+        self.yaw_rate = 0.0  # rad/s
+        self.place(x, y, heading_rad)
+
+    def place(self, x: float, y: float, heading_rad: float) -> None:
+        """Put down at rest."""
+        self.body.position = (x, y)
+        self.body.angle = heading_rad
+        self.body.velocity = self._wheels.velocity = (0.0, 0.0)
+        self.body.angular_velocity = self._wheels.angular_velocity = 0.0
+        self.speed = self.yaw_rate = 0.0
+
+    def drive(self, space: pymunk.Space, speed: float, yaw_rate: float, params: SimParams) -> None:
+        """One tick towards these velocities (m/s, rad/s), as fast as the motors can change them."""
+        speed = min(max(speed, -params.max_speed), params.max_speed)
+        yaw_rate = min(max(yaw_rate, -params.max_yaw_rate), params.max_yaw_rate)
+        dt = 1.0 / params.physics_rate_hz
+        change, turn_change = params.max_acceleration * dt, params.max_yaw_acceleration * dt
+        body, wheels, step = self.body, self._wheels, space.step
+        v, w, heading = self.speed, self.yaw_rate, body.angle
+        for _ in range(params.substeps):
+            v += min(max(speed - v, -change), change)
+            w += min(max(yaw_rate - w, -turn_change), turn_change)
+            middle = heading + 0.5 * w * dt
+            wheels.velocity = (v * math.cos(middle), v * math.sin(middle))
+            wheels.angular_velocity = w
+            step(dt)
+            heading = body.angle
+        self.speed, self.yaw_rate = v, w
