@@ -1,0 +1,30 @@
+"""RatSLAM after Milford, Wyeth and Prasser (2004-2006): arrays in, arrays out."""
+
+from ratslam_core.experience_map import ExperienceMap
+from ratslam_core.local_view import LocalView
+from ratslam_core.params import ExperienceMapParams, LocalViewParams, PoseCellParams, RatSlamParams
+from ratslam_core.pose_cells import PoseCells
+from ratslam_core.slam import RatSlam
+from ratslam_core.temporal_map import Route, TemporalMap
+from ratslam_core.types import Estimate, Odometry, Packet, Pose2, Recognition, wrap_angle
+from ratslam_core.view_links import ViewLinks
+
+__all__ = [
+    "Estimate",
+    "ExperienceMap",
+    "ExperienceMapParams",
+    "LocalView",
+    "LocalViewParams",
+    "Odometry",
+    "Packet",
+    "Pose2",
+    "PoseCellParams",
+    "PoseCells",
+    "RatSlam",
+    "RatSlamParams",
+    "Recognition",
+    "Route",
+    "TemporalMap",
+    "ViewLinks",
+    "wrap_angle",
+]

@@ -1,0 +1,139 @@
+"""The pilot: explores, obeys the hand, follows routes, and frees itself. It knows sensors and the map, never the truth."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.pilot.explore import Explorer
+from app.pilot.local_movement import LocalMovement
+from app.pilot.params import PilotParams
+from app.pilot.route_following import Progress, RouteFollower
+from ratslam_core import ExperienceMap, Odometry
+
+Mode = Literal["explore", "manual", "goal"]
+HAND_EXPIRES_S = 0.3
+BACK_OFF_S = 1.5
+
+
+class Pilot:
+    """`step` gives the drive for the next tick: speed (m/s) and yaw rate (rad/s)."""
+
+    def __init__(self, params: PilotParams, sonar_angles_rad: NDArray[np.float64], rng: np.random.Generator) -> None:
+        self.params = params
+        self.mode: Mode = "explore"
+        self.doing = "starting"
+        self._explorer = Explorer(rng)
+        self._local = LocalMovement(sonar_angles_rad)
+        self._rng = rng
+        self._follower: RouteFollower | None = None
+        self._hand = (0.0, 0.0, 0.0)  # speed, yaw rate, seconds left
+        self._reach = 0.0  # how far it got from where it last was free, by odometry
+        self._place = np.zeros(3)
+        self._still_s = 0.0
+        self._free_self_s = 0.0
+        self._free_self = (0.0, 0.0)
+
+    # ------------------------------------------------------------ orders
+
+    @property
+    def goal(self) -> int | None:
+        return self._follower.goal if self._follower else None
+
+    def progress(self, experiences: ExperienceMap) -> Progress | None:
+        return self._follower.progress(experiences) if self._follower else None
+
+    def set_goal(self, experience: int) -> None:
+        self._follower = RouteFollower(experience)
+        self.mode = "goal"
+
+    def cancel_goal(self) -> None:
+        self._follower = None
+        if self.mode == "goal":
+            self.mode = "explore"
+
+    def set_mode(self, mode: Mode) -> None:
+        """ValueError when there is no goal to go to."""
+        if mode == "goal" and self._follower is None:
+            raise ValueError("there is no goal to go to; set one first")
+        self.mode = mode
+
+    def drive(self, speed: float, yaw_rate: float) -> None:
+        """By hand; expires after 0.3 s."""
+        self.mode = "manual"
+        self._hand = (speed, yaw_rate, HAND_EXPIRES_S)
+
+    # ------------------------------------------------------------ each tick
+
+    def step(
+        self, ranges_m: NDArray[np.float32], bumped: bool, odometry: Odometry, experiences: ExperienceMap
+    ) -> tuple[float, float]:
+        """From what was sensed at the end of the last tick."""
+        self._local.sense(ranges_m, odometry)
+        if self.mode == "manual":
+            return self._by_hand(odometry.dt)
+        if self._stuck(bumped, odometry):
+            self.doing = "freeing itself"
+            return self._free_self
+        if self.mode == "goal" and self._follower is not None:
+            target = self._follower.step(experiences, odometry.dt, self.params)
+            state = self._follower.state
+            if state == "arrived":
+                self.doing = "at the goal"
+                self._still_s = 0.0
+                return 0.0, 0.0
+            if target is not None:
+                self.doing = "following the route" if state == "tracking" else "coasting on the old route"
+                p = self.params
+                return self._local.towards(*target, p.cruise_speed, p.turn_rate, p.clearance)
+        drive = self._explorer.step(ranges_m, odometry, self._local, self.params)
+        self.doing = self._explorer.doing
+        return drive
+
+    def digest(self) -> bytes:
+        """All that decides what it will do, for the state hash."""
+        follower = (self._follower.goal, self._follower.state) if self._follower else None
+        parts = (self.mode, follower, self._hand, self._still_s, self._free_self_s, self._free_self, self.params)
+        return repr(parts).encode() + self._place.tobytes() + self._explorer.digest() + self._local.digest()
+
+    def _by_hand(self, dt: float) -> tuple[float, float]:
+        speed, yaw_rate, left = self._hand
+        self._still_s = 0.0
+        if left <= 1e-9:
+            self.doing = "waiting for the hand"
+            return 0.0, 0.0
+        self._hand = (speed, yaw_rate, left - dt)
+        self.doing = "driven by hand"
+        return speed, yaw_rate
+
+    def _stuck(self, bumped: bool, odometry: Odometry) -> bool:
+        """[ours] Back off and turn for a while when bumped into something or when getting nowhere.
+
+        test_pilot.py::test_a_cornered_robot_frees_itself.
+        """
+        dt = odometry.dt
+        x, y, heading = self._place
+        heading += odometry.yaw_rate * dt
+        self._place[:] = (
+            x + odometry.speed * dt * math.cos(heading), y + odometry.speed * dt * math.sin(heading), heading,
+        )  # fmt: skip
+        self._still_s += dt
+        if math.hypot(self._place[0], self._place[1]) > 0.4:
+            self._place[:2] = 0.0
+            self._still_s = 0.0
+        if self._free_self_s > 0:
+            self._free_self_s -= dt
+            if self._free_self_s < BACK_OFF_S:
+                self._free_self = (0.0, self._free_self[1])
+            return True
+        if self._still_s > self.params.stuck_s or (bumped and self._still_s > 1.0):
+            turn = float(self._rng.uniform(0.5, 1.0)) * math.copysign(self.params.turn_rate, self._rng.uniform(-1, 1))
+            self._free_self_s, self._free_self = BACK_OFF_S + 1.0, (-0.2, turn)
+            self._still_s = 0.0
+            self._place[:2] = 0.0
+            self._local.forget()
+            return True
+        return False

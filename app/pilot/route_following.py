@@ -1,0 +1,118 @@
+"""Following a route to a goal over the experience map. ACRA 2006 section 4."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.pilot.params import PilotParams
+from ratslam_core import ExperienceMap, Route, TemporalMap
+
+REPLAN_S = 1.0
+SAME_PLACE_M = 0.35  # experiences so close in the map stand for the same place
+NEAR_M = 0.6  # [ours] links that are only thought of, from the robot to experiences so near
+LOST_S = 25.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Progress:
+    """Where the pilot is on its way to the goal."""
+
+    experience: int
+    state: str  # tracking, coasting, exploring, arrived, unreachable
+    eta_s: float | None
+    remaining_m: float | None
+    route: NDArray[np.int64]  # experiences
+    arrival_s: NDArray[np.float64]  # seconds from now
+
+
+class RouteFollower:
+    """Keeps the quickest route to one goal and says where to head for."""
+
+    def __init__(self, goal: int) -> None:
+        self.goal = goal
+        self.state = "tracking"
+        self._route: Route | None = None
+        self._age_s = math.inf  # of the route
+        self._plan_in_s = 0.0
+        self._no_route_s = 0.0
+
+    def step(self, experiences: ExperienceMap, dt: float, p: PilotParams) -> tuple[float, float] | None:
+        """The next point to head for, metres in the robot's frame; None when there, or when no route is known."""
+        if self.state == "arrived":
+            return None
+        robot = experiences.robot
+        goal = experiences.pose(self.goal)
+        self._age_s += dt
+        self._plan_in_s -= dt
+        if math.hypot(goal.x - robot.x, goal.y - robot.y) < p.arrival_m:
+            self.state = "arrived"
+            return None
+        if self._plan_in_s <= 0:
+            self._plan_in_s = REPLAN_S
+            self._plan(experiences)
+        if self._route is None or self._age_s > p.coast_s:
+            self._no_route_s += dt
+            self.state = "unreachable" if self._no_route_s > LOST_S else "exploring"
+            return None
+        self._no_route_s = 0.0
+        self.state = "tracking" if self._age_s <= REPLAN_S + dt else "coasting"
+        return self._aim(experiences, p.lookahead_m)
+
+    def progress(self, experiences: ExperienceMap) -> Progress:
+        nothing = np.zeros(0, np.int64), np.zeros(0)
+        if self.state == "arrived":
+            return Progress(self.goal, self.state, 0.0, 0.0, *nothing)
+        if self._route is None or self.state in ("exploring", "unreachable"):
+            return Progress(self.goal, self.state, None, None, *nothing)
+        at = self._nearest(experiences)
+        nodes = self._route.experiences[at:]
+        arrival = self._route.arrival_s[at:] - self._route.arrival_s[at]
+        xy = experiences.poses[nodes, :2]
+        robot = experiences.robot
+        first = math.hypot(xy[0, 0] - robot.x, xy[0, 1] - robot.y)
+        remaining = first + float(np.hypot(*np.diff(xy, axis=0).T).sum())
+        return Progress(self.goal, self.state, float(arrival[-1]), remaining, nodes, arrival)
+
+    def _plan(self, experiences: ExperienceMap) -> None:
+        """The quickest route, started at the active experience or, by links only thought of, at one close by."""
+        times = TemporalMap(experiences).times_to(self.goal)
+        robot = experiences.robot
+        poses = experiences.poses
+        away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
+        near = np.flatnonzero(away < NEAR_M)
+        if experiences.active not in near:
+            near = np.append(near, experiences.active)
+        turn = np.abs(np.remainder(poses[near, 2] - robot.heading_rad + np.pi, 2 * np.pi) - np.pi)
+        cost = times[near] + away[near] / 0.3 + 0.3 * turn
+        start = int(near[np.argmin(cost)])
+        if not np.isfinite(times[start]):
+            return
+        self._route = TemporalMap(experiences).route(start, self.goal)
+        self._age_s = 0.0
+
+    def _nearest(self, experiences: ExperienceMap) -> int:
+        """The place on the route that is nearest to the robot; the later one of equals."""
+        assert self._route is not None
+        xy = experiences.poses[self._route.experiences, :2]
+        robot = experiences.robot
+        away = np.hypot(xy[:, 0] - robot.x, xy[:, 1] - robot.y)
+        return int(len(away) - 1 - np.argmin(away[::-1]))
+
+    def _aim(self, experiences: ExperienceMap, lookahead: float) -> tuple[float, float]:
+        assert self._route is not None
+        robot = experiences.robot
+        xy = experiences.poses[self._route.experiences, :2]
+        at = self._nearest(experiences)
+        target, way = xy[at], 0.0
+        for k in range(at, len(xy) - 1):
+            way += float(np.hypot(*(xy[k + 1] - xy[k])))
+            target = xy[k + 1]
+            if way > lookahead:
+                break
+        c, s = math.cos(robot.heading_rad), math.sin(robot.heading_rad)
+        dx, dy = float(target[0]) - robot.x, float(target[1]) - robot.y
+        return c * dx + s * dy, -s * dx + c * dy

@@ -1,0 +1,151 @@
+"""The closed loop, one tick at a time: drive -> office -> senses -> RatSLAM -> pilot -> drive. Start reading here.
+
+No thread, no clock, no page: the same seed and the same calls give the same run, bit for bit.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from app.config import Config, Value
+from app.evaluation import Evaluation
+from app.pilot import Mode, Pilot
+from ratslam_core import Estimate, Odometry, RatSlam
+from sim2d import SONAR_ANGLES_RAD, Drive, SensorFrame, Simulator, World
+
+OFF_THE_MAP_M = 1.5  # a goal farther than this from every experience is refused
+STAGES = ("office and senses", "RatSLAM", "pilot")
+
+
+class Session:
+    """One robot in one world with one brain."""
+
+    def __init__(self, world: World, seed: int = 0, config: Config | None = None) -> None:
+        self.world, self.seed, self.config = world, seed, config or Config()
+        brain_seed, pilot_seed = np.random.SeedSequence([seed, 1]).spawn(2)
+        self.simulator = Simulator(world, self.config.robot, seed)
+        self.brain = RatSlam(self.config.engine, np.random.default_rng(brain_seed))
+        self.pilot = Pilot(self.config.pilot, np.array(SONAR_ANGLES_RAD), np.random.default_rng(pilot_seed))
+        self.evaluation = Evaluation()
+        self.stage_s = dict.fromkeys(STAGES, 0.0)
+        self.frame: SensorFrame = self.simulator.observe()
+        self.estimate: Estimate = self._think()
+
+    @property
+    def tick_count(self) -> int:
+        return self.frame.tick
+
+    @property
+    def time_s(self) -> float:
+        return self.frame.time_s
+
+    def tick(self) -> None:
+        """One tenth of a second."""
+        t0 = time.perf_counter()
+        speed, yaw_rate = self.pilot.step(
+            self.frame.ranges_m, self.frame.bumped, self._odometry(), self.brain.experience_map
+        )
+        t1 = time.perf_counter()
+        self.frame = self.simulator.step(Drive(speed, yaw_rate))
+        t2 = time.perf_counter()
+        self.estimate = self._think()
+        t3 = time.perf_counter()
+        for stage, spent in zip(STAGES, (t2 - t1, t3 - t2, t1 - t0), strict=True):
+            self.stage_s[stage] += spent
+
+    # ------------------------------------------------------------ orders; ValueError says why one cannot be
+
+    def set_goal(self, x: float, y: float) -> int:
+        """Go to the experience that is nearest to this place of the map; returns it."""
+        poses = self.brain.experience_map.poses
+        away = np.hypot(poses[:, 0] - x, poses[:, 1] - y)
+        nearest = int(np.argmin(away))
+        if away[nearest] > OFF_THE_MAP_M:
+            raise ValueError(
+                f"({x:g}, {y:g}) is off the map: the nearest experience is {away[nearest]:.1f} m away, "
+                f"at ({poses[nearest, 0]:.1f}, {poses[nearest, 1]:.1f}); choose a place within {OFF_THE_MAP_M:g} m of one"
+            )
+        self.pilot.set_goal(nearest)
+        return nearest
+
+    def set_mode(self, mode: Mode) -> None:
+        self.pilot.set_mode(mode)
+
+    def kidnap(self, x: float | None = None, y: float | None = None, heading_rad: float | None = None) -> None:
+        """Put the robot elsewhere (office frame) without telling it; without a place, a free one by chance."""
+        if x is None and y is None:
+            x, y, by_chance = self.simulator.random_free_pose()
+            heading_rad = by_chance if heading_rad is None else heading_rad
+        if x is None or y is None:
+            raise ValueError("a kidnap needs both x and y, or neither for a place by chance")
+        heading = self.simulator.truth.heading_rad if heading_rad is None else heading_rad
+        self.simulator.teleport(x, y, heading)
+        self.frame = self.simulator.observe()
+        self.evaluation.kidnapped(self.time_s, self.brain.experience_map)
+
+    def set_parameter(self, name: str, value: Value) -> bool:
+        """Change one parameter; True when it acts at once, False when it waits for the next reset."""
+        config = self.config.with_value(name, value)
+        section, key = name.split(".")
+        live = next(item.metadata["live"] for dotted, item, _ in config.items() if dotted == name)
+        self.config = config
+        if live:
+            self._take(section, {key: getattr(getattr(config, section), key)})
+        return live
+
+    def state_hash(self) -> str:
+        """Digest of everything that decides the future: equal for equal runs."""
+        brain, digest = self.brain, hashlib.sha256()
+        cells, activity = brain.pose_cells.active
+        digest.update(self.simulator.state())
+        digest.update(self.pilot.digest())
+        for array in (cells, activity, brain.experience_map.poses, brain.experience_map.links, brain.experience_map.moves):
+            digest.update(np.ascontiguousarray(array).tobytes())
+        digest.update(repr((len(brain.local_view), brain.relocalisations, brain.experience_map.active)).encode())
+        return digest.hexdigest()
+
+    # ------------------------------------------------------------ inside
+
+    def _odometry(self) -> Odometry:
+        return Odometry(self.frame.odometry_speed, self.frame.odometry_yaw_rate, self.frame.dt)
+
+    def _think(self) -> Estimate:
+        odometry = self._odometry()
+        estimate = self.brain.step(self.frame.image, odometry)
+        self.evaluation.record(
+            self.time_s, self.simulator.truth, self.brain.experience_map, estimate.created, odometry
+        )
+        return estimate
+
+    def _take(self, section: str, change: dict[str, Value]) -> None:
+        """Hand one live parameter to whoever uses it; the others keep what they run with."""
+        brain = self.brain
+        if section == "robot":
+            self.simulator.set_params(replace(self.simulator.params, **change))  # type: ignore[arg-type]
+        elif section == "pilot":
+            self.pilot.params = replace(self.pilot.params, **change)  # type: ignore[arg-type]
+        else:
+            brain.set_params(replace(brain.params, **{section: replace(getattr(brain.params, section), **change)}))
+
+
+def spread_goals(session: Session, count: int) -> list[int]:
+    """Experiences spread over the map: each the farthest from the robot and from those before it."""
+    poses = session.brain.experience_map.poses
+    robot = session.brain.experience_map.robot
+    away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
+    chosen: list[int] = []
+    for _ in range(min(count, len(poses))):
+        chosen.append(int(np.argmax(away)))
+        away = np.minimum(away, np.hypot(*(poses[:, :2] - poses[chosen[-1], :2]).T))
+    return chosen
+
+
+def is_lost(session: Session) -> bool:
+    """Whether a second packet holds at least a fifth of the activity."""
+    packets = session.brain.pose_cells.packets
+    return len(packets) > 1 and packets[1].mass > 0.2 and math.isfinite(packets[1].mass)

@@ -1,0 +1,211 @@
+"""The experience map: experiences tie pose cells and scenes to places of a map that stays true. ACRA 2006 section 3.
+
+An experience stands for a state of the pose cells (x', y', theta') and a scene V, and has a pose of its own in the map. A
+link is a transition that the robot made: distance, bearing and change of facing by odometry, and the time it took.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ratslam_core import map_correction
+from ratslam_core.params import ExperienceMapParams
+from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, wrap_angle
+
+
+class ExperienceMap:
+    """Experiences and links. `step` finds or makes the active experience and learns the transition to it."""
+
+    def __init__(self, shape: tuple[int, int, int], cell_m: float, params: ExperienceMapParams | None = None) -> None:
+        self.params = params or ExperienceMapParams()
+        self.shape, self.cell_m = shape, cell_m
+        self._pose = np.zeros((1024, 3))  # x, y, heading in the map
+        self._at = np.zeros((1024, 3))  # x', y', theta' in cells and layers
+        self._view = np.zeros(1024, np.int64)
+        self._ends = np.zeros((1024, 2), np.int64)
+        self._move = np.zeros((1024, 3))  # dx, dy in the frame of the first experience, change of facing
+        self._time = np.zeros(1024)
+        self._times_made = np.zeros(1024, np.int64)
+        self._graph = map_correction.Adjacency()
+        self._count = self._links = 0
+        self._link_of: dict[tuple[int, int], int] = {}
+        self._of_view: dict[int, list[int]] = {}
+        self.active = -1
+        self._offset = IDENTITY  # the robot in the frame of the active experience when it became active
+        self._travel = IDENTITY  # odometry since then
+        self._since_s = 0.0
+        self.closures = 0  # links made to experiences that existed before
+        self._solved_at = self._links_at_solve = 0
+        self._steps = 0
+
+    # ------------------------------------------------------------ reading
+
+    def __len__(self) -> int:
+        return self._count
+
+    @property
+    def link_count(self) -> int:
+        return self._links
+
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """x, y (m), heading (rad) of every experience in the map, shape (n, 3). A view."""
+        return self._pose[: self._count]
+
+    @property
+    def links(self) -> NDArray[np.int64]:
+        """From and to of every link, shape (m, 2). A view."""
+        return self._ends[: self._links]
+
+    @property
+    def moves(self) -> NDArray[np.float64]:
+        """Of every link: dx, dy (m) in the frame of the first experience and change of facing (rad), shape (m, 3). A view."""
+        return self._move[: self._links]
+
+    @property
+    def link_times(self) -> NDArray[np.float64]:
+        """Seconds that each transition takes, shape (m,). A view."""
+        return self._time[: self._links]
+
+    @property
+    def local_pose(self) -> Pose2:
+        """The robot in the frame of the active experience."""
+        return self._offset.compose(self._travel)
+
+    @property
+    def robot(self) -> Pose2:
+        """The robot in the map."""
+        return self.pose(self.active).compose(self.local_pose)
+
+    def pose(self, experience: int) -> Pose2:
+        x, y, heading = self._pose[experience]
+        return Pose2(float(x), float(y), float(heading))
+
+    def cell_state(self, experience: int) -> tuple[float, float, float, int]:
+        """x', y' (cells), theta' (layers) and the scene of one experience."""
+        x, y, theta = self._at[experience]
+        return float(x), float(y), float(theta), int(self._view[experience])
+
+    def energy(self, experience: int, packet: Packet, view: int) -> float:
+        """E_i = 0 if r_i > 1 or q_i > 1 or V != V_i, else 2 - r_i - q_i. ACRA 2006 eqs. 1-4."""
+        if view != self._view[experience]:
+            return 0.0
+        dx, dy, dtheta = self._cells_from(experience, packet)
+        r = math.hypot(dx, dy) / self.params.zone_xy
+        q = abs(dtheta) / self.params.zone_theta
+        return 0.0 if r > 1 or q > 1 else 2 - r - q
+
+    # ------------------------------------------------------------ learning
+
+    def step(self, packet: Packet, view: int, odometry: Odometry) -> bool:
+        """One step: the robot moved as the odometry says and is now in this state. True when a new experience was made."""
+        self._steps += 1
+        if self.active < 0:
+            self._create(packet, view, IDENTITY)
+            return True
+        middle = odometry.yaw_rate * odometry.dt / 2
+        step = odometry.speed * odometry.dt
+        moved = Pose2(step * math.cos(middle), step * math.sin(middle), wrap_angle(2 * middle))
+        self._travel = self._travel.compose(moved)
+        self._since_s += odometry.dt
+        best = self._most_energetic(packet, view)
+        if best == self.active:
+            return False
+        if best < 0:
+            before = self.active
+            self._create(packet, view, self.robot)
+            self._learn_link(before, self.active, self._came)
+            return True
+        before, came = self.active, self.local_pose
+        self._enter(best, packet)
+        self._learn_link(before, best, came.compose(self._offset.inverse()))
+        return False
+
+    def correct(self) -> None:
+        """One step of map correction: sweeps in every step, the exact solution now and then while loops close.
+
+        ACRA 2005 eqs. 12-14 by sweeps that divide by the number of links, which cannot diverge. [ours] Sweeps alone lag
+        behind a growing map, so their fixed point is computed directly every `solve_every` steps when loops have closed.
+        test_map_correction.py::{test_a_sweep_never_raises_the_residual, test_sweeps_and_solution_agree}.
+        """
+        for _ in range(self.params.sweeps):
+            map_correction.sweep(self._pose[: self._count], self._graph, self._ends, self._move, self.params.correction)
+        due = self.params.solve_every and self._steps - self._solved_at >= self.params.solve_every
+        if due and self.closures > self._links_at_solve:
+            map_correction.solve(self._pose[: self._count], self.links, self.moves)
+            self._solved_at, self._links_at_solve = self._steps, self.closures
+
+    # ------------------------------------------------------------ inside
+
+    def _most_energetic(self, packet: Packet, view: int) -> int:
+        best, most = -1, self.params.threshold
+        for experience in self._of_view.get(view, ()):
+            energy = self.energy(experience, packet, view)
+            if energy > most:
+                best, most = experience, energy
+        return best
+
+    def _cells_from(self, experience: int, packet: Packet) -> tuple[float, float, float]:
+        """The packet relative to an experience's state: cells and layers, the shorter way round."""
+        n_theta, n_y, n_x = self.shape
+        x, y, theta = self._at[experience]
+        layer = packet.heading_rad * n_theta / (2 * math.pi)
+        return (
+            (packet.x - x + n_x / 2) % n_x - n_x / 2,
+            (packet.y - y + n_y / 2) % n_y - n_y / 2,
+            (layer - theta + n_theta / 2) % n_theta - n_theta / 2,
+        )
+
+    def _create(self, packet: Packet, view: int, pose: Pose2) -> None:
+        if self._count == len(self._pose):
+            self._pose, self._at, self._view = _double(self._pose), _double(self._at), _double(self._view)
+        i = self._count
+        n_theta = self.shape[0]
+        self._pose[i] = pose.x, pose.y, pose.heading_rad
+        self._at[i] = packet.x, packet.y, (packet.heading_rad * n_theta / (2 * math.pi)) % n_theta
+        self._view[i] = view
+        self._of_view.setdefault(view, []).append(i)
+        self._graph.add_node()
+        self._count += 1
+        self._came = self.local_pose
+        self.active, self._offset, self._travel = i, IDENTITY, IDENTITY
+
+    def _enter(self, experience: int, packet: Packet) -> None:
+        """Make an experience active; the robot may enter its zone beside its centre."""
+        dx, dy, dtheta = self._cells_from(experience, packet)
+        facing = self._at[experience, 2] * 2 * math.pi / self.shape[0]
+        c, s = math.cos(facing), math.sin(facing)
+        dx, dy = dx * self.cell_m, dy * self.cell_m
+        self._offset = Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(dtheta * 2 * math.pi / self.shape[0]))
+        self._travel, self.active = IDENTITY, experience
+
+    def _learn_link(self, i: int, j: int, move: Pose2) -> None:
+        """The transition i -> j took this move and this time; repeats are averaged. ACRA 2006 eqs. 5-6."""
+        link = self._link_of.get((i, j))
+        if link is None:
+            if self._links == len(self._ends):
+                self._ends, self._move = _double(self._ends), _double(self._move)
+                self._time, self._times_made = _double(self._time), _double(self._times_made)
+            link = self._links
+            self._link_of[i, j] = link
+            self._ends[link] = i, j
+            self._links += 1
+            self._graph.add_link(i, j)
+            if j != self._count - 1:
+                self.closures += 1
+        n = self._times_made[link]
+        share = 1.0 / (n + 1)
+        old = self._move[link]
+        turn = wrap_angle(move.heading_rad - old[2])
+        old += share * (move.x - old[0]), share * (move.y - old[1]), share * turn
+        old[2] = wrap_angle(float(old[2]))
+        self._time[link] += share * (self._since_s - self._time[link])
+        self._times_made[link] = n + 1
+        self._since_s = 0.0
+
+
+def _double(array: NDArray) -> NDArray:
+    return np.concatenate([array, np.zeros_like(array)])

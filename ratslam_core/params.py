@@ -1,0 +1,107 @@
+"""Every number of the engine, once: default, symbol, unit, range, meaning and source.
+
+Sources: A = ACRA 2004, B = ACRA 2005, C = IROS 2005, D = ACRA 2006; "ours" where the papers are silent.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+
+def param(
+    default: Any,
+    *,
+    symbol: str = "",
+    unit: str = "",
+    low: float | None = None,
+    high: float | None = None,
+    meaning: str,
+    source: str,
+    live: bool = True,
+) -> Any:
+    """A dataclass field that knows what it means. `live` parameters may change while the engine runs."""
+    about = dict(symbol=symbol, unit=unit, low=low, high=high, meaning=meaning, source=source, live=live)
+    return field(default=default, metadata=about)
+
+
+def check_ranges(params: Any) -> None:
+    """ValueError with name, value and range for the first field that is out of its range or of the wrong type."""
+    for item in fields(params):
+        value, about = getattr(params, item.name), item.metadata
+        if "meaning" not in about:
+            continue
+        kind = type(item.default)
+        fits = isinstance(value, kind) or (kind is float and type(value) is int)
+        if not fits or (kind is int and isinstance(value, bool)):
+            raise ValueError(f"{item.name} must be {kind.__name__}, got {value!r}")
+        if kind is bool:
+            continue
+        low, high = about["low"], about["high"]
+        if not math.isfinite(value) or (low is not None and value < low) or (high is not None and value > high):
+            unit = f" {about['unit']}" if about["unit"] else ""
+            raise ValueError(f"{item.name} must be between {low} and {high}{unit}, got {value!r}")
+
+
+@dataclass(frozen=True, slots=True)
+class PoseCellParams:
+    """The continuous attractor network (A section 4)."""
+
+    n_x: int = param(64, symbol="n_x'", unit="cells", low=8, high=1000, meaning="cells along x'", source="D 5.3", live=False)
+    n_y: int = param(64, symbol="n_y'", unit="cells", low=8, high=1000, meaning="cells along y'", source="D 5.3", live=False)
+    n_theta: int = param(36, symbol="n_θ'", unit="layers", low=8, high=360, meaning="layers of heading; 36 are 10 degrees each", source="A 4", live=False)  # fmt: skip
+    cell_m: float = param(0.25, unit="m", low=0.01, high=100.0, meaning="side of one cell", source="A 4, D 5.3", live=False)
+    excite_sigma: float = param(0.5, symbol="σ_ε", unit="cells", low=0.2, high=3.0, meaning="width of the excitation Gaussian", source="A eq. 10; value ours")
+    excite_radius: int = param(2, unit="cells", low=1, high=9, meaning="reach of the excitation", source="A eq. 10; value ours")
+    inhibit: float = param(3e-4, symbol="φ", low=0.0, high=0.02, meaning="global inhibition taken from every cell", source="A eq. 11; value ours")
+    local_inhibit: float = param(0.0, low=0.0, high=1.0, meaning="strength of local inhibition, 0 = off", source="later RatSLAM")
+    local_inhibit_sigma: float = param(2.0, unit="cells", low=0.5, high=5.0, meaning="width of the local inhibition", source="later RatSLAM")
+    local_inhibit_radius: int = param(2, unit="cells", low=1, high=9, meaning="reach of the local inhibition", source="later RatSLAM")
+    window: int = param(6, unit="cells", low=2, high=12, meaning="half-width of the window that holds one packet", source="ours")
+    carry: bool = param(True, meaning="give back the motion that the attractor swallows", source="ours")
+    snap_cells: float = param(3.0, unit="cells", low=1.0, high=100.0, meaning="a longer jump of the winning packet is a relocalisation", source="ours")  # fmt: skip
+
+    def __post_init__(self) -> None:
+        check_ranges(self)
+
+
+@dataclass(frozen=True, slots=True)
+class LocalViewParams:
+    """Recognising scenes (D section 7) and their Hebbian links to pose cells (A 4)."""
+
+    match_threshold: float = param(8.0, unit="grey levels", low=0.0, high=255.0, meaning="mean absolute difference below which a view is recognised", source="D 7; value ours")  # fmt: skip
+    shift: int = param(2, unit="columns", low=0, high=5, meaning="horizontal shifts tried to either side", source="D 7; value ours")
+    min_contrast: float = param(12.0, unit="grey levels", low=0.0, high=255.0, meaning="a view with less contrast shows nothing", source="ours")
+    learning_rate: float = param(0.15, symbol="η", low=0.0, high=1.0, meaning="Hebbian learning rate", source="C IV.C")
+    decay: float = param(0.0, symbol="δ", low=0.0, high=1.0, meaning="share of a link forgotten at each sight", source="A eq. 2")
+    saturation: float = param(0.02, symbol="s_max", low=0.0, high=1.0, meaning="most that one link injects", source="A eq. 4; value ours")
+    injection: float = param(0.14, low=0.0, high=5.0, meaning="most that all links of a view inject together", source="ours")
+    enabled: bool = param(True, meaning="vision moves the pose cells; off = path integration only", source="A figures 9, 10")
+
+    def __post_init__(self) -> None:
+        check_ranges(self)
+
+
+@dataclass(frozen=True, slots=True)
+class ExperienceMapParams:
+    """Experiences, their links and the correction of the map (B 4, D 3)."""
+
+    zone_xy: float = param(2.0, symbol="r_a", unit="cells", low=0.5, high=20.0, meaning="zone of influence in x', y'", source="D eq. 2")
+    zone_theta: float = param(2.0, symbol="θ_a", unit="layers", low=0.5, high=20.0, meaning="zone of influence in θ'", source="D eq. 3")
+    threshold: float = param(0.0, low=0.0, high=2.0, meaning="a new experience when no energy is above it", source="B 4.1")
+    correction: float = param(0.5, symbol="α", low=0.0, high=1.0, meaning="correction rate", source="B table 1, D 3.3")
+    sweeps: int = param(1, unit="1/step", low=0, high=100, meaning="correction sweeps in each step", source="B 4.3")
+    solve_every: int = param(50, unit="steps", low=0, high=10_000, meaning="exact correction this often while loops close; 0 = never", source="ours")  # fmt: skip
+
+    def __post_init__(self) -> None:
+        check_ranges(self)
+
+
+@dataclass(frozen=True, slots=True)
+class RatSlamParams:
+    """All of the engine."""
+
+    pose_cells: PoseCellParams = PoseCellParams()
+    local_view: LocalViewParams = LocalViewParams()
+    experience_map: ExperienceMapParams = ExperienceMapParams()

@@ -1,0 +1,67 @@
+"""RatSLAM in one step: image and odometry in, place in the map out. ACRA 2004 section 4, ACRA 2006 section 3."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ratslam_core.experience_map import ExperienceMap
+from ratslam_core.local_view import NOTHING, LocalView
+from ratslam_core.params import RatSlamParams
+from ratslam_core.pose_cells import PoseCells
+from ratslam_core.types import Estimate, Odometry
+from ratslam_core.view_links import ViewLinks
+
+
+class RatSlam:
+    """The whole engine: local view, pose cells, experience map."""
+
+    def __init__(self, params: RatSlamParams | None = None, rng: np.random.Generator | None = None) -> None:
+        self.params = params or RatSlamParams()
+        self.rng = rng or np.random.default_rng(0)
+        self.local_view = LocalView(self.params.local_view)
+        self.view_links = ViewLinks(self.params.local_view)
+        self.pose_cells = PoseCells(self.params.pose_cells)
+        self.experience_map = ExperienceMap(
+            self.pose_cells.shape, self.params.pose_cells.cell_m, self.params.experience_map
+        )
+        self.relocalisations = 0
+
+    def step(self, image: NDArray[np.uint8], odometry: Odometry) -> Estimate:
+        """One iteration at the end of a movement: `odometry` is what the wheels report of it, `image` what is seen then.
+
+        image: (h, w) or (h, w, 3) uint8. The papers' four stages; path integration comes first because the image belongs
+        to the end of the movement [ours].
+        """
+        recognition = self.local_view.observe(image)
+        self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
+        expected = self.pose_cells.winner
+        if recognition.view != NOTHING and self.params.local_view.enabled:
+            self._associate(recognition.view, recognition.recruited)
+        packet = self.pose_cells.attract()
+        jump = self.pose_cells.cells_apart(expected.x, expected.y, packet.x, packet.y)
+        relocalised = jump > self.params.pose_cells.snap_cells
+        self.relocalisations += relocalised
+        created = self.experience_map.step(packet, recognition.view, odometry)
+        self.experience_map.correct()
+        return Estimate(
+            self.experience_map.active, created, self.experience_map.robot, packet, recognition, relocalised
+        )
+
+    def set_params(self, params: RatSlamParams) -> None:
+        """Take new live parameters while running; ValueError when the size of the pose cells would change."""
+        self.pose_cells.set_params(params.pose_cells)
+        self.local_view.params = self.view_links.params = params.local_view
+        self.experience_map.params = params.experience_map
+        self.params = params
+
+    def _associate(self, view: int, recruited: bool) -> None:
+        """Visual calibration by what the view is linked to, then association with where the packet is."""
+        cells, activity = self.pose_cells.active
+        if recruited:
+            self.view_links.learn(view, cells, activity, self.pose_cells.slot)
+            return
+        linked, injection = self.view_links.recall(view)
+        linked = linked.copy()
+        self.view_links.learn(view, cells, activity, self.pose_cells.slot)
+        self.pose_cells.inject(linked, injection)

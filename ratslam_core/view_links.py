@@ -1,0 +1,92 @@
+"""Hebbian links from local view cells to pose cells. ACRA 2004 equations 2-4.
+
+Links are sparse: each view has a block of (pose cell, strength) in one arena; a block that is full moves to the end with
+twice the room.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from ratslam_core.kernels import FLAT
+from ratslam_core.params import LocalViewParams
+
+
+class ViewLinks:
+    """beta_i,xyz for every view i."""
+
+    def __init__(self, params: LocalViewParams | None = None) -> None:
+        self.params = params or LocalViewParams()
+        self._cells = np.zeros(65_536, np.int32)
+        self._strength = np.zeros(65_536, np.float32)
+        self._blocks = np.zeros((1024, 3), np.int64)  # start, used, room of each view
+        self._end = 0
+        self._seen = np.zeros(4096, np.bool_)
+
+    def of(self, view: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+        """The pose cells that a view is linked to, flat indices, and the strengths."""
+        start, used, _ = self._blocks[view] if view < len(self._blocks) else (0, 0, 0)
+        return self._cells[start : start + used], self._strength[start : start + used]
+
+    def learn(self, view: int, cells: NDArray[np.int32], activity: NDArray[np.float32], slot: NDArray[np.int32]) -> None:
+        """beta <- (1 - delta) beta + eta P for all active pose cells. ACRA 2004 eqs. 2-3.
+
+        cells, activity, slot: the active set of the pose cells (`PoseCells.active`, `PoseCells.slot`).
+        """
+        self._make_room(view, len(cells))
+        block = self._blocks[view]
+        block[1] = _learn(
+            self._cells[block[0] : block[0] + block[2]], self._strength[block[0] : block[0] + block[2]], block[1],
+            cells, activity, slot, self._seen, np.float32(self.params.learning_rate), np.float32(self.params.decay),
+        )  # fmt: skip
+
+    def recall(self, view: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+        """What the active view injects: min(beta, s_max) per link. ACRA 2004 eq. 4.
+
+        [ours] Scaled down so that all links together inject at most `injection`: one look-alike must not move a packet, a
+        row of agreeing views must. test_view_links.py::test_injection_is_capped_in_sum.
+        """
+        cells, strength = self.of(view)
+        values = np.minimum(strength, np.float32(self.params.saturation))
+        total = float(values.sum(dtype=np.float64))
+        if total > self.params.injection:
+            values *= np.float32(self.params.injection / total)
+        return cells, values
+
+    def _make_room(self, view: int, more: int) -> None:
+        while view >= len(self._blocks):
+            self._blocks = np.concatenate([self._blocks, np.zeros_like(self._blocks)])
+        if more > len(self._seen):
+            self._seen = np.zeros(2 * more, np.bool_)
+        start, used, room = (int(v) for v in self._blocks[view])
+        if used + more <= room:
+            return
+        wanted = max(2 * room, used + more)
+        while self._end + wanted > self._cells.size:
+            self._cells = np.concatenate([self._cells, np.zeros_like(self._cells)])
+            self._strength = np.concatenate([self._strength, np.zeros_like(self._strength)])
+        self._cells[self._end : self._end + used] = self._cells[start : start + used]
+        self._strength[self._end : self._end + used] = self._strength[start : start + used]
+        self._blocks[view] = self._end, used, wanted
+        self._end += wanted
+
+
+@njit(cache=True, nogil=True)
+def _learn(linked, strength, used, cells, activity, slot, seen, eta, delta):
+    """beta <- (1 - delta) beta + eta P in one view's block; returns how much of the block is used then."""
+    n = len(cells)
+    seen[:n] = False
+    for k in range(used):
+        strength[k] *= 1 - delta
+        at = slot[linked[k]]
+        if at > 0:
+            strength[k] += eta * activity[at - 1]
+            seen[at - 1] = True
+    for i in range(n):
+        if not seen[i]:
+            linked[used] = cells[i, FLAT]
+            strength[used] = eta * activity[i]
+            used += 1
+    return used
