@@ -15,7 +15,6 @@ from app.pilot.route_following import Progress, RouteFollower
 from ratslam_core import ExperienceMap, Odometry
 
 Mode = Literal["explore", "manual", "goal"]
-HAND_EXPIRES_S = 0.3
 BACK_OFF_S = 1.5
 
 
@@ -30,9 +29,8 @@ class Pilot:
         self._local = LocalMovement(sonar_angles_rad)
         self._rng = rng
         self._follower: RouteFollower | None = None
-        self._hand = (0.0, 0.0, 0.0)  # speed, yaw rate, seconds left
-        self._reach = 0.0  # how far it got from where it last was free, by odometry
-        self._place = np.zeros(3)
+        self._hand = (0.0, 0.0)  # speed, yaw rate
+        self._place = np.zeros(3)  # by odometry, from where it last got ahead
         self._still_s = 0.0
         self._free_self_s = 0.0
         self._free_self = (0.0, 0.0)
@@ -42,6 +40,10 @@ class Pilot:
     @property
     def goal(self) -> int | None:
         return self._follower.goal if self._follower else None
+
+    @property
+    def goal_state(self) -> tuple[int, str] | None:
+        return (self._follower.goal, self._follower.state) if self._follower else None
 
     def progress(self, experiences: ExperienceMap) -> Progress | None:
         return self._follower.progress(experiences) if self._follower else None
@@ -60,11 +62,12 @@ class Pilot:
         if mode == "goal" and self._follower is None:
             raise ValueError("there is no goal to go to; set one first")
         self.mode = mode
+        self._hand = (0.0, 0.0)
 
     def drive(self, speed: float, yaw_rate: float) -> None:
-        """By hand; expires after 0.3 s."""
+        """By hand, until the next order; the runner lets an order expire when no newer one comes."""
         self.mode = "manual"
-        self._hand = (speed, yaw_rate, HAND_EXPIRES_S)
+        self._hand = (speed, yaw_rate)
 
     # ------------------------------------------------------------ each tick
 
@@ -74,7 +77,7 @@ class Pilot:
         """From what was sensed at the end of the last tick."""
         self._local.sense(ranges_m, odometry)
         if self.mode == "manual":
-            return self._by_hand(odometry.dt)
+            return self._by_hand()
         if self._stuck(bumped, odometry):
             self.doing = "freeing itself"
             return self._free_self
@@ -95,19 +98,13 @@ class Pilot:
 
     def digest(self) -> bytes:
         """All that decides what it will do, for the state hash."""
-        follower = (self._follower.goal, self._follower.state) if self._follower else None
-        parts = (self.mode, follower, self._hand, self._still_s, self._free_self_s, self._free_self, self.params)
+        parts = (self.mode, self.goal_state, self._hand, self._still_s, self._free_self_s, self._free_self, self.params)
         return repr(parts).encode() + self._place.tobytes() + self._explorer.digest() + self._local.digest()
 
-    def _by_hand(self, dt: float) -> tuple[float, float]:
-        speed, yaw_rate, left = self._hand
+    def _by_hand(self) -> tuple[float, float]:
         self._still_s = 0.0
-        if left <= 1e-9:
-            self.doing = "waiting for the hand"
-            return 0.0, 0.0
-        self._hand = (speed, yaw_rate, left - dt)
-        self.doing = "driven by hand"
-        return speed, yaw_rate
+        self.doing = "waiting for the hand" if self._hand == (0.0, 0.0) else "driven by hand"
+        return self._hand
 
     def _stuck(self, bumped: bool, odometry: Odometry) -> bool:
         """[ours] Back off and turn for a while when bumped into something or when getting nowhere.

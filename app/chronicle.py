@@ -1,0 +1,116 @@
+"""What happened so far, for people to look at: events, trails, error series. Watches a session; never changes it."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.session import Session, is_lost
+from web.messages import Event, Packet, Series, Snap
+
+TRAIL_S = 120.0
+SERIES_POINTS = 600
+MOST_EVENTS = 500
+ERROR_POINTS = 1000
+
+
+class Chronicle:
+    """Call `watch` after each tick."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self.events: tuple[Event, ...] = ()
+        self._number = 0
+        ticks = int(TRAIL_S / session.frame.dt)
+        self._trail: deque[tuple[float, float]] = deque(maxlen=ticks // 2)
+        self._path: deque[tuple[float, float, float]] = deque(maxlen=ticks // 2)
+        self._samples: list[tuple[float, float, float, float, float]] = []
+        self._sample_every_s = 1.0
+        self.last_snap: Snap | None = None
+        self.lost = False
+        self._goal_state: tuple[int, str] | None = None
+        self._recovered = 0
+        self._before = session.brain.pose_cells.winner
+        self.error_map_m = self.error_odometry_m = 0.0
+        self.series = Series(*(np.zeros(0) for _ in range(5)))
+        self._sample()
+
+    @property
+    def trail(self) -> NDArray[np.float32]:
+        """True path of the last two minutes, (t, 2), office frame."""
+        return np.array(self._trail, np.float32).reshape(-1, 2)
+
+    @property
+    def path(self) -> NDArray[np.float32]:
+        """The winning packet's path of the last two minutes, (p, 3): x', y' (cells), heading (rad)."""
+        return np.array(self._path, np.float32).reshape(-1, 3)
+
+    def note(self, kind: str, text: str) -> None:
+        """Put a mark on the timeline."""
+        self._number += 1
+        self.events = (*self.events[-MOST_EVENTS:], Event(self._number, self._session.time_s, kind, text))
+
+    def watch(self) -> None:
+        session = self._session
+        packet = session.estimate.packet
+        if session.tick_count % 2 == 0:
+            truth = session.simulator.truth
+            self._trail.append((truth.x, truth.y))
+            self._path.append((packet.x, packet.y, packet.heading_rad))
+        if session.estimate.relocalised:
+            start, end = (Packet(p.x, p.y, p.heading_rad, p.mass) for p in (self._before, packet))
+            self.last_snap = Snap(session.time_s, start, end)
+            view = session.estimate.recognition.view
+            self.note("snap", f"relocalised by view {view}: ({start.x:.0f}, {start.y:.0f}) to ({end.x:.0f}, {end.y:.0f})")
+        self._before = packet
+        lost = is_lost(session)
+        if lost and not self.lost:
+            self.note("lost", f"{len(session.brain.pose_cells.packets)} packets compete")
+        self.lost = lost
+        self._watch_goal()
+        self._watch_kidnaps()
+        if session.time_s >= len(self._samples) * self._sample_every_s:
+            self._sample()
+
+    def _watch_goal(self) -> None:
+        follower_state = self._session.pilot.goal_state
+        if follower_state == self._goal_state:
+            return
+        self._goal_state = follower_state
+        if follower_state is None:
+            return
+        goal, state = follower_state
+        if state == "arrived":
+            self.note("arrived", f"at experience {goal}")
+        elif state == "unreachable":
+            self.note("unreachable", f"no way to experience {goal} is known; exploring for one")
+
+    def _watch_kidnaps(self) -> None:
+        kidnaps = self._session.evaluation.kidnaps
+        while self._recovered < len(kidnaps) and kidnaps[self._recovered].after_s is not None:
+            kidnap = kidnaps[self._recovered]
+            self.note("recovered", f"knows where it is {kidnap.after_s:.1f} s and {kidnap.after_m:.1f} m after the kidnap")
+            self._recovered += 1
+        if self._recovered < len(kidnaps) - 1:
+            self._recovered = len(kidnaps) - 1  # kidnapped again before it recovered
+
+    def _sample(self) -> None:
+        """One point of the series; when they are too many, every other one goes."""
+        session = self._session
+        every = max(1, session.tick_count // ERROR_POINTS)
+        self.error_map_m, self.error_odometry_m = session.evaluation.errors(session.brain.experience_map, every)
+        views, experiences = len(session.brain.local_view), len(session.brain.experience_map)
+        self._samples.append((session.time_s, self.error_map_m, self.error_odometry_m, views, experiences))
+        if len(self._samples) > SERIES_POINTS:
+            self._samples = self._samples[::2]
+            self._sample_every_s *= 2
+        columns = np.array(self._samples, np.float64).T.copy()
+        columns.setflags(write=False)
+        self.series = Series(*columns)
+
+
+def finite_or_none(value: float | None) -> float | None:
+    return value if value is not None and math.isfinite(value) else None

@@ -1,0 +1,101 @@
+"""The closed loop without a server, as fast as it goes, and its report."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from app.config import Config
+from app.session import Session, spread_goals
+from sim2d import World
+
+GOAL_TIMEOUT_S = 180.0
+NEAR_ENOUGH_M = 1.0
+
+
+def run_headless(
+    world: World,
+    seed: int,
+    minutes: float,
+    *,
+    config: Config | None = None,
+    goals: int = 0,
+    kidnap_at_s: Sequence[float] = (),
+    progress: Callable[[float, str], None] = lambda _simulated_s, _what: None,
+) -> dict[str, Any]:
+    """Explore for so many simulated minutes, kidnapped at these times, then visit `goals` places; the report as a dict.
+
+    progress: called about once a simulated second with the simulated seconds since the last call and what goes on.
+    """
+    session = Session(world, seed, config)
+    ticks = round(minutes * 60 / session.frame.dt)
+    kidnaps = sorted(kidnap_at_s)
+    started = time.perf_counter()
+    for tick in range(ticks):
+        while kidnaps and session.time_s >= kidnaps[0] - 1e-9:
+            session.kidnap()
+            kidnaps.pop(0)
+        session.tick()
+        if tick % 10 == 9:
+            progress(10 * session.frame.dt, "exploring")
+    visits = []
+    for number, goal in enumerate(spread_goals(session, goals)):
+        visits.append(_visit(session, goal, lambda s, n=number: progress(s, f"goal {n + 1} of {goals}")))
+    wall = time.perf_counter() - started
+    return _report(session, wall, visits)
+
+
+def _visit(session: Session, goal: int, progress: Callable[[float], None]) -> dict[str, Any]:
+    """Send the robot to an experience and judge by truth: within 1 m of where that experience was made."""
+    truth = session.simulator.truth
+    made_at = session.evaluation.made_at(goal)
+    shortest = session.simulator.free_space.shortest_m((truth.x, truth.y), made_at)
+    began_s, began_m = session.time_s, session.evaluation.path_m
+    session.pilot.set_goal(goal)
+    while session.pilot.goal_state != (goal, "arrived") and session.time_s - began_s < GOAL_TIMEOUT_S:
+        session.tick()
+        if session.tick_count % 10 == 0:
+            progress(10 * session.frame.dt)
+    truth = session.simulator.truth
+    miss = math.hypot(truth.x - made_at[0], truth.y - made_at[1])
+    return {
+        "experience": goal,
+        "reached": session.pilot.goal_state == (goal, "arrived") and miss <= NEAR_ENOUGH_M,
+        "time_s": round(session.time_s - began_s, 3),
+        "path_m": round(session.evaluation.path_m - began_m, 3),
+        "shortest_m": _number(shortest),
+        "miss_m": _number(miss),
+    }
+
+
+def _report(session: Session, wall: float, visits: list[dict[str, Any]]) -> dict[str, Any]:
+    brain, evaluation = session.brain, session.evaluation
+    map_error, odometry_error = evaluation.errors(brain.experience_map)
+    consistency = evaluation.revisit_consistency
+    return {
+        "world": session.world.name,
+        "seed": session.seed,
+        "simulated_s": round(session.time_s, 3),
+        "wall_s": round(wall, 3),
+        "real_time_factor": round(session.time_s / wall, 1),
+        "ticks": session.tick_count,
+        "views": len(brain.local_view),
+        "experiences": len(brain.experience_map),
+        "links": brain.experience_map.link_count,
+        "relocalisations": brain.relocalisations,
+        "error_m": {"map": _number(map_error), "odometry": _number(odometry_error)},
+        "revisit_consistency": {"within_half_metre": None if consistency is None else round(consistency, 4)},
+        "goals": visits,
+        "kidnaps": [
+            {"at_s": k.at_s, "recovered": k.after_s is not None, "after_s": _number(k.after_s), "after_m": _number(k.after_m)}
+            for k in evaluation.kidnaps
+        ],
+        "state_hash": session.state_hash(),
+    }
+
+
+def _number(value: float | None) -> float | None:
+    """Millimetres are enough; what is not finite has no place in JSON."""
+    return round(value, 3) if value is not None and math.isfinite(value) else None

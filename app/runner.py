@@ -1,0 +1,214 @@
+"""The one engine thread: keeps the pace, takes commands between ticks, publishes snapshots. Waits for no browser."""
+
+from __future__ import annotations
+
+import math
+import queue
+import threading
+import time
+import traceback
+from collections.abc import Mapping
+from concurrent.futures import Future
+
+from app.chronicle import Chronicle
+from app.config import Config
+from app.session import Session
+from app.snapshots import Snapshots
+from sim2d import World, load_world, world_names
+from web import messages as m
+from web.latest import Latest
+
+PUBLISH_EVERY_S = 1 / 20
+HAND_EXPIRES_S = 0.3  # of wall time: what a person who lets go would expect at any speed
+MOST_BEHIND_S = 0.25
+
+
+class Runner:
+    """Owns the session. `submit` may be called from any thread; everything else happens in the runner's own."""
+
+    def __init__(self, world: World, seed: int, config: Config, *, speed: float = 1.0, running: bool = True) -> None:
+        self.latest: Latest[m.Snapshot] = Latest()
+        self._own_worlds: Mapping[str, World] = {world.name: world}
+        titles = dict(world_names())
+        titles.setdefault(world.name, world.title)
+        self._worlds = tuple(titles.items())
+        self._first = (world, seed, config)
+        self._requests: queue.SimpleQueue[m.Request | None] = queue.SimpleQueue()
+        self._speed, self._running = speed, running
+        self._fault: str | None = None
+        self._run = 0
+        self._hand_expires = math.inf
+        self._due = self._published = 0.0
+        self._factor = 0.0
+        self._measured = (0.0, 0.0)
+        self._stopping = False
+        self._thread = threading.Thread(target=self._loop, name="engine", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Ends the thread after the tick it is in."""
+        self._stopping = True
+        self._requests.put(None)
+        self._thread.join()
+
+    def submit(self, command: m.Command) -> Future[m.Accepted | m.Refused]:
+        """Hand a command to the engine; the answer comes when it has taken effect or was refused."""
+        answer: Future[m.Accepted | m.Refused] = Future()
+        self._requests.put(m.Request(command, answer))
+        return answer
+
+    # ------------------------------------------------------------ the thread
+
+    def _loop(self) -> None:
+        self._begin(*self._first)
+        while not self._stopping:
+            self._take_requests()
+            now = time.perf_counter()
+            if now >= self._hand_expires:
+                self._hand_expires = math.inf
+                self.session.pilot.drive(0.0, 0.0)
+            if self._running and now >= self._due:
+                self._tick()
+                step = self.session.frame.dt / self._speed if self._speed > 0 else 0.0
+                self._due = max(self._due + step, now - MOST_BEHIND_S)
+            self._measure(now)
+            if self._running and now - self._published >= PUBLISH_EVERY_S * 0.98:
+                self._publish()
+
+    def _begin(self, world: World, seed: int, config: Config) -> None:
+        self.session = Session(world, seed, config)
+        self._chronicle = Chronicle(self.session)
+        self._run += 1
+        self._snapshots = Snapshots(self.session, self._chronicle, self._run, self._worlds)
+        self._fault = None
+        self._hand_expires = math.inf
+        self._due = time.perf_counter()
+        self._publish()
+
+    def _tick(self) -> None:
+        """One tick; whatever it throws pauses the session and says why."""
+        try:
+            self.session.tick()
+            self._chronicle.watch()
+        except Exception as error:
+            self._running = False
+            self._fault = f"{type(error).__name__}: {error}"
+            self._chronicle.note("fault", self._fault)
+            traceback.print_exc()
+            self._publish()
+
+    def _take_requests(self) -> None:
+        """Carry out all commands that wait; with none, sleep until the next tick or command."""
+        wait = min(self._due, self._hand_expires) - time.perf_counter() if self._running else 0.5
+        took = False
+        while True:
+            try:
+                request = self._requests.get(block=wait > 0 and not took, timeout=min(max(wait, 0.0), 0.5))
+            except queue.Empty:
+                break
+            if request is None:
+                return
+            took = True
+            self._answer(request)
+        if took:
+            self._publish()
+
+    def _answer(self, request: m.Request) -> None:
+        try:
+            answer = self._carry_out(request.command)
+        except Exception as error:
+            traceback.print_exc()
+            request.answer.set_exception(error)
+            return
+        request.answer.set_result(answer or m.Accepted(self.session.tick_count))
+
+    def _measure(self, now: float) -> None:
+        then, simulated = self._measured
+        if now - then >= 1.0:
+            run_s = self.session.time_s
+            self._factor = max(0.0, run_s - simulated) / (now - then) if then else 0.0
+            self._measured = (now, run_s)
+
+    def _publish(self) -> None:
+        self._published = time.perf_counter()
+        speed = self._speed if self._speed > 0 else math.inf
+        self.latest.put(
+            self._snapshots.build(running=self._running, speed=speed, real_time_factor=self._factor, fault=self._fault)
+        )
+
+    # ------------------------------------------------------------ commands
+
+    def _carry_out(self, command: m.Command) -> m.Refused | None:  # noqa: PLR0911
+        """Do what the command says; the field, its value and the reason when it cannot be."""
+        session, note = self.session, self._chronicle.note
+        match command:
+            case m.SetGoal(x=x, y=y):
+                return self._try("x, y", (x, y), lambda: note("goal", f"to experience {session.set_goal(x, y)}"))
+            case m.CancelGoal():
+                session.pilot.cancel_goal()
+            case m.SetMode(mode=mode):
+                return self._try("mode", mode, lambda: session.set_mode(mode))
+            case m.Drive(speed=speed, yaw_rate=yaw_rate):
+                session.pilot.drive(speed, yaw_rate)
+                self._hand_expires = time.perf_counter() + HAND_EXPIRES_S
+            case m.Kidnap(x=x, y=y, heading_rad=heading):
+                refused = self._try("x, y", (x, y), lambda: session.kidnap(x, y, heading))
+                if refused is None:
+                    note("kidnap", "carried away without being told")
+                return refused
+            case m.Pause():
+                self._running = False
+            case m.Resume():
+                if self._fault is not None:
+                    return m.Refused("type", "resume", f"the session stopped at a fault ({self._fault}); reset it")
+                self._running, self._due = True, time.perf_counter()
+            case m.Step(ticks=ticks):
+                if self._fault is not None:
+                    return m.Refused("type", "step", f"the session stopped at a fault ({self._fault}); reset it")
+                self._running = False
+                for _ in range(ticks):
+                    self._tick()
+                    if self._fault is not None or self._stopping:
+                        break
+            case m.SetSpeed(factor=factor):
+                self._speed, self._due = factor, time.perf_counter()
+            case m.Reset(world=name, seed=seed):
+                return self._reset(name, seed)
+            case m.SetParameter(name=name, value=value):
+                return self._set_parameter(name, value)
+        self._snapshots.refresh()
+        return None
+
+    def _try(self, field: str, value: object, order: object) -> m.Refused | None:
+        try:
+            order()  # type: ignore[operator]
+        except ValueError as error:
+            return m.Refused(field, value, str(error))
+        self._snapshots.refresh()
+        return None
+
+    def _reset(self, name: str | None, seed: int | None) -> m.Refused | None:
+        session = self.session
+        world = session.world
+        if name is not None and name != world.name:
+            known = dict(self._worlds)
+            if name not in known:
+                return m.Refused("world", name, f"unknown world {name!r}; expected one of: {', '.join(known)}")
+            world = self._own_worlds.get(name) or load_world(name)
+        was_faulty = self._fault is not None
+        self._begin(world, session.seed if seed is None else seed, session.config)
+        self._running = self._running or was_faulty
+        return None
+
+    def _set_parameter(self, name: str, value: float | int | bool | str) -> m.Refused | None:
+        session = self.session
+        known = [dotted for dotted, _, _ in session.config.items()]
+        try:
+            live = session.set_parameter(name, value)
+        except ValueError as error:
+            field, wrong = ("value", value) if name in known else ("name", name)
+            return m.Refused(field, wrong, str(error))
+        self._chronicle.note("parameter", f"{name} = {value}" + ("" if live else ", from the next reset on"))
+        return None

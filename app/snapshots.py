@@ -1,0 +1,196 @@
+"""Builds the immutable Snapshot of a session. Parts that cost much are built at the rates at which people can see them."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.chronicle import Chronicle
+from app.session import Session
+from ratslam_core import Pose2, TemporalMap
+from sim2d import SONAR_ANGLES_RAD, World, draw_world
+from web.messages import (
+    Goal,
+    MapLayer,
+    Packet,
+    Parameter,
+    Pose,
+    PoseCellLayer,
+    Senses,
+    Snapshot,
+    TimesLayer,
+    WorldDrawing,
+)
+
+MAP_EVERY_S = 0.5  # of wall time
+TIMES_EVERY_S = 0.25
+STRONGEST = 500
+
+
+class Snapshots:
+    """`build` looks at one session; it changes nothing that the session's future depends on."""
+
+    def __init__(self, session: Session, chronicle: Chronicle, run: int, worlds: tuple[tuple[str, str], ...]) -> None:
+        self._session, self._chronicle, self._run, self._worlds = session, chronicle, run, worlds
+        self._world = world_drawing(session.world, session.config.robot.robot_radius_m, session.config.robot.camera_fov_rad)
+        self._map: MapLayer | None = None
+        self._times: TimesLayer | None = None
+        self._goal_timed: int | None = None
+        self._map_due = self._times_due = -math.inf
+        self._parameters: tuple[object, tuple[Parameter, ...]] | None = None
+
+    def refresh(self) -> None:
+        """Build everything anew with the next snapshot: a command has changed something."""
+        self._map_due = self._times_due = -math.inf
+
+    def build(self, *, running: bool, speed: float, real_time_factor: float, fault: str | None) -> Snapshot:
+        session, chronicle = self._session, self._chronicle
+        brain, truth = session.brain, session.simulator.truth
+        layer, times = self._map_layers()
+        return Snapshot(
+            run=self._run,
+            tick=session.tick_count,
+            time_s=session.time_s,
+            mode=session.pilot.mode,
+            doing=session.pilot.doing,
+            running=running,
+            speed=speed,
+            real_time_factor=real_time_factor,
+            seed=session.seed,
+            fault=fault,
+            lost=chronicle.lost,
+            world=self._world,
+            worlds=self._worlds,
+            truth=Pose(truth.x, truth.y, truth.heading_rad),
+            trail=_frozen(chronicle.trail),
+            estimate=_pose(brain.experience_map.robot),
+            senses=_senses(session),
+            pose_cells=_pose_cells(session, chronicle),
+            map=layer,
+            times=times,
+            goal=_goal(session),
+            views=len(brain.local_view),
+            experiences=len(brain.experience_map),
+            links=brain.experience_map.link_count,
+            relocalisations=brain.relocalisations,
+            error_map_m=chronicle.error_map_m,
+            error_odometry_m=chronicle.error_odometry_m,
+            revisit_consistency=session.evaluation.revisit_consistency,
+            series=chronicle.series,
+            stage_ms={k: 1e3 * v / max(session.tick_count, 1) for k, v in session.stage_s.items()},
+            events=chronicle.events,
+            parameters=self._parameter_rows(),
+        )
+
+    def _map_layers(self) -> tuple[MapLayer, TimesLayer]:
+        """Map and times of one moment; rows of both agree."""
+        now = time.perf_counter()
+        experiences = self._session.brain.experience_map
+        if self._map is None or self._times is None or now >= self._map_due:
+            poses = experiences.poses.astype(np.float32)
+            self._map = MapLayer(
+                _frozen(np.arange(len(poses), dtype=np.int32)),
+                _frozen(np.ascontiguousarray(poses[:, :2])),
+                _frozen(np.ascontiguousarray(poses[:, 2])),
+                _frozen(experiences.links.astype(np.int32)),
+            )
+            self._map_due, self._times_due = now + MAP_EVERY_S, -math.inf
+        goal = self._session.pilot.goal
+        if self._times is None or now >= self._times_due or goal != self._goal_timed:
+            shown = len(self._map.ids)
+            source = experiences.active if goal is None else goal
+            seconds = TemporalMap(experiences).times_to(source)[:shown].astype(np.float32)
+            self._times = TimesLayer(goal is not None, _frozen(seconds))
+            self._times_due, self._goal_timed = now + TIMES_EVERY_S, goal
+        return self._map, self._times
+
+    def _parameter_rows(self) -> tuple[Parameter, ...]:
+        config = self._session.config
+        if self._parameters is None or self._parameters[0] is not config:
+            rows = []
+            for name, item, value in config.items():
+                m = item.metadata
+                rows.append(
+                    Parameter(
+                        name, value, item.default, m["symbol"], m["unit"], m["low"], m["high"], m["meaning"], m["source"], m["live"]
+                    )
+                )
+            self._parameters = (config, tuple(rows))
+        return self._parameters[1]
+
+
+def world_drawing(world: World, robot_radius_m: float, camera_fov_rad: float) -> WorldDrawing:
+    """What the stage draws of a world."""
+    drawing = draw_world(world)
+    return WorldDrawing(
+        name=world.name,
+        title=world.title,
+        bounds=world.bounds,
+        walls=drawing.walls,
+        wall_height_m=drawing.wall_height_m,
+        wall_kind=drawing.wall_kind,
+        panels=drawing.panels,
+        panel_rgb=drawing.panel_rgb,
+        places=tuple((place.name, place.x, place.y) for place in world.places),
+        robot_radius_m=robot_radius_m,
+        camera_fov_rad=camera_fov_rad,
+        sonar_angles_rad=_frozen(np.array(SONAR_ANGLES_RAD, np.float32)),
+    )
+
+
+def _senses(session: Session) -> Senses:
+    brain, recognition = session.brain, session.estimate.recognition
+    best = recognition.best_view
+    return Senses(
+        camera=session.frame.image,
+        template=_frozen(brain.local_view.template.copy()),
+        best=_frozen(brain.local_view.stored(best).copy()) if best >= 0 else None,
+        best_view=best,
+        difference=recognition.difference,
+        threshold=brain.params.local_view.match_threshold,
+        active_view=recognition.view,
+        recruited=recognition.recruited,
+        ranges_m=session.frame.ranges_m,
+    )
+
+
+def _pose_cells(session: Session, chronicle: Chronicle) -> PoseCellLayer:
+    pose_cells = session.brain.pose_cells
+    cells, activity = pose_cells.active
+    strongest = np.argsort(-activity, kind="stable")[:STRONGEST]
+    packets = tuple(Packet(p.x, p.y, p.heading_rad, p.mass) for p in pose_cells.packets)
+    return PoseCellLayer(
+        shape=pose_cells.shape,
+        cell_m=pose_cells.params.cell_m,
+        cells=_frozen(np.ascontiguousarray(cells[strongest][:, [2, 1, 0]], np.int32)),
+        activity=_frozen(activity[strongest]),
+        active_cells=len(activity),
+        packets=packets,
+        path=_frozen(chronicle.path),
+        last_snap=chronicle.last_snap,
+    )
+
+
+def _goal(session: Session) -> Goal | None:
+    experiences = session.brain.experience_map
+    progress = session.pilot.progress(experiences)
+    if progress is None:
+        return None
+    goal = experiences.pose(progress.experience)
+    xy = experiences.poses[progress.route, :2]
+    return Goal(
+        progress.experience, goal.x, goal.y, progress.state, progress.eta_s, progress.remaining_m,
+        _frozen(xy.astype(np.float32)), _frozen(progress.arrival_s.astype(np.float32)),
+    )  # fmt: skip
+
+
+def _pose(pose: Pose2) -> Pose:
+    return Pose(pose.x, pose.y, pose.heading_rad)
+
+
+def _frozen(array: NDArray) -> NDArray:
+    array.setflags(write=False)
+    return array
