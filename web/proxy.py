@@ -1,0 +1,176 @@
+"""viser's client and websocket through our own port, and which of viser's clients belongs to which page.
+
+viser listens on loopback on a port of its own and checks nobody; everything reaches it through here, after the guard.
+Its client is a single page, so that one path is all that is served of it: there is nothing to traverse.
+Every page brings an unguessable id; viser numbers its clients when their first camera message arrives, so that message is
+let through one page at a time and the number that appears then is that page's.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import re
+import urllib.request
+from collections.abc import Callable
+from typing import Protocol
+
+import websockets
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.websockets import WebSocket, WebSocketDisconnect
+from websockets.asyncio.client import ClientConnection
+
+VIEWS = ("all", "office", "pose", "map")
+PAGE_ID = re.compile(r"[A-Za-z0-9_-]{22,64}")
+SEND_TIMEOUT_S = 10.0
+PAIRING_S = 1.0
+MOST_CLIENTS = 32
+
+
+class StageLike(Protocol):
+    """What the page needs from the 3-D stage."""
+
+    on_connect: Callable[[int], None] | None  # set by us; called with viser's client number when a browser is there
+
+    @property
+    def port(self) -> int: ...
+    def start(self) -> None: ...
+    def stop(self) -> None: ...
+    def fly(self, client_id: int, view: str) -> None: ...
+    def set_theme(self, theme: str) -> None: ...
+
+
+class Cameras:
+    """Which viser client is whose, and the view each page asked for last."""
+
+    def __init__(self, stage: StageLike) -> None:
+        self._stage = stage
+        self._one_at_a_time = asyncio.Lock()
+        self._arrival: asyncio.Future[int] | None = None
+        self._client_of: dict[str, int] = {}
+        self._wanted: dict[str, str] = {}
+
+    def listen(self) -> None:
+        """Hear of viser's new clients (their thread) from now on, in the running loop."""
+        loop = asyncio.get_running_loop()
+        self._stage.on_connect = lambda client_id: _call(loop, self._arrived, client_id)
+
+    async def show(self, page: str, view: str) -> None:
+        """Fly this page's camera; remembered when its stage is not there yet."""
+        self._wanted.pop(page, None)
+        self._wanted[page] = view
+        if len(self._wanted) > 2 * MOST_CLIENTS:
+            del self._wanted[next(iter(self._wanted))]  # the page that has been quiet for longest
+        client_id = self._client_of.get(page)
+        if client_id is not None:
+            await asyncio.to_thread(self._stage.fly, client_id, view)
+
+    async def pair(self, page: str, pass_on: Callable[[], object]) -> bool:
+        """Let one message of this page through (`pass_on`, awaitable); True when viser numbered its client on it."""
+        async with self._one_at_a_time:
+            self._arrival = asyncio.get_running_loop().create_future()
+            try:
+                await pass_on()  # type: ignore[misc]
+                self._client_of[page] = await asyncio.wait_for(self._arrival, PAIRING_S)
+            except TimeoutError:
+                return False
+            finally:
+                self._arrival = None
+        if page in self._wanted:
+            await self.show(page, self._wanted[page])
+        return True
+
+    def unpair(self, page: str) -> None:
+        self._client_of.pop(page, None)
+
+    def _arrived(self, client_id: int) -> None:
+        if self._arrival is not None and not self._arrival.done():
+            self._arrival.set_result(client_id)
+
+
+class ViserProxy:
+    """The two ways to viser: its page and its websocket."""
+
+    def __init__(self, stage: StageLike, cameras: Cameras) -> None:
+        self._stage = stage
+        self._cameras = cameras
+        self._client_page: tuple[bytes, str] | None = None  # gzipped, its ETag
+        self._open = 0
+
+    @property
+    def full(self) -> bool:
+        return self._open >= MOST_CLIENTS
+
+    async def page(self, request: Request) -> Response:
+        """viser's client, fetched from it once."""
+        if self._client_page is None:
+            body = await asyncio.to_thread(_fetch, f"http://127.0.0.1:{self._stage.port}/")
+            self._client_page = body, f'"{hashlib.sha256(body).hexdigest()[:24]}"'
+        body, tag = self._client_page
+        headers = {"ETag": tag, "Cache-Control": "no-cache", "Content-Encoding": "gzip"}
+        if request.headers.get("if-none-match") == tag:
+            return Response(status_code=304, headers=headers)
+        return Response(body, headers=headers, media_type="text/html")
+
+    async def relay(self, browser: WebSocket, page: str) -> None:
+        """Both directions until one side ends. The guard has checked Host and Origin before this."""
+        self._open += 1
+        try:
+            async with websockets.connect(
+                f"ws://127.0.0.1:{self._stage.port}/",
+                subprotocols=[websockets.Subprotocol(name) for name in browser.scope["subprotocols"]],
+                compression=None,
+                max_size=None,
+                ping_interval=None,
+                proxy=None,
+            ) as viser:
+                await browser.accept(subprotocol=viser.subprotocol)
+                await self._both_ways(browser, viser, page)
+        except OSError:  # viser is gone: the browser tries again
+            await browser.close(1013)
+        finally:
+            self._open -= 1
+            self._cameras.unpair(page)
+
+    async def _both_ways(self, browser: WebSocket, viser: ClientConnection, page: str) -> None:
+        tasks = {
+            asyncio.create_task(self._to_viser(browser, viser, page)),
+            asyncio.create_task(_to_browser(viser, browser)),
+        }
+        try:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _to_viser(self, browser: WebSocket, viser: ClientConnection, page: str) -> None:
+        paired = False
+        while True:
+            try:
+                message = await browser.receive_bytes()
+            except (WebSocketDisconnect, KeyError):  # KeyError: text, which viser's client never sends
+                return
+            if paired:
+                await viser.send(message)
+            else:
+                paired = await self._cameras.pair(page, lambda data=message: viser.send(data))
+
+
+async def _to_browser(viser: ClientConnection, browser: WebSocket) -> None:
+    async for message in viser:
+        data = message if isinstance(message, bytes) else message.encode()
+        await asyncio.wait_for(browser.send_bytes(data), SEND_TIMEOUT_S)
+
+
+def _fetch(url: str) -> bytes:
+    request = urllib.request.Request(url, headers={"Accept-Encoding": "gzip"})
+    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))  # never through a proxy
+    with opener.open(request, timeout=10) as answer:
+        return answer.read()
+
+
+def _call(loop: asyncio.AbstractEventLoop, function: Callable[[int], None], argument: int) -> None:
+    if not loop.is_closed():
+        loop.call_soon_threadsafe(function, argument)

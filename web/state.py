@@ -1,0 +1,119 @@
+"""A snapshot as JSON: the contract of `/api/state` word for word, and what the page itself needs beside it.
+
+Numbers that are not finite become null; the speed "as fast as possible" (infinite) becomes 0, as in `set_speed`.
+Every text is computed once per snapshot, whoever asks.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import orjson
+
+from web.messages import Event, Goal, MapLayer, Pose, Snapshot
+
+_OPTIONS = orjson.OPT_SERIALIZE_NUMPY
+
+
+def state(snapshot: Snapshot) -> dict[str, Any]:
+    """The fields of the contract, without the map."""
+    return {
+        "tick": snapshot.tick,
+        "time_s": snapshot.time_s,
+        "mode": snapshot.mode,
+        "running": snapshot.running,
+        "speed": snapshot.speed if math.isfinite(snapshot.speed) else 0,
+        "world": snapshot.world.name,
+        "seed": snapshot.seed,
+        "robot": _pose(snapshot.truth),
+        "estimate": _pose(snapshot.estimate),
+        "pose_cells": {
+            "shape": snapshot.pose_cells.shape,
+            "packets": [
+                {"x": packet.x, "y": packet.y, "heading_rad": packet.heading_rad, "mass": packet.mass}
+                for packet in snapshot.pose_cells.packets
+            ],
+        },
+        "views": snapshot.views,
+        "experiences": snapshot.experiences,
+        "links": snapshot.links,
+        "relocalisations": snapshot.relocalisations,
+        "goal": None if snapshot.goal is None else _goal(snapshot.goal),
+        "error_m": {"map": snapshot.error_map_m, "odometry": snapshot.error_odometry_m},
+    }
+
+
+def map_fields(layer: MapLayer) -> dict[str, Any]:
+    """The map's nodes: ids and places (map frame, metres) row by row."""
+    return {"ids": layer.ids, "xy": layer.xy}
+
+
+def page_fields(snapshot: Snapshot) -> dict[str, Any]:
+    """What the header and the timeline show beyond the contract. The map's size lets a page notice a new one."""
+    return {
+        "run": snapshot.run,
+        "doing": snapshot.doing,
+        "lost": snapshot.lost,
+        "fault": snapshot.fault,
+        "real_time_factor": snapshot.real_time_factor,
+        "title": snapshot.world.title,
+        "worlds": snapshot.worlds,
+        "places": snapshot.world.places,
+    }
+
+
+def event_fields(event: Event) -> dict[str, Any]:
+    return {"number": event.number, "time_s": event.time_s, "kind": event.kind, "text": event.text}
+
+
+def to_json(document: object) -> bytes:
+    """Compact JSON; NaN and infinities become null."""
+    return orjson.dumps(document, option=_OPTIONS)
+
+
+class StateText:
+    """The newest snapshot's texts, each made at most once."""
+
+    def __init__(self) -> None:
+        self._snapshot: Snapshot | None = None
+        self._texts: dict[str, bytes] = {}
+        self._layer: MapLayer | None = None
+        self._map: bytes = b""
+
+    def light(self, snapshot: Snapshot) -> bytes:
+        """`/api/state`."""
+        return self._once(snapshot, "light")
+
+    def full(self, snapshot: Snapshot) -> bytes:
+        """`/api/state?map=1`."""
+        if self._layer is not snapshot.map:
+            self._map = to_json(map_fields(snapshot.map))
+            self._layer = snapshot.map
+        return self.light(snapshot)[:-1] + b',"map":' + self._map + b"}"
+
+    def page(self, snapshot: Snapshot) -> bytes:
+        """What the page needs beside the contract."""
+        return self._once(snapshot, "page")
+
+    def _once(self, snapshot: Snapshot, kind: str) -> bytes:
+        if snapshot is not self._snapshot:
+            self._snapshot, self._texts = snapshot, {}
+        if kind not in self._texts:
+            self._texts[kind] = to_json(state(snapshot) if kind == "light" else page_fields(snapshot))
+        return self._texts[kind]
+
+
+def _pose(pose: Pose) -> dict[str, float]:
+    return {"x": pose.x, "y": pose.y, "heading_rad": pose.heading_rad}
+
+
+def _goal(goal: Goal) -> dict[str, Any]:
+    return {
+        "experience": goal.experience,
+        "x": goal.x,
+        "y": goal.y,
+        "state": goal.state,
+        "eta_s": goal.eta_s,
+        "remaining_m": goal.remaining_m,
+    }

@@ -1,0 +1,144 @@
+// The page: puts the parts together and turns clicks and keys into commands. The server is the only truth.
+
+import { Drive } from "./drive.js";
+import { Header } from "./header.js";
+import { setIcon } from "./icons.js";
+import { Keys } from "./keys.js";
+import { Link } from "./link.js";
+import { Stage, VIEWS } from "./stage.js";
+import { Timeline } from "./timeline.js";
+import { toast } from "./toasts.js";
+
+const $ = (id) => document.getElementById(id);
+
+const page = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+const link = new Link(page);
+const header = new Header();
+const timeline = new Timeline();
+const drive = new Drive((command) => link.tell(command));
+const keys = new Keys({ drive: (name, down) => drive.key(name, down), act, allUp: () => drive.allUp() });
+const stage = new Stage(link, keys);
+let state = null;
+
+// ---------------------------------------------------------------- what arrives
+
+link.addEventListener("state", ({ detail }) => {
+  state = detail.state;
+  if (detail.theme === null) link.tell({ type: "theme", name: preferredTheme() });
+  else showTheme(detail.theme);
+  header.show(state, detail.page);
+  timeline.at(state.time_s);
+  document.body.dataset.alive = "true";
+});
+link.addEventListener("events", ({ detail }) => timeline.add(detail));
+link.addEventListener("refused", ({ detail }) => {
+  for (const wrong of detail.detail) toast(sentence(wrong.reason), { bad: true });
+});
+
+let lostToast = null;
+link.addEventListener("lost", () => {
+  drive.allUp();
+  lostToast ??= toast("Connection lost. Trying again.", { bad: true, stays: true });
+});
+link.addEventListener("hello", () => {
+  if (!lostToast) return;
+  lostToast.remove();
+  lostToast = null;
+  toast("Connected again.");
+});
+
+// ---------------------------------------------------------------- what is done
+
+async function command(wish, done) {
+  const answer = await link.ask(wish);
+  if (answer.accepted && done) toast(done);
+  return answer.accepted;
+}
+
+const playOrPause = () => state && command({ type: state.running ? "pause" : "resume" });
+const oneTick = () => command({ type: "step", ticks: 1 });
+const explore = () => command({ type: "set_mode", mode: "explore" }, "Exploring by itself.");
+const kidnap = () => command({ type: "kidnap" }, "Moved to a random place. The robot was not told.");
+const cancelGoal = () => command({ type: "cancel_goal" });
+const restart = (seed) => {
+  $("restart").open = false;
+  command({ type: "reset", seed }, `Started anew with seed ${seed}.`);
+};
+
+on("play", playOrPause);
+on("step", oneTick);
+on("explore", explore);
+on("kidnap", kidnap);
+on("kidnap-phone", kidnap);
+on("cancel", cancelGoal);
+on("theme", toggleTheme);
+on("help", toggleHelp);
+on("help-close", toggleHelp);
+on("restart-same", () => restart(state.seed));
+on("restart-new", () => restart(crypto.getRandomValues(new Uint16Array(1))[0] % 10000));
+on("panels", () => stage.showPanels(!stage.panels));
+on("more", () => {
+  const open = document.querySelector("header").classList.toggle("open");
+  $("more").setAttribute("aria-expanded", String(open));
+});
+$("speed").addEventListener("change", ({ target }) => {
+  command({ type: "set_speed", factor: Number(target.value) });
+  target.blur();
+});
+$("world").addEventListener("change", ({ target }) => {
+  command({ type: "reset", world: target.value }, `Started anew in ${target.selectedOptions[0].text}.`);
+  target.blur();
+});
+window.addEventListener("click", ({ target }) => $("restart").contains(target) || ($("restart").open = false));
+$("help-dialog").addEventListener("click", ({ target }) => target === $("help-dialog") && toggleHelp());
+
+// True when the key meant something.
+function act(name) {
+  const view = VIEWS[Number(name) - 1];
+  if (view) stage.show(view);
+  else if (name === " ") playOrPause();
+  else if (name === ".") oneTick();
+  else if (name === "e") explore();
+  else if (name === "k") kidnap();
+  else if (name === "x" && state?.goal) cancelGoal();
+  else if (name === "t") toggleTheme();
+  else if (name === "?") toggleHelp();
+  else if (name === "Escape" && $("restart").open) $("restart").open = false;
+  else return false;
+  return true;
+}
+
+function on(id, action) {
+  $(id).addEventListener("click", (event) => {
+    action();
+    if (event.detail > 0) event.currentTarget.blur(); // after a mouse click the space bar is play and pause again
+  });
+}
+
+// ---------------------------------------------------------------- looks
+
+function preferredTheme() {
+  return window.matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
+}
+
+function showTheme(theme) {
+  if (document.documentElement.dataset.theme === theme) return;
+  document.documentElement.dataset.theme = theme;
+  setIcon($("theme"), theme === "dark" ? "sun" : "moon");
+  $("theme").setAttribute("aria-label", theme === "dark" ? "Light colours" : "Dark colours");
+}
+
+function toggleTheme() {
+  link.tell({ type: "theme", name: document.documentElement.dataset.theme === "dark" ? "light" : "dark" });
+}
+
+function toggleHelp() {
+  if ($("help-dialog").open) $("help-dialog").close();
+  else $("help-dialog").showModal();
+}
+
+function sentence(text) {
+  return text[0].toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : ".");
+}
+
+showTheme(preferredTheme());

@@ -1,0 +1,208 @@
+"""The page's websocket: the newest state to everyone about ten times a second, and commands back.
+
+Out: {"type": "hello", ...} once, {"type": "state", "state": <contract>, "page": ...}, {"type": "events", ...} and
+{"type": "answer", "id", ...} to a command that carried an id or went wrong. In: any command of `POST /api/commands` with
+an optional "id", and two that concern the page alone: {"type": "view", "name"} and {"type": "theme", "name"}.
+Each browser has its own sender, newest wins; one that takes nothing for five seconds is let go.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from web.commands import Malformed, check, problem_of, read_object, wrong
+from web.latest import Latest
+from web.messages import Accepted, Command, Drive, Refused, Snapshot
+from web.proxy import VIEWS, Cameras, StageLike
+from web.security import Limits
+from web.state import StateText, event_fields, to_json
+
+Submit = Callable[[Command], "Future[Accepted | Refused]"]
+
+PERIOD_S = 0.09
+SEND_TIMEOUT_S = 5.0
+ANSWER_TIMEOUT_S = 3.0
+MOST_CLIENTS = 32
+THEMES = ("dark", "light")
+
+
+class NoAnswer(Exception):
+    """The engine did not answer in time."""
+
+
+async def ask(submit: Submit, command: Command) -> Accepted | Refused:
+    """Hand a command to the engine and wait for what it says. Raises NoAnswer."""
+    answer = asyncio.wrap_future(submit(command))
+    done, _ = await asyncio.wait({answer}, timeout=ANSWER_TIMEOUT_S)
+    if not done:
+        raise NoAnswer("the engine did not answer within 3 s; the command may still take effect, see /api/state")
+    return answer.result()
+
+
+class Client:
+    """One page that listens."""
+
+    def __init__(self, socket: WebSocket, page: str) -> None:
+        self.socket = socket
+        self.page = page
+        self.news = asyncio.Event()
+        self.limits = Limits()
+        self.moving = False  # its last drive command asked for motion
+        self.events_of: tuple[int, int] = (-1, -1)  # run and number of the last event it got
+        self.answers: set[asyncio.Task[None]] = set()
+
+    async def send(self, text: bytes) -> None:
+        await asyncio.wait_for(self.socket.send_text(text.decode()), SEND_TIMEOUT_S)
+
+
+class Stream:
+    """All pages that listen to one session."""
+
+    def __init__(self, latest: Latest[Snapshot], submit: Submit, stage: StageLike, cameras: Cameras) -> None:
+        self.text = StateText()
+        self.theme: str | None = None  # of all pages and the stage, once somebody chose
+        self._launch = secrets.token_urlsafe(12)
+        self._latest = latest
+        self._submit = submit
+        self._stage = stage
+        self._cameras = cameras
+        self._clients: set[Client] = set()
+        self._driver: Client | None = None
+
+    @property
+    def full(self) -> bool:
+        return len(self._clients) >= MOST_CLIENTS
+
+    async def publish(self) -> None:
+        """Wake every client's sender when there is a newer snapshot; runs for as long as the server does."""
+        seen = 0
+        while True:
+            version, _ = await asyncio.to_thread(self._latest.wait, seen, 0.25)
+            if version == seen:
+                continue
+            seen = version
+            self._wake()
+            await asyncio.sleep(PERIOD_S)
+
+    async def serve(self, socket: WebSocket, page: str) -> None:
+        """One page from its arrival to its end."""
+        await socket.accept()
+        client = Client(socket, page)
+        self._clients.add(client)
+        client.news.set()
+        tasks = {asyncio.create_task(self._tell(client)), asyncio.create_task(self._listen(client))}
+        try:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._clients.discard(client)
+            for task in tasks | client.answers:
+                task.cancel()
+            await asyncio.gather(*tasks, *client.answers, return_exceptions=True)
+            self._stop_robot_of(client)
+
+    # ------------------------------------------------------------ out
+
+    def _wake(self) -> None:
+        for client in self._clients:
+            client.news.set()
+
+    async def _tell(self, client: Client) -> None:
+        await client.send(to_json({"type": "hello", "launch": self._launch, "themes": THEMES, "views": VIEWS}))
+        while True:
+            await client.news.wait()
+            client.news.clear()
+            _, snapshot = self._latest.get()
+            if snapshot is None:
+                continue
+            await client.send(self._state_message(snapshot))
+            tail = self._events_for(client, snapshot)
+            if tail is not None:
+                await client.send(tail)
+
+    def _state_message(self, snapshot: Snapshot) -> bytes:
+        parts = (b'{"type":"state","theme":', to_json(self.theme), b',"state":', self.text.light(snapshot))
+        return b"".join((*parts, b',"page":', self.text.page(snapshot), b"}"))
+
+    def _events_for(self, client: Client, snapshot: Snapshot) -> bytes | None:
+        run, number = client.events_of
+        fresh = run != snapshot.run
+        news = [event_fields(event) for event in snapshot.events if fresh or event.number > number]
+        if not news and not fresh:
+            return None
+        client.events_of = (snapshot.run, news[-1]["number"] if news else -1)
+        return to_json({"type": "events", "run": snapshot.run, "fresh": fresh, "events": news})
+
+    # ------------------------------------------------------------ in
+
+    async def _listen(self, client: Client) -> None:
+        while True:
+            try:
+                text = await client.socket.receive_text()
+            except (WebSocketDisconnect, KeyError):  # KeyError: a binary message, which no page sends
+                return
+            identity = None
+            try:
+                document = read_object(text)
+                identity = document.pop("id", None)
+                await self._take(client, document, identity)
+            except Malformed as error:
+                await client.send(_answer(identity, 422, error.wrongs))
+
+    async def _take(self, client: Client, document: dict[str, Any], identity: object) -> None:
+        kind = document.get("type")
+        refusal = client.limits.refusal(kind if isinstance(kind, str) else "")
+        if refusal is not None:
+            await client.send(_answer(identity, 429, [wrong("type", kind, refusal)]))
+        elif kind == "view":
+            name = _choice(document, VIEWS)
+            self._background(client, self._cameras.show(client.page, name))
+        elif kind == "theme":
+            self.theme = _choice(document, THEMES)
+            self._background(client, asyncio.to_thread(self._stage.set_theme, self.theme))
+            self._wake()
+        else:
+            command = check(document)
+            if isinstance(command, Drive):
+                client.moving = command.speed != 0 or command.yaw_rate != 0
+                self._driver = client
+            self._background(client, self._command(client, command, identity))
+
+    async def _command(self, client: Client, command: Command, identity: object) -> None:
+        try:
+            answer = await ask(self._submit, command)
+        except NoAnswer as error:
+            await client.send(_answer(identity, 503, [wrong(None, None, str(error))]))
+            return
+        if isinstance(answer, Refused):
+            await client.send(_answer(identity, 422, problem_of(answer)))
+        elif identity is not None:
+            await client.send(to_json({"type": "answer", "id": identity, "accepted": True, "tick": answer.tick}))
+
+    def _background(self, client: Client, work: Any) -> None:
+        task = asyncio.create_task(work)
+        client.answers.add(task)
+        task.add_done_callback(lambda done: (client.answers.discard(done), done.cancelled() or done.exception()))
+
+    def _stop_robot_of(self, client: Client) -> None:
+        if self._driver is client:
+            self._driver = None
+            if client.moving:
+                self._submit(Drive(type="drive", speed=0.0, yaw_rate=0.0))
+
+
+def _choice(document: dict[str, Any], names: tuple[str, ...]) -> str:
+    name = document.get("name")
+    if set(document) != {"type", "name"} or name not in names:
+        reason = f"{document['type']} takes name, one of: {', '.join(names)}"
+        raise Malformed([wrong("name", name, reason)])
+    return str(name)
+
+
+def _answer(identity: object, status: int, detail: list[dict[str, Any]]) -> bytes:
+    return to_json({"type": "answer", "id": identity, "accepted": False, "status": status, "detail": detail})
