@@ -1,0 +1,53 @@
+"""Between pose cells [theta, y, x] and the glass box on its plate: a torus unrolled into 7 x 7 x 4.6."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from web.messages import Packet, PoseCellLayer
+
+SIDE, HEIGHT = 7.0, 4.6
+Array = NDArray[np.float64]
+
+
+class CellFit:
+    """`shape` is (n_theta, n_y, n_x); x' and y' start at the box's left front corner, theta' at its floor."""
+
+    def __init__(self, shape: tuple[int, int, int]) -> None:
+        self.shape = shape
+        self.voxel = (SIDE / shape[2], SIDE / shape[1], HEIGHT / shape[0])
+
+    def cells(self, cells: NDArray[np.integer]) -> Array:
+        """(k, 3) theta, y, x of cells to the (k, 3) middles of their voxels."""
+        share = (cells[:, ::-1] + 0.5) / np.array(self.shape[::-1])
+        return share * (SIDE, SIDE, HEIGHT) - (SIDE / 2, SIDE / 2, 0.0)
+
+    def path(self, path: NDArray[np.floating]) -> Array:
+        """(p, 3) x, y in cells and heading to (p, 3) in the box."""
+        x = (path[:, 0] + 0.5) / self.shape[2] % 1.0 * SIDE - SIDE / 2
+        y = (path[:, 1] + 0.5) / self.shape[1] % 1.0 * SIDE - SIDE / 2
+        return np.column_stack([x, y, path[:, 2] % math.tau / math.tau * HEIGHT])
+
+    def packet(self, packet: Packet) -> Array:
+        return self.path(np.array([[packet.x, packet.y, packet.heading_rad]]))[0]
+
+    def owners(self, layer: PoseCellLayer) -> NDArray[np.int64]:
+        """(k,) the nearest packet of each cell, around the torus; 0 when there are none."""
+        if not layer.packets:
+            return np.zeros(len(layer.cells), np.int64)
+        n_theta, n_y, n_x = self.shape
+        centres = np.array([[p.heading_rad % math.tau / math.tau * n_theta, p.y, p.x] for p in layer.packets])
+        gaps = np.abs(layer.cells[:, None] - centres[None])
+        size = np.array(self.shape)
+        gaps = np.minimum(gaps % size, -gaps % size)
+        return ((gaps * (0.5, 1.0, 1.0)) ** 2).sum(2).argmin(1)
+
+
+def broken_where_it_wraps(points: Array) -> NDArray[np.float32]:
+    """(p, 3) to segments without those that jump around the torus."""
+    segments = np.stack([points[:-1], points[1:]], 1)
+    jumps = np.abs(segments[:, 1] - segments[:, 0]) > np.array([SIDE, SIDE, HEIGHT]) / 2
+    return segments[~jumps.any(1)].astype(np.float32)

@@ -1,0 +1,169 @@
+"""The experience map's plate: what the robot built, coloured by the time to the goal (or from the robot)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from web.messages import Goal, MapLayer, Pose, TimesLayer
+from web.stage import images, ribbons
+from web.stage.goal_flag import GoalFlag
+from web.stage.map_fit import DEPTH, WIDTH, MapFit, refit
+from web.stage.palette import Palette
+from web.stage.plate import FLOOR_Z, TEXT_Z, Plate
+from web.stage.route import Route
+from web.stage.signs import Sign, add_mesh, add_picture
+
+ORIGIN = (5.85, -2.2, 0.0)
+SHEET = (11.0, 10.0, -0.5, 0.45)
+NODE_Z, LINK_Z, ARROW_Z = 0.05, 0.03, 0.13
+ARROW = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)])
+BAR = (3.0, 0.26)
+GRID_LINES = 48
+
+
+class MapPlate(Plate):
+    def __init__(self, scene: viser.SceneApi, palette: Palette) -> None:
+        super().__init__(scene, palette, "map", ORIGIN, SHEET)
+        self.fit = MapFit()
+        self._capacity = self._link_capacity = 0
+        floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (WIDTH / 2, DEPTH / 2)
+        add_mesh(scene, f"{self.root}/floor", ribbons.flat_polygon(floor, FLOOR_Z), palette.lit(palette.floor))
+        nowhere = ribbons.padded(np.zeros((0, 2, 3), np.float32), GRID_LINES)
+        self._grid = scene.add_line_segments(f"{self.root}/grid", nowhere, palette.grid, thickness=0.025)
+        self._reserve(512, 768)
+        self._arrow = scene.add_frame(f"{self.root}/arrow", show_axes=False, visible=False)
+        add_mesh(scene, f"{self.root}/arrow/casing", _arrow(1.22, 0.0), palette.lit(palette.casing))
+        add_mesh(scene, f"{self.root}/arrow/body", _arrow(1.0, 0.02), palette.lit(palette.robot))
+        self._route = Route(scene, palette, f"{self.root}/route")
+        self._flag = GoalFlag(scene, palette, f"{self.root}/flag")
+        self._clicked = scene.add_frame(f"{self.root}/clicked", show_axes=False, visible=False)
+        for k, radius in enumerate((0.16, 0.34)):
+            add_mesh(scene, f"{self.root}/clicked/ring_{k}", ribbons.ring(radius, 0.06, 0.09), palette.lit(palette.goal))
+        self._bar = add_picture(scene, f"{self.root}/bar", images.colour_bar(palette.ramp), *BAR, position=(3.4, self.front + 1.08, TEXT_Z))
+        self._bar_ends = [Sign(scene, f"{self.root}/bar_{k}", 0.34, anchor=a) for k, a in enumerate(("left", "right"))]
+        self._empty = Sign(scene, f"{self.root}/empty", 0.42, anchor="centre")
+        self._draw_grid()
+        self.set_heading("Experience map", "what it built")
+
+    def _reserve(self, nodes: int, links: int) -> None:
+        """Room for so many nodes and links; grows by halves, so that updates in place keep their shape."""
+        self._capacity, self._link_capacity = max(nodes, self._capacity), max(links, self._link_capacity)
+        self._nodes = self.scene.add_point_cloud(
+            f"{self.root}/nodes",
+            np.full((self._capacity, 3), -50.0, np.float32),
+            np.zeros((self._capacity, 3), np.uint8),
+            point_size=0.145,
+            point_shape="circle",
+            point_shading="flat",
+        )
+        self._links = self.scene.add_line_segments(
+            f"{self.root}/links",
+            ribbons.padded(np.zeros((0, 2, 3), np.float32), self._link_capacity),
+            self.palette.link,
+            thickness=0.018,
+        )
+
+    def set_map(self, layer: MapLayer, turn_rad: float) -> bool:
+        """Nodes and links; True when the whole map moved on the plate, so that all else on it must follow."""
+        before, self.fit = self.fit, refit(self.fit, layer.xy, turn_rad)
+        grew = len(layer.xy) > self._capacity or len(layer.links) > self._link_capacity
+        if grew:
+            self._reserve(_roomy(len(layer.xy)), _roomy(len(layer.links)))
+        places = self.fit.to_plate(layer.xy)
+        points = np.full((self._capacity, 3), -50.0, np.float32)
+        points[: len(places)] = ribbons.lifted(places, NODE_Z)
+        self._nodes.points = points
+        ends = ribbons.lifted(places, LINK_Z)[layer.links].astype(np.float32).reshape(-1, 2, 3)
+        self._links.points = ribbons.padded(ends, self._link_capacity)
+        if len(layer.xy):
+            self._empty.hide()
+        else:
+            self._empty.show(images.text("no map yet: the robot has not moved", self.palette.text_2, 64), (0, 0, 0))
+        if self.fit.scale != before.scale:
+            self._draw_grid()
+        return grew or self.fit is not before
+
+    def _draw_grid(self) -> None:
+        """A line each metre of the map (each five in large ones), from the middle of the plate."""
+        step = self.fit.scale * (1 if self.fit.scale > 0.35 else 5 if self.fit.scale > 0.08 else 25)
+        lines = []
+        for half, reach, flip in ((WIDTH / 2, DEPTH / 2, False), (DEPTH / 2, WIDTH / 2, True)):
+            count = int(half / step)
+            for at in np.arange(-count, count + 1) * step:
+                ends = [[at, -reach, FLOOR_Z + 0.01], [at, reach, FLOOR_Z + 0.01]]
+                lines.append([[y, x, z] for x, y, z in ends] if flip else ends)
+        self._grid.points = ribbons.padded(np.array(lines, np.float32), GRID_LINES)
+
+    def set_times(self, times: TimesLayer) -> None:
+        """Colours of the nodes, and the scale with its numbers."""
+        finite = times.seconds[np.isfinite(times.seconds)]
+        longest = _round_up(float(finite.max(initial=1.0)))
+        colours = np.zeros((self._capacity, 3), np.uint8)
+        kept = times.seconds[: self._capacity]
+        colours[: len(kept)] = self.palette.times(kept, longest)
+        self._nodes.colors = colours
+        ink = self.palette.text_2
+        left, right, at = 3.4 - BAR[0] / 2, 3.4 + BAR[0] / 2, self.front + 0.62
+        self._bar_ends[0].show(images.text("0 s", ink, 64), (left, at, TEXT_Z))
+        self._bar_ends[1].show(images.text(seconds_words(longest), ink, 64), (right, at, TEXT_Z))
+        words = "time to the goal" if times.to_goal else "time from the robot"
+        self.set_heading("Experience map", f"what it built - colour: {words}")
+
+    def set_robot(self, estimate: Pose) -> None:
+        x, y = self.fit.to_plate(np.array([[estimate.x, estimate.y]]))[0]
+        half = (estimate.heading_rad + self.fit.turn_rad) / 2
+        self._arrow.position = (float(x), float(y), ARROW_Z)
+        self._arrow.wxyz = (math.cos(half), 0.0, 0.0, math.sin(half))
+        self._arrow.visible = True
+
+    def set_goal(self, goal: Goal | None) -> None:
+        if goal is None:
+            self._route.hide()
+            self._flag.hide()
+            return
+        at = self.fit.to_plate(np.array([[goal.x, goal.y]]))[0]
+        self._flag.show(at, _promise(goal))
+        self._route.show(self.fit.to_plate(goal.route_xy), goal.route_arrival_s, at)
+
+    def show_click(self, place: tuple[float, float] | None) -> None:
+        """The marker of a goal that was asked for (map frame) and is not there yet."""
+        self._clicked.visible = place is not None
+        if place is not None:
+            x, y = self.fit.to_plate(np.array([place]))[0]
+            self._clicked.position = (float(x), float(y), 0.0)
+
+    def map_place(self, plate_xy: tuple[float, float]) -> tuple[float, float] | None:
+        """The map-frame place under a point of the plate; None beside the floor."""
+        if abs(plate_xy[0]) > WIDTH / 2 or abs(plate_xy[1]) > DEPTH / 2:
+            return None
+        x, y = self.fit.to_map(np.array([plate_xy]))[0]
+        return float(x), float(y)
+
+
+def seconds_words(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
+
+
+def _promise(goal: Goal) -> str:
+    if goal.state in ("arrived", "unreachable") or goal.eta_s is None or not math.isfinite(goal.eta_s):
+        return {"arrived": "arrived", "unreachable": "no way known"}.get(goal.state, "? s")
+    return seconds_words(goal.eta_s)
+
+
+def _arrow(size: float, z: float) -> ribbons.Mesh:
+    vertices, faces = ribbons.flat_fan((-0.2 * size, 0.0), ARROW[[3, 0, 1]] * size, z)
+    return vertices, faces
+
+
+def _round_up(seconds: float) -> float:
+    """To 5, 10, 30 or 60 s, so that colours do not breathe with the last node."""
+    step = 5 if seconds < 40 else 10 if seconds < 120 else 30 if seconds < 600 else 60
+    return math.ceil(seconds / step) * step
+
+
+def _roomy(count: int) -> int:
+    return max(256, math.ceil(count * 1.5 / 256) * 256)

@@ -1,0 +1,123 @@
+"""The office plate: the true world, which the robot cannot know, with the robot and what its sensors reach."""
+
+from __future__ import annotations
+
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from web.messages import Pose, Senses, WorldDrawing
+from web.stage import ribbons
+from web.stage.furniture import add_floor, add_furniture
+from web.stage.office_fit import OfficeFit
+from web.stage.palette import Palette, mix
+from web.stage.plate import FLOOR_Z, Plate
+from web.stage.robot_model import RobotModel
+from web.stage.sight import fan_of_view
+from web.stage.signs import add_mesh
+
+ORIGIN = (-5.85, -2.2, 0.0)
+SHEET = (11.0, 10.0, -0.5, 0.45)
+TRAIL_SEGMENTS = 150
+LATE = (0.0, -20.0, 16.0)  # transparent meshes are drawn by the distance of their origin: near the viewer comes last
+
+
+class OfficePlate(Plate):
+    def __init__(self, scene: viser.SceneApi, palette: Palette) -> None:
+        super().__init__(scene, palette, "office", ORIGIN, SHEET)
+        self.set_heading("Office", "the true world - the robot cannot know this")
+        self.world: WorldDrawing | None = None
+        self.fit = OfficeFit((0.0, 0.0, 10.0, 8.0))
+        self._walls = np.zeros((0, 4))
+        self.robot = RobotModel(scene, palette, f"{self.root}/robot")
+        self._fan = add_mesh(
+            scene, f"{self.root}/view", ribbons.NOTHING, palette.lit(palette.wedge), opacity=palette.wedge_opacity, position=LATE
+        )
+        self._fan_edges = scene.add_line_segments(
+            f"{self.root}/view_edges", ribbons.padded(np.zeros((0, 2, 3), np.float32), 2), palette.wedge, thickness=0.025
+        )
+        self._sonar = scene.add_line_segments(
+            f"{self.root}/sonar", ribbons.padded(np.zeros((0, 2, 3), np.float32), 8), palette.sonar, thickness=0.022
+        )
+        self._echoes = scene.add_point_cloud(
+            f"{self.root}/echoes", np.full((8, 3), -50.0), palette.sonar, point_size=0.11, point_shape="circle", point_shading="flat"
+        )
+        self._trail = scene.add_line_segments(
+            f"{self.root}/trail",
+            ribbons.padded(np.zeros((0, 2, 3), np.float32), TRAIL_SEGMENTS),
+            np.zeros((TRAIL_SEGMENTS, 2, 3), np.uint8),
+            thickness=0.05,
+        )
+        self._room_for = scene.add_line_segments(
+            f"{self.root}/room", ribbons.closed_line(ribbons.rounded_rectangle(2, 2, 1), 0.0), palette.sonar, thickness=0.05, visible=False
+        )
+
+    def set_world(self, world: WorldDrawing) -> None:
+        """Draws another office: floor with its shadows, walls, furniture, posters."""
+        if world is self.world:
+            return
+        self.world, self.fit = world, OfficeFit(world.bounds)
+        self._walls = np.asarray(world.walls, np.float64)
+        self.robot.resize(self.fit.scale * max(world.robot_radius_m, 0.05))
+        add_floor(self.scene, f"{self.root}/floor", self.palette, world, self.fit, FLOOR_Z)
+        add_furniture(self.scene, f"{self.root}/furniture", self.palette, world, self.fit)
+
+    def set_robot(self, truth: Pose, senses: Senses) -> None:
+        """The robot at its true pose, with its field of view and the sonar's echoes."""
+        if self.world is None:
+            return
+        self.robot.place(self.fit.to_plate(np.array([[truth.x, truth.y]]))[0], truth.heading_rad)
+        self._draw_view(truth, self.world.camera_fov_rad)
+        self._draw_sonar(truth, self.world.sonar_angles_rad, senses.ranges_m)
+
+    def _draw_view(self, truth: Pose, fov_rad: float) -> None:
+        rim = self.fit.to_plate(fan_of_view(self._walls, truth, fov_rad))
+        centre = self.fit.to_plate(np.array([[truth.x, truth.y]]))[0]
+        vertices, faces = ribbons.flat_fan((float(centre[0]), float(centre[1])), rim, 0.03)
+        self._fan.vertices, self._fan.faces = vertices - np.array(LATE, np.float32), faces
+        edges = ribbons.lifted(np.vstack([centre, rim[0], centre, rim[-1]]), 0.035).reshape(2, 2, 3)
+        self._fan_edges.points = edges.astype(np.float32)
+
+    def _draw_sonar(self, truth: Pose, angles_rad: NDArray[np.float32], ranges_m: NDArray[np.float32]) -> None:
+        heard = np.isfinite(ranges_m)
+        angles, reach = truth.heading_rad + angles_rad[heard], ranges_m[heard]
+        ends = np.column_stack([truth.x + reach * np.cos(angles), truth.y + reach * np.sin(angles)])
+        tips = ribbons.lifted(self.fit.to_plate(ends), 0.14)
+        start = ribbons.lifted(self.fit.to_plate(np.array([[truth.x, truth.y]])), 0.14)
+        lines = np.stack([np.repeat(start, len(tips), 0), tips], 1).astype(np.float32)
+        self._sonar.points = ribbons.padded(lines, 8)
+        echoes = np.full((8, 3), -50.0, np.float32)
+        echoes[: len(tips)] = tips[:8]
+        self._echoes.points = echoes
+
+    def set_trail(self, trail: NDArray[np.float32]) -> None:
+        """The true path of the last two minutes, older parts fading into the floor."""
+        if len(trail) < 2:
+            self._trail.points = ribbons.padded(np.zeros((0, 2, 3), np.float32), TRAIL_SEGMENTS)
+            return
+        rows = np.unique(np.linspace(0, len(trail) - 1, TRAIL_SEGMENTS + 1).round().astype(int))
+        path = ribbons.lifted(self.fit.to_plate(np.asarray(trail, np.float64)[rows]), 0.02)
+        jumps = np.hypot(*np.diff(path[:, :2], axis=0).T) > 1.2 * self.fit.scale  # a kidnap leaves no line
+        points = ribbons.open_line(path)
+        points[jumps] = -50.0
+        ages = np.linspace(0.0, 1.0, len(points) + 1) ** 0.7
+        floor, line = np.array(self.palette.floor), np.array(self.palette.true_path)
+        tints = (floor + (line - floor) * (0.08 + 0.92 * ages[:, None])).astype(np.uint8)
+        colours = np.zeros((TRAIL_SEGMENTS, 2, 3), np.uint8)
+        colours[: len(points)] = np.stack([tints[:-1], tints[1:]], 1)
+        self._trail.points = ribbons.padded(points, TRAIL_SEGMENTS)
+        self._trail.colors = colours
+
+    def show_drop(self, place: tuple[float, float] | None, room: bool, heading_rad: float) -> None:
+        """The ring under a dragged robot (office frame); teal where it fits, red where it does not."""
+        self._room_for.visible = place is not None
+        if place is None:
+            return
+        x, y = self.fit.to_plate(np.array([place]))[0]
+        radius = 1.6 * self.robot.radius
+        self._room_for.points = ribbons.closed_line(ribbons.rounded_rectangle(2 * radius, 2 * radius, radius * 0.999) + (x, y), 0.05)
+        self._room_for.colors = np.array(self.palette.sonar if room else mix(self.palette.robot, (255, 0, 0), 0.6), np.uint8)
+        self.robot.place(np.array([x, y]), heading_rad)
+
+

@@ -1,0 +1,156 @@
+"""The pose-cell plate: where the network believes the robot is. Packets as voxels in a glass box, their glow below."""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+import viser
+
+from web.messages import PoseCellLayer, Snap
+from web.stage import images, ribbons
+from web.stage.cell_fit import SIDE, CellFit, broken_where_it_wraps
+from web.stage.glass_box import GlassBox
+from web.stage.palette import Palette, linear
+from web.stage.pill_layout import spread
+from web.stage.plate import FLOOR_Z, Plate
+from web.stage.signs import LEAN_RAD, Pill, Sign, add_mesh, add_picture, pill_width
+
+ORIGIN = (0.0, 8.5, 0.0)
+SHEET = (9.4, 9.9, -0.75, 0.45)
+VOXELS = 500
+PACKETS = 4
+PATH_SEGMENTS = 240
+DASHES = 48
+FLOOR_PX = 288
+PILL_M = 0.62
+WEAKEST = 0.02  # of the strongest cell
+
+
+class PoseCellPlate(Plate):
+    def __init__(self, scene: viser.SceneApi, palette: Palette) -> None:
+        super().__init__(scene, palette, "pose_cells", ORIGIN, SHEET)
+        self.set_heading("Pose cells", "where the network believes the robot is")
+        self._box = GlassBox(scene, palette, self.root)
+        self._shape = (0, 0, 0)
+        self._fit = CellFit((36, 60, 60))
+        self._ground = images.gridded_floor((SIDE, SIDE), FLOOR_PX / SIDE, palette.floor, palette.grid, SIDE / 16)
+        self._floor = add_picture(
+            scene, f"{self.root}/floor", self._ground, SIDE, SIDE, position=(0, 0, FLOOR_Z), format="jpeg", jpeg_quality=88
+        )
+        nowhere = ribbons.padded(np.zeros((0, 2, 3), np.float32), PATH_SEGMENTS)
+        self._voxels = self._add_voxels()
+        self._path = scene.add_line_segments(f"{self.root}/path", nowhere, palette.text, thickness=0.045)
+        self._snap = scene.add_line_segments(f"{self.root}/snap", nowhere[:DASHES], palette.goal, thickness=0.05)
+        drops = np.repeat(np.array(palette.packets, np.uint8)[:, None], 2, 1)
+        self._drops = scene.add_line_segments(f"{self.root}/drops", nowhere[:PACKETS], drops, thickness=0.03)
+        self._rings = [add_mesh(scene, f"{self.root}/ring_{k}", ribbons.ring(0.36, 0.05), palette.lit(colour), visible=False) for k, colour in enumerate(palette.packets)]
+        self._pills = [Pill(scene, f"{self.root}/packet_{k}", PILL_M, colour, palette) for k, colour in enumerate(palette.packets)]
+        self._ends = [Pill(scene, f"{self.root}/snap_{letter}", 0.4, palette.goal, palette) for letter in "SF"]
+        self._empty = Sign(scene, f"{self.root}/empty", 0.4, anchor="centre", leaning=True)
+
+    def _add_voxels(self) -> viser.BatchedMeshHandle:
+        vertices, faces = ribbons.sharp(ribbons.UNIT_CUBE)
+        return self.scene.add_batched_meshes_simple(
+            f"{self.root}/voxels",
+            vertices * np.array(self._fit.voxel, np.float32),
+            faces,
+            batched_wxyzs=np.tile(np.array([1, 0, 0, 0], np.float32), (VOXELS, 1)),
+            batched_positions=np.full((VOXELS, 3), -50.0, np.float32),
+            batched_scales=np.full(VOXELS, 1e-3, np.float32),
+            batched_colors=np.zeros((VOXELS, 3), np.uint8),
+            lod="off",
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    def set_cells(self, layer: PoseCellLayer) -> None:
+        """Voxels, path and packets."""
+        self._set_shape(layer)
+        owners = np.minimum(self._fit.owners(layer), PACKETS - 1)
+        self._draw_voxels(layer, owners)
+        points = self._fit.path(np.asarray(layer.path, np.float64).reshape(-1, 3))
+        self._path.points = ribbons.padded(broken_where_it_wraps(points), PATH_SEGMENTS)
+        self._draw_packets(layer)
+        self._draw_snap(layer.last_snap)
+        if len(layer.cells):
+            self._empty.hide()
+        else:
+            self._empty.show(images.text("no activity yet", self.palette.text_2, 64), (0.0, 0.0, 1.0))
+
+    def _set_shape(self, layer: PoseCellLayer) -> None:
+        if layer.shape == self._shape:
+            return
+        self._shape, self._fit = layer.shape, CellFit(layer.shape)
+        _, n_y, n_x = layer.shape
+        self._box.set_extent(n_x * layer.cell_m, n_y * layer.cell_m)
+        self._voxels = self._add_voxels()
+
+    def _draw_voxels(self, layer: PoseCellLayer, owners: np.ndarray) -> None:
+        strength = layer.activity / max(float(layer.activity.max(initial=0.0)), 1e-9)
+        rows = np.flatnonzero(strength > WEAKEST)[:VOXELS]
+        positions = np.full((VOXELS, 3), -50.0, np.float32)
+        positions[: len(rows)] = self._fit.cells(layer.cells[rows])
+        scales = np.full(VOXELS, 1e-3, np.float32)
+        scales[: len(rows)] = 0.4 + 0.6 * np.sqrt(strength[rows])
+        colours = np.zeros((VOXELS, 3), np.uint8)
+        shade = 0.72 + 0.28 * strength[rows, None]
+        colours[: len(rows)] = linear((np.array(self.palette.voxels)[owners[rows]] * shade).astype(np.uint8))
+        self._voxels.batched_positions = positions
+        self._voxels.batched_scales = scales
+        self._voxels.batched_colors = colours
+
+    def _draw_packets(self, layer: PoseCellLayer) -> None:
+        packets = layer.packets[:PACKETS]
+        tops = np.array([self._fit.packet(p) for p in packets]).reshape(-1, 3)
+        words = [f"{k + 1}   {packet.mass:.0%}".replace("%", " %") for k, packet in enumerate(packets)]
+        lean = math.sin(LEAN_RAD), math.cos(LEAN_RAD)
+        raised = tops + (0.0, 0.0, 0.95)
+        seen = np.column_stack([raised[:, 0], raised[:, 1] * lean[1] + raised[:, 2] * lean[0]])
+        widths = np.array([pill_width(w, PILL_M) for w in words])
+        shifts = spread(seen, widths, PILL_M) - seen
+        for k, pill in enumerate(self._pills):
+            self._rings[k].visible = k < len(packets)
+            if k >= len(packets):
+                pill.hide()
+                continue
+            x, y, z = raised[k] + (shifts[k, 0], shifts[k, 1] * lean[1], shifts[k, 1] * lean[0])
+            pill.show(words[k], self.palette.on_packet, (float(x), float(y), float(z)))
+            self._rings[k].position = (float(tops[k, 0]), float(tops[k, 1]), 0.01)
+        feet = tops * (1.0, 1.0, 0.0)
+        drops = np.full((PACKETS, 2, 3), -50.0, np.float32)
+        drops[: len(packets)] = np.stack([feet, tops], 1)
+        self._drops.points = drops
+
+    def _draw_snap(self, snap: Snap | None) -> None:
+        if snap is None:
+            for pill in self._ends:
+                pill.hide()
+            self._snap.points = ribbons.padded(np.zeros((0, 2, 3), np.float32), DASHES)
+            return
+        start, end = self._fit.packet(snap.start), self._fit.packet(snap.end)
+        self._snap.points = ribbons.padded(ribbons.dashes(start, end, 0.2, 0.13), DASHES)
+        for pill, letter, at in zip(self._ends, "SF", (start, end), strict=True):
+            pill.show(letter, self.palette.on_goal, (float(at[0]), float(at[1]), float(at[2])))
+
+    def set_glow(self, layer: PoseCellLayer) -> None:
+        """The floor's image: the activity projected onto x'y', in its packet's colour."""
+        self._floor.image = images.upright(glow(layer, self._ground, self.palette))
+
+
+def glow(layer: PoseCellLayer, ground: images.Pixels, palette: Palette) -> images.Pixels:
+    """`ground` with the cells' light on it; the cells' row 0 is at its front edge."""
+    _, n_y, n_x = layer.shape
+    owners = np.minimum(CellFit(layer.shape).owners(layer), PACKETS - 1)
+    out = ground.astype(np.float32)
+    for k in np.unique(owners):
+        rows = owners == k
+        light = np.zeros((n_y, n_x), np.float32)
+        np.add.at(light, (layer.cells[rows, 1], layer.cells[rows, 2]), layer.activity[rows])
+        share = float(light.sum()) ** 0.5
+        light = cv2.GaussianBlur(np.pad(light, 8, mode="wrap"), (0, 0), n_x / 32)[8:-8, 8:-8]
+        light = cv2.resize(light / max(float(light.max()), 1e-9), ground.shape[1::-1], interpolation=cv2.INTER_CUBIC)
+        weight = np.clip(light[::-1, :, None], 0, 1) * 0.75 * min(1.0, 0.35 + 0.65 * share)
+        out += (np.array(palette.packets[k], np.float32) - out) * weight
+    return np.clip(out, 0, 255).astype(np.uint8)

@@ -1,0 +1,45 @@
+"""The robot: an orange cylinder with a white turret, a dark camera and two wheels, drawn a quarter larger than it is."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from web.stage import ribbons
+from web.stage.palette import Palette
+from web.stage.signs import add_mesh
+
+ENLARGED = 1.25
+SMALLEST = 0.16  # plate units: stays visible in large worlds
+
+
+class RobotModel:
+    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
+        self.radius = 0.25
+        self.frame = scene.add_frame(name, show_axes=False)
+        circle = ribbons.rounded_rectangle(2.0, 2.0, 0.999)
+        wheel = ribbons.rounded_rectangle(0.62, 0.2, 0.09, 4)
+        parts = {
+            "body": (ribbons.extruded(circle, 0.12, 0.95), palette.robot),
+            "turret": (ribbons.extruded(circle * 0.5, 0.95, 1.3), palette.turret),
+            "camera": (ribbons.extruded(ribbons.rounded_rectangle(0.36, 0.5, 0.1, 4) + (0.72, 0.0), 0.9, 1.3), palette.tyre),
+            "left": (ribbons.extruded(wheel + (0.0, 1.0), 0.0, 0.5), palette.tyre),
+            "right": (ribbons.extruded(wheel + (0.0, -1.0), 0.0, 0.5), palette.tyre),
+        }
+        self.parts = [add_mesh(scene, f"{name}/{part}", mesh, colour, scale=self.radius) for part, (mesh, colour) in parts.items()]
+        halo = ribbons.ring(1.42, 0.2, 0.06)
+        self.parts.append(add_mesh(scene, f"{name}/halo", halo, palette.lit(palette.robot), opacity=0.35, scale=self.radius))
+
+    def resize(self, drawn_radius: float) -> None:
+        """`drawn_radius`: the robot's radius in plate units, before it is enlarged."""
+        self.radius = max(drawn_radius * ENLARGED, SMALLEST)
+        for part in self.parts:
+            part.scale = self.radius
+
+    def place(self, xy: NDArray[np.float64], heading_rad: float) -> None:
+        """`xy` in plate units."""
+        self.frame.position = (float(xy[0]), float(xy[1]), 0.0)
+        self.frame.wxyz = (math.cos(heading_rad / 2), 0.0, 0.0, math.sin(heading_rad / 2))

@@ -1,0 +1,262 @@
+"""The stage: one viser server on the loopback, one thread that draws the newest snapshot and takes what people do.
+
+viser's callbacks only post to `_inbox`; everything that touches handles happens in the one thread.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import math
+import queue
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+
+import viser
+from viser import _messages
+
+from web.latest import Latest
+from web.messages import Accepted, Command, MapLayer, Refused, Snapshot
+from web.stage.camera_views import FAR, NEAR, PHONE_ASPECT, VIEWS, Camera, Flight, View, camera_for
+from web.stage.hand import Answer, Click, Drag, Hand, ask
+from web.stage.palette import Theme, palette_of
+from web.stage.panels import Panels
+from web.stage.rates import Layer
+from web.stage.scenery import Scenery
+
+FRAME_S = 1 / 30  # no faster than this, however fast snapshots come
+IDLE_S = 0.05  # how long a click waits at most
+
+
+class Stage:
+    """Draws what `latest` holds and hands commands to `submit`, which must return at once."""
+
+    def __init__(
+        self, latest: Latest[Snapshot], submit: Callable[[Command], Future[Accepted | Refused]], theme: Theme = "dark"
+    ) -> None:
+        self.on_connect: Callable[[int], None] | None = None
+        self._latest, self._submit, self._theme = latest, submit, theme
+        self._inbox: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._stopping = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._snapshot: Snapshot | None = None
+        self._run, self._turn_rad = -1, 0.0
+        self._views: dict[int, View] = {}
+        self._flights: dict[int, Flight] = {}
+        self.server = _quiet_server()
+        self.port = self.server.get_port()
+        self._hand = Hand(self._send, self._complain)
+        self.panels = Panels(self.server.gui, palette_of(theme), self._send, self._complain)
+        self._layers: dict[str, Layer] = {}
+        self._set_up(theme)
+        self._listen()
+
+    # ------------------------------------------------------------ from any thread
+
+    def start(self) -> None:
+        self._thread = threading.Thread(target=self._work, name="stage", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Joins the thread and closes the server; may be called twice."""
+        self._stopping.set()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+        self.server.stop()
+
+    def fly(self, client_id: int | None, view: str) -> None:
+        """Takes one browser's camera (or everyone's) to a view: "all", "office", "pose" or "map"."""
+        if view not in VIEWS:
+            raise ValueError(f"unknown view {view!r}; expected one of: {', '.join(VIEWS)}")
+        self._inbox.put(lambda: self._take_off(client_id, view, True))
+
+    def set_theme(self, theme: Theme) -> None:
+        """Dark or light, for everyone who looks."""
+        palette_of(theme)
+        self._inbox.put(lambda: self._set_up(theme) if theme != self._theme else None)
+
+    # ------------------------------------------------------------ the thread
+
+    def _work(self) -> None:
+        seen = 0
+        while not self._stopping.is_set():
+            began_s = time.monotonic()
+            seen, snapshot = self._latest.wait(seen, FRAME_S if self._flights else IDLE_S)
+            self.tick(snapshot, time.monotonic(), watched=bool(self.server.get_clients()))
+            self._stopping.wait(max(0.0, FRAME_S - (time.monotonic() - began_s)))
+
+    def tick(self, snapshot: Snapshot | None, now_s: float, watched: bool = True) -> None:
+        """One round: what people did, cameras in flight, and the layers that are new and due."""
+        if snapshot is not None:
+            self._snapshot = snapshot
+        with contextlib.suppress(queue.Empty):
+            while True:
+                self._inbox.get_nowait()()
+        self._fly_on(now_s)
+        if self._snapshot is not None and watched:
+            self._draw(self._snapshot, now_s)
+
+    def _draw(self, snapshot: Snapshot, now_s: float) -> None:
+        if snapshot.run != self._run:
+            self._run = snapshot.run
+            self._turn_rad = math.remainder(snapshot.truth.heading_rad - snapshot.estimate.heading_rad, math.tau)
+            self.panels.reset()
+        offer, cells = self._layers, snapshot.pose_cells
+        with self.server.atomic():
+            if offer["world"].offer(now_s, snapshot.world):
+                self._forget("robot", "trail")
+            if self._hand.dragging:
+                self._forget("robot")  # it goes back to the truth when it is let go
+            else:
+                offer["robot"].offer(now_s, snapshot.truth, snapshot.senses)
+            offer["trail"].offer(now_s, snapshot.trail)
+            offer["cells"].offer(now_s, cells)
+            offer["glow"].offer(now_s, cells)
+            offer["map"].offer(now_s, snapshot.map)
+            offer["times"].offer(now_s, snapshot.times)
+            offer["estimate"].offer(now_s, snapshot.estimate)
+            offer["goal"].offer(now_s, snapshot.goal)
+            self._hand.settle(snapshot, self._scenery.map, now_s)
+            self.panels.draw(snapshot, now_s)
+
+    def _draw_map(self, layer: MapLayer) -> None:
+        if self._scenery.map.set_map(layer, self._turn_rad):
+            self._forget("times", "estimate", "goal")
+            self._hand.moved(self._scenery.map)
+
+    def _forget(self, *layers: str) -> None:
+        for name in layers:
+            self._layers[name].forget()
+
+    # ------------------------------------------------------------ setting up
+
+    def _set_up(self, theme: Theme) -> None:
+        """Builds the plates in a palette; the old ones go."""
+        palette, self._theme = palette_of(theme), theme
+        with self.server.atomic():
+            if self._layers:
+                self._scenery.remove()
+            self._scenery = Scenery(self.server.scene, palette)
+            self.server.gui.configure_theme(
+                dark_mode=palette.dark, show_logo=False, show_share_button=False, brand_color=palette.packets[1]
+            )
+            self.panels.set_palette(palette)
+        office, cells, map_plate = self._scenery.office, self._scenery.cells, self._scenery.map
+        self._layers = {
+            "world": Layer(5, office.set_world),
+            "robot": Layer(15, office.set_robot),
+            "trail": Layer(4, office.set_trail),
+            "cells": Layer(10, cells.set_cells),
+            "glow": Layer(5, cells.set_glow),
+            "map": Layer(2, self._draw_map),
+            "times": Layer(5, map_plate.set_times),
+            "estimate": Layer(15, map_plate.set_robot),
+            "goal": Layer(3, map_plate.set_goal),
+        }
+        for part in office.robot.parts:
+            part.on_drag("left")(self._dragged(False))
+            part.on_drag("left", modifier="shift")(self._dragged(True))
+
+    def _listen(self) -> None:
+        camera = camera_for("all", 1.5)
+        initial = self.server.initial_camera
+        initial.position, initial.look_at, initial.fov = camera.position, camera.look_at, camera.fov_rad
+        initial.near, initial.far = NEAR, FAR
+        self.server.on_client_connect(self._connected)
+        self.server.on_client_disconnect(self._disconnected)
+        self.server.scene.on_click()(self._clicked)
+
+    # ------------------------------------------------------------ callbacks of viser: post, never draw
+
+    def _clicked(self, event: viser.SceneClickEvent) -> None:
+        click = Click(event.client_id, event.ray_origin, event.ray_direction)
+        self._inbox.put(lambda: self._hand.click(click, self._scenery.map, time.monotonic()))
+
+    def _dragged(self, turning: bool) -> Callable[..., object]:
+        async def dragged(event: viser.SceneNodeDragEvent[viser.MeshHandle]) -> None:  # async: keeps their order
+            x, y, z = event.client.camera.position.tolist()
+            drag = Drag(event.client_id, event.phase, turning, (x, y, z), event.end_position)
+            self._inbox.put(lambda: self._drag(drag))
+
+        return dragged
+
+    def _connected(self, client: viser.ClientHandle) -> None:
+        self._inbox.put(lambda: self._welcome(client))
+
+    def _disconnected(self, client: viser.ClientHandle) -> None:
+        self._inbox.put(lambda: self._farewell(client.client_id))
+
+    # ------------------------------------------------------------ in the thread
+
+    def _drag(self, drag: Drag) -> None:
+        if self._snapshot is not None:
+            self._hand.drag(drag, self._scenery.office, self._snapshot)
+
+    def _send(self, command: Command, answered: Callable[[Answer], None]) -> None:
+        ask(self._submit, command, lambda answer: self._inbox.put(lambda: answered(answer)))
+
+    def _complain(self, client_id: int, title: str, body: str) -> None:
+        client = self.server.get_clients().get(client_id)
+        if client is not None:
+            client.add_notification(title, body, auto_close_seconds=6.0, color="red")
+
+    def _welcome(self, client: viser.ClientHandle) -> None:
+        aspect = client.camera.aspect
+        self._take_off(client.client_id, "map" if aspect < PHONE_ASPECT else "all", False)
+
+        async def moved(camera: viser.CameraHandle) -> None:
+            nonlocal aspect
+            if abs(camera.aspect / aspect - 1) > 0.01:  # the window has another shape: frame the view anew
+                aspect = camera.aspect
+                self._inbox.put(lambda: self._reframe(client.client_id))
+
+        client.camera.on_update(moved)
+        if self.on_connect is not None:
+            self.on_connect(client.client_id)
+
+    def _farewell(self, client_id: int) -> None:
+        self._views.pop(client_id, None)
+        self._flights.pop(client_id, None)
+
+    def _reframe(self, client_id: int) -> None:
+        if client_id in self._views:
+            self._take_off(client_id, self._views[client_id], False)
+
+    def _take_off(self, client_id: int | None, view: View, gently: bool) -> None:
+        for client in self.server.get_clients().values():
+            if client_id in (None, client.client_id):
+                self._views[client.client_id] = view
+                camera, end = client.camera, camera_for(view, client.camera.aspect)
+                start = Camera(camera.position.copy(), camera.look_at.copy(), camera.fov) if gently else end
+                began_s = time.monotonic() if gently else -math.inf
+                self._flights[client.client_id] = Flight(start, end, began_s)
+
+    def _fly_on(self, now_s: float) -> None:
+        clients = self.server.get_clients() if self._flights else {}
+        for client_id, flight in list(self._flights.items()):
+            camera, arrived = flight.at(now_s)
+            if client_id in clients:
+                _point(clients[client_id], camera)
+            if arrived or client_id not in clients:
+                del self._flights[client_id]
+
+
+def _point(client: viser.ClientHandle, camera: Camera) -> None:
+    with client.atomic():
+        client.camera.position = camera.position
+        client.camera.look_at = camera.look_at
+        client.camera.up_direction = (0.0, 0.0, 1.0)
+        client.camera.fov = camera.fov_rad
+
+
+def _quiet_server() -> viser.ViserServer:
+    """On the loopback, at a free port, silent, and without the handlers that open a public tunnel on request."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        server = viser.ViserServer(host="127.0.0.1", port=0, label="RatSLAM", verbose=False)
+    for message in (_messages.ShareUrlRequest, _messages.ShareUrlDisconnect):
+        server._websock_server.unregister_handler(message)
+    server.scene.world_axes.visible = False
+    return server
