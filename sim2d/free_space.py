@@ -31,7 +31,8 @@ class FreeSpace:
         self._xs = np.arange(x0 + 0.5 * cell_m, x1, cell_m)
         self._ys = np.arange(y0 + 0.5 * cell_m, y1, cell_m)
         grid = clearance_grid(self._segments, self._ring, self._xs, self._ys)
-        numbers, _ = label(grid >= radius, structure=np.ones((3, 3)))
+        numbers = np.zeros(grid.shape, np.int32)
+        label(grid >= radius, structure=np.ones((3, 3)), output=numbers)
         starts = {numbers[self._nearest_open(numbers, s.x, s.y)] for s in world.starts}
         self._reachable: NDArray[np.bool_] = np.isin(numbers, list(starts))
 

@@ -84,7 +84,8 @@ class SimParams:
             _check(item.name, getattr(self, item.name), item.type, item.metadata["low"], item.metadata["high"])
         if self.physics_rate_hz % self.sensor_rate_hz:
             raise ValueError(
-                f"physics_rate_hz must be a multiple of sensor_rate_hz ({self.sensor_rate_hz}), got {self.physics_rate_hz}"
+                f"physics_rate_hz must be a multiple of sensor_rate_hz ({self.sensor_rate_hz}), "
+                f"got {self.physics_rate_hz}"
             )
 
     @property

@@ -24,7 +24,7 @@ BUMPER_M = 0.005  # travel of the contact ring around the robot
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """A command for one tick: m/s forwards, rad/s counter-clockwise. More than the robot can do is cut to what it can."""
+    """A command for one tick: m/s forwards, rad/s counter-clockwise; cut to what the robot can do."""
 
     speed: float
     yaw_rate: float
@@ -103,7 +103,10 @@ class Simulator:
         return self._frame
 
     def teleport(self, x: float, y: float, heading_rad: float) -> None:
-        """Put the robot elsewhere, at rest; its encoders do not notice. ValueError with the reason if it cannot be there."""
+        """Put the robot elsewhere, at rest; its encoders do not notice.
+
+        ValueError with the reason when it cannot be there: outside, in a wall (which, how far), closed in, not finite.
+        """
         if not math.isfinite(heading_rad):
             raise ValueError(f"heading must be finite, got {heading_rad}")
         refusal = self.free_space.refusal(x, y)

@@ -79,7 +79,7 @@ def _paint(out: _Texels, rng: np.random.Generator) -> None:
 def _poster(out: _Texels, rng: np.random.Generator) -> None:
     """A pale or dark frame, two to four blocks and a line of title."""
     own = out[0, 0].copy()
-    ink = np.float32([20, 22, 30]) if own.mean() > 110 else np.float32([238, 236, 226])
+    ink = _rgb(20, 22, 30) if own.mean() > 110 else _rgb(238, 236, 226)
     for _ in range(int(rng.integers(2, 5))):
         left, high = rng.uniform(0.05, 0.6, 2)
         mix = rng.uniform(0.35, 1.0)
@@ -91,11 +91,11 @@ def _poster(out: _Texels, rng: np.random.Generator) -> None:
 
 def _board(out: _Texels, rng: np.random.Generator) -> None:
     """A whiteboard with a frame, lines of writing and a sketch."""
-    ink = np.float32([40, 60, 120])
+    ink = _rgb(40, 60, 120)
     for high in np.arange(0.12, 0.6, 0.11):
         _box(out, 0.08, rng.uniform(0.25, 0.6), high, high + 0.04)[:] = ink
     _box(out, 0.68, 0.9, 0.2, 0.55)[:] = rng.uniform(60, 170, 3)
-    _frame(out, np.float32([90, 92, 96]))
+    _frame(out, _rgb(90, 92, 96))
 
 
 def _door(out: _Texels, rng: np.random.Generator) -> None:
@@ -115,11 +115,9 @@ def _window(out: _Texels, rng: np.random.Generator) -> None:
     left = 0.0
     while left < 1.0:
         right = left + rng.uniform(0.12, 0.35)
-        _box(out, left, min(right, 1.0), rng.uniform(0.5, 0.85), 1.0)[:] = np.float32([96, 108, 104]) * rng.uniform(
-            0.6, 1.3
-        )
+        _box(out, left, min(right, 1.0), rng.uniform(0.5, 0.85), 1.0)[:] = _rgb(96, 108, 104) * rng.uniform(0.6, 1.3)
         left = right
-    white = np.float32([246, 246, 240])
+    white = _rgb(246, 246, 240)
     middle = rng.uniform(0.35, 0.65)
     _box(out, middle, middle + 0.03, 0.0, 1.0)[:] = white
     _frame(out, white)
@@ -136,7 +134,7 @@ def _shelf(out: _Texels, rng: np.random.Generator) -> None:
         while left < 0.9:
             right = left + rng.uniform(0.1, 0.3)
             books = _box(out, left, min(right, 0.95), low - rng.uniform(0.55, 0.85) / floors, low - 0.02)
-            books[:] = np.float32(BOOKS[int(rng.integers(len(BOOKS)))]) * rng.uniform(0.7, 1.1)
+            books[:] = _rgb(*_BOOKS[int(rng.integers(len(_BOOKS)))]) * rng.uniform(0.7, 1.1)
             left = right + (rng.uniform(0.05, 0.2) if rng.random() < 0.3 else 0.0)
 
 
@@ -153,7 +151,11 @@ def _screen(out: _Texels, rng: np.random.Generator) -> None:
     """A lit screen in a black frame with two windows on it."""
     _box(out, 0.1, rng.uniform(0.45, 0.6), 0.15, rng.uniform(0.5, 0.8))[:] = rng.uniform(120, 250, 3)
     _box(out, 0.6, 0.92, 0.3, 0.85)[:] = rng.uniform(30, 160, 3)
-    _frame(out, np.float32([18, 18, 22]))
+    _frame(out, _rgb(18, 18, 22))
+
+
+def _rgb(*levels: float) -> _Texels:
+    return np.array(levels, np.float32)
 
 
 def _frame(out: _Texels, colour: _Texels) -> None:
@@ -161,7 +163,7 @@ def _frame(out: _Texels, colour: _Texels) -> None:
     out[:, [0, -1]] = colour
 
 
-BOOKS = ((213, 94, 0), (0, 114, 178), (240, 228, 66), (0, 158, 115), (235, 232, 220), (60, 60, 70), (204, 121, 167))
+_BOOKS = ((213, 94, 0), (0, 114, 178), (240, 228, 66), (0, 158, 115), (235, 232, 220), (60, 60, 70), (204, 121, 167))
 _PATTERNS = {
     "paint": _paint, "poster": _poster, "board": _board, "door": _door,
     "window": _window, "shelf": _shelf, "cabinet": _cabinet, "screen": _screen,

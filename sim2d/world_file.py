@@ -140,18 +140,18 @@ def _sentence(error: ValidationError) -> str:
 
 
 def _world(file: _File) -> World:
-    walls = tuple(
-        Wall(
-            *item.start, *item.end, item.kind, item.height, _rgb(item.colour), item.outer, item.bottom,
-            tuple(_panel(panel) for panel in item.panels),
-        )
-        for item in file.walls
-    )  # fmt: skip
+    walls = tuple(_wall(item) for item in file.walls)
     starts = tuple(Start(s.name, s.x, s.y, math.radians(s.heading_deg)) for s in file.starts)
     places = tuple(Place(p.name, p.x, p.y) for p in file.places)
     return World(
         file.name, file.title, file.source, walls, starts, places, _rgb(file.floor_colour), _rgb(file.ceiling_colour)
     )
+
+
+def _wall(item: _WallItem) -> Wall:
+    (x1, y1), (x2, y2) = item.start, item.end
+    panels = tuple(_panel(panel) for panel in item.panels)
+    return Wall(x1, y1, x2, y2, item.kind, item.height, _rgb(item.colour), item.outer, item.bottom, panels)
 
 
 def _panel(item: _PanelItem) -> Panel:
