@@ -105,7 +105,7 @@ def _add_commands(app: FastAPI, submit: Submit) -> None:
         except Malformed as error:
             return _json(to_json({"detail": error.wrongs}), 422)
         except NoAnswer as error:
-            return _json(problem(str(error)), 503)
+            return _json(problem(str(error)), error.status)
         if isinstance(answer, Refused):
             return _json(to_json({"detail": problem_of(answer)}), 422)
         return _json(to_json({"accepted": True, "tick": answer.tick}))

@@ -12,7 +12,7 @@ import asyncio
 import hashlib
 import re
 import urllib.request
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from typing import Protocol
 
 import websockets
@@ -24,7 +24,7 @@ from websockets.asyncio.client import ClientConnection
 VIEWS = ("all", "office", "pose", "map")
 PAGE_ID = re.compile(r"[A-Za-z0-9_-]{22,64}")
 SEND_TIMEOUT_S = 10.0
-PAIRING_S = 1.0
+PAIRING_S = 2.0
 MOST_CLIENTS = 32
 
 
@@ -48,6 +48,7 @@ class Cameras:
         self._stage = stage
         self._one_at_a_time = asyncio.Lock()
         self._arrival: asyncio.Future[int] | None = None
+        self._overdue: list[str] = []  # pages whose message got no number in time
         self._client_of: dict[str, int] = {}
         self._wanted: dict[str, str] = {}
 
@@ -66,14 +67,17 @@ class Cameras:
         if client_id is not None:
             await asyncio.to_thread(self._stage.fly, client_id, view)
 
-    async def pair(self, page: str, pass_on: Callable[[], object]) -> bool:
-        """Let one message of this page through (`pass_on`, awaitable); True when viser numbered its client on it."""
+    async def pair(self, page: str, pass_on: Callable[[], Awaitable[None]]) -> bool:
+        """Let one message of this page through (`pass_on`); True when viser numbered its client on it."""
         async with self._one_at_a_time:
             self._arrival = asyncio.get_running_loop().create_future()
+            if page in self._overdue:
+                self._overdue.remove(page)
             try:
-                await pass_on()  # type: ignore[misc]
+                await pass_on()
                 self._client_of[page] = await asyncio.wait_for(self._arrival, PAIRING_S)
             except TimeoutError:
+                self._overdue.append(page)
                 return False
             finally:
                 self._arrival = None
@@ -81,12 +85,18 @@ class Cameras:
             await self.show(page, self._wanted[page])
         return True
 
+    def paired(self, page: str) -> bool:
+        return page in self._client_of
+
     def unpair(self, page: str) -> None:
         self._client_of.pop(page, None)
+        self._overdue = [other for other in self._overdue if other != page]
 
     def _arrived(self, client_id: int) -> None:
         if self._arrival is not None and not self._arrival.done():
             self._arrival.set_result(client_id)
+        elif len(self._overdue) == 1:  # late, and there is no doubt whose it is
+            self._client_of[self._overdue.pop()] = client_id
 
 
 class ViserProxy:
@@ -146,16 +156,15 @@ class ViserProxy:
             await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _to_viser(self, browser: WebSocket, viser: ClientConnection, page: str) -> None:
-        paired = False
         while True:
             try:
                 message = await browser.receive_bytes()
             except (WebSocketDisconnect, KeyError):  # KeyError: text, which viser's client never sends
                 return
-            if paired:
+            if self._cameras.paired(page):
                 await viser.send(message)
             else:
-                paired = await self._cameras.pair(page, lambda data=message: viser.send(data))
+                await self._cameras.pair(page, lambda data=message: viser.send(data))
 
 
 async def _to_browser(viser: ClientConnection, browser: WebSocket) -> None:

@@ -33,7 +33,11 @@ THEMES = ("dark", "light")
 
 
 class NoAnswer(Exception):
-    """The engine did not answer in time."""
+    """The engine did not answer in time, or failed at the command; `status` is what HTTP calls that."""
+
+    def __init__(self, status: int, reason: str) -> None:
+        super().__init__(reason)
+        self.status = status
 
 
 async def ask(submit: Submit, command: Command) -> Accepted | Refused:
@@ -41,7 +45,10 @@ async def ask(submit: Submit, command: Command) -> Accepted | Refused:
     answer = asyncio.wrap_future(submit(command))
     done, _ = await asyncio.wait({answer}, timeout=ANSWER_TIMEOUT_S)
     if not done:
-        raise NoAnswer("the engine did not answer within 3 s; the command may still take effect, see /api/state")
+        raise NoAnswer(503, "the engine did not answer within 3 s; the command may still take effect, see /api/state")
+    error = answer.exception()
+    if error is not None:
+        raise NoAnswer(500, f"the engine failed at this command: {type(error).__name__}: {error}")
     return answer.result()
 
 
@@ -177,7 +184,7 @@ class Stream:
         try:
             answer = await ask(self._submit, command)
         except NoAnswer as error:
-            await client.send(_answer(identity, 503, [wrong(None, None, str(error))]))
+            await client.send(_answer(identity, error.status, [wrong(None, None, str(error))]))
             return
         if isinstance(answer, Refused):
             await client.send(_answer(identity, 422, problem_of(answer)))

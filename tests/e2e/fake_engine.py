@@ -133,7 +133,11 @@ def main() -> None:
     engine.start()
     ready = "RatSLAM is alive at {}"
     Dashboard(
-        engine.latest, engine.submit, stage, port=options.port, on_ready=lambda url: print(ready.format(url), flush=True)
+        engine.latest,
+        engine.submit,
+        stage,
+        port=options.port,
+        on_ready=lambda url: print(ready.format(url), flush=True),
     ).run()
 
 

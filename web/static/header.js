@@ -1,6 +1,7 @@
 // The header: what the session does, and the controls of time, world and goal.
 
 import { setIcon } from "./icons.js";
+import { phone } from "./stage.js";
 import { clock } from "./timeline.js";
 
 const $ = (id) => document.getElementById(id);
@@ -58,8 +59,12 @@ export class Header {
     setIcon(chip, icon);
     chip.title = `${text}, experience ${goal.experience}`;
     chip.querySelector(".what").textContent = { arrived: "arrived", unreachable: "no way" }[goal.state] ?? "goal";
-    chip.querySelector(".metres").textContent = goal.remaining_m === null ? "" : `${goal.remaining_m.toFixed(1)} m`;
-    chip.querySelector(".seconds").textContent = goal.eta_s === null ? "" : `${Math.round(goal.eta_s)} s`;
+    const ahead = goal.state !== "arrived" && goal.state !== "unreachable";
+    const metres = ahead && goal.remaining_m !== null ? `${goal.remaining_m.toFixed(1)} m` : "";
+    const seconds = ahead && goal.eta_s !== null ? `${Math.round(goal.eta_s)} s` : "";
+    chip.querySelector(".what").classList.toggle("always", !metres && !seconds);
+    chip.querySelector(".metres").textContent = metres;
+    chip.querySelector(".seconds").textContent = seconds;
   }
 }
 
@@ -67,7 +72,8 @@ function status(state, page) {
   if (page.fault) return ["warn", "bad", `stopped: ${page.fault}`];
   if (!state.running) return ["pause", "", "paused"];
   const packets = state.pose_cells.packets.length;
-  if (page.lost) return ["lost", "lost", packets > 1 ? `lost: ${packets} packets compete` : "lost"];
+  const compete = phone.matches ? "" : " compete";
+  if (page.lost) return ["lost", "lost", packets > 1 ? `lost: ${packets} packets${compete}` : "lost"];
   if (state.mode === "manual") return ["hand", "hand", "driving by hand"];
   if (state.goal) return GOAL_STATES[state.goal.state] ?? GOAL_STATES.tracking;
   return ["compass", "good", "exploring"];

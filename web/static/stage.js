@@ -1,5 +1,7 @@
 // The stage: viser's client in a frame of our own origin, its view buttons, and its panel on a phone.
 
+import { toast } from "./toasts.js";
+
 export const VIEWS = ["all", "office", "pose", "map"];
 export const phone = window.matchMedia("(max-width: 760px)");
 
@@ -42,7 +44,6 @@ export class Stage {
     if (!paper || inside.location.href === "about:blank") return;
     // viser reconnects only while its own frame has the focus; the person looks at the page as a whole.
     paper.hasFocus = () => !document.hidden;
-    inside.addEventListener("focus", () => {});
     this.keys.listen(inside);
     this.style = paper.createElement("style");
     paper.head.append(this.style);
@@ -57,14 +58,40 @@ export class Stage {
     }
     this.frame.classList.add("awake");
     document.getElementById("waiting").hidden = true;
+    let looks = 20;
+    const timer = setInterval(() => (dismissSlowNotice(paper) || --looks === 0) && clearInterval(timer), 250);
   }
 
   // On a phone viser's panel would cover the stage; a button brings it.
   showPanels(on) {
     this.panels = on;
     document.getElementById("panels").setAttribute("aria-pressed", String(on));
-    if (this.style) this.style.textContent = on ? "" : HIDE_PANEL;
+    if (this.style) this.style.textContent = COLOURS + (on ? "" : HIDE_PANEL);
   }
 }
 
-const HIDE_PANEL = "";
+const HIDE_PANEL = ".mantine-Paper-root[style*='fixed'] { display: none !important; }";
+// viser's panel in the page's own colours.
+const COLOURS = `
+  :root[data-mantine-color-scheme="dark"] {
+    --mantine-color-body: #151c26 !important; --mantine-color-default: #202a37 !important;
+    --mantine-color-default-hover: #2b3747 !important; --mantine-color-default-border: #2f3b4b !important;
+    --mantine-color-text: #e8edf4 !important; --mantine-color-dimmed: #97a5b8 !important;
+    --mantine-color-dark-4: #2f3b4b !important; --mantine-color-dark-5: #2b3747 !important;
+    --mantine-color-dark-6: #202a37 !important; --mantine-color-dark-7: #151c26 !important;
+  }
+  :root[data-mantine-color-scheme="light"] {
+    --mantine-color-text: #1b2430 !important; --mantine-color-dimmed: #566477 !important;
+    --mantine-color-default-border: #c9d2dc !important;
+  }`;
+
+// viser says for good that there is no graphics card, over our view buttons; a short sentence is enough.
+function dismissSlowNotice(paper) {
+  for (const title of paper.querySelectorAll(".mantine-Notification-title")) {
+    if (!title.textContent.startsWith("Software WebGL")) continue;
+    title.closest(".mantine-Notification-root, .mantine-Notifications-notification")?.querySelector("button")?.click();
+    toast("No graphics card in use: the stage moves slowly.");
+    return true;
+  }
+  return false;
+}
