@@ -77,6 +77,7 @@ class LocalViewParams:
     decay: float = param(0.0, symbol="δ", low=0.0, high=1.0, meaning="share of a link forgotten at each sight", source="A eq. 2")
     saturation: float = param(0.02, symbol="s_max", low=0.0, high=1.0, meaning="most that one link injects", source="A eq. 4; value ours")
     injection: float = param(0.14, low=0.0, high=5.0, meaning="most that all links of a view inject together", source="ours")
+    rest: float = param(10.0, unit="s", low=0.0, high=1e6, meaning="a view younger than this does not inject", source="ours")
     enabled: bool = param(True, meaning="vision moves the pose cells; off = path integration only", source="A figures 9, 10")
 
     def __post_init__(self) -> None:

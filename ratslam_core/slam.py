@@ -26,6 +26,8 @@ class RatSlam:
             self.pose_cells.shape, self.params.pose_cells.cell_m, self.params.experience_map
         )
         self.relocalisations = 0
+        self._time_s = 0.0
+        self._learnt_s: list[float] = []  # when each view was recruited
 
     def step(self, image: NDArray[np.uint8], odometry: Odometry) -> Estimate:
         """One iteration at the end of a movement: `odometry` is what the wheels report of it, `image` what is seen then.
@@ -33,6 +35,7 @@ class RatSlam:
         image: (h, w) or (h, w, 3) uint8. The papers' four stages; path integration comes first because the image belongs
         to the end of the movement [ours].
         """
+        self._time_s += odometry.dt
         recognition = self.local_view.observe(image)
         self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
         expected = self.pose_cells.winner
@@ -59,6 +62,8 @@ class RatSlam:
         """Visual calibration by what the view is linked to, then association with where the packet is."""
         cells, activity = self.pose_cells.active
         if recruited:
+            self._learnt_s.append(self._time_s)
+        if self._time_s - self._learnt_s[view] < self.params.local_view.rest:
             self.view_links.learn(view, cells, activity, self.pose_cells.slot)
             return
         linked, injection = self.view_links.recall(view)
