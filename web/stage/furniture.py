@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from web.messages import WorldDrawing
 from web.stage import images, ribbons
 from web.stage.office_fit import OfficeFit
-from web.stage.palette import Palette, Rgb, linear, mix
+from web.stage.palette import Palette, Rgb, mix
 from web.stage.sight import solid_runs
 from web.stage.signs import add_mesh, add_picture
 
@@ -23,7 +23,9 @@ METRE_HIGH = 0.62 / 2.5  # plate units of height for a metre of any other thing,
 THICK = {"wall": 0.1, "partition": 0.07}
 
 
-def add_floor(scene: viser.SceneApi, name: str, palette: Palette, world: WorldDrawing, fit: OfficeFit, z: float) -> None:
+def add_floor(
+    scene: viser.SceneApi, name: str, palette: Palette, world: WorldDrawing, fit: OfficeFit, z: float
+) -> None:
     """The floor image: metre grid, contact shadows and the names of places."""
     px = FLOOR_PX_PER_UNIT * fit.scale
     floor = images.gridded_floor(fit.size_m, px, palette.floor, palette.grid, 1.0 if fit.scale > 0.35 else 5.0)
@@ -41,7 +43,16 @@ def add_floor(scene: viser.SceneApi, name: str, palette: Palette, world: WorldDr
         left, middle = pixels(np.array([[x, y]]))[0]
         label = images.text(words, ink, 26)
         images.paste(floor, label, max(0, int(left - label.shape[1] / 2)), max(0, int(middle - 15)))
-    add_picture(scene, name, floor, fit.size_m[0] * fit.scale, fit.size_m[1] * fit.scale, position=(0.0, 0.0, z), format="jpeg", jpeg_quality=92)
+    add_picture(
+        scene,
+        name,
+        floor,
+        fit.size_m[0] * fit.scale,
+        fit.size_m[1] * fit.scale,
+        position=(0.0, 0.0, z),
+        format="jpeg",
+        jpeg_quality=92,
+    )
 
 
 def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: WorldDrawing, fit: OfficeFit) -> None:
@@ -50,7 +61,9 @@ def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: Wor
     closed = {row for rows, _ in runs for row in rows}
     boxes = [_wall_box(world, fit, row, palette) for row in range(len(world.walls)) if row not in closed]
     boxes += [_panel_box(world, fit, row) for row in range(len(world.panels))]
-    boxes += [box for rows, outline in runs if world.wall_kind[rows[0]] == "desk" for box in _screens(fit, outline, palette)]
+    boxes += [
+        box for rows, outline in runs if world.wall_kind[rows[0]] == "desk" for box in _screens(fit, outline, palette)
+    ]
     boxes = [box for box in boxes if box is not None] or [((0, 0, -50), (1, 1, 1), 0.0, palette.wall)]
     centres, sizes, turns, colours = zip(*boxes, strict=True)
     turn = np.array(turns) / 2
@@ -60,7 +73,7 @@ def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: Wor
         batched_wxyzs=np.column_stack([np.cos(turn), 0 * turn, 0 * turn, np.sin(turn)]).astype(np.float32),
         batched_positions=np.array(centres, np.float32),
         batched_scales=np.array(sizes, np.float32),
-        batched_colors=linear(np.array(colours, np.uint8)),
+        batched_colors=palette.batched(colours),
         lod="off",
         cast_shadow=False,
         receive_shadow=False,
@@ -71,7 +84,7 @@ def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: Wor
             for rows, outline in runs
             if (world.wall_kind[rows[0]] == "desk") == (kind == "desk")
         ]
-        colour = palette.desk if kind == "desk" else palette.partition
+        colour = palette.lit(palette.desk if kind == "desk" else palette.partition)
         add_mesh(scene, f"{name}_{kind}", ribbons.joined(*chosen) if chosen else ribbons.NOTHING, colour)
 
 
@@ -117,7 +130,12 @@ def _panel_box(world: WorldDrawing, fit: OfficeFit, row: int) -> Box | None:
     low, high = max(bottom * METRE_HIGH, 0.0), min(top * METRE_HIGH, 0.6)
     (ax, ay), (bx, by) = fit.to_plate(np.array([[x1, y1], [x2, y2]]))
     red, green, blue = (int(v) for v in world.panel_rgb[row])
-    return ((ax + bx) / 2, (ay + by) / 2, (low + high) / 2), (math.dist((ax, ay), (bx, by)), 0.13, max(high - low, 0.02)), math.atan2(by - ay, bx - ax), (red, green, blue)
+    return (
+        ((ax + bx) / 2, (ay + by) / 2, (low + high) / 2),
+        (math.dist((ax, ay), (bx, by)), 0.13, max(high - low, 0.02)),
+        math.atan2(by - ay, bx - ax),
+        (red, green, blue),
+    )
 
 
 def _screens(fit: OfficeFit, outline: Array, palette: Palette) -> list[Box]:

@@ -18,11 +18,20 @@ class GlassBox:
         self._palette, self._labels = palette, {}
         self._scene, self._root = scene, root
         corners = np.array([[-HALF, -HALF], [HALF, -HALF], [HALF, HALF], [-HALF, HALF]])
-        add_mesh(scene, f"{root}/glass", _walls(corners), palette.glass, opacity=palette.glass_opacity, side="back")
+        add_mesh(
+            scene,
+            f"{root}/glass",
+            _walls(corners),
+            palette.lit(palette.glass, (0.0, -1.0, 0.0)),
+            opacity=palette.glass_opacity,
+            side="back",
+        )
         edges = [ribbons.closed_line(corners, z) for z in (0.0, HEIGHT)]
         posts = np.array([[[x, y, 0.0], [x, y, HEIGHT]] for x, y in corners], np.float32)
-        scene.add_line_segments(f"{root}/edges", np.vstack([*edges, posts]), palette.glass_edge, thickness=0.05)
-        faint = mix(palette.glass_edge, palette.sheet, 0.68)
+        scene.add_line_segments(
+            f"{root}/edges", np.vstack([*edges, posts]), palette.drawn(palette.glass_edge), thickness=0.035
+        )
+        faint = palette.drawn(mix(palette.glass_edge, palette.sheet, 0.62))
         scene.add_line_segments(f"{root}/lattice", _lattice(), faint, thickness=0.018)
         for name, height, anchor in (
             *((f"x{k}", 0.40, "centre") for k in range(3)),
@@ -38,11 +47,11 @@ class GlassBox:
         ink, faint = self._palette.text, self._palette.text_2
         for k, share in enumerate((0.0, 0.5, 1.0)):
             along = -HALF + share * SIDE
-            self._write(f"x{k}", _metres(share * width_m, k == 2), faint, (along, -HALF - 0.34, 0.05))
-            self._write(f"y{k}", _metres(share * depth_m, k == 2), faint, (HALF + 0.2, along + 0.06, 0.05))
-            self._write(f"t{k}", f"{round(share * 360)}°", faint, (-HALF - 0.2, -HALF, share * HEIGHT))
-        self._write("x", "x′", ink, (HALF * 0.5, -HALF - 0.34, 0.05))
-        self._write("y", "y′", ink, (HALF + 0.2, HALF * 0.5, 0.05))
+            self._write(f"x{k}", _metres(share * width_m, k == 2), faint, (along, -HALF - 0.42, 0.1))
+            self._write(f"y{k}", _metres(share * depth_m, k == 2), faint, (HALF + 0.22, along + 0.1, 0.12))
+            self._write(f"t{k}", f"{round(share * 360)}°", faint, (-HALF - 0.2, -HALF, 0.16 + share * (HEIGHT - 0.16)))
+        self._write("x", "x′", ink, (HALF * 0.5, -HALF - 0.42, 0.14))
+        self._write("y", "y′", ink, (HALF + 0.22, HALF * 0.5, 0.16))
         self._write("t", "θ′", ink, (-HALF - 0.2, -HALF, HEIGHT * 0.75))
 
     def _write(self, name: str, words: str, colour: tuple[int, int, int], at: Place) -> None:

@@ -120,9 +120,7 @@ class Hand:
         plate.show_drop(None, False, 0.0)
 
 
-def ask(
-    submit: Callable[[Command], Future[Answer]], command: Command, bring: Callable[[Answer], None]
-) -> None:
+def ask(submit: Callable[[Command], Future[Answer]], command: Command, bring: Callable[[Answer], None]) -> None:
     """Submits; `bring` gets the answer in whatever thread it comes, a failure as a refusal."""
 
     def done(future: Future[Answer]) -> None:

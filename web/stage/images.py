@@ -16,7 +16,6 @@ from web.stage.palette import Rgb
 
 Pixels = NDArray[np.uint8]
 _FONTS = Path(__file__).parent / "fonts"
-_SIDE = 40  # pixels of padding inside a pill, at 100 px letters
 
 
 def upright(image: Pixels) -> Pixels:
@@ -39,26 +38,10 @@ def text(words: str, colour: Rgb, size_px: int = 48, bold: bool = False) -> Pixe
     return np.asarray(image)
 
 
-@lru_cache(maxsize=256)
-def pill(words: str, fill: Rgb, ink: Rgb, rim: Rgb | None = None) -> Pixels:
-    """`words` on a rounded bar, RGBA, 140 px high."""
-    face = font(84, True)
-    width, height = max(140, round(face.getlength(words)) + 2 * _SIDE), 140
-    image = Image.new("RGBA", (width * 2, height * 2), (*(rim or fill), 0))
-    draw = ImageDraw.Draw(image)
-    draw.rounded_rectangle((0, 0, width * 2 - 1, height * 2 - 1), height, fill=(*(rim or fill), 255))
-    if rim is not None:
-        draw.rounded_rectangle((10, 10, width * 2 - 11, height * 2 - 11), height - 10, fill=(*fill, 255))
-    image = image.resize((width, height), Image.Resampling.LANCZOS)
-    ImageDraw.Draw(image).text((width / 2, height / 2 + 2), words, font=face, fill=(*ink, 255), anchor="mm")
-    return np.asarray(image)
-
-
 def sky(top: Rgb, bottom: Rgb) -> Pixels:
-    """The background: a gradient with a little noise against banding."""
-    ramp = np.linspace(0, 1, 360)[:, None, None] * (np.array(bottom) - top) + np.array(top)
-    noise = np.random.default_rng(0).uniform(-0.6, 0.6, (360, 64, 1))
-    return np.clip(np.rint(ramp + noise), 0, 255).astype(np.uint8)
+    """The background: a gradient."""
+    ramp = np.linspace(0, 1, 720)[:, None, None] * (np.array(bottom) - top) + np.array(top)
+    return np.rint(np.repeat(ramp, 8, 1)).astype(np.uint8)
 
 
 def gridded_floor(size_m: tuple[float, float], px_per_m: float, floor: Rgb, grid: Rgb, step_m: float = 1.0) -> Pixels:
@@ -75,7 +58,11 @@ def gridded_floor(size_m: tuple[float, float], px_per_m: float, floor: Rgb, grid
 
 
 def contact_shadow(
-    floor: Pixels, segments_px: NDArray[np.float64], polygons_px: list[NDArray[np.float64]], reach_px: float, share: float
+    floor: Pixels,
+    segments_px: NDArray[np.float64],
+    polygons_px: list[NDArray[np.float64]],
+    reach_px: float,
+    share: float,
 ) -> Pixels:
     """The floor, darker near segments (n, 4) and inside polygons (k, 2): the depth cue."""
     height, width = floor.shape[:2]
@@ -96,23 +83,6 @@ def colour_bar(ramp: NDArray[np.uint8], height_px: int = 22) -> Pixels:
     return np.repeat(ramp[None], height_px, 0)
 
 
-def bleed(image: Pixels, margin: int = 4) -> Pixels:
-    """RGBA with `margin` clear pixels around, so that filtered edges stay soft."""
-    height, width = image.shape[:2]
-    out = np.zeros((height + 2 * margin, width + 2 * margin, 4), np.uint8)
-    out[..., :3] = image[0, 0, :3]
-    out[margin:-margin, margin:-margin] = image
-    return out
-
-
-def nearest(image: Pixels, size_hw: tuple[int, int]) -> Pixels:
-    """Grey or colour, enlarged without smoothing, as RGB."""
-    rows = (np.arange(size_hw[0]) * image.shape[0]) // size_hw[0]
-    columns = (np.arange(size_hw[1]) * image.shape[1]) // size_hw[1]
-    large = image[rows[:, None], columns]
-    return np.repeat(large[..., None], 3, -1) if large.ndim == 2 else large
-
-
 def paste(canvas: Pixels, image: Pixels, left: int, top: int) -> None:
     """Lays RGB or RGBA onto an RGB canvas, in place, cut off at its edges."""
     height, width = min(image.shape[0], canvas.shape[0] - top), min(image.shape[1], canvas.shape[1] - left)
@@ -122,9 +92,3 @@ def paste(canvas: Pixels, image: Pixels, left: int, top: int) -> None:
         return
     alpha = part[..., 3:].astype(np.uint16)
     target[:] = ((part[..., :3] * alpha + target * (255 - alpha)) // 255).astype(np.uint8)
-
-
-def write(canvas: Pixels, words: str, colour: Rgb, left: int, top: int, size_px: int = 24, bold: bool = False) -> None:
-    paste(canvas, text(words, colour, size_px, bold), left, top)
-
-

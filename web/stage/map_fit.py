@@ -1,4 +1,4 @@
-"""Between the map frame and the map plate: turned like the office (for the eye only), scaled in steps, inverted for clicks."""
+"""Between the map frame and the map plate: turned like the office (for the eye only), scaled in steps, invertible."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 WIDTH, DEPTH = 10.0, 8.0  # the floor of the plate
-ROOM = 0.5  # kept clear around the map
-STEP = 2 ** (1 / 3)  # between scales
-LARGEST = STEP**1
+ROOM = 0.35  # kept clear around the map
+STEP = 2**0.25  # between scales
+LARGEST = 1.0 * STEP
 GRID = 0.25  # the centre moves in steps of so much, on the plate
 
 

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import viser
-from numpy.typing import NDArray
 
 from web.messages import Goal, MapLayer, Pose, TimesLayer
 from web.stage import images, ribbons
@@ -19,7 +18,7 @@ from web.stage.signs import Sign, add_mesh, add_picture
 
 ORIGIN = (5.85, -2.2, 0.0)
 SHEET = (11.0, 10.0, -0.5, 0.45)
-NODE_Z, LINK_Z, ARROW_Z = 0.05, 0.03, 0.13
+NODE_Z, LINK_Z, ARROW_Z = 0.05, 0.03, 0.22
 ARROW = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)])
 BAR = (3.0, 0.26)
 GRID_LINES = 48
@@ -33,7 +32,7 @@ class MapPlate(Plate):
         floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (WIDTH / 2, DEPTH / 2)
         add_mesh(scene, f"{self.root}/floor", ribbons.flat_polygon(floor, FLOOR_Z), palette.lit(palette.floor))
         nowhere = ribbons.padded(np.zeros((0, 2, 3), np.float32), GRID_LINES)
-        self._grid = scene.add_line_segments(f"{self.root}/grid", nowhere, palette.grid, thickness=0.025)
+        self._grid = scene.add_line_segments(f"{self.root}/grid", nowhere, palette.drawn(palette.grid), thickness=0.025)
         self._reserve(512, 768)
         self._arrow = scene.add_frame(f"{self.root}/arrow", show_axes=False, visible=False)
         add_mesh(scene, f"{self.root}/arrow/casing", _arrow(1.22, 0.0), palette.lit(palette.casing))
@@ -42,8 +41,12 @@ class MapPlate(Plate):
         self._flag = GoalFlag(scene, palette, f"{self.root}/flag")
         self._clicked = scene.add_frame(f"{self.root}/clicked", show_axes=False, visible=False)
         for k, radius in enumerate((0.16, 0.34)):
-            add_mesh(scene, f"{self.root}/clicked/ring_{k}", ribbons.ring(radius, 0.06, 0.09), palette.lit(palette.goal))
-        self._bar = add_picture(scene, f"{self.root}/bar", images.colour_bar(palette.ramp), *BAR, position=(3.4, self.front + 1.08, TEXT_Z))
+            add_mesh(
+                scene, f"{self.root}/clicked/ring_{k}", ribbons.ring(radius, 0.06, 0.09), palette.lit(palette.goal)
+            )
+        self._bar = add_picture(
+            scene, f"{self.root}/bar", images.colour_bar(palette.ramp), *BAR, position=(3.4, self.front + 1.08, TEXT_Z)
+        )
         self._bar_ends = [Sign(scene, f"{self.root}/bar_{k}", 0.34, anchor=a) for k, a in enumerate(("left", "right"))]
         self._empty = Sign(scene, f"{self.root}/empty", 0.42, anchor="centre")
         self._draw_grid()
@@ -56,14 +59,14 @@ class MapPlate(Plate):
             f"{self.root}/nodes",
             np.full((self._capacity, 3), -50.0, np.float32),
             np.zeros((self._capacity, 3), np.uint8),
-            point_size=0.145,
+            point_size=0.075,
             point_shape="circle",
             point_shading="flat",
         )
         self._links = self.scene.add_line_segments(
             f"{self.root}/links",
             ribbons.padded(np.zeros((0, 2, 3), np.float32), self._link_capacity),
-            self.palette.link,
+            self.palette.drawn(self.palette.link),
             thickness=0.018,
         )
 
@@ -110,7 +113,7 @@ class MapPlate(Plate):
         left, right, at = 3.4 - BAR[0] / 2, 3.4 + BAR[0] / 2, self.front + 0.62
         self._bar_ends[0].show(images.text("0 s", ink, 64), (left, at, TEXT_Z))
         self._bar_ends[1].show(images.text(seconds_words(longest), ink, 64), (right, at, TEXT_Z))
-        words = "time to the goal" if times.to_goal else "time from the robot"
+        words = "time to goal" if times.to_goal else "time from robot"
         self.set_heading("Experience map", f"what it built - colour: {words}")
 
     def set_robot(self, estimate: Pose) -> None:

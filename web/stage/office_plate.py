@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 import numpy as np
 import viser
 from numpy.typing import NDArray
@@ -11,6 +10,7 @@ from web.messages import Pose, Senses, WorldDrawing
 from web.stage import ribbons
 from web.stage.furniture import add_floor, add_furniture
 from web.stage.office_fit import OfficeFit
+from web.stage.paint import paint
 from web.stage.palette import Palette, mix
 from web.stage.plate import FLOOR_Z, Plate
 from web.stage.robot_model import RobotModel
@@ -32,16 +32,32 @@ class OfficePlate(Plate):
         self._walls = np.zeros((0, 4))
         self.robot = RobotModel(scene, palette, f"{self.root}/robot")
         self._fan = add_mesh(
-            scene, f"{self.root}/view", ribbons.NOTHING, palette.lit(palette.wedge), opacity=palette.wedge_opacity, position=LATE
+            scene,
+            f"{self.root}/view",
+            ribbons.NOTHING,
+            palette.lit(palette.wedge),
+            opacity=palette.wedge_opacity,
+            position=LATE,
         )
         self._fan_edges = scene.add_line_segments(
-            f"{self.root}/view_edges", ribbons.padded(np.zeros((0, 2, 3), np.float32), 2), palette.wedge, thickness=0.025
+            f"{self.root}/view_edges",
+            ribbons.padded(np.zeros((0, 2, 3), np.float32), 2),
+            palette.drawn(palette.wedge),
+            thickness=0.025,
         )
         self._sonar = scene.add_line_segments(
-            f"{self.root}/sonar", ribbons.padded(np.zeros((0, 2, 3), np.float32), 8), palette.sonar, thickness=0.022
+            f"{self.root}/sonar",
+            ribbons.padded(np.zeros((0, 2, 3), np.float32), 8),
+            palette.drawn(palette.sonar),
+            thickness=0.022,
         )
         self._echoes = scene.add_point_cloud(
-            f"{self.root}/echoes", np.full((8, 3), -50.0), palette.sonar, point_size=0.11, point_shape="circle", point_shading="flat"
+            f"{self.root}/echoes",
+            np.full((8, 3), -50.0),
+            palette.sonar,
+            point_size=0.11,
+            point_shape="circle",
+            point_shading="flat",
         )
         self._trail = scene.add_line_segments(
             f"{self.root}/trail",
@@ -50,7 +66,11 @@ class OfficePlate(Plate):
             thickness=0.05,
         )
         self._room_for = scene.add_line_segments(
-            f"{self.root}/room", ribbons.closed_line(ribbons.rounded_rectangle(2, 2, 1), 0.0), palette.sonar, thickness=0.05, visible=False
+            f"{self.root}/room",
+            ribbons.closed_line(ribbons.rounded_rectangle(2, 2, 1), 0.0),
+            palette.drawn(palette.sonar),
+            thickness=0.05,
+            visible=False,
         )
 
     def set_world(self, world: WorldDrawing) -> None:
@@ -103,7 +123,7 @@ class OfficePlate(Plate):
         points[jumps] = -50.0
         ages = np.linspace(0.0, 1.0, len(points) + 1) ** 0.7
         floor, line = np.array(self.palette.floor), np.array(self.palette.true_path)
-        tints = (floor + (line - floor) * (0.08 + 0.92 * ages[:, None])).astype(np.uint8)
+        tints = paint(floor + (line - floor) * (0.08 + 0.92 * ages[:, None]))
         colours = np.zeros((TRAIL_SEGMENTS, 2, 3), np.uint8)
         colours[: len(points)] = np.stack([tints[:-1], tints[1:]], 1)
         self._trail.points = ribbons.padded(points, TRAIL_SEGMENTS)
@@ -116,8 +136,10 @@ class OfficePlate(Plate):
             return
         x, y = self.fit.to_plate(np.array([place]))[0]
         radius = 1.6 * self.robot.radius
-        self._room_for.points = ribbons.closed_line(ribbons.rounded_rectangle(2 * radius, 2 * radius, radius * 0.999) + (x, y), 0.05)
-        self._room_for.colors = np.array(self.palette.sonar if room else mix(self.palette.robot, (255, 0, 0), 0.6), np.uint8)
+        self._room_for.points = ribbons.closed_line(
+            ribbons.rounded_rectangle(2 * radius, 2 * radius, radius * 0.999) + (x, y), 0.05
+        )
+        self._room_for.colors = np.array(
+            self.palette.drawn(self.palette.sonar if room else mix(self.palette.robot, (255, 0, 0), 0.6)), np.uint8
+        )
         self.robot.place(np.array([x, y]), heading_rad)
-
-

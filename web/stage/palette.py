@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+from web.stage.paint import linear_paint, lit_paint, paint, to_linear
 
 Theme = Literal["dark", "light"]
 Rgb = tuple[int, int, int]
@@ -14,23 +16,39 @@ Rgb = tuple[int, int, int]
 OKABE_ITO = ("#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7")
 
 # viridis at 20 evenly spaced places (van der Walt and Smith 2015, CC0)
-_VIRIDIS = """440154 481467 482576 453781 404688 39558C 33638D 2D718E 287D8E 238A8D 1F968B 20A386 29AF7F 3CBC75 56C667 74D055
-              94D840 B8DE29 DCE318 FDE725""".split()
+_VIRIDIS = [
+    "440154",
+    "481467",
+    "482576",
+    "453781",
+    "404688",
+    "39558C",
+    "33638D",
+    "2D718E",
+    "287D8E",
+    "238A8D",
+    "1F968B",
+    "20A386",
+    "29AF7F",
+    "3CBC75",
+    "56C667",
+    "74D055",
+    "94D840",
+    "B8DE29",
+    "DCE318",
+    "FDE725",
+]
 
 
 WHITE: Rgb = (255, 255, 255)
 KEY_AT, RIM_AT = (-8.0, -14.0, 20.0), (12.0, 10.0, 6.0)
-RIM_LIGHT, RIM_TINT = 0.5, (170, 200, 255)
+RIM_LIGHT, RIM_TINT = 1.2, (170, 200, 255)
+UP = (0.0, 0.0, 1.0)
 
 
 def rgb(colour: str) -> Rgb:
     """`"#RRGGBB"` as three bytes."""
     return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
-
-
-def linear(colours: NDArray[np.uint8] | Rgb) -> NDArray[np.uint8]:
-    """What to give viser's batched meshes so that `colours` appear: it takes them as linear light."""
-    return ((np.asarray(colours, np.float64) / 255) ** 2.2 * 255).round().astype(np.uint8)
 
 
 def mix(a: Rgb, b: Rgb, share: float) -> Rgb:
@@ -51,6 +69,7 @@ class Palette:
     grid: Rgb
     text: Rgb
     text_2: Rgb
+    packet_path: Rgb
     rim: Rgb
     wall: Rgb
     partition: Rgb
@@ -88,14 +107,26 @@ class Palette:
         index = (share * (len(self.ramp) - 1)).astype(np.int64)
         return np.where(known[:, None], self.ramp[index], np.array(self.unknown, np.uint8))
 
-    def lit(self, colour: Rgb, normal: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> Rgb:
-        """The paint that shows as `colour` on a mesh facing `normal`, under this theme's lights."""
+    def light_on(self, normal: tuple[float, float, float] = UP) -> NDArray[np.float64]:
+        """(3,) how bright this theme's lights make a white mesh that faces `normal`."""
         light = np.full(3, self.ambient)
         for strength, tint, place in ((self.key, WHITE, KEY_AT), (RIM_LIGHT, RIM_TINT, RIM_AT)):
             falling = max(0.0, float(np.dot(normal, place) / np.linalg.norm(place)))
-            light += strength * falling * (np.array(tint) / 255) ** 2.2
-        paint = (np.array(colour) / 255) ** 2.2 / (light / np.pi)
-        red, green, blue = np.rint(np.clip(paint, 0, 1) ** (1 / 2.2) * 255).astype(int).tolist()
+            light += strength * falling * to_linear(tint)
+        return light / np.pi
+
+    def lit(self, colour: Rgb, normal: tuple[float, float, float] = UP) -> Rgb:
+        """The paint that shows as `colour` on a mesh that faces `normal`."""
+        red, green, blue = lit_paint(colour, self.light_on(normal)).tolist()
+        return red, green, blue
+
+    def batched(self, colours: ArrayLike) -> NDArray[np.uint8]:
+        """(n, 3) paints that show as `colours` on the upper sides of batched meshes."""
+        return linear_paint(colours, self.light_on())
+
+    def drawn(self, colour: Rgb) -> Rgb:
+        """The paint that shows as `colour` on a line."""
+        red, green, blue = paint(colour).tolist()
         return red, green, blue
 
     @property
@@ -121,6 +152,7 @@ DARK = Palette(
     grid=rgb("#313C4B"),
     text=rgb("#E8EDF4"),
     text_2=rgb("#97A5B8"),
+    packet_path=rgb("#E8EDF4"),
     rim=rgb("#4A5970"),
     wall=rgb("#7C8BA1"),
     partition=rgb("#566579"),
@@ -131,7 +163,7 @@ DARK = Palette(
     goal=rgb("#FF5DA8"),
     on_goal=rgb("#2A0A1B"),
     wedge=rgb("#FFB547"),
-    wedge_opacity=0.30,
+    wedge_opacity=0.24,
     sonar=rgb("#7FE0D0"),
     true_path=rgb("#9FB0C6"),
     packets=(rgb("#FFC04D"), rgb("#4CC9F0"), rgb("#B9A5FF"), rgb("#8FE388")),
@@ -147,8 +179,8 @@ DARK = Palette(
     pole=rgb("#D7DEE8"),
     panel=rgb("#242424"),
     viridis=(0.14, 1.0),
-    ambient=1.5,
-    key=1.9,
+    ambient=4.2,
+    key=5.6,
     shadow=0.55,
 )
 
@@ -162,6 +194,7 @@ LIGHT = Palette(
     grid=rgb("#D5DCE5"),
     text=rgb("#1B2430"),
     text_2=rgb("#5C6B7E"),
+    packet_path=rgb("#6B798B"),
     rim=rgb("#8FA0B5"),
     wall=rgb("#8FA0B5"),
     partition=rgb("#9FB0C4"),
@@ -172,7 +205,7 @@ LIGHT = Palette(
     goal=rgb("#C2257A"),
     on_goal=rgb("#FFFFFF"),
     wedge=rgb("#F3A64A"),
-    wedge_opacity=0.42,
+    wedge_opacity=0.36,
     sonar=rgb("#0F8F80"),
     true_path=rgb("#7E8FA5"),
     packets=(rgb("#D98300"), rgb("#0E7FB8"), rgb("#6A4FC4"), rgb("#2F8F2A")),
@@ -188,8 +221,8 @@ LIGHT = Palette(
     pole=rgb("#1B2430"),
     panel=rgb("#FFFFFF"),
     viridis=(0.0, 0.86),
-    ambient=2.2,
-    key=1.7,
+    ambient=6.4,
+    key=5.2,
     shadow=0.22,
 )
 

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 GAP = 0.06
 
 
-def spread(centres: NDArray[np.float64], widths: NDArray[np.float64], height: float, rounds: int = 60) -> NDArray[np.float64]:
+def spread(
+    centres: NDArray[np.float64], widths: NDArray[np.float64], height: float, rounds: int = 60
+) -> NDArray[np.float64]:
     """(n, 2) centres, moved as little as it takes until no two bars overlap; the first of a pair moves less."""
     places = np.array(centres, np.float64)
     for _ in range(rounds):

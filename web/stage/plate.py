@@ -29,9 +29,11 @@ class Plate:
         width, depth, centre_y, radius = sheet
         self.left, self.front = -width / 2 + 0.5, centre_y - depth / 2
         outline = ribbons.rounded_rectangle(width, depth, radius) + (0.0, centre_y)
-        add_mesh(scene, f"{self.root}/slab", ribbons.extruded(outline, -0.32, -0.06), palette.slab)
+        add_mesh(scene, f"{self.root}/slab", ribbons.extruded(outline, -0.32, -0.06), palette.lit(palette.slab))
         add_mesh(scene, f"{self.root}/sheet", ribbons.flat_polygon(outline, SHEET_Z), palette.lit(palette.sheet))
-        scene.add_line_segments(f"{self.root}/rim", ribbons.closed_line(outline, RIM_Z), palette.rim, thickness=0.04)
+        scene.add_line_segments(
+            f"{self.root}/rim", ribbons.closed_line(outline, RIM_Z), palette.drawn(palette.rim), thickness=0.04
+        )
         self._title = Sign(scene, f"{self.root}/title", TITLE_M)
         self._subtitle = Sign(scene, f"{self.root}/subtitle", SUBTITLE_M)
 

@@ -12,7 +12,8 @@ from web.messages import PoseCellLayer, Snap
 from web.stage import images, ribbons
 from web.stage.cell_fit import SIDE, CellFit, broken_where_it_wraps
 from web.stage.glass_box import GlassBox
-from web.stage.palette import Palette, linear
+from web.stage.paint import paint
+from web.stage.palette import Palette
 from web.stage.pill_layout import spread
 from web.stage.plate import FLOOR_Z, Plate
 from web.stage.signs import LEAN_RAD, Pill, Sign, add_mesh, add_picture, pill_width
@@ -37,16 +38,32 @@ class PoseCellPlate(Plate):
         self._fit = CellFit((36, 60, 60))
         self._ground = images.gridded_floor((SIDE, SIDE), FLOOR_PX / SIDE, palette.floor, palette.grid, SIDE / 16)
         self._floor = add_picture(
-            scene, f"{self.root}/floor", self._ground, SIDE, SIDE, position=(0, 0, FLOOR_Z), format="jpeg", jpeg_quality=88
+            scene,
+            f"{self.root}/floor",
+            self._ground,
+            SIDE,
+            SIDE,
+            position=(0, 0, FLOOR_Z),
+            format="jpeg",
+            jpeg_quality=88,
         )
         nowhere = ribbons.padded(np.zeros((0, 2, 3), np.float32), PATH_SEGMENTS)
         self._voxels = self._add_voxels()
-        self._path = scene.add_line_segments(f"{self.root}/path", nowhere, palette.text, thickness=0.045)
-        self._snap = scene.add_line_segments(f"{self.root}/snap", nowhere[:DASHES], palette.goal, thickness=0.05)
-        drops = np.repeat(np.array(palette.packets, np.uint8)[:, None], 2, 1)
+        self._path = scene.add_line_segments(
+            f"{self.root}/path", nowhere, palette.drawn(palette.packet_path), thickness=0.04
+        )
+        self._snap = scene.add_line_segments(
+            f"{self.root}/snap", nowhere[:DASHES], palette.drawn(palette.goal), thickness=0.05
+        )
+        drops = np.repeat(paint(palette.packets)[:, None], 2, 1)
         self._drops = scene.add_line_segments(f"{self.root}/drops", nowhere[:PACKETS], drops, thickness=0.03)
-        self._rings = [add_mesh(scene, f"{self.root}/ring_{k}", ribbons.ring(0.36, 0.05), palette.lit(colour), visible=False) for k, colour in enumerate(palette.packets)]
-        self._pills = [Pill(scene, f"{self.root}/packet_{k}", PILL_M, colour, palette) for k, colour in enumerate(palette.packets)]
+        self._rings = [
+            add_mesh(scene, f"{self.root}/ring_{k}", ribbons.ring(0.36, 0.05), palette.lit(colour), visible=False)
+            for k, colour in enumerate(palette.packets)
+        ]
+        self._pills = [
+            Pill(scene, f"{self.root}/packet_{k}", PILL_M, colour, palette) for k, colour in enumerate(palette.packets)
+        ]
         self._ends = [Pill(scene, f"{self.root}/snap_{letter}", 0.4, palette.goal, palette) for letter in "SF"]
         self._empty = Sign(scene, f"{self.root}/empty", 0.4, anchor="centre", leaning=True)
 
@@ -96,7 +113,7 @@ class PoseCellPlate(Plate):
         scales[: len(rows)] = 0.4 + 0.6 * np.sqrt(strength[rows])
         colours = np.zeros((VOXELS, 3), np.uint8)
         shade = 0.72 + 0.28 * strength[rows, None]
-        colours[: len(rows)] = linear((np.array(self.palette.voxels)[owners[rows]] * shade).astype(np.uint8))
+        colours[: len(rows)] = self.palette.batched(np.array(self.palette.voxels)[owners[rows]] * shade)
         self._voxels.batched_positions = positions
         self._voxels.batched_scales = scales
         self._voxels.batched_colors = colours

@@ -126,7 +126,9 @@ def extruded(outline: Points, bottom: float, top: float) -> Mesh:
     index = np.arange(n, dtype=np.uint32)
     following = (index + 1) % n
     sides = np.column_stack([index, following, index + n, following, following + n, index + n]).reshape(-1, 3)
-    walls = sharp((np.vstack([lifted(outline, bottom), lifted(outline, top)]).astype(np.float32), sides.astype(np.uint32)))
+    walls = sharp(
+        (np.vstack([lifted(outline, bottom), lifted(outline, top)]).astype(np.float32), sides.astype(np.uint32))
+    )
     return joined(walls, flat_polygon(outline, top))
 
 
@@ -161,7 +163,9 @@ def dashes(a: Points, b: Points, on: float, off: float) -> NDArray[np.float32]:
     starts = np.arange(0, max(length, 1e-6), on + off)
     ends = np.minimum(starts + on, length)
     scale = max(length, 1e-9)
-    return np.stack([a + (b - a) * (starts / scale)[:, None], a + (b - a) * (ends / scale)[:, None]], 1).astype(np.float32)
+    return np.stack([a + (b - a) * (starts / scale)[:, None], a + (b - a) * (ends / scale)[:, None]], 1).astype(
+        np.float32
+    )
 
 
 def padded(segments: NDArray[np.float32], count: int) -> NDArray[np.float32]:

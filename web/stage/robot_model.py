@@ -25,13 +25,21 @@ class RobotModel:
         parts = {
             "body": (ribbons.extruded(circle, 0.12, 0.95), palette.robot),
             "turret": (ribbons.extruded(circle * 0.5, 0.95, 1.3), palette.turret),
-            "camera": (ribbons.extruded(ribbons.rounded_rectangle(0.36, 0.5, 0.1, 4) + (0.72, 0.0), 0.9, 1.3), palette.tyre),
+            "camera": (
+                ribbons.extruded(ribbons.rounded_rectangle(0.36, 0.5, 0.1, 4) + (0.72, 0.0), 0.9, 1.3),
+                palette.tyre,
+            ),
             "left": (ribbons.extruded(wheel + (0.0, 1.0), 0.0, 0.5), palette.tyre),
             "right": (ribbons.extruded(wheel + (0.0, -1.0), 0.0, 0.5), palette.tyre),
         }
-        self.parts = [add_mesh(scene, f"{name}/{part}", mesh, colour, scale=self.radius) for part, (mesh, colour) in parts.items()]
+        self.parts = [
+            add_mesh(scene, f"{name}/{part}", mesh, palette.lit(colour), scale=self.radius)
+            for part, (mesh, colour) in parts.items()
+        ]
         halo = ribbons.ring(1.42, 0.2, 0.06)
-        self.parts.append(add_mesh(scene, f"{name}/halo", halo, palette.lit(palette.robot), opacity=0.35, scale=self.radius))
+        self.parts.append(
+            add_mesh(scene, f"{name}/halo", halo, palette.lit(palette.robot), opacity=0.35, scale=self.radius)
+        )
 
     def resize(self, drawn_radius: float) -> None:
         """`drawn_radius`: the robot's radius in plate units, before it is enlarged."""

@@ -22,7 +22,9 @@ class Route:
         self._palette = palette
         self._casing = add_mesh(scene, f"{name}/casing", ribbons.NOTHING, palette.lit(palette.casing))
         self._ribbon = add_mesh(scene, f"{name}/ribbon", ribbons.NOTHING, palette.lit(palette.route))
-        self._pills = [Pill(scene, f"{name}/pill_{k}", PILL_M, palette.route, palette, rim=palette.casing) for k in range(PILLS)]
+        self._pills = [
+            Pill(scene, f"{name}/pill_{k}", PILL_M, palette.route, palette, rim=palette.casing) for k in range(PILLS)
+        ]
 
     def show(self, xy: NDArray[np.float64], arrival_s: NDArray[np.float32], goal: NDArray[np.float64]) -> None:
         """`xy` (r, 2) on the plate, `arrival_s` (r,) seconds from now; `goal` is where the flag stands."""
@@ -30,13 +32,13 @@ class Route:
             self.hide()
             return
         line = ribbons.smoothed(xy, 0.12)
-        self._casing.vertices, self._casing.faces = ribbons.ribbon(line, CASING, 0.07)
-        self._ribbon.vertices, self._ribbon.faces = ribbons.ribbon(line, RIBBON, 0.085)
+        self._casing.vertices, self._casing.faces = ribbons.ribbon(line, CASING, 0.14)
+        self._ribbon.vertices, self._ribbon.faces = ribbons.ribbon(line, RIBBON, 0.165)
         stops = pill_stops(xy, np.asarray(arrival_s, np.float64), goal)
         for k, pill in enumerate(self._pills):
             if k < len(stops):
                 seconds, x, y = stops[k]
-                pill.show(f"{seconds:.0f} s", self._palette.casing, (x, y, 0.32))
+                pill.show(f"{seconds:.0f} s", self._palette.casing, (x, y, 0.38))
             else:
                 pill.hide()
 
@@ -47,7 +49,9 @@ class Route:
             pill.hide()
 
 
-def pill_stops(xy: NDArray[np.float64], arrival_s: NDArray[np.float64], goal: NDArray[np.float64]) -> list[tuple[float, float, float]]:
+def pill_stops(
+    xy: NDArray[np.float64], arrival_s: NDArray[np.float64], goal: NDArray[np.float64]
+) -> list[tuple[float, float, float]]:
     """(seconds, x, y) every so many seconds, those left out that are too near to another, the robot or the flag."""
     stops: list[tuple[float, float, float]] = []
     step = EVERY_S

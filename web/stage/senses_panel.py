@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
+import html
 import math
 from collections import deque
 
-import cv2
 import numpy as np
 import viser
 
 from web.messages import PoseCellLayer, Senses, Snapshot
-from web.stage import images
+from web.stage import markup
 from web.stage.cell_fit import CellFit
-from web.stage.palette import Palette, Rgb, mix
+from web.stage.images import Pixels
+from web.stage.palette import Palette, mix
 
-WIDTH = 616  # pixels, shown at about half of it
-COLUMN = 302
-STRIP_HW = (6, 34)  # local view cells
+STRIP_HW = (6, 34)  # squares of the strip of local view cells
+SQUARE = 6
 RECENT = 60
-CAPTION = 22
+TEMPLATE_ASPECT = 1.5
 
 
 class SensesPanel:
@@ -26,146 +26,105 @@ class SensesPanel:
         self.palette = palette
         self._recent: deque[int] = deque(maxlen=RECENT)
         self._last: Senses | None = None
-        blank = np.zeros((4, WIDTH, 3), np.uint8)
-        blank[:] = palette.panel
-        self._views = gui.add_image(blank, format="png")
-        self._cells = gui.add_image(blank, format="png")
+        self._views = gui.add_html("")
+        self._cells = gui.add_html("")
 
     def reset(self) -> None:
         self._recent.clear()
 
     def remember(self, senses: Senses) -> None:
         """Keeps the views that were active lately, for the strip of cells."""
-        if senses is not self._last and senses.active_view >= 0 and (not self._recent or self._recent[-1] != senses.active_view):
+        new = senses is not self._last and senses.active_view >= 0
+        if new and (not self._recent or self._recent[-1] != senses.active_view):
             self._recent.append(senses.active_view)
         self._last = senses
 
     def draw_views(self, senses: Senses) -> None:
-        self._views.image = views_image(senses, self.palette)
+        self._views.content = views_page(senses, self.palette)
 
     def draw_cells(self, layer: PoseCellLayer, snapshot: Snapshot) -> None:
-        self._cells.image = cells_image(layer, snapshot, tuple(self._recent), self.palette)
+        self._cells.content = cells_page(layer, snapshot, tuple(self._recent), self.palette)
 
 
-def views_image(senses: Senses, palette: Palette) -> images.Pixels:
+def views_page(senses: Senses, palette: Palette) -> str:
     """Camera and verdict, template and best match, and the difference against its threshold."""
-    canvas = _blank(580, palette)
-    ink, faint = palette.text, palette.text_2
-    camera_h = 226
-    images.write(canvas, "camera", faint, 0, 0, CAPTION)
-    images.paste(canvas, images.nearest(senses.camera, (camera_h, COLUMN)), 0, 32)
-    _verdict(canvas, senses, palette)
-    top = 32 + camera_h + 14
-    images.write(canvas, "template now", faint, 0, top, CAPTION)
-    images.paste(canvas, images.nearest(senses.template, (200, COLUMN)), 0, top + 32)
-    right = WIDTH - COLUMN
-    if senses.best is None:
-        images.write(canvas, "best match", faint, right, top, CAPTION)
-        canvas[top + 32 : top + 232, right:] = mix(palette.panel, palette.text_2, 0.12)
-        images.write(canvas, "none yet: every", faint, right + 52, top + 100, CAPTION)
-        images.write(canvas, "view is new", faint, right + 76, top + 132, CAPTION)
-    else:
-        images.write(canvas, f"best match  #{senses.best_view}", faint, right, top, CAPTION)
-        images.paste(canvas, images.nearest(senses.best, (200, COLUMN)), right, top + 32)
-    top += 246
-    words = "difference: nothing to compare with"
-    if math.isfinite(senses.difference):
-        words = f"difference to the best view {senses.difference:.1f}   threshold {senses.threshold:.1f}"
-    images.write(canvas, words, ink, 0, top, CAPTION)
-    _difference_bar(canvas, senses, palette, top + 38)
-    return canvas
+    height, width = senses.camera.shape[:2]
+    camera = markup.caption("camera") + markup.picture(senses.camera, "what the robot's camera sees", width / height)
+    template = markup.caption("template now") + markup.picture(senses.template, "the present template", TEMPLATE_ASPECT)
+    best = markup.caption("best match") + markup.blank("none yet: every view is new", TEMPLATE_ASPECT)
+    if senses.best is not None:
+        words = f"the stored view {senses.best_view}"
+        best = markup.caption(f"best match #{senses.best_view}") + markup.picture(senses.best, words, TEMPLATE_ASPECT)
+    return markup.page(
+        markup.row(camera, _verdict(senses, palette)), markup.row(template, best), _difference(senses, palette)
+    )
 
 
-def _verdict(canvas: images.Pixels, senses: Senses, palette: Palette) -> None:
-    """To the right of the camera: which view is active, and whether it is new."""
-    left = WIDTH - COLUMN + 8
-    images.write(canvas, "active view", palette.text_2, left, 32, CAPTION)
+def _verdict(senses: Senses, palette: Palette) -> str:
+    """Which view is active, and whether it is new."""
     number = f"#{senses.active_view}" if senses.active_view >= 0 else "none"
-    images.write(canvas, number, palette.text, left, 60, 58, True)
-    words, colour = ("nothing to see", palette.text_2)
+    words, colour = "nothing to see", palette.text_2
     if senses.active_view >= 0:
-        words, colour = ("new: recruited", palette.robot) if senses.recruited else ("known: recalled", palette.packets[1])
-    canvas[158:178, left : left + 20] = colour
-    images.write(canvas, words, palette.text, left + 32, 154, 24)
+        words, colour = (
+            ("new: recruited", palette.robot) if senses.recruited else ("known: recalled", palette.packets[1])
+        )
+    dot = f'<span style="display:inline-block;width:9px;height:9px;border-radius:2px;background:{markup.css(colour)}"></span>'
+    big = f'<div style="font-size:27px;font-weight:700;line-height:1.2">{html.escape(number)}</div>'
+    return f"{markup.caption('active view')}{big}<div>{dot} {html.escape(words)}</div>"
 
 
-def _difference_bar(canvas: images.Pixels, senses: Senses, palette: Palette, top: int) -> None:
+def _difference(senses: Senses, palette: Palette) -> str:
     """Full scale is twice the threshold; the mark in the middle is the threshold."""
-    canvas[top : top + 16] = mix(palette.panel, palette.text_2, 0.22)
-    share = senses.difference / max(2 * senses.threshold, 1e-9) if math.isfinite(senses.difference) else 1.0
-    known = senses.difference < senses.threshold
-    canvas[top : top + 16, : round(min(max(share, 0.0), 1.0) * WIDTH)] = palette.packets[1] if known else palette.robot
-    canvas[top - 6 : top + 22, WIDTH // 2 - 2 : WIDTH // 2 + 2] = palette.text
+    words, share = "difference: nothing to compare with", 1.0
+    if math.isfinite(senses.difference):
+        words = f"difference to the best view {senses.difference:.1f}   (threshold {senses.threshold:.1f})"
+        share = senses.difference / max(2 * senses.threshold, 1e-9)
+    colour = palette.packets[1] if senses.difference < senses.threshold else palette.robot
+    return markup.caption(words) + markup.bar(share, colour, palette.text_2, 0.5)
 
 
-def cells_image(layer: PoseCellLayer, snapshot: Snapshot, recent: tuple[int, ...], palette: Palette) -> images.Pixels:
+def cells_page(layer: PoseCellLayer, snapshot: Snapshot, recent: tuple[int, ...], palette: Palette) -> str:
     """Local view cells, pose cells from above and the histogram of headings."""
-    canvas = _blank(480, palette)
     active = snapshot.senses.active_view
     shown = f"active #{active} of {snapshot.views}" if active >= 0 else f"none active of {snapshot.views}"
-    images.write(canvas, f"local view cells  ({shown})", palette.text_2, 0, 0, CAPTION)
     strip = view_strip(active, snapshot.views, recent, palette)
-    images.paste(canvas, strip, 0, 32)
-    top = 32 + strip.shape[0] + 16
-    images.write(canvas, "pose cells from above", palette.text_2, 0, top, CAPTION)
-    images.paste(canvas, from_above(layer, palette, 270), 0, top + 32)
-    images.write(canvas, "heading θ′", palette.text_2, WIDTH - COLUMN, top, CAPTION)
-    images.paste(canvas, heading_histogram(layer, palette, (270, COLUMN)), WIDTH - COLUMN, top + 32)
-    return canvas
+    above = markup.picture(from_above(layer, palette), "pose cells seen from above, x' to the right", 1.0)
+    turns = np.bincount(layer.cells[:, 0], weights=layer.activity, minlength=layer.shape[0])
+    bars = markup.histogram(turns, palette.packets[0], "activity by heading", 1.12, ("0°", "180°", "360°"))
+    return markup.page(
+        markup.caption(f"local view cells ({shown})"),
+        markup.picture(strip, f"local view cells, {shown}", STRIP_HW[1] / STRIP_HW[0]),
+        markup.row(markup.caption("pose cells from above") + above, markup.caption("heading θ′") + bars),
+    )
 
 
-def view_strip(active: int, views: int, recent: tuple[int, ...], palette: Palette) -> images.Pixels:
-    """A square for each view (or for several neighbours), lit while active and fading for a while after."""
+def view_strip(active: int, views: int, recent: tuple[int, ...], palette: Palette) -> Pixels:
+    """A square for each view (or for several neighbours), lit while active and fading for a while after; RGBA."""
     rows, columns = STRIP_HW
-    count, side = rows * columns, WIDTH // columns
-    ground = mix(palette.panel, palette.text_2, 0.16)
-    squares = np.tile(np.array(mix(palette.panel, palette.text_2, 0.05), np.uint8), (count, 1))
+    count = rows * columns
+    squares = np.tile(np.array((*palette.text_2, 18), np.uint8), (count, 1))
     per_square = max(1, -(-views // count))
-    squares[: -(-views // per_square)] = ground
+    squares[: -(-views // per_square), 3] = 60
+    quiet = mix(palette.panel, palette.text_2, 0.3)
     for age, view in zip(range(len(recent), 0, -1), recent, strict=True):
-        squares[min(view // per_square, count - 1)] = mix(palette.packets[0], ground, age / (RECENT + 1))
+        squares[min(view // per_square, count - 1)] = (*mix(palette.packets[0], quiet, age / (RECENT + 1)), 255)
     if active >= 0:
-        squares[min(active // per_square, count - 1)] = palette.robot
-    large = np.repeat(np.repeat(squares.reshape(rows, columns, 3), side, 0), side, 1)
-    large[side - 2 :: side], large[side - 1 :: side] = palette.panel, palette.panel
-    large[:, side - 2 :: side], large[:, side - 1 :: side] = palette.panel, palette.panel
+        squares[min(active // per_square, count - 1)] = (*palette.robot, 255)
+    large = np.repeat(np.repeat(squares.reshape(rows, columns, 4), SQUARE, 0), SQUARE, 1)
+    large[SQUARE - 1 :: SQUARE, :, 3] = 0
+    large[:, SQUARE - 1 :: SQUARE, 3] = 0
     return large
 
 
-def from_above(layer: PoseCellLayer, palette: Palette, side: int) -> images.Pixels:
-    """The activity summed over theta', front row at the bottom, each cell in its packet's colour."""
+def from_above(layer: PoseCellLayer, palette: Palette) -> Pixels:
+    """The activity summed over theta', front row at the bottom, each cell in its packet's colour; RGBA (n_y, n_x)."""
     _, n_y, n_x = layer.shape
-    ground = np.array(mix(palette.panel, palette.text_2, 0.12), np.float64)
-    light = np.zeros((n_y, n_x, 3))
-    weight = np.zeros((n_y, n_x, 1))
+    light, weight = np.zeros((n_y, n_x, 3)), np.zeros((n_y, n_x, 1))
     colours = np.array(palette.packets, np.float64)[np.minimum(CellFit(layer.shape).owners(layer), 3)]
     at = (layer.cells[:, 1], layer.cells[:, 2])
     np.add.at(light, at, colours * layer.activity[:, None])
     np.add.at(weight, at, layer.activity[:, None])
     share = np.sqrt(weight / max(float(weight.max()), 1e-9))
-    small = ground * (1 - share) + light / np.maximum(weight, 1e-12) * share
-    return cv2.resize(small[::-1].astype(np.uint8), (side, side), interpolation=cv2.INTER_NEAREST)
-
-
-def heading_histogram(layer: PoseCellLayer, palette: Palette, size_hw: tuple[int, int]) -> images.Pixels:
-    """The activity summed over x' and y', a bar for each layer of theta', 0 to 360 degrees."""
-    height, width = size_hw
-    canvas = np.empty((height, width, 3), np.uint8)
-    canvas[:] = mix(palette.panel, palette.text_2, 0.12)
-    n_theta, floor = layer.shape[0], height - 34
-    bars = np.bincount(layer.cells[:, 0], weights=layer.activity, minlength=n_theta)
-    tall = np.round(bars / max(float(bars.max(initial=0.0)), 1e-9) * (floor - 10)).astype(int)
-    edges = np.linspace(0, width, n_theta + 1).round().astype(int)
-    for k in range(n_theta):
-        canvas[floor - tall[k] : floor, edges[k] : max(edges[k] + 1, edges[k + 1] - 2)] = palette.packets[0]
-    canvas[floor : floor + 2] = palette.text_2
-    for words, share in (("0°", 0.01), ("180°", 0.41), ("360°", 0.78)):
-        images.write(canvas, words, palette.text_2, int(share * width), floor + 6, 20)
-    return canvas
-
-
-def _blank(height: int, palette: Palette) -> images.Pixels:
-    canvas = np.empty((height, WIDTH, 3), np.uint8)
-    colour: Rgb = palette.panel
-    canvas[:] = colour
-    return canvas
+    shown = np.where(weight > 0, light / np.maximum(weight, 1e-12), palette.text_2)
+    opacity = 28 + share * (255 - 28)
+    return np.concatenate([shown, opacity], 2)[::-1].astype(np.uint8)

@@ -28,7 +28,9 @@ def add_picture(
     scene: viser.SceneApi, name: str, image: images.Pixels, width: float, height: float, **options: Any
 ) -> viser.ImageHandle:
     options.setdefault("format", "png")
-    return scene.add_image(name, images.upright(image), width, height, cast_shadow=False, receive_shadow=False, **options)
+    return scene.add_image(
+        name, images.upright(image), width, height, cast_shadow=False, receive_shadow=False, **options
+    )
 
 
 class Sign:
@@ -60,7 +62,9 @@ class Sign:
 class Pill:
     """Words on a rounded bar that leans towards the viewer, centred at a place."""
 
-    def __init__(self, scene: viser.SceneApi, name: str, height: float, fill: Rgb, palette: Palette, rim: Rgb | None = None) -> None:
+    def __init__(
+        self, scene: viser.SceneApi, name: str, height: float, fill: Rgb, palette: Palette, rim: Rgb | None = None
+    ) -> None:
         self._height, self._words = height, ""
         self.width = 0.0
         self.frame = scene.add_frame(name, show_axes=False, visible=False, wxyz=LEANING)

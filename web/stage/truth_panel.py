@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-import html
-
 import numpy as np
 import viser
 from viser import uplot
 
 from web.messages import Series, Snapshot
-from web.stage.memory_panel import number, table
-from web.stage.palette import Palette, Rgb, mix
+from web.stage import markup
+from web.stage.memory_panel import number
+from web.stage.palette import Palette, mix
+
+_PLAIN: dict[str, uplot.Scale] = {"x": uplot.Scale(time=False)}  # seconds, not dates
 
 
 class TruthPanel:
     def __init__(self, gui: viser.GuiApi, palette: Palette) -> None:
         self._page = gui.add_html("")
         nothing = np.array([0.0, 1.0])
-        self._errors = gui.add_uplot((nothing, nothing * 0, nothing * 0), _error_series(palette), axes=_axes(palette), height=190)
-        self._counts = gui.add_uplot((nothing, nothing * 0, nothing * 0), _count_series(palette), axes=_axes(palette), height=170)
+        self._errors = gui.add_uplot(
+            (nothing, nothing * 0, nothing * 0), _error_series(palette), axes=_axes(palette), scales=_PLAIN, height=190
+        )
+        self._counts = gui.add_uplot(
+            (nothing, nothing * 0, nothing * 0), _count_series(palette), axes=_axes(palette), scales=_PLAIN, height=170
+        )
         self._timings = gui.add_html("")
         self._palette = palette
 
@@ -29,11 +34,14 @@ class TruthPanel:
 
     def draw_numbers(self, snapshot: Snapshot) -> None:
         again = snapshot.revisit_consistency
-        rows = [("map error, after alignment", number(snapshot.error_map_m, "m", 2)), ("odometry alone", number(snapshot.error_odometry_m, "m", 2))]
+        rows = [
+            ("map error, after alignment", number(snapshot.error_map_m, "m", 2)),
+            ("odometry alone", number(snapshot.error_odometry_m, "m", 2)),
+        ]
         rows += [("revisits within half a metre", "no revisits yet" if again is None else f"{again:.0%}")]
-        note = '<div style="opacity:.7;margin-top:6px">The robot knows none of this.</div>'
-        self._page.content = _page(note + table("Error against the true world", rows))
-        self._timings.content = _page(_bars(snapshot.stage_ms, self._palette))
+        errors = markup.table("Error against the true world", rows)
+        self._page.content = markup.page(markup.note("The robot knows none of this."), errors)
+        self._timings.content = markup.page(_timings(snapshot.stage_ms, self._palette))
 
     def draw_series(self, series: Series) -> None:
         if len(series.time_s) < 2:
@@ -42,38 +50,35 @@ class TruthPanel:
         self._counts.data = (series.time_s, series.views, series.experiences)
 
 
-def _page(content: str) -> str:
-    return f'<div style="font-size:13px;line-height:1.5;padding:0 4px">{content}</div>'
-
-
-def _bars(stage_ms: dict[str, float], palette: Palette) -> str:
-    """Milliseconds of each stage as bars, against the whole tick."""
+def _timings(stage_ms: dict[str, float], palette: Palette) -> str:
+    """Milliseconds of each stage, as bars against the whole tick."""
     total = sum(stage_ms.values())
-    colour = _css(palette.packets[1])
-    lines = "".join(
-        f'<div style="display:flex;justify-content:space-between"><span style="opacity:.75">{html.escape(name)}</span>'
-        f'<span style="font-variant-numeric:tabular-nums">{ms:.2f} ms</span></div>'
-        f'<div style="height:4px;border-radius:2px;background:{colour};width:{100 * ms / max(total, 1e-9):.0f}%"></div>'
-        for name, ms in stage_ms.items()
-    )
-    return f'<div style="font-weight:600;margin:6px 0 2px">A tick takes {total:.1f} of 100 ms</div>{lines}'
-
-
-def _css(colour: Rgb) -> str:
-    return "rgb({},{},{})".format(*colour)
+    parts = [markup.heading(f"A tick takes {total:.1f} of 100 ms")]
+    for name, ms in stage_ms.items():
+        parts.append(markup.caption(f"{name}: {ms:.2f} ms"))
+        parts.append(markup.bar(ms / max(total, 1e-9), palette.packets[1], palette.text_2, height_px=5))
+    return "".join(parts)
 
 
 def _axes(palette: Palette) -> tuple[uplot.Axis, ...]:
-    grid = {"stroke": _css(mix(palette.panel, palette.text_2, 0.25)), "width": 1}
-    axis = uplot.Axis(stroke=_css(palette.text_2), grid=grid, ticks=grid)  # type: ignore[typeddict-item]
-    return axis, uplot.Axis(**axis, size=44)  # type: ignore[misc]
+    grid = {"stroke": markup.css(mix(palette.panel, palette.text_2, 0.25)), "width": 1}
+    axis = uplot.Axis(stroke=markup.css(palette.text_2), grid=grid, ticks=grid)  # type: ignore[typeddict-item]
+    return axis, uplot.Axis(**axis, size=54)  # type: ignore[misc]
 
 
 def _error_series(palette: Palette) -> tuple[uplot.Series, ...]:
-    odometry = uplot.Series(label="odometry (m)", stroke=_css(palette.robot), width=2, dash=(6, 4))
-    return uplot.Series(label="s"), uplot.Series(label="map (m)", stroke=_css(palette.packets[1]), width=2), odometry
+    odometry = uplot.Series(label="odometry (m)", stroke=markup.css(palette.robot), width=2, dash=(6, 4))
+    return (
+        uplot.Series(label="s"),
+        uplot.Series(label="map (m)", stroke=markup.css(palette.packets[1]), width=2),
+        odometry,
+    )
 
 
 def _count_series(palette: Palette) -> tuple[uplot.Series, ...]:
-    experiences = uplot.Series(label="experiences", stroke=_css(palette.packets[1]), width=2, dash=(6, 4))
-    return uplot.Series(label="s"), uplot.Series(label="views", stroke=_css(palette.packets[0]), width=2), experiences
+    experiences = uplot.Series(label="experiences", stroke=markup.css(palette.packets[1]), width=2, dash=(6, 4))
+    return (
+        uplot.Series(label="s"),
+        uplot.Series(label="views", stroke=markup.css(palette.packets[0]), width=2),
+        experiences,
+    )

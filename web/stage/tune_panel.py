@@ -74,7 +74,10 @@ class TunePanel:
             groups.setdefault(parameter.name.rpartition(".")[0], []).append(parameter)
         knobs: dict[str, _Knob] = {}
         for group, members in groups.items():
-            with self._tab, self._gui.add_folder(group.replace("_", " ") or "all", expand_by_default=len(groups) <= 3) as folder:
+            with (
+                self._tab,
+                self._gui.add_folder(group.replace("_", " ") or "all", expand_by_default=not self._folders) as folder,
+            ):
                 self._folders.append(folder)
                 for parameter in members:
                     knobs[parameter.name] = self._add(parameter)
@@ -103,7 +106,9 @@ def hint(parameter: Parameter) -> str:
     low, high = parameter.low, parameter.high
     parts = [parameter.meaning[:1].upper() + parameter.meaning[1:] + "."]
     if low is not None or high is not None:
-        parts.append(f"Range: {'' if low is None else f'{low:g}'} to {'' if high is None else f'{high:g}'} {parameter.unit}.")
+        parts.append(
+            f"Range: {'' if low is None else f'{low:g}'} to {'' if high is None else f'{high:g}'} {parameter.unit}."
+        )
     parts.append(f"Default: {parameter.default}. Source: {parameter.source}.")
     if not parameter.live:
         parts.append("Takes effect at reset.")
@@ -128,7 +133,9 @@ def _step(parameter: Parameter) -> float | int:
         return 1
     span = abs(float(parameter.default)) / 2 or 1.0
     if parameter.low is not None and parameter.high is not None:
-        span = min(parameter.high - parameter.low, 10 * (abs(float(parameter.default)) or parameter.high - parameter.low))
+        span = min(
+            parameter.high - parameter.low, 10 * (abs(float(parameter.default)) or parameter.high - parameter.low)
+        )
     decade = 10.0 ** int(f"{max(span, 1e-12) / 100:e}".split("e")[1])
     digit = max(d for d in (1, 2, 5) if d * decade <= span / 100 + 1e-15)
     return digit * decade
