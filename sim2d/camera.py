@@ -19,7 +19,7 @@ _NOISE_BANK = 1 << 17
 class Camera:
     """Draws what is seen from a pose. Owns buffers; nothing of it depends on earlier images."""
 
-    def __init__(self, world: World, params: SimParams, rng: np.random.Generator) -> None:
+    def __init__(self, world: World, params: SimParams) -> None:
         walls = world.walls
         self._segments = world.segments()
         self._bottoms = np.array([w.bottom for w in walls])
@@ -31,12 +31,15 @@ class Camera:
         self._focal = 0.5 * self._width / math.tan(0.5 * params.camera_fov_rad)
         self._eye = params.camera_height_m
         self._background = _background(world, self._height, self._focal, self._eye)
-        # Drawing 9216 normal deviates takes longer than the whole image: draw many once, start anywhere in them.
-        self._noise = rng.standard_normal(_NOISE_BANK + 3 * self._width * self._height).astype(np.float32)
+        self._noise = np.zeros(_NOISE_BANK + 3 * self._width * self._height, np.float32)
         self._counts = np.zeros(self._width, np.int64)
         self._walls = np.zeros((self._width, MAX_HITS), np.int64)
         self._hits = np.zeros((self._width, MAX_HITS, 3))
         self._canvas = np.zeros((self._width, self._height, 3), np.float32)
+
+    def new_noise(self, rng: np.random.Generator) -> None:
+        """Draw the noise of all images to come: 9216 deviates an image would take longer than the image."""
+        self._noise = rng.standard_normal(self._noise.size, dtype=np.float32)
 
     def image(
         self, x: float, y: float, heading_rad: float, light: float, noise: float, rng: np.random.Generator

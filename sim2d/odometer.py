@@ -39,7 +39,7 @@ def report(speed: float, yaw_rate: float, params: SimParams, rng: np.random.Gene
     A robot that stands gives no counts: it reports (0, 0) exactly, and the yaw-rate bias, which a robot at rest would
     calibrate away, acts only while the wheels turn. The scale error is the wheels' and touches the speed alone.
     """
-    speed_error, yaw_error = rng.standard_normal(2)
+    speed_error, yaw_error = rng.standard_normal(2).tolist()
     if abs(speed) < STILL_SPEED and abs(yaw_rate) < STILL_YAW_RATE:
         return 0.0, 0.0
     return (

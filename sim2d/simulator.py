@@ -68,6 +68,10 @@ class Simulator:
         self.free_space = FreeSpace(world, self.params.robot_radius_m)
         self._obstacles = world.segments()[list(world.obstacles)]
         self._angles = np.array(SONAR_ANGLES_RAD)
+        refusal = self.free_space.refusal(world.starts[0].x, world.starts[0].y)
+        if refusal is not None:
+            raise ValueError(f"{world.name}: the robot cannot start at {world.starts[0].name}: {refusal}")
+        self._camera = Camera(world, self.params)
         self.reset(seed)
 
     def reset(self, seed: int) -> None:
@@ -75,7 +79,7 @@ class Simulator:
         self._image_rng, self._sonar_rng, self._odometry_rng, self._pose_rng, bank_rng = (
             np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(5)
         )
-        self._camera = Camera(self.world, self.params, bank_rng)
+        self._camera.new_noise(bank_rng)
         self._space = _walled_space(self.world)
         start = self.world.starts[0]
         self._robot = Robot(self._space, self.params, start.x, start.y, start.heading_rad)

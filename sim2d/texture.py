@@ -49,9 +49,9 @@ def panel_mean_rgb(panel: Panel) -> Rgb:
 def _hang(strip: _Texels, wall: Wall, panel: Panel) -> None:
     columns, rows = strip.shape[:2]
     scale = rows / (wall.height - wall.bottom)
-    left = round(panel.at / wall.length * columns)
+    left = min(round(panel.at / wall.length * columns), columns - 1)
     right = max(left + 1, round((panel.at + panel.width) / wall.length * columns))
-    high = round((wall.height - panel.top) * scale)
+    high = min(round((wall.height - panel.top) * scale), rows - 1)
     low = max(high + 1, round((wall.height - panel.bottom) * scale))
     strip[left:right, high:low] = _pattern(panel, right - left, low - high)
 

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from sim2d.geometry import inside_ring, nearest_segment
+from sim2d.free_space import FreeSpace
 from sim2d.params import SimParams
 from sim2d.texture import TEXTURES
 from sim2d.world import Panel, Place, Rgb, Start, Wall, World
@@ -54,7 +54,7 @@ def load_world(name_or_path: str | Path = DEFAULT_WORLD, robot_radius_m: float |
 
 
 def _find(name_or_path: str | Path) -> Path:
-    """A plain name means one of ours: a name that comes over the network can therefore never reach another file."""
+    """One of ours by its name, else a file. Who takes names from strangers must compare with `world_names` first."""
     text = str(name_or_path)
     known = [name for name, _ in world_names()]
     if text in known:
@@ -169,10 +169,12 @@ def _check(name: str, world: World, radius: float) -> None:
     for i, wall in enumerate(world.walls):
         _check_wall(f"{name}: walls[{i}]", wall)
     _check_outline(name, world)
-    segments = world.segments()[list(world.obstacles)]
+    free = FreeSpace(world, radius)
     for kind, points in (("starts", world.starts), ("places", world.places)):
         for i, point in enumerate(points):
-            _check_standing(f"{name}: {kind}[{i}] ({point.name})", world, segments, point.x, point.y, radius)
+            refusal = free.refusal(point.x, point.y)
+            if refusal is not None:
+                raise WorldError(f"{name}: {kind}[{i}] ({point.name}): {refusal}")
 
 
 def _check_wall(where: str, wall: Wall) -> None:
@@ -218,15 +220,3 @@ def _check_outline(name: str, world: World) -> None:
     area = 0.5 * float(np.sum(ring[:, 0] * after[:, 1] - ring[:, 1] * after[:, 0]))
     if area <= 0:
         raise WorldError(f"{name}: walls[0]: the outline encloses {area:g} m^2; it must run counter-clockwise")
-
-
-def _check_standing(where: str, world: World, segments: np.ndarray, x: float, y: float, radius: float) -> None:
-    if not inside_ring(world.outline, x, y):
-        raise WorldError(f"{where}: ({x:g}, {y:g}) is outside of the outline; it must be inside")
-    nearest, distance = nearest_segment(segments, x, y)
-    if distance < radius:
-        number = world.obstacles[nearest]
-        raise WorldError(
-            f"{where}: ({x:g}, {y:g}) is {distance:.3g} m from walls[{number}] ({world.walls[number].kind}); "
-            f"the robot's radius needs at least {radius:g} m"
-        )

@@ -1,0 +1,202 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from sim2d import Panel, SimParams, Wall, World, camera, column_hits, load_world, painting
+from sim2d.atlas import build_atlas
+from sim2d.camera import Camera
+from sim2d.geometry import ray_length
+from sim2d.texture import paint_strip
+
+from .rooms import GREY, room
+
+PARAMS = SimParams()
+RNG = np.random.default_rng(0)
+
+
+def still(world: World, x: float, y: float, heading: float, params: SimParams = PARAMS) -> np.ndarray:
+    return Camera(world, params).image(x, y, heading, 1.0, 0.0, RNG)
+
+
+@pytest.fixture
+def in_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The kernels as plain Python, which coverage can see."""
+    for name in ("_mean_along", "_paint_rows", "paint_columns", "expose"):
+        monkeypatch.setattr(painting, name, getattr(painting, name).py_func)
+    monkeypatch.setattr(camera, "paint_columns", painting.paint_columns)
+    monkeypatch.setattr(camera, "expose", painting.expose)
+    monkeypatch.setattr(camera, "column_hits", column_hits.column_hits.py_func)
+
+
+def test_depth_is_the_analytic_distance() -> None:
+    cam = Camera(room(), PARAMS)
+    assert cam.depths(1.0, 2.0, 0.0) == pytest.approx(np.full(64, 3.0))  # a wall seen straight on: one depth
+    assert cam.depths(1.0, 2.0, math.pi) == pytest.approx(np.full(64, 1.0))
+    focal = 32 / math.tan(math.radians(25))
+    off = (31.5 - np.arange(64)) / focal  # towards a corner: depth = d / (cos 45 + |off| sin 45)
+    expected = 2.0 / (math.sqrt(0.5) * (1 + np.abs(off)))
+    assert cam.depths(2.0, 2.0, math.pi / 4) == pytest.approx(expected)
+
+
+def test_the_floor_line_carries_distance() -> None:
+    """A wall d metres away meets the floor focal x eye / d pixels below the middle."""
+    focal = 32 / math.tan(math.radians(25))
+    for x in (1.0, 2.0):
+        line = 24 + focal * PARAMS.camera_height_m / (4.0 - x)
+        row = int(line)
+        skirting, both, floor = still(room(), x, 2.0, 0.0)[row - 1 : row + 2, 32, 0].astype(float)
+        assert floor - skirting > 20
+        assert (floor - both) / (floor - skirting) == pytest.approx(line - row, abs=0.15)  # blended by the share
+
+
+def test_low_things_do_not_hide_high_ones() -> None:
+    desk = Wall(3, 1, 3, 3, "desk", 0.75, (20, 20, 20))
+    bright = (Panel(0.0, 4.0, 1.0, 2.6, "paint", (250, 250, 250), 1, "left"),)
+    image = still(room(desk, panels=bright), 1.0, 2.0, 0.0)
+    middle = image[:, 32].mean(axis=1)
+    assert middle[2] > 150  # above the desk: the wall behind it
+    assert middle[26] < 40  # the desk
+    assert middle[47] < middle[2]
+
+
+def test_screens_float() -> None:
+    screen = Wall(3, 1.5, 3, 2.5, "screen", 1.2, (5, 5, 5), bottom=0.8)
+    image = still(room(screen), 0.5, 2.0, 0.0)[:, 32].mean(axis=1)
+    rows = np.flatnonzero(image < 20)
+    focal = 32 / math.tan(math.radians(25))
+    assert rows[0] == pytest.approx(24 - 0.75 * focal / 2.5, abs=1.01)
+    assert rows[-1] == pytest.approx(24 - 0.35 * focal / 2.5, abs=1.01)
+
+
+def test_left_is_left() -> None:
+    red = (Panel(2.2, 1.0, 0.2, 2.0, "paint", (255, 0, 0), 1, "left"),)  # on the east wall, north of its middle
+    image = still(room(panels=red), 1.0, 2.0, 0.0).astype(int)
+    redness = (image[:, :, 0] - image[:, :, 2]).sum(axis=0)
+    assert redness[:32].sum() > 10 * max(1, redness[32:].sum())
+
+
+def test_noise_and_light() -> None:
+    cam = Camera(room(), PARAMS)
+    cam.new_noise(np.random.default_rng(1))
+    plain = cam.image(1.0, 2.0, 0.0, 1.0, 0.0, RNG).astype(float)
+    noisy = cam.image(1.0, 2.0, 0.0, 1.0, 3.0, RNG).astype(float)
+    assert (noisy - plain).std() == pytest.approx(3.0, rel=0.05)
+    dark = cam.image(1.0, 2.0, 0.0, 0.5, 0.0, RNG)
+    assert dark == pytest.approx(plain / 2, abs=1.0)
+    assert cam.image(1.0, 2.0, 0.0, 2.0, 50.0, RNG).max() == 255
+
+
+def slow_image(world: World, x: float, y: float, heading: float, params: SimParams, sub: int = 4) -> np.ndarray:
+    """The same picture the long way: sub x sub rays a pixel in three dimensions, each against every wall."""
+    width, height = params.image_width, params.image_height
+    focal = 0.5 * width / math.tan(0.5 * params.camera_fov_rad)
+    strips = [(paint_strip(w, "left"), paint_strip(w, "right")) for w in world.walls]
+    cos, sin = math.cos(heading), math.sin(heading)
+    ceiling = max(w.height for w in world.walls)
+    out = np.zeros((height, width, 3))
+    for r in range(height * sub):
+        up = (0.5 * height - (r + 0.5) / sub) / focal
+        for c in range(width * sub):
+            left = (0.5 * width - (c + 0.5) / sub) / focal
+            dx, dy = cos - left * sin, sin + left * cos
+            best, colour = math.inf, None
+            for wall, (ahead, back) in zip(world.walls, strips, strict=True):
+                ex, ey = wall.x2 - wall.x1, wall.y2 - wall.y1
+                cross = dx * ey - dy * ex
+                if abs(cross) < 1e-12:
+                    continue
+                px, py = wall.x1 - x, wall.y1 - y
+                depth, u = (px * ey - py * ex) / cross, (px * dy - py * dx) / cross
+                z = params.camera_height_m + up * depth
+                if 0.02 < depth < best and 0 <= u < 1 and wall.bottom <= z < wall.height:
+                    on_left = ex * -py + ey * px > 0
+                    strip = ahead if on_left else back
+                    i, j = int(u * len(strip)), int((wall.height - z) / (wall.height - wall.bottom) * strip.shape[1])
+                    tone = (0.85 * ex - 0.5 * ey) / wall.length * (0.09 if on_left else -0.09) + 1.0
+                    best, colour = depth, strip[i, min(j, strip.shape[1] - 1)] * tone / (1 + depth / 14.0)
+            if colour is None:
+                depth = (params.camera_height_m if up < 0 else params.camera_height_m - ceiling) / -up
+                colour = np.array(world.floor_colour if up < 0 else world.ceiling_colour) / (1 + depth / 14.0)
+            out[r // sub, c // sub] += colour / sub**2
+    return out
+
+
+POSES = [("office", 1.0, 1.0, 0.0), ("office", 5.2, 4.4, 3.0), ("office", 9.0, 7.0, -2.6), ("loop", 5.3, 0.8, 1.9)]
+
+
+@pytest.mark.parametrize(("name", "x", "y", "heading"), POSES)
+def test_agrees_with_a_slow_ray_caster(name: str, x: float, y: float, heading: float) -> None:
+    """Whole image against an independent supersampled one. What differs: a column decides by its middle ray who hides
+    whom, so silhouettes may be half a column off; floor and ceiling fade by the row's middle."""
+    params = SimParams(image_width=32, image_height=24)
+    world = load_world(name)
+    fast = still(world, x, y, heading, params).astype(float)
+    slow = slow_image(world, x, y, heading, params)
+    difference = np.abs(fast - slow)
+    assert np.median(difference) < 1.0
+    assert difference.mean() < 4.5
+
+
+@pytest.mark.parametrize(("name", "x", "y", "heading"), POSES)
+@pytest.mark.usefixtures("in_python")
+def test_python_and_compiled_agree(
+    name: str, x: float, y: float, heading: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    world = load_world(name)
+    params = SimParams(image_width=24, image_height=18)
+    slow = still(world, x, y, heading, params)
+    monkeypatch.undo()
+    assert np.abs(still(world, x, y, heading, params).astype(int) - slow).max() <= 1
+
+
+@pytest.mark.usefixtures("in_python")
+def test_a_wall_through_the_camera_and_too_many_hits() -> None:
+    """A wall that passes beside the camera is cut at the near plane; of twelve low walls the eight nearest are kept."""
+    rows = [Wall(2.0 + 0.15 * k, 0.5, 2.0 + 0.15 * k, 3.5, "desk", 0.3, GREY) for k in range(12)]
+    beside = [Wall(0.5, 2.3, 3.9, 2.3, "partition", 1.4, GREY), Wall(3.9, 1.7, 0.5, 1.7, "partition", 1.4, GREY)]
+    for walls in (rows, rows[::-1], beside):
+        cam = Camera(room(*walls), PARAMS)
+        for x in (1.0, 1.9):
+            got = cam.depths(x, 2.0, 0.0)
+            segments = room(*walls).segments()
+            focal = 32 / math.tan(math.radians(25))
+            for c in range(64):
+                angle = math.atan((31.5 - c) / focal)
+                assert got[c] == pytest.approx(ray_length(segments, x, 2.0, angle, 99.0) * math.cos(angle), rel=1e-6)
+            cam.image(x, 2.0, 0.0, 1.0, 0.0, RNG)
+
+
+def test_no_wall_in_sight() -> None:
+    assert np.isinf(Camera(room(), PARAMS).depths(5.0, 2.0, 0.0)).all()
+
+
+def test_images_keep_still_where_the_robot_does_and_change_where_it_moves() -> None:
+    """12 x 8 grey means: what recognition will see. Same place: under 1 grey level; 0.3 m or 20 degrees on: over 8."""
+    world = load_world("office")
+    cam = Camera(world, PARAMS)
+    cam.new_noise(np.random.default_rng(3))
+
+    def template(x: float, y: float, heading: float) -> np.ndarray:
+        image = cam.image(x, y, heading, 1.0, 1.0, RNG)[:, 2:62].mean(axis=2)
+        return image.reshape(8, 6, 12, 5).mean(axis=(1, 3))
+
+    rng = np.random.default_rng(5)
+    same, moved, turned = [], [], []
+    for _ in range(60):
+        x, y, heading = rng.uniform(4.5, 5.8), rng.uniform(0.8, 7.2), rng.uniform(-3, 3)
+        here = template(x, y, heading)
+        same.append(np.abs(here - template(x, y, heading)).mean())
+        moved.append(np.abs(here - template(x + 0.3 * math.sin(heading), y - 0.3 * math.cos(heading), heading)).mean())
+        turned.append(np.abs(here - template(x, y, heading + math.radians(20))).mean())
+    assert max(same) < 1.0
+    assert np.median(moved) > 8.0
+    assert np.median(turned) > 12.0
+
+
+def test_equal_sides_share_texels() -> None:
+    atlas = build_atlas(room(Wall(1, 1, 2, 1, "partition", 1.4, GREY)))
+    assert (atlas.first[8] == atlas.first[9]).all()
+    assert atlas.texels.dtype == np.float32
