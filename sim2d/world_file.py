@@ -19,6 +19,8 @@ from sim2d.world import Panel, Place, Rgb, Start, Wall, World
 WORLDS = Path(__file__).parent / "worlds"
 DEFAULT_WORLD = "office"
 ROBOT_HEIGHT_M = 0.6  # what hangs higher does not touch the robot
+MOST_M = 200.0  # floor and textures are held in full: larger worlds would fill the memory
+MOST_WALL_M2 = 6000.0
 _JOIN_M = 1e-6
 
 
@@ -169,6 +171,7 @@ def _check(name: str, world: World, radius: float) -> None:
     for i, wall in enumerate(world.walls):
         _check_wall(f"{name}: walls[{i}]", wall)
     _check_outline(name, world)
+    _check_size(name, world)
     free = FreeSpace(world, radius)
     for kind, points in (("starts", world.starts), ("places", world.places)):
         for i, point in enumerate(points):
@@ -220,3 +223,14 @@ def _check_outline(name: str, world: World) -> None:
     area = 0.5 * float(np.sum(ring[:, 0] * after[:, 1] - ring[:, 1] * after[:, 0]))
     if area <= 0:
         raise WorldError(f"{name}: walls[0]: the outline encloses {area:g} m^2; it must run counter-clockwise")
+
+
+def _check_size(name: str, world: World) -> None:
+    x0, y0, x1, y1 = world.bounds
+    if max(x1 - x0, y1 - y0) > MOST_M:
+        raise WorldError(
+            f"{name}: walls: the outline spans {x1 - x0:g} by {y1 - y0:g} m; at most {MOST_M:g} m each way"
+        )
+    area = sum(wall.length * (wall.height - wall.bottom) for wall in world.walls)
+    if area > MOST_WALL_M2:
+        raise WorldError(f"{name}: walls: {area:.0f} m^2 of wall in all; at most {MOST_WALL_M2:g}")

@@ -131,6 +131,14 @@ BAD: dict[str, tuple[Spoil, str]] = {
         r"starts\[0\] \(home\): \(-2, 1\) is outside of small, which spans 0 to 4 by 0 to 4 m",
     ),
     "place outside": (lambda d: d["places"][0].update(y=9), r"places\[0\] \(corner\): \(3.5, 9\) is outside of small"),
+    "too large": (
+        lambda d: [w.update({k: [60 * v for v in w[k]] for k in ("from", "to")}) for w in d["walls"][:4]],
+        r"small.json: walls: the outline spans 240 by 240 m; at most 200 m each way",
+    ),
+    "too much wall": (
+        lambda d: d["walls"].extend([{"from": [-500, 9], "to": [500, 9], "height": 9, "colour": "#000000"}]),
+        r"small.json: walls: 9043 m\^2 of wall in all; at most 6000",
+    ),
     "no start": (lambda d: d.update(starts=[]), r"starts: got \[\]; list should have at least 1 item"),
 }
 
