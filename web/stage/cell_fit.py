@@ -22,8 +22,8 @@ class CellFit:
 
     def cells(self, cells: NDArray[np.integer]) -> Array:
         """(k, 3) theta, y, x of cells to the (k, 3) middles of their voxels."""
-        share = (cells[:, ::-1] + 0.5) / np.array(self.shape[::-1])
-        return share * (SIDE, SIDE, HEIGHT) - (SIDE / 2, SIDE / 2, 0.0)
+        share = (cells[:, ::-1].astype(np.float64) + 0.5) / np.array(self.shape[::-1], np.float64)
+        return share * np.array([SIDE, SIDE, HEIGHT]) - np.array([SIDE / 2, SIDE / 2, 0.0])
 
     def path(self, path: NDArray[np.floating]) -> Array:
         """(p, 3) x, y in cells and heading to (p, 3) in the box."""
@@ -38,8 +38,8 @@ class CellFit:
         """(k,) the nearest packet of each cell, around the torus; 0 when there are none."""
         if not layer.packets:
             return np.zeros(len(layer.cells), np.int64)
-        n_theta, n_y, n_x = self.shape
-        centres = np.array([[p.heading_rad % math.tau / math.tau * n_theta, p.y, p.x] for p in layer.packets])
+        turn = self.shape[0] / math.tau
+        centres = np.array([[p.heading_rad % math.tau * turn, p.y, p.x] for p in layer.packets])
         gaps = np.abs(layer.cells[:, None] - centres[None])
         size = np.array(self.shape)
         gaps = np.minimum(gaps % size, -gaps % size)

@@ -12,7 +12,7 @@ from web.messages import WorldDrawing
 from web.stage import images, ribbons
 from web.stage.office_fit import OfficeFit
 from web.stage.palette import Palette, Rgb, mix
-from web.stage.sight import solid_runs
+from web.stage.sight import inside, solid_runs
 from web.stage.signs import add_mesh, add_picture
 
 Array = NDArray[np.float64]
@@ -20,6 +20,7 @@ FLOOR_PX_PER_UNIT = 96
 HEIGHTS = {"wall": 0.62, "partition": 0.42, "desk": 0.24}
 FRONT = 0.18
 METRE_HIGH = 0.62 / 2.5  # plate units of height for a metre of any other thing, or of a panel
+PANEL_THICK = 0.11  # stands out from a wall on its own side
 THICK = {"wall": 0.1, "partition": 0.07}
 
 
@@ -61,9 +62,11 @@ def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: Wor
     closed = {row for rows, _ in runs for row in rows}
     boxes = [_wall_box(world, fit, row, palette) for row in range(len(world.walls)) if row not in closed]
     boxes += [_panel_box(world, fit, row) for row in range(len(world.panels))]
-    boxes += [
-        box for rows, outline in runs if world.wall_kind[rows[0]] == "desk" for box in _screens(fit, outline, palette)
-    ]
+    middles = (world.panels[:, :2] + world.panels[:, 2:4]) / 2
+    for rows, outline in runs:
+        bare = not any(inside(outline, float(x), float(y)) for x, y in middles)
+        if world.wall_kind[rows[0]] == "desk" and bare:
+            boxes += _screens(fit, outline, palette)
     boxes = [box for box in boxes if box is not None] or [((0, 0, -50), (1, 1, 1), 0.0, palette.wall)]
     centres, sizes, turns, colours = zip(*boxes, strict=True)
     turn = np.array(turns) / 2
@@ -132,7 +135,7 @@ def _panel_box(world: WorldDrawing, fit: OfficeFit, row: int) -> Box | None:
     red, green, blue = (int(v) for v in world.panel_rgb[row])
     return (
         ((ax + bx) / 2, (ay + by) / 2, (low + high) / 2),
-        (math.dist((ax, ay), (bx, by)), 0.13, max(high - low, 0.02)),
+        (math.dist((ax, ay), (bx, by)), PANEL_THICK, max(high - low, 0.02)),
         math.atan2(by - ay, bx - ax),
         (red, green, blue),
     )

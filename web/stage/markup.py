@@ -54,7 +54,7 @@ def row(*cells: str) -> str:
 
 
 def picture(pixels: Pixels, words: str, aspect: float) -> str:
-    """Grey, RGB or RGBA pixels as wide as there is room, enlarged without smoothing; `words` for those who cannot see it."""
+    """Grey, RGB or RGBA pixels as wide as there is room, enlarged without smoothing; `words` for who cannot see it."""
     if pixels.ndim == 3:
         pixels = pixels[..., [2, 1, 0, 3][: pixels.shape[2]]]
     _, png = cv2.imencode(".png", np.ascontiguousarray(pixels), [cv2.IMWRITE_PNG_COMPRESSION, 6])
@@ -91,8 +91,9 @@ def histogram(values: np.ndarray, colour: Rgb, words: str, aspect: float, ticks:
         if v > 0.5
     )
     svg = (
-        f'<svg role="img" aria-label="{html.escape(words)}" viewBox="0 0 {count} 100" preserveAspectRatio="none" fill="{css(colour)}" '
-        f'style="display:block;width:100%;aspect-ratio:{aspect:.4g};border-bottom:1px solid">{bars}</svg>'
+        f'<svg role="img" aria-label="{html.escape(words)}" viewBox="0 0 {count} 100" preserveAspectRatio="none" '
+        f'fill="{css(colour)}" style="display:block;width:100%;aspect-ratio:{aspect:.4g};border-bottom:1px solid">'
+        f"{bars}</svg>"
     )
     below = "".join(f"<span>{html.escape(tick)}</span>" for tick in ticks)
     return f'{svg}<div style="display:flex;justify-content:space-between;font-size:11px;opacity:.75">{below}</div>'

@@ -136,9 +136,7 @@ class OfficePlate(Plate):
             return
         x, y = self.fit.to_plate(np.array([place]))[0]
         radius = 1.6 * self.robot.radius
-        self._room_for.points = ribbons.closed_line(
-            ribbons.rounded_rectangle(2 * radius, 2 * radius, radius * 0.999) + (x, y), 0.05
-        )
+        self._room_for.points = ribbons.closed_line(ribbons.circle(radius, (float(x), float(y))), 0.05)
         self._room_for.colors = np.array(
             self.palette.drawn(self.palette.sonar if room else mix(self.palette.robot, (255, 0, 0), 0.6)), np.uint8
         )

@@ -28,7 +28,7 @@ class Plate:
         self.frame = scene.add_frame(self.root, show_axes=False, position=origin)
         width, depth, centre_y, radius = sheet
         self.left, self.front = -width / 2 + 0.5, centre_y - depth / 2
-        outline = ribbons.rounded_rectangle(width, depth, radius) + (0.0, centre_y)
+        outline = ribbons.rounded_rectangle(width, depth, radius, centre=(0.0, centre_y))
         add_mesh(scene, f"{self.root}/slab", ribbons.extruded(outline, -0.32, -0.06), palette.lit(palette.slab))
         add_mesh(scene, f"{self.root}/sheet", ribbons.flat_polygon(outline, SHEET_Z), palette.lit(palette.sheet))
         scene.add_line_segments(

@@ -123,7 +123,7 @@ class PoseCellPlate(Plate):
         tops = np.array([self._fit.packet(p) for p in packets]).reshape(-1, 3)
         words = [f"{k + 1}   {packet.mass:.0%}".replace("%", " %") for k, packet in enumerate(packets)]
         lean = math.sin(LEAN_RAD), math.cos(LEAN_RAD)
-        raised = tops + (0.0, 0.0, 0.95)
+        raised = tops + np.array([0.0, 0.0, 0.95])
         seen = np.column_stack([raised[:, 0], raised[:, 1] * lean[1] + raised[:, 2] * lean[0]])
         widths = np.array([pill_width(w, PILL_M) for w in words])
         shifts = spread(seen, widths, PILL_M) - seen
@@ -166,8 +166,9 @@ def glow(layer: PoseCellLayer, ground: images.Pixels, palette: Palette) -> image
         light = np.zeros((n_y, n_x), np.float32)
         np.add.at(light, (layer.cells[rows, 1], layer.cells[rows, 2]), layer.activity[rows])
         share = float(light.sum()) ** 0.5
-        light = cv2.GaussianBlur(np.pad(light, 8, mode="wrap"), (0, 0), n_x / 32)[8:-8, 8:-8]
-        light = cv2.resize(light / max(float(light.max()), 1e-9), ground.shape[1::-1], interpolation=cv2.INTER_CUBIC)
-        weight = np.clip(light[::-1, :, None], 0, 1) * 0.75 * min(1.0, 0.35 + 0.65 * share)
+        soft = np.asarray(cv2.GaussianBlur(np.pad(light, 8, mode="wrap"), (0, 0), n_x / 32))[8:-8, 8:-8]
+        soft = np.ascontiguousarray(soft / max(float(soft.max()), 1e-9), np.float32)
+        large = cv2.resize(soft, (FLOOR_PX, FLOOR_PX), interpolation=cv2.INTER_CUBIC)
+        weight = np.clip(np.asarray(large)[::-1, :, None], 0, 1) * 0.75 * min(1.0, 0.35 + 0.65 * share)
         out += (np.array(palette.packets[k], np.float32) - out) * weight
     return np.clip(out, 0, 255).astype(np.uint8)

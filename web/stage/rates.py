@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 
 class Layer:
-    """Draws a part of the snapshot when its content is another object than the last drawn one, at most `hz` times a second."""
+    """Draws its content when that is another object than the last drawn, at most `hz` times a second."""
 
     def __init__(self, hz: float, draw: Callable[..., object]) -> None:
         self._period_s, self._draw = 1.0 / hz, draw

@@ -1,4 +1,4 @@
-"""Flat geometry: ribbons along a line, discs, rings, arrows, dashes, extrusions - as arrays for viser's meshes and lines.
+"""Geometry as arrays for viser: ribbons along a line, discs, rings, fans, dashes, prisms.
 
 A mesh is (vertices (v, 3) float32, faces (f, 3) uint32), wound so that flat ones face up.
 """
@@ -17,10 +17,9 @@ NOTHING: Mesh = (np.full((3, 3), -50.0, np.float32), np.array([[0, 1, 2]], np.ui
 UNIT_CUBE: Mesh = (
     np.array([[x, y, z] for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)], np.float32),
     np.array(
-        [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6)]
-        + [(1, 3, 5), (3, 7, 5)],
+        [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5],
         np.uint32,
-    ),
+    ).reshape(-1, 3),
 )
 
 
@@ -90,8 +89,7 @@ def _distinct(line: Points) -> Points:
 
 
 def disc(centre: tuple[float, float], radius: float, z: float, corners: int = 20) -> Mesh:
-    angle = np.linspace(0, math.tau, corners, endpoint=False)
-    rim = np.array(centre) + radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    rim = circle(radius, centre, corners)
     index = np.arange(corners, dtype=np.uint32)
     faces = np.column_stack([np.full(corners, corners, np.uint32), index, (index + 1) % corners])
     return lifted(np.vstack([rim, [centre]]), z).astype(np.float32), faces.astype(np.uint32)
@@ -99,8 +97,7 @@ def disc(centre: tuple[float, float], radius: float, z: float, corners: int = 20
 
 def ring(radius: float, width: float, z: float = 0.0, corners: int = 48) -> Mesh:
     """A flat ring around the origin; `radius` is that of its middle line."""
-    angle = np.linspace(0, math.tau, corners, endpoint=False)
-    unit = np.column_stack([np.cos(angle), np.sin(angle)])
+    unit = circle(1.0, corners=corners)
     points = np.stack([unit * (radius + width / 2), unit * (radius - width / 2)], 1).reshape(-1, 2)
     first = np.arange(corners, dtype=np.uint32)[:, None] * 2
     following = (first + 2) % (2 * corners)
@@ -108,8 +105,16 @@ def ring(radius: float, width: float, z: float = 0.0, corners: int = 48) -> Mesh
     return lifted(points, z).astype(np.float32), faces.astype(np.uint32)
 
 
-def rounded_rectangle(width: float, depth: float, radius: float, corners: int = 10) -> Points:
-    """(n, 2) counter-clockwise outline around the origin, not closed."""
+def circle(radius: float, centre: tuple[float, float] = (0.0, 0.0), corners: int = 36) -> Points:
+    """(n, 2) counter-clockwise outline, not closed."""
+    angle = np.linspace(0, math.tau, corners, endpoint=False)
+    return np.array(centre) + radius * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def rounded_rectangle(
+    width: float, depth: float, radius: float, corners: int = 10, centre: tuple[float, float] = (0.0, 0.0)
+) -> Points:
+    """(n, 2) counter-clockwise outline, not closed."""
     turn = np.linspace(0, math.pi / 2, corners)
     centres = [(1, 1, 0), (-1, 1, 1), (-1, -1, 2), (1, -1, 3)]
     parts = [
@@ -117,7 +122,7 @@ def rounded_rectangle(width: float, depth: float, radius: float, corners: int = 
         + (sx * (width / 2 - radius), sy * (depth / 2 - radius))
         for sx, sy, q in centres
     ]
-    return np.vstack(parts)
+    return np.vstack(parts) + np.array(centre)
 
 
 def extruded(outline: Points, bottom: float, top: float) -> Mesh:

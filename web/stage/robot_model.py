@@ -1,4 +1,4 @@
-"""The robot: an orange cylinder with a white turret, a dark camera and two wheels, drawn a quarter larger than it is."""
+"""The robot: an orange cylinder with a white turret, a dark camera and two wheels, drawn a quarter too large."""
 
 from __future__ import annotations
 
@@ -20,17 +20,15 @@ class RobotModel:
     def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
         self.radius = 0.25
         self.frame = scene.add_frame(name, show_axes=False)
-        circle = ribbons.rounded_rectangle(2.0, 2.0, 0.999)
-        wheel = ribbons.rounded_rectangle(0.62, 0.2, 0.09, 4)
+        circle = ribbons.circle(1.0)
+        wheels = [ribbons.rounded_rectangle(0.62, 0.2, 0.09, 4, centre=(0.0, side)) for side in (1.0, -1.0)]
+        lens = ribbons.rounded_rectangle(0.36, 0.5, 0.1, 4, centre=(0.72, 0.0))
         parts = {
             "body": (ribbons.extruded(circle, 0.12, 0.95), palette.robot),
             "turret": (ribbons.extruded(circle * 0.5, 0.95, 1.3), palette.turret),
-            "camera": (
-                ribbons.extruded(ribbons.rounded_rectangle(0.36, 0.5, 0.1, 4) + (0.72, 0.0), 0.9, 1.3),
-                palette.tyre,
-            ),
-            "left": (ribbons.extruded(wheel + (0.0, 1.0), 0.0, 0.5), palette.tyre),
-            "right": (ribbons.extruded(wheel + (0.0, -1.0), 0.0, 0.5), palette.tyre),
+            "camera": (ribbons.extruded(lens, 0.9, 1.3), palette.tyre),
+            "left": (ribbons.extruded(wheels[0], 0.0, 0.5), palette.tyre),
+            "right": (ribbons.extruded(wheels[1], 0.0, 0.5), palette.tyre),
         }
         self.parts = [
             add_mesh(scene, f"{name}/{part}", mesh, palette.lit(colour), scale=self.radius)

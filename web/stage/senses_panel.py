@@ -68,7 +68,8 @@ def _verdict(senses: Senses, palette: Palette) -> str:
         words, colour = (
             ("new: recruited", palette.robot) if senses.recruited else ("known: recalled", palette.packets[1])
         )
-    dot = f'<span style="display:inline-block;width:9px;height:9px;border-radius:2px;background:{markup.css(colour)}"></span>'
+    shape = "display:inline-block;width:9px;height:9px;border-radius:2px"
+    dot = f'<span style="{shape};background:{markup.css(colour)}"></span>'
     big = f'<div style="font-size:27px;font-weight:700;line-height:1.2">{html.escape(number)}</div>'
     return f"{markup.caption('active view')}{big}<div>{dot} {html.escape(words)}</div>"
 

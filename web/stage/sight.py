@@ -12,6 +12,7 @@ from web.messages import Pose, WorldDrawing
 Array = NDArray[np.float64]
 FAR_M = 30.0
 RAYS = 61
+TOUCHING_M = 1e-3
 
 
 def distances(walls: Array, origin: tuple[float, float], angles: Array) -> Array:
@@ -62,23 +63,39 @@ def solids(world: WorldDrawing) -> list[Array]:
 
 
 def solid_runs(world: WorldDrawing) -> list[tuple[range, Array]]:
-    """`solids` with the rows of `world.walls` that make them."""
+    """`solids` with the rows of `world.walls` that make them. Desks that lean on a partition are closed along it."""
     walls = np.asarray(world.walls, np.float64)
     low_x, low_y, high_x, high_y = world.bounds
     largest = 0.25 * (high_x - low_x) * (high_y - low_y)
-    found, first = [], 0
-    for row in range(len(walls)):
-        if row > first and (
-            world.wall_kind[row] != world.wall_kind[first] or math.dist(walls[row, :2], walls[row - 1, 2:]) > 1e-3
-        ):
-            first = row
-        if row - first >= 2 and math.dist(walls[row, 2:], walls[first, :2]) < 1e-3:
-            outline = walls[first : row + 1, :2]
-            area = _area(outline)
-            if 0 < abs(area) < largest:
-                found.append((range(first, row + 1), outline if area > 0 else outline[::-1]))
-            first = row + 1
+    found = []
+    for rows in _chains(walls, world.wall_kind):
+        outline = walls[rows.start : rows.stop, :2]
+        if math.dist(walls[rows.stop - 1, 2:], outline[0]) > TOUCHING_M:
+            if world.wall_kind[rows.start] != "desk" or len(rows) < 2:
+                continue
+            outline = np.vstack([outline, walls[rows.stop - 1, 2:]])
+            if len(rows) == 2:  # a corner: the other half of a parallelogram is behind the partition
+                outline = np.vstack([outline, outline[0] + outline[2] - outline[1]])
+        area = _area(outline)
+        if 1e-6 < abs(area) < largest:
+            found.append((rows, outline if area > 0 else outline[::-1]))
     return found
+
+
+def _chains(walls: Array, kinds: tuple[str, ...]) -> list[range]:
+    """Longest runs of rows of one kind, each beginning where the one before ends; a closed run ends there."""
+    chains, first = [], 0
+    for row in range(1, len(walls) + 1):
+        goes_on = (
+            row < len(walls)
+            and kinds[row] == kinds[first]
+            and math.dist(walls[row, :2], walls[row - 1, 2:]) < TOUCHING_M
+            and math.dist(walls[first, :2], walls[row - 1, 2:]) > TOUCHING_M
+        )
+        if not goes_on:
+            chains.append(range(first, row))
+            first = row
+    return chains
 
 
 def inside(outline: Array, x: float, y: float) -> bool:

@@ -11,21 +11,24 @@ import math
 import queue
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from concurrent.futures import Future
+from typing import Any
 
 import viser
 from viser import _messages
 
 from web.latest import Latest
 from web.messages import Accepted, Command, MapLayer, Refused, Snapshot
-from web.stage.camera_views import FAR, NEAR, PHONE_ASPECT, VIEWS, Camera, Flight, View, camera_for
+from web.stage.camera_views import VIEWS
+from web.stage.cameras import Cameras
 from web.stage.hand import Answer, Click, Drag, Hand, ask
 from web.stage.palette import Theme, palette_of
 from web.stage.panels import Panels
 from web.stage.rates import Layer
 from web.stage.scenery import Scenery
 
+DragEvent = viser.SceneNodeDragEvent[viser.MeshHandle]
 FRAME_S = 1 / 30  # no faster than this, however fast snapshots come
 IDLE_S = 0.05  # how long a click waits at most
 
@@ -43,10 +46,9 @@ class Stage:
         self._thread: threading.Thread | None = None
         self._snapshot: Snapshot | None = None
         self._run, self._turn_rad = -1, 0.0
-        self._views: dict[int, View] = {}
-        self._flights: dict[int, Flight] = {}
         self.server = _quiet_server()
         self.port = self.server.get_port()
+        self._cameras = Cameras(self.server, self._inbox.put)
         self._hand = Hand(self._send, self._complain)
         self.panels = Panels(self.server.gui, palette_of(theme), self._send, self._complain)
         self._layers: dict[str, Layer] = {}
@@ -71,7 +73,7 @@ class Stage:
         """Takes one browser's camera (or everyone's) to a view: "all", "office", "pose" or "map"."""
         if view not in VIEWS:
             raise ValueError(f"unknown view {view!r}; expected one of: {', '.join(VIEWS)}")
-        self._inbox.put(lambda: self._take_off(client_id, view, True))
+        self._inbox.put(lambda: self._cameras.take_off(client_id, view, time.monotonic()))
 
     def set_theme(self, theme: Theme) -> None:
         """Dark or light, for everyone who looks."""
@@ -84,7 +86,7 @@ class Stage:
         seen = 0
         while not self._stopping.is_set():
             began_s = time.monotonic()
-            seen, snapshot = self._latest.wait(seen, FRAME_S if self._flights else IDLE_S)
+            seen, snapshot = self._latest.wait(seen, FRAME_S if self._cameras.flying else IDLE_S)
             self.tick(snapshot, time.monotonic(), watched=bool(self.server.get_clients()))
             self._stopping.wait(max(0.0, FRAME_S - (time.monotonic() - began_s)))
 
@@ -95,7 +97,7 @@ class Stage:
         with contextlib.suppress(queue.Empty):
             while True:
                 self._inbox.get_nowait()()
-        self._fly_on(now_s)
+        self._cameras.fly_on(now_s)
         if self._snapshot is not None and watched:
             self._draw(self._snapshot, now_s)
 
@@ -161,10 +163,6 @@ class Stage:
             part.on_drag("left", modifier="shift")(self._dragged(True))
 
     def _listen(self) -> None:
-        camera = camera_for("all", 1.5)
-        initial = self.server.initial_camera
-        initial.position, initial.look_at, initial.fov = camera.position, camera.look_at, camera.fov_rad
-        initial.near, initial.far = NEAR, FAR
         self.server.on_client_connect(self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self.server.scene.on_click()(self._clicked)
@@ -175,8 +173,8 @@ class Stage:
         click = Click(event.client_id, event.ray_origin, event.ray_direction)
         self._inbox.put(lambda: self._hand.click(click, self._scenery.map, time.monotonic()))
 
-    def _dragged(self, turning: bool) -> Callable[..., object]:
-        async def dragged(event: viser.SceneNodeDragEvent[viser.MeshHandle]) -> None:  # async: keeps their order
+    def _dragged(self, turning: bool) -> Callable[[DragEvent], Coroutine[Any, Any, None]]:
+        async def dragged(event: DragEvent) -> None:  # async: keeps their order
             x, y, z = event.client.camera.position.tolist()
             drag = Drag(event.client_id, event.phase, turning, (x, y, z), event.end_position)
             self._inbox.put(lambda: self._drag(drag))
@@ -187,7 +185,7 @@ class Stage:
         self._inbox.put(lambda: self._welcome(client))
 
     def _disconnected(self, client: viser.ClientHandle) -> None:
-        self._inbox.put(lambda: self._farewell(client.client_id))
+        self._inbox.put(lambda: self._cameras.farewell(client.client_id))
 
     # ------------------------------------------------------------ in the thread
 
@@ -204,52 +202,9 @@ class Stage:
             client.add_notification(title, body, auto_close_seconds=6.0, color="red")
 
     def _welcome(self, client: viser.ClientHandle) -> None:
-        aspect = client.camera.aspect
-        self._take_off(client.client_id, "map" if aspect < PHONE_ASPECT else "all", False)
-
-        async def moved(camera: viser.CameraHandle) -> None:
-            nonlocal aspect
-            if abs(camera.aspect / aspect - 1) > 0.01:  # the window has another shape: frame the view anew
-                aspect = camera.aspect
-                self._inbox.put(lambda: self._reframe(client.client_id))
-
-        client.camera.on_update(moved)
+        self._cameras.welcome(client)
         if self.on_connect is not None:
             self.on_connect(client.client_id)
-
-    def _farewell(self, client_id: int) -> None:
-        self._views.pop(client_id, None)
-        self._flights.pop(client_id, None)
-
-    def _reframe(self, client_id: int) -> None:
-        if client_id in self._views:
-            self._take_off(client_id, self._views[client_id], False)
-
-    def _take_off(self, client_id: int | None, view: View, gently: bool) -> None:
-        for client in self.server.get_clients().values():
-            if client_id in (None, client.client_id):
-                self._views[client.client_id] = view
-                camera, end = client.camera, camera_for(view, client.camera.aspect)
-                start = Camera(camera.position.copy(), camera.look_at.copy(), camera.fov) if gently else end
-                began_s = time.monotonic() if gently else -math.inf
-                self._flights[client.client_id] = Flight(start, end, began_s)
-
-    def _fly_on(self, now_s: float) -> None:
-        clients = self.server.get_clients() if self._flights else {}
-        for client_id, flight in list(self._flights.items()):
-            camera, arrived = flight.at(now_s)
-            if client_id in clients:
-                _point(clients[client_id], camera)
-            if arrived or client_id not in clients:
-                del self._flights[client_id]
-
-
-def _point(client: viser.ClientHandle, camera: Camera) -> None:
-    with client.atomic():
-        client.camera.position = camera.position
-        client.camera.look_at = camera.look_at
-        client.camera.up_direction = (0.0, 0.0, 1.0)
-        client.camera.fov = camera.fov_rad
 
 
 def _quiet_server() -> viser.ViserServer:

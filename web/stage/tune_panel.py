@@ -9,6 +9,7 @@ from typing import Any
 import viser
 
 from web.messages import Command, Parameter, Refused, SetParameter
+from web.stage import markup
 from web.stage.hand import Answer
 
 Value = float | int | bool | str
@@ -30,6 +31,8 @@ class TunePanel:
         complain: Callable[[int, str, str], None],
     ) -> None:
         self._gui, self._tab, self._send, self._complain = gui, tab, send, complain
+        with tab:
+            gui.add_html(markup.page(markup.note("Point at a name for its meaning. ↻ takes effect at reset.")))
         self._knobs: dict[str, _Knob] = {}
         self._folders: list[viser.GuiFolderHandle] = []
         self._turned: dict[str, tuple[int, Value]] = {}  # by people since the last send: browser, value
