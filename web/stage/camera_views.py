@@ -60,6 +60,18 @@ def camera_for(view: View, aspect: float) -> Camera:
     return Camera(look_at + distance * direction, look_at, fov)
 
 
+def seen_by(camera: Camera, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(n, 2) right and up in the plane through `look_at`, and how much larger (n,) each point appears than there."""
+    ahead = camera.look_at - camera.position
+    distance = float(np.linalg.norm(ahead))
+    ahead = ahead / distance
+    right = np.cross(ahead, (0.0, 0.0, 1.0))
+    right /= np.linalg.norm(right)
+    offset = points - camera.position
+    larger = distance / (offset @ ahead)
+    return np.column_stack([offset @ right, offset @ np.cross(right, ahead)]) * larger[:, None], larger
+
+
 @dataclass
 class Flight:
     """From one camera to another, slow at both ends."""

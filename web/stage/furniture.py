@@ -38,7 +38,7 @@ def add_floor(
     walls = np.asarray(world.walls, np.float64)
     lines = np.hstack([pixels(walls[:, :2]), pixels(walls[:, 2:])]) if len(walls) else walls
     solids = [pixels(outline) for _, outline in solid_runs(world)]
-    floor = images.contact_shadow(floor, lines, solids, 0.16 * FLOOR_PX_PER_UNIT, palette.shadow)
+    floor = images.contact_shadow(floor, lines, solids, 0.16 * FLOOR_PX_PER_UNIT * fit.relief, palette.shadow)
     ink = mix(palette.floor, palette.text_2, 0.6)
     for words, x, y in world.places:
         left, middle = pixels(np.array([[x, y]]))[0]
@@ -83,7 +83,7 @@ def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: Wor
     )
     for kind in ("desk", "other"):
         chosen = [
-            ribbons.extruded(fit.to_plate(outline), 0.0, _height(world, rows[0]))
+            ribbons.extruded(fit.to_plate(outline), 0.0, _height(world, rows[0]) * fit.relief)
             for rows, outline in runs
             if (world.wall_kind[rows[0]] == "desk") == (kind == "desk")
         ]
@@ -104,8 +104,8 @@ def _wall_box(world: WorldDrawing, fit: OfficeFit, row: int, palette: Palette) -
     x1, y1, x2, y2 = (float(v) for v in world.walls[row])
     side = _outer_side(world, x1, y1, x2, y2)
     kind = world.wall_kind[row]
-    thick = THICK.get(kind, 0.08)
-    height = FRONT if side == (0.0, -1.0) else _height(world, row)
+    thick = THICK.get(kind, 0.08) * fit.relief
+    height = (FRONT if side == (0.0, -1.0) else _height(world, row)) * fit.relief
     (ax, ay), (bx, by) = fit.to_plate(np.array([[x1, y1], [x2, y2]]))
     centre = ((ax + bx) / 2 + side[0] * thick / 2, (ay + by) / 2 + side[1] * thick / 2, height / 2)
     length = math.dist((ax, ay), (bx, by)) + (2 * thick if side[1] else 0.0)
@@ -130,12 +130,12 @@ def _panel_box(world: WorldDrawing, fit: OfficeFit, row: int) -> Box | None:
     x1, y1, x2, y2, bottom, top = (float(v) for v in world.panels[row])
     if _outer_side(world, x1, y1, x2, y2) == (0.0, -1.0):
         return None
-    low, high = max(bottom * METRE_HIGH, 0.0), min(top * METRE_HIGH, 0.6)
+    low, high = max(bottom * METRE_HIGH, 0.0) * fit.relief, min(top * METRE_HIGH, 0.6) * fit.relief
     (ax, ay), (bx, by) = fit.to_plate(np.array([[x1, y1], [x2, y2]]))
     red, green, blue = (int(v) for v in world.panel_rgb[row])
     return (
         ((ax + bx) / 2, (ay + by) / 2, (low + high) / 2),
-        (math.dist((ax, ay), (bx, by)), PANEL_THICK, max(high - low, 0.02)),
+        (math.dist((ax, ay), (bx, by)), PANEL_THICK * fit.relief, max(high - low, 0.02)),
         math.atan2(by - ay, bx - ax),
         (red, green, blue),
     )

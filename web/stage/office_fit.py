@@ -14,6 +14,7 @@ class OfficeFit:
         self.size_m = (max(high_x - low_x, 1e-3), max(high_y - low_y, 1e-3))
         self.low = np.array([low_x, low_y])
         self.scale = min(WIDTH / self.size_m[0], DEPTH / self.size_m[1])
+        self.relief = min(1.0, max(1.5 * self.scale, 0.3))  # heights and thicknesses: low where rooms are small
         self._centre = self.low + np.array(self.size_m) / 2
 
     def to_plate(self, xy: NDArray[np.floating]) -> NDArray[np.float64]:

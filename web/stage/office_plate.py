@@ -103,8 +103,8 @@ class OfficePlate(Plate):
         heard = np.isfinite(ranges_m)
         angles, reach = truth.heading_rad + angles_rad[heard], ranges_m[heard]
         ends = np.column_stack([truth.x + reach * np.cos(angles), truth.y + reach * np.sin(angles)])
-        tips = ribbons.lifted(self.fit.to_plate(ends), 0.14)
-        start = ribbons.lifted(self.fit.to_plate(np.array([[truth.x, truth.y]])), 0.14)
+        tips = ribbons.lifted(self.fit.to_plate(ends), 0.14 * self.fit.relief)
+        start = ribbons.lifted(self.fit.to_plate(np.array([[truth.x, truth.y]])), 0.14 * self.fit.relief)
         lines = np.stack([np.repeat(start, len(tips), 0), tips], 1).astype(np.float32)
         self._sonar.points = ribbons.padded(lines, 8)
         echoes = np.full((8, 3), -50.0, np.float32)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-GAP = 0.14
+GAP = 0.1
 
 
 def spread(

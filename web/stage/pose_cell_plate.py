@@ -10,6 +10,7 @@ import viser
 
 from web.messages import PoseCellLayer, Snap
 from web.stage import images, ribbons
+from web.stage.camera_views import camera_for, seen_by
 from web.stage.cell_fit import SIDE, CellFit, broken_where_it_wraps
 from web.stage.glass_box import GlassBox
 from web.stage.paint import paint
@@ -26,6 +27,7 @@ PATH_SEGMENTS = 240
 DASHES = 48
 FLOOR_PX = 288
 PILL_M = 0.62
+LEAST_SHARE = 0.005  # a packet below shows as 0 %
 WEAKEST = 0.02  # of the strongest cell
 
 
@@ -119,21 +121,17 @@ class PoseCellPlate(Plate):
         self._voxels.batched_colors = colours
 
     def _draw_packets(self, layer: PoseCellLayer) -> None:
-        packets = layer.packets[:PACKETS]
+        packets = [packet for packet in layer.packets[:PACKETS] if packet.mass >= LEAST_SHARE]
         tops = np.array([self._fit.packet(p) for p in packets]).reshape(-1, 3)
         words = [f"{k + 1}   {packet.mass:.0%}".replace("%", " %") for k, packet in enumerate(packets)]
-        lean = math.sin(LEAN_RAD), math.cos(LEAN_RAD)
-        raised = tops + np.array([0.0, 0.0, 0.95])
-        seen = np.column_stack([raised[:, 0], raised[:, 1] * lean[1] + raised[:, 2] * lean[0]])
-        widths = np.array([pill_width(w, PILL_M) for w in words])
-        shifts = spread(seen, widths, PILL_M) - seen
+        places = pill_places(tops, np.array([pill_width(w, PILL_M) for w in words]))
         for k, pill in enumerate(self._pills):
             self._rings[k].visible = k < len(packets)
             if k >= len(packets):
                 pill.hide()
                 continue
-            x, y, z = raised[k] + (shifts[k, 0], shifts[k, 1] * lean[1], shifts[k, 1] * lean[0])
-            pill.show(words[k], self.palette.on_packet, (float(x), float(y), float(z)))
+            x, y, z = places[k].tolist()
+            pill.show(words[k], self.palette.on_packet, (x, y, z))
             self._rings[k].position = (float(tops[k, 0]), float(tops[k, 1]), 0.01)
         feet = tops * (1.0, 1.0, 0.0)
         drops = np.full((PACKETS, 2, 3), -50.0, np.float32)
@@ -154,6 +152,15 @@ class PoseCellPlate(Plate):
     def set_glow(self, layer: PoseCellLayer) -> None:
         """The floor's image: the activity projected onto x'y', in its packet's colour."""
         self._floor.image = images.upright(glow(layer, self._ground, self.palette))
+
+
+def pill_places(tops: np.ndarray, widths: np.ndarray) -> np.ndarray:
+    """(n, 3) places of pills above packets at `tops` (n, 3) that do not cover each other in the view of all plates."""
+    raised = tops + np.array([0.0, 0.0, 0.95])
+    seen, larger = seen_by(camera_for("all", 1.2), raised + np.array(ORIGIN))
+    height = PILL_M * float(larger.max(initial=1.0))
+    shift = (spread(seen, widths * larger, height) - seen) / larger[:, None]
+    return raised + np.column_stack([shift[:, 0], shift[:, 1] * math.cos(LEAN_RAD), shift[:, 1] * math.sin(LEAN_RAD)])
 
 
 def glow(layer: PoseCellLayer, ground: images.Pixels, palette: Palette) -> images.Pixels:

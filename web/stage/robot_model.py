@@ -13,7 +13,7 @@ from web.stage.palette import Palette
 from web.stage.signs import add_mesh
 
 ENLARGED = 1.25
-SMALLEST = 0.16  # plate units: stays visible in large worlds
+SMALLEST = 0.13  # plate units: stays visible in large worlds
 
 
 class RobotModel:
