@@ -29,7 +29,8 @@ class CellFit:
         """(p, 3) x, y in cells and heading to (p, 3) in the box."""
         x = (path[:, 0] + 0.5) / self.shape[2] % 1.0 * SIDE - SIDE / 2
         y = (path[:, 1] + 0.5) / self.shape[1] % 1.0 * SIDE - SIDE / 2
-        return np.column_stack([x, y, path[:, 2] % math.tau / math.tau * HEIGHT])
+        z = path[:, 2] % math.tau / math.tau * HEIGHT
+        return np.column_stack([x, y, z]).astype(np.float64)
 
     def packet(self, packet: Packet) -> Array:
         return self.path(np.array([[packet.x, packet.y, packet.heading_rad]]))[0]

@@ -75,8 +75,6 @@ class OfficePlate(Plate):
 
     def set_world(self, world: WorldDrawing) -> None:
         """Draws another office: floor with its shadows, walls, furniture, posters."""
-        if world is self.world:
-            return
         self.world, self.fit = world, OfficeFit(world.bounds)
         self._walls = np.asarray(world.walls, np.float64)
         self.robot.resize(self.fit.scale * max(world.robot_radius_m, 0.05))
