@@ -1,4 +1,4 @@
-"""The one port's routes: the page, the state, commands, the page's stream, and the way to viser. See docs/dashboard.md."""
+"""The one port's routes: the page, the state, commands, the page's stream, and the way to viser."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def _add_state(app: FastAPI, latest: Latest[Snapshot], stream: Stream) -> None:
     async def state(
         full: int = Query(0, alias="map", ge=0, le=1, description="1: with the map's nodes, `ids` and `xy`"),
     ) -> Response:
-        """The newest snapshot. SI units and radians; numbers that are not finite are null; speed 0 = as fast as possible."""
+        """The newest snapshot. SI and radians; numbers that are not finite are null; speed 0 = as fast as possible."""
         _, snapshot = latest.get()
         if snapshot is None:
             return _json(problem("the engine has not finished its first tick yet; try again in a moment"), 503)

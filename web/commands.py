@@ -37,7 +37,7 @@ class CommandAccepted(BaseModel):
     tick: int
 
 
-class Malformed(ValueError):
+class Malformed(ValueError):  # noqa: N818
     """A command that cannot be carried out; `wrongs` says why, field by field."""
 
     def __init__(self, wrongs: list[dict[str, Any]]) -> None:
@@ -84,8 +84,8 @@ def problem_of(refused: Refused) -> list[dict[str, Any]]:
 def _explain(document: dict[str, Any], error: ValidationError) -> list[dict[str, Any]]:
     wrongs: dict[str, dict[str, Any]] = {}
     for item in error.errors(include_url=False):
-        kind, where, value = item["type"], item["loc"], item["input"]
-        field = str(where[1]) if len(where) > 1 else "type"
+        kind, where, value = item["type"], [str(part) for part in item["loc"]], item["input"]
+        field = where[1] if len(where) > 1 else "type"
         if field == "type":
             value = document.get("type")
             reason = "is missing" if "type" not in document else f"{_shown(value)} is not a command"
@@ -94,7 +94,7 @@ def _explain(document: dict[str, Any], error: ValidationError) -> list[dict[str,
             reason = f"{field} must be a number, true, false or text of at most 64 characters, got {_shown(value)}"
         else:
             value = None if kind == "missing" else value
-            reason = f"{field} {_rule(str(where[0]), kind, item.get('ctx', {}), item['msg'], value)}"
+            reason = f"{field} {_rule(where[0], kind, item.get('ctx', {}), item['msg'], value)}"
         wrongs.setdefault(field, wrong(field, value, reason))
     return list(wrongs.values())
 

@@ -2,28 +2,32 @@
 
 viser listens on loopback on a port of its own and checks nobody; everything reaches it through here, after the guard.
 Its client is a single page, so that one path is all that is served of it: there is nothing to traverse.
-Every page brings an unguessable id; viser numbers its clients when their first camera message arrives, so that message is
-let through one page at a time and the number that appears then is that page's.
+Every page brings an unguessable id; viser numbers its clients when their first camera message arrives, so that message
+is let through one page at a time and the number that appears then is that page's.
 """
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import gzip
 import hashlib
 import re
 import urllib.request
 from collections.abc import Awaitable, Callable
-from typing import Protocol
+from typing import Literal, Protocol
 
 import websockets
 from starlette.requests import Request
 from starlette.responses import Response
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 from websockets.asyncio.client import ClientConnection
 
 VIEWS = ("all", "office", "pose", "map")
+Theme = Literal["dark", "light"]
 PAGE_ID = re.compile(r"[A-Za-z0-9_-]{22,64}")
 SEND_TIMEOUT_S = 10.0
+CLOSE_TIMEOUT_S = 1.0
 PAIRING_S = 2.0
 MOST_CLIENTS = 32
 
@@ -38,7 +42,7 @@ class StageLike(Protocol):
     def start(self) -> None: ...
     def stop(self) -> None: ...
     def fly(self, client_id: int, view: str) -> None: ...
-    def set_theme(self, theme: str) -> None: ...
+    def set_theme(self, theme: Theme) -> None: ...
 
 
 class Cameras:
@@ -75,7 +79,8 @@ class Cameras:
                 self._overdue.remove(page)
             try:
                 await pass_on()
-                self._client_of[page] = await asyncio.wait_for(self._arrival, PAIRING_S)
+                async with asyncio.timeout(PAIRING_S):
+                    self._client_of[page] = await self._arrival
             except TimeoutError:
                 self._overdue.append(page)
                 return False
@@ -105,7 +110,7 @@ class ViserProxy:
     def __init__(self, stage: StageLike, cameras: Cameras) -> None:
         self._stage = stage
         self._cameras = cameras
-        self._client_page: tuple[bytes, str] | None = None  # gzipped, its ETag
+        self._client_page: tuple[bytes, bytes, str] | None = None  # as it is, gzipped, its ETag
         self._open = 0
 
     @property
@@ -116,11 +121,14 @@ class ViserProxy:
         """viser's client, fetched from it once."""
         if self._client_page is None:
             body = await asyncio.to_thread(_fetch, f"http://127.0.0.1:{self._stage.port}/")
-            self._client_page = body, f'"{hashlib.sha256(body).hexdigest()[:24]}"'
-        body, tag = self._client_page
-        headers = {"ETag": tag, "Cache-Control": "no-cache", "Content-Encoding": "gzip"}
+            tag = f'"{hashlib.sha256(body).hexdigest()[:24]}"'
+            self._client_page = body, await asyncio.to_thread(gzip.compress, body), tag
+        body, packed, tag = self._client_page
+        headers = {"ETag": tag, "Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
         if request.headers.get("if-none-match") == tag:
             return Response(status_code=304, headers=headers)
+        if "gzip" in request.headers.get("accept-encoding", ""):
+            return Response(packed, headers={**headers, "Content-Encoding": "gzip"}, media_type="text/html")
         return Response(body, headers=headers, media_type="text/html")
 
     async def relay(self, browser: WebSocket, page: str) -> None:
@@ -142,6 +150,7 @@ class ViserProxy:
         finally:
             self._open -= 1
             self._cameras.unpair(page)
+            await close_quietly(browser)
 
     async def _both_ways(self, browser: WebSocket, viser: ClientConnection, page: str) -> None:
         tasks = {
@@ -151,9 +160,7 @@ class ViserProxy:
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            for task in tasks:
-                task.cancel()
-            await asyncio.gather(*tasks, return_exceptions=True)
+            await end_all(tasks)
 
     async def _to_viser(self, browser: WebSocket, viser: ClientConnection, page: str) -> None:
         while True:
@@ -170,13 +177,31 @@ class ViserProxy:
 async def _to_browser(viser: ClientConnection, browser: WebSocket) -> None:
     async for message in viser:
         data = message if isinstance(message, bytes) else message.encode()
-        await asyncio.wait_for(browser.send_bytes(data), SEND_TIMEOUT_S)
+        async with asyncio.timeout(SEND_TIMEOUT_S):  # not wait_for, which may swallow a cancellation
+            await browser.send_bytes(data)
+
+
+async def end_all(tasks: set[asyncio.Task[None]]) -> None:
+    """Cancel these tasks and see them end; what they raised concerned a browser that is gone."""
+    for task in tasks:
+        task.cancel()
+    await asyncio.wait(tasks)
+    for task in tasks:
+        if not task.cancelled():
+            task.exception()
+
+
+async def close_quietly(socket: WebSocket, code: int = 1000) -> None:
+    """Say goodbye to a browser that is still there, without waiting for one that takes nothing."""
+    if socket.client_state is WebSocketState.CONNECTED:
+        with contextlib.suppress(Exception):
+            async with asyncio.timeout(CLOSE_TIMEOUT_S):
+                await socket.close(code)
 
 
 def _fetch(url: str) -> bytes:
-    request = urllib.request.Request(url, headers={"Accept-Encoding": "gzip"})
     opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))  # never through a proxy
-    with opener.open(request, timeout=10) as answer:
+    with opener.open(url, timeout=10) as answer:
         return answer.read()
 
 

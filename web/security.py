@@ -1,7 +1,7 @@
 """Who may talk to the server: exact Host and Origin, JSON only, bounded bodies, and the headers that bind the browser.
 
 A local server is reachable by every page its user has open (DNS rebinding, cross-site websockets), so the check is pure
-ASGI: it runs before a websocket is accepted, which ordinary HTTP middleware does not. Rules, with the sentences they give:
+ASGI: it runs before a websocket is accepted, which ordinary HTTP middleware does not. The rules:
 
 - Host must be one of ours with our port, once. Missing or repeated: 400. Anything else: 403.
 - Origin, where there is one, must be "http://" + that Host. A websocket must have one (browsers always send it, so

@@ -24,7 +24,7 @@ MAX_FRAME_BYTES = 64 * 1024
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-class CannotListen(Exception):
+class CannotListen(Exception):  # noqa: N818
     """The address cannot be had; the message says why and what to do."""
 
 

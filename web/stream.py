@@ -1,8 +1,8 @@
 """The page's websocket: the newest state to everyone about ten times a second, and commands back.
 
 Out: {"type": "hello", ...} once, {"type": "state", "state": <contract>, "page": ...}, {"type": "events", ...} and
-{"type": "answer", "id", ...} to a command that carried an id or went wrong. In: any command of `POST /api/commands` with
-an optional "id", and two that concern the page alone: {"type": "view", "name"} and {"type": "theme", "name"}.
+{"type": "answer", "id", ...} to a command that carried an id or went wrong. In: any command of `POST /api/commands`
+with an optional "id", and two that concern pages alone: {"type": "view", "name"} and {"type": "theme", "name"}.
 Each browser has its own sender, newest wins; one that takes nothing for five seconds is let go.
 """
 
@@ -19,7 +19,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from web.commands import Malformed, check, problem_of, read_object, wrong
 from web.latest import Latest
 from web.messages import Accepted, Command, Drive, Refused, Snapshot
-from web.proxy import VIEWS, Cameras, StageLike
+from web.proxy import VIEWS, Cameras, StageLike, Theme, close_quietly, end_all
 from web.security import Limits
 from web.state import StateText, event_fields, to_json
 
@@ -29,10 +29,10 @@ PERIOD_S = 0.09
 SEND_TIMEOUT_S = 5.0
 ANSWER_TIMEOUT_S = 3.0
 MOST_CLIENTS = 32
-THEMES = ("dark", "light")
+THEMES: tuple[Theme, ...] = ("dark", "light")
 
 
-class NoAnswer(Exception):
+class NoAnswer(Exception):  # noqa: N818
     """The engine did not answer in time, or failed at the command; `status` is what HTTP calls that."""
 
     def __init__(self, status: int, reason: str) -> None:
@@ -65,7 +65,8 @@ class Client:
         self.answers: set[asyncio.Task[None]] = set()
 
     async def send(self, text: bytes) -> None:
-        await asyncio.wait_for(self.socket.send_text(text.decode()), SEND_TIMEOUT_S)
+        async with asyncio.timeout(SEND_TIMEOUT_S):  # not wait_for, which may swallow a cancellation
+            await self.socket.send_text(text.decode())
 
 
 class Stream:
@@ -73,7 +74,7 @@ class Stream:
 
     def __init__(self, latest: Latest[Snapshot], submit: Submit, stage: StageLike, cameras: Cameras) -> None:
         self.text = StateText()
-        self.theme: str | None = None  # of all pages and the stage, once somebody chose
+        self.theme: Theme | None = None  # of all pages and the stage, once somebody chose
         self._launch = secrets.token_urlsafe(12)
         self._latest = latest
         self._submit = submit
@@ -108,10 +109,9 @@ class Stream:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
             self._clients.discard(client)
-            for task in tasks | client.answers:
-                task.cancel()
-            await asyncio.gather(*tasks, *client.answers, return_exceptions=True)
             self._stop_robot_of(client)
+            await end_all(tasks | client.answers)
+            await close_quietly(socket)
 
     # ------------------------------------------------------------ out
 
@@ -170,8 +170,9 @@ class Stream:
             name = _choice(document, VIEWS)
             self._background(client, self._cameras.show(client.page, name))
         elif kind == "theme":
-            self.theme = _choice(document, THEMES)
-            self._background(client, asyncio.to_thread(self._stage.set_theme, self.theme))
+            theme: Theme = "light" if _choice(document, THEMES) == "light" else "dark"
+            self.theme = theme
+            self._background(client, asyncio.to_thread(self._stage.set_theme, theme))
             self._wake()
         else:
             command = check(document)
@@ -204,11 +205,11 @@ class Stream:
 
 
 def _choice(document: dict[str, Any], names: tuple[str, ...]) -> str:
-    name = document.get("name")
-    if set(document) != {"type", "name"} or name not in names:
-        reason = f"{document['type']} takes name, one of: {', '.join(names)}"
-        raise Malformed([wrong("name", name, reason)])
-    return str(name)
+    for name in names:
+        if document == {"type": document["type"], "name": name}:
+            return name
+    reason = f"{document['type']} takes name, one of: {', '.join(names)}"
+    raise Malformed([wrong("name", document.get("name"), reason)])
 
 
 def _answer(identity: object, status: int, detail: list[dict[str, Any]]) -> bytes:

@@ -10,6 +10,7 @@ import math
 import queue
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import replace
 
@@ -95,7 +96,7 @@ class FakeStage:
     """A box where the stage will be."""
 
     def __init__(self) -> None:
-        self.on_connect = None
+        self.on_connect: Callable[[int], None] | None = None
         self.flights: list[tuple[int, str]] = []
         self.port = 0
 
