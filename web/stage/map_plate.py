@@ -20,7 +20,8 @@ ORIGIN = (5.85, -2.2, 0.0)
 SHEET = (11.0, 10.0, -0.5, 0.45)
 NODE_Z, LINK_Z, ARROW_Z = 0.05, 0.03, 0.22
 ARROW = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)])
-BAR = (3.0, 0.26)
+BAR = (2.7, 0.26)
+BAR_X = 3.65
 GRID_LINES = 48
 
 
@@ -45,7 +46,11 @@ class MapPlate(Plate):
                 scene, f"{self.root}/clicked/ring_{k}", ribbons.ring(radius, 0.06, 0.09), palette.lit(palette.goal)
             )
         self._bar = add_picture(
-            scene, f"{self.root}/bar", images.colour_bar(palette.ramp), *BAR, position=(3.4, self.front + 1.08, TEXT_Z)
+            scene,
+            f"{self.root}/bar",
+            images.colour_bar(palette.ramp),
+            *BAR,
+            position=(BAR_X, self.front + 1.08, TEXT_Z),
         )
         self._bar_ends = [Sign(scene, f"{self.root}/bar_{k}", 0.34, anchor=a) for k, a in enumerate(("left", "right"))]
         self._empty = Sign(scene, f"{self.root}/empty", 0.42, anchor="centre")
@@ -110,7 +115,7 @@ class MapPlate(Plate):
         colours[: len(kept)] = self.palette.times(kept, longest)
         self._nodes.colors = colours
         ink = self.palette.text_2
-        left, right, at = 3.4 - BAR[0] / 2, 3.4 + BAR[0] / 2, self.front + 0.62
+        left, right, at = BAR_X - BAR[0] / 2, BAR_X + BAR[0] / 2, self.front + 0.62
         self._bar_ends[0].show(images.text("0 s", ink, 64), (left, at, TEXT_Z))
         self._bar_ends[1].show(images.text(seconds_words(longest), ink, 64), (right, at, TEXT_Z))
         words = "time to goal" if times.to_goal else "time from robot"

@@ -10,7 +10,7 @@ from web.messages import Pose, Senses, WorldDrawing
 from web.stage import ribbons
 from web.stage.furniture import add_floor, add_furniture
 from web.stage.office_fit import OfficeFit
-from web.stage.paint import paint
+from web.stage.paint import vertex_paint
 from web.stage.palette import Palette, mix
 from web.stage.plate import FLOOR_Z, Plate
 from web.stage.robot_model import RobotModel
@@ -121,7 +121,7 @@ class OfficePlate(Plate):
         points[jumps] = -50.0
         ages = np.linspace(0.0, 1.0, len(points) + 1) ** 0.7
         floor, line = np.array(self.palette.floor), np.array(self.palette.true_path)
-        tints = paint(floor + (line - floor) * (0.08 + 0.92 * ages[:, None]))
+        tints = vertex_paint(floor + (line - floor) * (0.08 + 0.92 * ages[:, None]))
         colours = np.zeros((TRAIL_SEGMENTS, 2, 3), np.uint8)
         colours[: len(points)] = np.stack([tints[:-1], tints[1:]], 1)
         self._trail.points = ribbons.padded(points, TRAIL_SEGMENTS)

@@ -49,6 +49,11 @@ def paint(colour: ArrayLike) -> NDArray[np.uint8]:
     return to_srgb(before_film(to_linear(colour)))
 
 
+def vertex_paint(colour: ArrayLike) -> NDArray[np.uint8]:
+    """The same for lines with a colour at each end, whose bytes are taken as linear light."""
+    return np.rint(np.clip(before_film(to_linear(colour)), 0, 1) * 255).astype(np.uint8)
+
+
 def lit_paint(colour: ArrayLike, light: ArrayLike) -> NDArray[np.uint8]:
     """sRGB paint that shows as `colour` (..., 3) on a mesh that `light` falls on."""
     return to_srgb(before_film(to_linear(colour)) / np.asarray(light) - GLOSS)

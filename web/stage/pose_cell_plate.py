@@ -13,7 +13,7 @@ from web.stage import images, ribbons
 from web.stage.camera_views import camera_for, seen_by
 from web.stage.cell_fit import SIDE, CellFit, broken_where_it_wraps
 from web.stage.glass_box import GlassBox
-from web.stage.paint import paint
+from web.stage.paint import vertex_paint
 from web.stage.palette import Palette
 from web.stage.pill_layout import spread
 from web.stage.plate import FLOOR_Z, Plate
@@ -57,7 +57,7 @@ class PoseCellPlate(Plate):
         self._snap = scene.add_line_segments(
             f"{self.root}/snap", nowhere[:DASHES], palette.drawn(palette.goal), thickness=0.05
         )
-        drops = np.repeat(paint(palette.packets)[:, None], 2, 1)
+        drops = np.repeat(vertex_paint(palette.packets)[:, None], 2, 1)
         self._drops = scene.add_line_segments(f"{self.root}/drops", nowhere[:PACKETS], drops, thickness=0.03)
         self._rings = [
             add_mesh(scene, f"{self.root}/ring_{k}", ribbons.ring(0.36, 0.05), palette.lit(colour), visible=False)
