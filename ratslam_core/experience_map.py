@@ -7,13 +7,16 @@ link is a transition that the robot made: distance, bearing and change of facing
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core import map_correction
 from ratslam_core.params import ExperienceMapParams
-from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, wrap_angle
+from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, wrap_angle
+
+NOWHERE_M = 0.5  # an experience of a view that shows nothing is only known to be somewhere in its zone
 
 
 class ExperienceMap:
@@ -27,6 +30,10 @@ class ExperienceMap:
         self._view = np.zeros(1024, np.int64)
         self._ends = np.zeros((1024, 2), np.int64)
         self._move = np.zeros((1024, 3))  # dx, dy in the frame of the first experience, change of facing
+        self._weight = np.zeros(1024)
+        self._turning = np.zeros(1024)  # seconds of each link during which the wheels turned
+        self.yaw_bias = 0.0  # rad/s, learnt
+        self._turning_s = self._turning_from_latest_s = 0.0
         self._time = np.zeros(1024)
         self._times_made = np.zeros(1024, np.int64)
         self._graph = map_correction.Adjacency()
@@ -34,8 +41,14 @@ class ExperienceMap:
         self._link_of: dict[tuple[int, int], int] = {}
         self._of_view: dict[int, list[int]] = {}
         self.active = -1
-        self._offset = IDENTITY  # the robot in the frame of the active experience when it became active
+        self._offset = IDENTITY  # the robot in the frame of the active experience when it was seen best
+        self._sigma = 0.0  # how well that is known, m
         self._travel = IDENTITY  # odometry since then
+        self._arrival: _Arrival | None = None
+        self._latest = -1  # the experience made last: where it was made is known exactly
+        self._from_latest = IDENTITY  # odometry since then
+        self._way_m = self._way_from_latest_m = 0.0
+        self._travelled = np.zeros(1024, np.bool_)
         self._since_s = 0.0
         self.closures = 0  # links made to experiences that existed before
         self._solved_at = self._links_at_solve = 0
@@ -48,7 +61,7 @@ class ExperienceMap:
 
     @property
     def link_count(self) -> int:
-        return self._links
+        return len(self._link_of)
 
     @property
     def poses(self) -> NDArray[np.float64]:
@@ -57,18 +70,18 @@ class ExperienceMap:
 
     @property
     def links(self) -> NDArray[np.int64]:
-        """From and to of every link, shape (m, 2). A view."""
-        return self._ends[: self._links]
+        """From and to of every link, shape (m, 2)."""
+        return self._ends[: self._links][self._travelled[: self._links]]
 
     @property
     def moves(self) -> NDArray[np.float64]:
-        """Of every link: dx, dy (m) in the frame of the first experience and change of facing (rad), shape (m, 3). A view."""
-        return self._move[: self._links]
+        """Of every link: dx, dy (m) in the frame of the first experience and change of facing (rad), shape (m, 3)."""
+        return self._move[: self._links][self._travelled[: self._links]]
 
     @property
     def link_times(self) -> NDArray[np.float64]:
-        """Seconds that each transition takes, shape (m,). A view."""
-        return self._time[: self._links]
+        """Seconds that each transition takes, shape (m,)."""
+        return self._time[: self._links][self._travelled[: self._links]]
 
     @property
     def local_pose(self) -> Pose2:
@@ -100,28 +113,35 @@ class ExperienceMap:
 
     # ------------------------------------------------------------ learning
 
-    def step(self, packet: Packet, view: int, odometry: Odometry) -> bool:
+    def step(self, packet: Packet, seen: Recognition, odometry: Odometry) -> bool:
         """One step: the robot moved as the odometry says and is now in this state. True when a new experience was made."""
         self._steps += 1
         if self.active < 0:
-            self._create(packet, view, IDENTITY)
+            self._create(packet, seen.view, IDENTITY)
             return True
         middle = odometry.yaw_rate * odometry.dt / 2
         step = odometry.speed * odometry.dt
         moved = Pose2(step * math.cos(middle), step * math.sin(middle), wrap_angle(2 * middle))
-        self._travel = self._travel.compose(moved)
+        turning_s = odometry.dt * (odometry.speed != 0 or odometry.yaw_rate != 0)
+        self._travel, self._from_latest = self._travel.compose(moved), self._from_latest.compose(moved)
+        self._way_m += abs(step)
+        self._way_from_latest_m += abs(step)
+        self._turning_s += turning_s
+        self._turning_from_latest_s += turning_s
         self._since_s += odometry.dt
-        best = self._most_energetic(packet, view)
-        if best == self.active:
-            return False
+        best = self._most_energetic(packet, seen.view)
         if best < 0:
-            before = self.active
-            self._create(packet, view, self.robot)
-            self._learn_link(before, self.active, self._came)
+            before, came, sigma = self.active, self.local_pose, self._sigma
+            self._create(packet, seen.view, self.robot)
+            self._learn_link(before, came, sigma)
+            self._learn_spine(before)
             return True
-        before, came = self.active, self.local_pose
-        self._enter(best, packet)
-        self._learn_link(before, best, came.compose(self._offset.inverse()))
+        if best != self.active:
+            before, came, sigma = self.active, self.local_pose, self._sigma
+            self._enter(best, packet, seen)
+            self._learn_link(before, came, sigma)
+        elif self._arrival is not None and self._deviation(seen) < self._sigma:
+            self._see_better(seen)
         return False
 
     def correct(self) -> None:
@@ -132,10 +152,19 @@ class ExperienceMap:
         test_map_correction.py::{test_a_sweep_never_raises_the_residual, test_sweeps_and_solution_agree}.
         """
         for _ in range(self.params.sweeps):
-            map_correction.sweep(self._pose[: self._count], self._graph, self._ends, self._move, self.params.correction)
+            map_correction.sweep(
+                self._pose[: self._count], self._graph, self._ends, self._move, self._weight, self.params.correction
+            )
         due = self.params.solve_every and self._steps - self._solved_at >= self.params.solve_every
         if due and self.closures > self._links_at_solve:
-            map_correction.solve(self._pose[: self._count], self.links, self.moves)
+            rows = slice(self._links)
+            turning = self._turning[rows] if self.params.calibrate else None
+            more = map_correction.solve(
+                self._pose[: self._count], self._ends[rows], self._move[rows], self._weight[rows], turning
+            )
+            if turning is not None:
+                self.yaw_bias += more
+                self._move[: self._links, 2] -= more * turning
             self._solved_at, self._links_at_solve = self._steps, self.closures
 
     # ------------------------------------------------------------ inside
@@ -170,41 +199,109 @@ class ExperienceMap:
         self._of_view.setdefault(view, []).append(i)
         self._graph.add_node()
         self._count += 1
-        self._came = self.local_pose
-        self.active, self._offset, self._travel = i, IDENTITY, IDENTITY
+        self.active, self._offset, self._travel, self._sigma = i, IDENTITY, IDENTITY, 0.0
 
-    def _enter(self, experience: int, packet: Packet) -> None:
+    def _enter(self, experience: int, packet: Packet, seen: Recognition) -> None:
         """Make an experience active; the robot may enter its zone beside its centre."""
         dx, dy, dtheta = self._cells_from(experience, packet)
         facing = self._at[experience, 2] * 2 * math.pi / self.shape[0]
         c, s = math.cos(facing), math.sin(facing)
         dx, dy = dx * self.cell_m, dy * self.cell_m
-        self._offset = Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(dtheta * 2 * math.pi / self.shape[0]))
-        self._travel, self.active = IDENTITY, experience
+        turn = seen.facing_rad if seen.view >= 0 else dtheta * 2 * math.pi / self.shape[0]
+        self._offset = Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(turn))
+        self._travel, self.active, self._sigma = IDENTITY, experience, self._deviation(seen)
 
-    def _learn_link(self, i: int, j: int, move: Pose2) -> None:
-        """The transition i -> j took this move and this time; repeats are averaged. ACRA 2006 eqs. 5-6."""
+    def _deviation(self, seen: Recognition) -> float:
+        """How far (m) the robot may be from where a view was taken that differs so much."""
+        return self.params.anchor_sigma * seen.difference if seen.view >= 0 else NOWHERE_M
+
+    def _see_better(self, seen: Recognition) -> None:
+        """[ours] The robot is nearer to where the active experience was made than before: measure the way here anew.
+
+        test_experience_map.py::test_the_best_look_decides_the_transition.
+        """
+        arrival = self._arrival
+        assert arrival is not None
+        arrival.came = arrival.came.compose(self._travel)
+        self._offset, self._travel = Pose2(0.0, 0.0, seen.facing_rad), IDENTITY
+        self._sigma = self._deviation(seen)
+        self._measure(arrival)
+
+    def _learn_link(self, i: int, came: Pose2, sigma: float) -> None:
+        """The transition i -> active took this move and this time; repeats are averaged. ACRA 2006 eqs. 5-6.
+
+        came: the robot in the frame of i as it arrived; sigma: how well its place in i was known.
+        """
+        j = self.active
         link = self._link_of.get((i, j))
         if link is None:
-            if self._links == len(self._ends):
-                self._ends, self._move = _double(self._ends), _double(self._move)
-                self._time, self._times_made = _double(self._time), _double(self._times_made)
-            link = self._links
-            self._link_of[i, j] = link
-            self._ends[link] = i, j
-            self._links += 1
-            self._graph.add_link(i, j)
-            if j != self._count - 1:
-                self.closures += 1
+            link = self._link_of[i, j] = self._new_row(i, j, travelled=True)
+            self.closures += j != self._count - 1
         n = self._times_made[link]
-        share = 1.0 / (n + 1)
-        old = self._move[link]
-        turn = wrap_angle(move.heading_rad - old[2])
-        old += share * (move.x - old[0]), share * (move.y - old[1]), share * turn
-        old[2] = wrap_angle(float(old[2]))
-        self._time[link] += share * (self._since_s - self._time[link])
+        self._time[link] += (self._since_s - self._time[link]) / (n + 1)
+        self._turning[link] += (self._turning_s - self._turning[link]) / (n + 1)
         self._times_made[link] = n + 1
-        self._since_s = 0.0
+        self._since_s = self._turning_s = 0.0
+        sigma = math.hypot(sigma, self.params.odometry_drift * self._way_m)
+        self._way_m = 0.0
+        self._arrival = _Arrival(link, self._move[link].copy(), float(self._weight[link]), came, sigma)
+        self._measure(self._arrival)
+
+    def _learn_spine(self, before: int) -> None:
+        """[ours] What odometry says between an experience and the one made before it, when known ones lie between.
+
+        Only for map correction, never travelled: without it a stretch over known experiences, each known to some
+        decimetres only, cuts the rigid chain of odometry, and the map shrinks.
+        """
+        if self._latest >= 0 and self._latest != before:
+            link = self._new_row(self._latest, self.active, travelled=False)
+            move = self._from_latest
+            sigma = self.params.odometry_drift * self._way_from_latest_m
+            self._move[link] = move.x, move.y, move.heading_rad
+            self._weight[link] = self._weight_of(sigma)
+            self._turning[link] = self._turning_from_latest_s
+        self._latest, self._from_latest = self.active, IDENTITY
+        self._way_from_latest_m = self._turning_from_latest_s = 0.0
+
+    def _weight_of(self, sigma: float) -> float:
+        """[ours] What a transition counts in map correction: 1 by odometry over a step, less the worse its ends are known.
+
+        With anchor_sigma and odometry_drift 0 every transition counts the same, as in the papers.
+        """
+        least = self.params.odometry_sigma**2
+        return least / (least + sigma**2)
+
+    def _new_row(self, i: int, j: int, *, travelled: bool) -> int:
+        if self._links == len(self._ends):
+            self._ends, self._move, self._travelled = _double(self._ends), _double(self._move), _double(self._travelled)
+            self._time, self._times_made = _double(self._time), _double(self._times_made)
+            self._weight, self._turning = _double(self._weight), _double(self._turning)
+        row = self._links
+        self._ends[row], self._travelled[row] = (i, j), travelled
+        self._links += 1
+        self._graph.add_link(i, j)
+        return row
+
+    def _measure(self, arrival: _Arrival) -> None:
+        """Average what this transition says of its move into its link, each passage by its weight."""
+        move = arrival.came.compose(self._offset.inverse())
+        weight = self._weight_of(math.hypot(arrival.sigma, self._sigma))
+        share = weight / (arrival.weight + weight)
+        old = arrival.move
+        turn = old[2] + share * wrap_angle(move.heading_rad - old[2])
+        self._move[arrival.link] = old[0] + share * (move.x - old[0]), old[1] + share * (move.y - old[1]), wrap_angle(turn)
+        self._weight[arrival.link] = arrival.weight + weight
+
+
+@dataclass(slots=True)
+class _Arrival:
+    """The transition that led to the active experience, as long as it may be measured better."""
+
+    link: int
+    move: NDArray[np.float64]  # of the link before this passage
+    weight: float
+    came: Pose2  # the robot in the frame of the experience before, when the active one was seen best
+    sigma: float
 
 
 def _double(array: NDArray) -> NDArray:

@@ -45,38 +45,56 @@ class LocalView:
         """
         self.template = template = grey_template(image)
         column_major = np.ascontiguousarray(template.T).reshape(1, -1)
-        best, difference = self._nearest(column_major)
+        best, difference, shift = self._nearest(column_major)
         if float(template.std()) < self.params.min_contrast:
             self.recognition = Recognition(NOTHING, False, best, difference)
         elif difference <= self.params.match_threshold:
-            self.recognition = Recognition(best, False, best, difference)
+            facing = self._sub_column(column_major, best, shift) * self.params.field_of_view / COLUMNS
+            self.recognition = Recognition(best, False, best, difference, facing)
         else:
             self._recruit(column_major)
             self.recognition = Recognition(self._count - 1, True, best, difference)
         return self.recognition
 
-    def _nearest(self, template: NDArray[np.uint8]) -> tuple[int, float]:
-        """The most similar known view and the mean absolute difference to it over the columns that overlap."""
-        best, least = NOTHING, math.inf
+    def _nearest(self, template: NDArray[np.uint8]) -> tuple[int, float, int]:
+        """The most similar known view, the mean absolute difference over the columns that overlap, and the shift."""
+        best, least, at = NOTHING, math.inf, 0
         if self._count == 0:
-            return best, least
+            return best, least, at
         known = self._templates[: self._count]
         for shift in range(-self.params.shift, self.params.shift + 1):
-            width = (COLUMNS - abs(shift)) * ROWS
-            here, there = max(shift, 0) * ROWS, max(-shift, 0) * ROWS
+            here, there, width = _overlap(shift)
             distance, which = cv2.batchDistance(
                 template[:, here : here + width], known[:, there : there + width], cv2.CV_32S, normType=cv2.NORM_L1, K=1
             )
             mean = float(distance[0, 0]) / width
             if mean < least:
-                best, least = int(which[0, 0]), mean
-        return best, least
+                best, least, at = int(which[0, 0]), mean, shift
+        return best, least, at
+
+    def _sub_column(self, template: NDArray[np.uint8], view: int, shift: int) -> float:
+        """The shift in fractions of a column: where the two flanks of the difference around its least value meet."""
+        if self.params.shift == 0:
+            return 0.0
+        left, least, right = (_difference(template[0], self._templates[view], shift + k) for k in (-1, 0, 1))
+        steepest = max(left, right) - least
+        return shift + (left - right) / (2 * steepest) if steepest > 0 else float(shift)
 
     def _recruit(self, template: NDArray[np.uint8]) -> None:
         if self._count == len(self._templates):
             self._templates = np.concatenate([self._templates, np.zeros_like(self._templates)])
         self._templates[self._count] = template
         self._count += 1
+
+
+def _overlap(shift: int) -> tuple[int, int, int]:
+    """Where the columns that overlap begin in the new and in the stored template, and how many values they hold."""
+    return max(shift, 0) * ROWS, max(-shift, 0) * ROWS, (COLUMNS - abs(shift)) * ROWS
+
+
+def _difference(a: NDArray[np.uint8], b: NDArray[np.uint8], shift: int) -> float:
+    here, there, width = _overlap(shift)
+    return float(cv2.norm(a[here : here + width], b[there : there + width], cv2.NORM_L1)) / width
 
 
 def grey_template(image: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -17,13 +17,11 @@ class Adjacency:
     def __init__(self) -> None:
         self.first = np.full(1024, -1, np.int64)
         self.following = np.full(2048, -1, np.int64)
-        self.degree = np.zeros(1024, np.int64)
         self._nodes = self._links = 0
 
     def add_node(self) -> None:
         if self._nodes == len(self.first):
             self.first = np.concatenate([self.first, np.full_like(self.first, -1)])
-            self.degree = np.concatenate([self.degree, np.zeros_like(self.degree)])
         self._nodes += 1
 
     def add_link(self, i: int, j: int) -> None:
@@ -32,26 +30,30 @@ class Adjacency:
         for end, node in ((0, i), (1, j)):
             self.following[2 * self._links + end] = self.first[node]
             self.first[node] = 2 * self._links + end
-            self.degree[node] += 1
         self._links += 1
 
 
 def sweep(
-    poses: NDArray[np.float64], graph: Adjacency, ends: NDArray[np.int64], moves: NDArray[np.float64], alpha: float
+    poses: NDArray[np.float64],
+    graph: Adjacency,
+    ends: NDArray[np.int64],
+    moves: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    alpha: float,
 ) -> None:
     """One sweep over all experiences but the first, each moved by 2 alpha of its links' mean residual, in place."""
-    _sweep(poses, graph.first, graph.following, graph.degree, ends, moves, 2 * alpha)
+    _sweep(poses, graph.first, graph.following, ends, moves, weights, 2 * alpha)
 
 
 @njit(cache=True, nogil=True)
-def _sweep(poses, first, following, degree, ends, moves, gain):
+def _sweep(poses, first, following, ends, moves, weights, gain):
     """dth_i = alpha [sum wrap(...)] / links, then dx_i, dy_i the same. B eqs. 12-14, divided by the degree."""
     turn = 2.0 * math.pi
     for i in range(1, poses.shape[0]):
-        if degree[i] == 0:
-            continue
-        dth = 0.0
+        dth = total = 0.0
         at = first[i]
+        if at < 0:
+            continue
         while at >= 0:
             link = at >> 1
             if at & 1:
@@ -59,9 +61,10 @@ def _sweep(poses, first, following, degree, ends, moves, gain):
             else:
                 want = poses[ends[link, 1], 2] - moves[link, 2]
             error = want - poses[i, 2]
-            dth += error - turn * np.round(error / turn)
+            dth += weights[link] * (error - turn * np.round(error / turn))
+            total += weights[link]
             at = following[at]
-        heading = poses[i, 2] + gain * dth / degree[i]
+        heading = poses[i, 2] + gain * dth / total
         poses[i, 2] = heading - turn * np.round(heading / turn)
         dx = dy = 0.0
         at = first[i]
@@ -74,17 +77,24 @@ def _sweep(poses, first, following, degree, ends, moves, gain):
             mx = c * moves[link, 0] - s * moves[link, 1]
             my = s * moves[link, 0] + c * moves[link, 1]
             if at & 1:
-                dx += poses[a, 0] + mx - poses[i, 0]
-                dy += poses[a, 1] + my - poses[i, 1]
+                dx += weights[link] * (poses[a, 0] + mx - poses[i, 0])
+                dy += weights[link] * (poses[a, 1] + my - poses[i, 1])
             else:
-                dx += poses[b, 0] - mx - poses[i, 0]
-                dy += poses[b, 1] - my - poses[i, 1]
+                dx += weights[link] * (poses[b, 0] - mx - poses[i, 0])
+                dy += weights[link] * (poses[b, 1] - my - poses[i, 1])
             at = following[at]
-        poses[i, 0] += gain * dx / degree[i]
-        poses[i, 1] += gain * dy / degree[i]
+        poses[i, 0] += gain * dx / total
+        poses[i, 1] += gain * dy / total
 
 
-def solve(poses: NDArray[np.float64], links: NDArray[np.int64], moves: NDArray[np.float64], rounds: int = 2) -> None:
+def solve(
+    poses: NDArray[np.float64],
+    links: NDArray[np.int64],
+    moves: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    turning_s: NDArray[np.float64] | None = None,
+    rounds: int = 2,
+) -> float:
     """The fixed point of the sweeps, in place: headings, then positions, each a sparse Laplacian with the first node fixed.
 
     Every experience must be linked, over others, to the first. Headings are linear once their residuals are wrapped;
@@ -92,22 +102,33 @@ def solve(poses: NDArray[np.float64], links: NDArray[np.int64], moves: NDArray[n
     """
     n = len(poses)
     if n < 2 or len(links) == 0:
-        return
+        return 0.0
     i, j = links[:, 0], links[:, 1]
-    ones = np.ones(len(links))
     laplacian = coo_matrix(
-        (np.concatenate([ones, ones, -ones, -ones]), (np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i]))), (n, n)
+        (np.concatenate([weights, weights, -weights, -weights]), (np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i]))), (n, n)
     ).tocsc()[1:, 1:]
     factor = splu(laplacian, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    bias = 0.0
+    if turning_s is not None:
+        drift = np.zeros(n)
+        drift[1:] = factor.solve(_divergence(n, i, j, weights * turning_s))
+        stiff = turning_s - drift[j] + drift[i]  # what a unit of bias leaves unexplained
+        strength = float(np.sum(weights * turning_s * stiff))
     for _ in range(rounds):
-        error = poses[i, 2] + moves[:, 2] - poses[j, 2]
+        error = poses[i, 2] + moves[:, 2] - bias * turning_s - poses[j, 2] if turning_s is not None else poses[i, 2] + moves[:, 2] - poses[j, 2]
         error -= 2 * math.pi * np.round(error / (2 * math.pi))
-        poses[1:, 2] += factor.solve(_divergence(n, i, j, error))
+        step = factor.solve(_divergence(n, i, j, weights * error))
+        if turning_s is not None and strength > 1e-9:
+            more = float(np.sum(weights * stiff * error)) / strength
+            bias += more
+            step -= more * drift[1:]
+        poses[1:, 2] += step
     poses[:, 2] -= 2 * math.pi * np.round(poses[:, 2] / (2 * math.pi))
     c, s = np.cos(poses[i, 2]), np.sin(poses[i, 2])
     ex = poses[i, 0] + c * moves[:, 0] - s * moves[:, 1] - poses[j, 0]
     ey = poses[i, 1] + s * moves[:, 0] + c * moves[:, 1] - poses[j, 1]
-    poses[1:, :2] += factor.solve(np.stack([_divergence(n, i, j, ex), _divergence(n, i, j, ey)], axis=1))
+    poses[1:, :2] += factor.solve(np.stack([_divergence(n, i, j, weights * ex), _divergence(n, i, j, weights * ey)], axis=1))
+    return bias
 
 
 def _divergence(n: int, i: NDArray[np.int64], j: NDArray[np.int64], error: NDArray[np.float64]) -> NDArray[np.float64]:

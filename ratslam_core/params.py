@@ -70,8 +70,9 @@ class PoseCellParams:
 class LocalViewParams:
     """Recognising scenes (D section 7) and their Hebbian links to pose cells (A 4)."""
 
-    match_threshold: float = param(8.0, unit="grey levels", low=0.0, high=255.0, meaning="mean absolute difference below which a view is recognised", source="D 7; value ours")  # fmt: skip
+    match_threshold: float = param(6.0, unit="grey levels", low=0.0, high=255.0, meaning="mean absolute difference below which a view is recognised", source="D 7; value ours")  # fmt: skip
     shift: int = param(2, unit="columns", low=0, high=5, meaning="horizontal shifts tried to either side", source="D 7; value ours")
+    field_of_view: float = param(math.radians(50), unit="rad", low=0.1, high=6.3, meaning="width of the camera's view, to read headings from shifts", source="A 3, C IV.A")  # fmt: skip
     min_contrast: float = param(12.0, unit="grey levels", low=0.0, high=255.0, meaning="a view with less contrast shows nothing", source="ours")
     learning_rate: float = param(0.15, symbol="η", low=0.0, high=1.0, meaning="Hebbian learning rate", source="C IV.C")
     decay: float = param(0.0, symbol="δ", low=0.0, high=1.0, meaning="share of a link forgotten at each sight", source="A eq. 2")
@@ -92,6 +93,10 @@ class ExperienceMapParams:
     zone_theta: float = param(2.0, symbol="θ_a", unit="layers", low=0.5, high=20.0, meaning="zone of influence in θ'", source="D eq. 3")
     threshold: float = param(0.0, low=0.0, high=2.0, meaning="a new experience when no energy is above it", source="B 4.1")
     correction: float = param(0.5, symbol="α", low=0.0, high=1.0, meaning="correction rate", source="B table 1, D 3.3")
+    anchor_sigma: float = param(0.05, unit="m per grey level", low=0.0, high=1.0, meaning="how far off a match may be; looser matches weigh less in map correction, 0 = all weigh the same", source="ours")  # fmt: skip
+    odometry_sigma: float = param(0.01, unit="m", low=1e-4, high=1.0, meaning="error of a transition of one step", source="ours")
+    odometry_drift: float = param(0.03, unit="m/m", low=0.0, high=1.0, meaning="how the error of odometry grows with the way", source="ours")  # fmt: skip
+    calibrate: bool = param(True, meaning="learn the bias of the yaw rate from what the map cannot explain", source="ours")
     sweeps: int = param(1, unit="1/step", low=0, high=100, meaning="correction sweeps in each step", source="B 4.3")
     solve_every: int = param(50, unit="steps", low=0, high=10_000, meaning="exact correction this often while loops close; 0 = never", source="ours")  # fmt: skip
 

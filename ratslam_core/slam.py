@@ -36,6 +36,7 @@ class RatSlam:
         to the end of the movement [ours].
         """
         self._time_s += odometry.dt
+        odometry = self._calibrated(odometry)
         recognition = self.local_view.observe(image)
         self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
         expected = self.pose_cells.winner
@@ -45,7 +46,7 @@ class RatSlam:
         jump = self.pose_cells.cells_apart(expected.x, expected.y, packet.x, packet.y)
         relocalised = jump > self.params.pose_cells.snap_cells
         self.relocalisations += relocalised
-        created = self.experience_map.step(packet, recognition.view, odometry)
+        created = self.experience_map.step(packet, recognition, odometry)
         self.experience_map.correct()
         return Estimate(
             self.experience_map.active, created, self.experience_map.robot, packet, recognition, relocalised
@@ -58,13 +59,20 @@ class RatSlam:
         self.experience_map.params = params.experience_map
         self.params = params
 
+    def _calibrated(self, odometry: Odometry) -> Odometry:
+        """[ours] Odometry without the yaw bias that the map has learnt; wheels that stand have none."""
+        bias = self.experience_map.yaw_bias
+        if bias == 0.0 or (odometry.speed == 0 and odometry.yaw_rate == 0):
+            return odometry
+        return Odometry(odometry.speed, odometry.yaw_rate - bias, odometry.dt)
+
     def _associate(self, view: int, recruited: bool) -> None:
         """Visual calibration by what the view is linked to, then association with where the packet is."""
         cells, activity = self.pose_cells.active
         if recruited:
             self._learnt_s.append(self._time_s)
-        if self._time_s - self._learnt_s[view] < self.params.local_view.rest:
             self.view_links.learn(view, cells, activity, self.pose_cells.slot)
+        if self._time_s - self._learnt_s[view] < self.params.local_view.rest:
             return
         linked, injection = self.view_links.recall(view)
         linked = linked.copy()
