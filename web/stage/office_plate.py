@@ -117,6 +117,7 @@ class OfficePlate(Plate):
         rows = np.unique(np.linspace(0, len(trail) - 1, TRAIL_SEGMENTS + 1).round().astype(int))
         path = ribbons.lifted(self.fit.to_plate(np.asarray(trail, np.float64)[rows]), 0.02)
         jumps = np.hypot(*np.diff(path[:, :2], axis=0).T) > 1.2 * self.fit.scale  # a kidnap leaves no line
+        path[:, 2] += np.linspace(0.0, 0.015, len(path))  # where it crosses itself the newer part is on top
         points = ribbons.open_line(path)
         points[jumps] = -50.0
         ages = np.linspace(0.0, 1.0, len(points) + 1) ** 0.7
