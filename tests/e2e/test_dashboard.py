@@ -1,0 +1,251 @@
+"""The real program in a real browser: what a person does, and that the truth follows."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+import pytest
+
+from sim2d import load_world
+from tests.e2e.browser import on_screen, open_page, show, until
+from tests.e2e.program import Program
+from web.stage.map_fit import MapFit, refit
+from web.stage.map_plate import NODE_Z
+from web.stage.map_plate import ORIGIN as MAP_ORIGIN
+from web.stage.office_fit import OfficeFit
+from web.stage.office_plate import ORIGIN as OFFICE_ORIGIN
+
+STOP_S = 0.3
+
+
+@pytest.fixture(scope="module")
+def explored(program, browser):
+    """Five minutes of exploring, seen from the start; where the map lies in the office is kept as pairs of places."""
+    with open_page(browser, program.url) as page:
+        start = program.state()
+        page.wait_for_timeout(1000)  # the stage takes the map's turn from here
+    program.turn = math.remainder(start["robot"]["heading_rad"] - start["estimate"]["heading_rad"], math.tau)
+    program.command("set_speed", factor=0)
+    program.command("resume")
+    pairs = []
+    while (state := program.state())["time_s"] < 300:
+        pairs.append([[state["estimate"]["x"], state["estimate"]["y"]], [state["robot"]["x"], state["robot"]["y"]]])
+        time.sleep(0.02)
+    program.command("pause")
+    program.pairs = np.array(pairs)
+    return program
+
+
+def in_office(pairs: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """A place of the map in the office, by the rigid motion that suits the pairs best."""
+    on_map, true = pairs[:, 0], pairs[:, 1]
+    a, b = on_map - on_map.mean(0), true - true.mean(0)
+    angle = math.atan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    return turn @ (place - on_map.mean(0)) + true.mean(0)
+
+
+def node_on_stage(program, node: np.ndarray, nodes: np.ndarray) -> tuple[float, float, float]:
+    fit = refit(MapFit(), nodes, program.turn)
+    x, y = fit.to_plate(node)[0]
+    return MAP_ORIGIN[0] + x, MAP_ORIGIN[1] + y, MAP_ORIGIN[2] + NODE_Z
+
+
+def robot_on_stage(state: dict, x: float, y: float) -> tuple[float, float, float]:
+    fit = OfficeFit(load_world(state["world"]).bounds)
+    plate_x, plate_y = fit.to_plate(np.array([[x, y]]))[0]
+    return OFFICE_ORIGIN[0] + plate_x, OFFICE_ORIGIN[1] + plate_y, OFFICE_ORIGIN[2] + 0.15
+
+
+def test_it_is_alive(program, browser):
+    with open_page(browser, program.url) as page:
+        program.command("resume")
+        before = program.state()["time_s"]
+        until(page, "() => document.getElementById('clock').textContent >= '0:02'", 20)
+        assert program.state()["time_s"] > before
+        colours = page.frame_locator("#stage").locator("canvas").first.screenshot()
+        assert len(colours) > 20_000  # an empty canvas packs into far less
+        assert page.locator("#status span").inner_text() in ("exploring", "lost: 2 packets compete")
+        page.keyboard.press("Space")
+        program.wait(lambda state: not state["running"], 3)
+        page.wait_for_selector("#play[aria-label=Play]", timeout=3000)
+        tick = program.state()["tick"]
+        page.keyboard.press(".")
+        program.wait(lambda state: state["tick"] == tick + 1, 3)
+
+
+def test_a_click_on_a_far_node_brings_the_robot_there(explored, browser):
+    with open_page(browser, explored.url, light=True) as page:  # another palette draws the map anew
+        show(page, "map")
+        state = explored.state(full=True)
+        nodes = np.array(state["map"]["xy"])
+        here = np.array([state["estimate"]["x"], state["estimate"]["y"]])
+        far = nodes[np.argsort(np.linalg.norm(nodes - here, axis=1))[int(len(nodes) * 0.9)]]
+        page.mouse.click(*on_screen(page, "map", node_on_stage(explored, far, nodes)))
+        goal = explored.wait(lambda state: state["goal"] is not None, 5)["goal"]
+        assert math.dist((goal["x"], goal["y"]), far) < 0.4
+        page.wait_for_selector("#goal:not([hidden])", timeout=3000)
+        explored.command("set_speed", factor=16)
+        explored.command("resume")
+        arrived = explored.wait(lambda state: state["goal"] is None or state["goal"]["state"] == "arrived", 90)
+        assert arrived["goal"] is not None
+        there = in_office(explored.pairs, np.array([arrived["goal"]["x"], arrived["goal"]["y"]]))
+        assert math.dist((arrived["robot"]["x"], arrived["robot"]["y"]), there) < 1.5
+        until(page, "() => document.querySelector('#goal .what').textContent === 'arrived'")
+        page.click("#cancel")
+        explored.wait(lambda state: state["goal"] is None, 3)
+    explored.command("set_speed", factor=1)
+
+
+@pytest.mark.parametrize("where", ["page", "stage"])
+def test_a_held_key_drives_and_letting_go_stops(program, browser, where):
+    program.command("set_speed", factor=1)
+    program.command("resume")
+    with open_page(browser, program.url) as page:
+        if where == "stage":
+            page.mouse.click(640, 400)  # the focus is in viser's frame now
+        page.keyboard.down("ArrowLeft")
+        before = program.wait(lambda state: state["mode"] == "manual", 3)
+        time.sleep(0.7)
+        during = program.state()
+        page.keyboard.up("ArrowLeft")
+        assert abs(math.remainder(during["robot"]["heading_rad"] - before["robot"]["heading_rad"], math.tau)) > 0.2
+        page.wait_for_selector("#status[data-tone=hand], #status[data-tone=lost]", timeout=3000)
+        assert_still(program)
+
+
+def assert_still(program) -> None:
+    time.sleep(STOP_S)
+    first = program.state()
+    time.sleep(0.4)
+    second = program.state()
+    assert second["tick"] > first["tick"]
+    for name in ("x", "y", "heading_rad"):
+        assert second["robot"][name] == pytest.approx(first["robot"][name], abs=0.01)
+
+
+@pytest.mark.parametrize("end", ["blur", "pagehide", "gone"])
+def test_the_robot_stops_when_the_page_cannot_hold_it(program, browser, end):
+    program.command("resume")
+    with open_page(browser, program.url) as page:
+        page.keyboard.down("d")
+        program.wait(lambda state: state["mode"] == "manual", 3)
+        time.sleep(0.3)
+        if end == "gone":
+            page.goto("about:blank")
+        else:
+            page.evaluate("end => { document.hasFocus = () => false; window.dispatchEvent(new Event(end)); }", end)
+        assert_still(program)
+
+
+def test_the_pad_drives_while_it_is_held(program, browser):
+    program.command("resume")
+    with open_page(browser, program.url, 390, 844) as page:
+        pad = page.locator("[data-drive=left]").bounding_box()
+        assert pad is not None
+        assert min(pad["width"], pad["height"]) >= 52
+        before = program.state()["robot"]["heading_rad"]
+        page.mouse.move(pad["x"] + 26, pad["y"] + 26)
+        page.mouse.down()
+        program.wait(lambda state: abs(math.remainder(state["robot"]["heading_rad"] - before, math.tau)) > 0.2, 5)
+        page.mouse.up()
+        assert_still(program)
+
+
+def test_dragging_the_robot_kidnaps_it(explored, browser):
+    explored.command("pause")
+    with open_page(browser, explored.url) as page:
+        show(page, "office")
+        state = explored.state()
+        robot = state["robot"]
+        world = load_world(state["world"])
+        low_x, low_y, high_x, high_y = world.bounds
+        corners = [(low_x + 0.8, low_y + 0.8), (high_x - 0.8, high_y - 0.8)]
+        target = max(corners, key=lambda corner: math.dist(corner, (robot["x"], robot["y"])))
+        page.mouse.move(*on_screen(page, "office", robot_on_stage(state, robot["x"], robot["y"])))
+        page.wait_for_timeout(500)
+        page.mouse.down()
+        places = (robot["x"], robot["y"]), target
+        start, end = (on_screen(page, "office", robot_on_stage(state, *place)) for place in places)
+        for share in np.linspace(0.1, 1, 10):
+            page.mouse.move(start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
+            page.wait_for_timeout(80)
+        page.wait_for_timeout(500)
+        page.mouse.up()
+        moved = explored.wait(lambda now: math.dist((now["robot"]["x"], now["robot"]["y"]), target) < 0.6, 8)
+        assert moved["estimate"] == state["estimate"]  # nobody told it
+        until(page, "() => document.getElementById('events').textContent.includes('kidnap')")
+
+
+def test_a_refusal_is_a_sentence_on_the_page(program, browser):
+    with open_page(browser, program.url) as page:
+        for _ in range(14):
+            page.keyboard.press(".")
+        page.wait_for_selector("#alerts .toast:has-text('At most 10 commands a second')", timeout=3000)
+
+
+def test_speed_and_restart(program, browser):
+    with open_page(browser, program.url) as page:
+        for speed in (4, 0, 1):
+            page.select_option("#speed", str(speed))
+            program.wait(lambda state, wanted=speed: state["speed"] == wanted, 3)
+        page.click("#restart summary")
+        page.click("#restart-same")
+        again = program.wait(lambda state: state["time_s"] < 5, 5)
+        assert again["seed"] == 5
+        page.click("#restart summary")
+        page.click("#restart-new")
+        program.wait(lambda state: state["seed"] != 5, 5)
+
+
+SEEN = """() => JSON.stringify([document.documentElement.dataset.theme,
+    ...["clock", "seed", "status", "events"].map((id) => document.getElementById(id).textContent)])"""
+
+
+def test_two_tabs_agree_and_a_reload_comes_back_to_the_same(program, browser):
+    program.command("pause")
+    with open_page(browser, program.url) as one, open_page(browser, program.url, 900, 700) as two:
+        one.wait_for_timeout(500)
+        assert one.evaluate(SEEN) == two.evaluate(SEEN)
+        theme = one.get_attribute("html", "data-theme")
+        one.keyboard.press("t")
+        until(two, "theme => document.documentElement.dataset.theme !== theme", argument=theme)
+        two.keyboard.press("Space")
+        one.wait_for_selector("#play[aria-label=Pause]", timeout=3000)
+        one.keyboard.press("Space")
+        two.wait_for_selector("#play[aria-label=Play]", timeout=3000)
+        one.wait_for_timeout(700)
+        before = one.evaluate(SEEN)
+        one.reload()
+        until(one, f"before => ({SEEN})() === before", argument=before)
+        assert two.evaluate(SEEN) == before
+
+
+def test_the_page_comes_back_after_the_server(browser):
+    first = Program("--port", "0", "--seed", "1")
+    with open_page(browser, first.url, gone=True) as page:
+        sockets = []
+        page.on("websocket", lambda socket: sockets.append(socket))
+        assert first.stop() == 0
+        page.wait_for_selector("#alerts .toast:has-text('Connection lost')", timeout=3000)
+        second = Program("--port", str(first.port), "--seed", "2")
+        try:
+            page.wait_for_selector("#toasts .toast:has-text('Connected again')", timeout=3000)
+            until(page, "() => document.getElementById('seed').textContent === '2'")
+            page.wait_for_timeout(1500)
+            for path in ("/api/stream", "/viser/ws/"):  # the stage has come back as well
+                assert any(path in socket.url and not socket.is_closed() for socket in sockets), path
+            page.keyboard.press("Space")
+            second.wait(lambda state: not state["running"], 3)
+        finally:
+            assert second.stop() == 0
+
+
+def test_a_port_in_use_is_a_sentence(program):
+    with pytest.raises(RuntimeError) as refused:
+        Program("--port", str(program.port))
+    assert f"Port {program.port}" in str(refused.value)
+    assert "--port" in str(refused.value)
+    assert "Traceback" not in str(refused.value)
