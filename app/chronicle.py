@@ -64,7 +64,9 @@ class Chronicle:
             start, end = (Packet(p.x, p.y, p.heading_rad, p.mass) for p in (self._before, packet))
             self.last_snap = Snap(session.time_s, start, end)
             view = session.estimate.recognition.view
-            self.note("snap", f"relocalised by view {view}: ({start.x:.0f}, {start.y:.0f}) to ({end.x:.0f}, {end.y:.0f})")
+            self.note(
+                "snap", f"relocalised by view {view}: ({start.x:.0f}, {start.y:.0f}) to ({end.x:.0f}, {end.y:.0f})"
+            )
         self._before = packet
         lost = is_lost(session)
         if lost and not self.lost:
@@ -92,7 +94,9 @@ class Chronicle:
         kidnaps = self._session.evaluation.kidnaps
         while self._recovered < len(kidnaps) and kidnaps[self._recovered].after_s is not None:
             kidnap = kidnaps[self._recovered]
-            self.note("recovered", f"knows where it is {kidnap.after_s:.1f} s and {kidnap.after_m:.1f} m after the kidnap")
+            self.note(
+                "recovered", f"knows where it is {kidnap.after_s:.1f} s and {kidnap.after_m:.1f} m after the kidnap"
+            )
             self._recovered += 1
         if self._recovered < len(kidnaps) - 1:
             self._recovered = len(kidnaps) - 1  # kidnapped again before it recovered

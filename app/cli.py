@@ -47,7 +47,9 @@ def _parser() -> argparse.ArgumentParser:
     headless.add_argument("--minutes", type=float, default=20.0, help="simulated minutes of exploring (default 20)")
     headless.add_argument("--goals", type=int, default=0, metavar="K", help="then visit K places spread over the map")
     headless.add_argument("--kidnap-at", type=float, nargs="*", default=[], metavar="S", help="kidnap at these seconds")
-    headless.add_argument("--report", type=Path, metavar="FILE", help="write the report there as JSON (default: print it)")
+    headless.add_argument(
+        "--report", type=Path, metavar="FILE", help="write the report there as JSON (default: print it)"
+    )
     headless.set_defaults(do=_headless)
 
     config = commands.add_parser("config", help="print every parameter as TOML with symbol, unit and source")

@@ -16,13 +16,20 @@ NEAR_M = 1.0
 STAY_S = 2.0
 
 
-def align(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> NDArray[np.float64]:
-    """`estimate` (n, 2) turned and moved (SE(2), no scale) to fit `truth` best in least squares. Umeyama 1991."""
+def alignment(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> Pose2:
+    """The pose of the estimate's frame in the true one that fits (n, 2) points best in least squares. Umeyama 1991, SE(2)."""
     mean_e, mean_t = estimate.mean(axis=0), truth.mean(axis=0)
     e, t = estimate - mean_e, truth - mean_t
     angle = math.atan2(float(np.sum(e[:, 0] * t[:, 1] - e[:, 1] * t[:, 0])), float(np.sum(e * t)))
-    c, s = math.cos(angle), math.sin(angle)
-    return e @ np.array([[c, s], [-s, c]]) + mean_t
+    turned = Pose2(0.0, 0.0, angle).compose(Pose2(float(mean_e[0]), float(mean_e[1]), 0.0))
+    return Pose2(float(mean_t[0]) - turned.x, float(mean_t[1]) - turned.y, angle)
+
+
+def align(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`estimate` (n, 2) turned and moved (no scale) to fit `truth` best."""
+    frame = alignment(estimate, truth)
+    c, s = math.cos(frame.heading_rad), math.sin(frame.heading_rad)
+    return estimate @ np.array([[c, s], [-s, c]]) + (frame.x, frame.y)
 
 
 def rmse(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> float:
@@ -34,10 +41,13 @@ def rmse(estimate: NDArray[np.float64], truth: NDArray[np.float64]) -> float:
 
 @dataclass(slots=True)
 class Kidnapping:
-    """One kidnap and, later, how long and how far it took until the robot knew again where it was."""
+    """One kidnap and, later, how long and how far it took until the robot knew again where it was.
+
+    It knows when its place in the map, aligned to the office as it was before the kidnap, stays within 1 m of the truth.
+    """
 
     at_s: float
-    experiences_before: int
+    map_in_office: Pose2
     after_s: float | None = None
     after_m: float | None = None
     _way_m: float = 0.0
@@ -58,7 +68,9 @@ class Evaluation:
         self.path_m = 0.0
         self.kidnaps: list[Kidnapping] = []
 
-    def record(self, time_s: float, truth: Truth, experiences: ExperienceMap, created: bool, odometry: Odometry) -> None:
+    def record(
+        self, time_s: float, truth: Truth, experiences: ExperienceMap, created: bool, odometry: Odometry
+    ) -> None:
         """One tick."""
         if self._count == len(self._rows):
             self._rows = np.concatenate([self._rows, np.zeros_like(self._rows)])
@@ -79,7 +91,8 @@ class Evaluation:
         self._judge(time_s, truth, experiences, local, abs(truth.speed) * odometry.dt)
 
     def kidnapped(self, time_s: float, experiences: ExperienceMap) -> None:
-        self.kidnaps.append(Kidnapping(time_s, len(experiences)))
+        truth, mapped, _ = self.trajectories(experiences)
+        self.kidnaps.append(Kidnapping(time_s, alignment(mapped, truth)))
 
     def made_at(self, experience: int) -> tuple[float, float]:
         """Where the robot truly was when it made this experience, office frame."""
@@ -116,7 +129,8 @@ class Evaluation:
             if kidnap.after_s is not None:
                 break
             kidnap._way_m += way_m
-            if off > NEAR_M or experiences.active >= kidnap.experiences_before:
+            robot = kidnap.map_in_office.compose(experiences.robot)
+            if math.hypot(robot.x - truth.x, robot.y - truth.y) > NEAR_M:
                 kidnap._right_since_s = None
             elif kidnap._right_since_s is None:
                 kidnap._right_since_s, kidnap._right_since_m = time_s, kidnap._way_m

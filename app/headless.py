@@ -89,7 +89,12 @@ def _report(session: Session, wall: float, visits: list[dict[str, Any]]) -> dict
         "revisit_consistency": {"within_half_metre": None if consistency is None else round(consistency, 4)},
         "goals": visits,
         "kidnaps": [
-            {"at_s": k.at_s, "recovered": k.after_s is not None, "after_s": _number(k.after_s), "after_m": _number(k.after_m)}
+            {
+                "at_s": k.at_s,
+                "recovered": k.after_s is not None,
+                "after_s": _number(k.after_s),
+                "after_m": _number(k.after_m),
+            }
             for k in evaluation.kidnaps
         ],
         "state_hash": session.state_hash(),

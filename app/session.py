@@ -104,7 +104,13 @@ class Session:
         cells, activity = brain.pose_cells.active
         digest.update(self.simulator.state())
         digest.update(self.pilot.digest())
-        for array in (cells, activity, brain.experience_map.poses, brain.experience_map.links, brain.experience_map.moves):
+        for array in (
+            cells,
+            activity,
+            brain.experience_map.poses,
+            brain.experience_map.links,
+            brain.experience_map.moves,
+        ):
             digest.update(np.ascontiguousarray(array).tobytes())
         digest.update(repr((len(brain.local_view), brain.relocalisations, brain.experience_map.active)).encode())
         return digest.hexdigest()
@@ -117,9 +123,7 @@ class Session:
     def _think(self) -> Estimate:
         odometry = self._odometry()
         estimate = self.brain.step(self.frame.image, odometry)
-        self.evaluation.record(
-            self.time_s, self.simulator.truth, self.brain.experience_map, estimate.created, odometry
-        )
+        self.evaluation.record(self.time_s, self.simulator.truth, self.brain.experience_map, estimate.created, odometry)
         return estimate
 
     def _take(self, section: str, change: dict[str, Value]) -> None:

@@ -35,7 +35,9 @@ class Snapshots:
 
     def __init__(self, session: Session, chronicle: Chronicle, run: int, worlds: tuple[tuple[str, str], ...]) -> None:
         self._session, self._chronicle, self._run, self._worlds = session, chronicle, run, worlds
-        self._world = world_drawing(session.world, session.config.robot.robot_radius_m, session.config.robot.camera_fov_rad)
+        self._world = world_drawing(
+            session.world, session.config.robot.robot_radius_m, session.config.robot.camera_fov_rad
+        )
         self._map: MapLayer | None = None
         self._times: TimesLayer | None = None
         self._goal_timed: int | None = None
@@ -115,7 +117,16 @@ class Snapshots:
                 m = item.metadata
                 rows.append(
                     Parameter(
-                        name, value, item.default, m["symbol"], m["unit"], m["low"], m["high"], m["meaning"], m["source"], m["live"]
+                        name,
+                        value,
+                        item.default,
+                        m["symbol"],
+                        m["unit"],
+                        m["low"],
+                        m["high"],
+                        m["meaning"],
+                        m["source"],
+                        m["live"],
                     )
                 )
             self._parameters = (config, tuple(rows))

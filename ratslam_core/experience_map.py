@@ -16,6 +16,7 @@ from ratslam_core import map_correction
 from ratslam_core.params import ExperienceMapParams
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, wrap_angle
 
+CARRIED_M = 100.0  # how well the robot knows where it is after it was carried away
 NOWHERE_M = 0.5  # an experience of a view that shows nothing is only known to be somewhere in its zone
 
 
@@ -136,13 +137,20 @@ class ExperienceMap:
             self._learn_link(before, came, sigma)
             self._learn_spine(before)
             return True
-        if best != self.active:
+        if best != self.active or self._sigma >= CARRIED_M:
             before, came, sigma = self.active, self.local_pose, self._sigma
             self._enter(best, packet, seen)
             self._learn_link(before, came, sigma)
         elif self._arrival is not None and self._deviation(seen) < self._sigma:
             self._see_better(seen)
         return False
+
+    def lose_track(self) -> None:
+        """[ours] The robot was moved without its wheels: what led here is not a transition, and odometry starts anew.
+
+        test_experience_map.py::test_a_kidnap_makes_no_way.
+        """
+        self._sigma, self._latest = CARRIED_M, -1
 
     def correct(self) -> None:
         """One step of map correction: sweeps in every step, the exact solution now and then while loops close.
@@ -235,7 +243,7 @@ class ExperienceMap:
         j = self.active
         link = self._link_of.get((i, j))
         if link is None:
-            link = self._link_of[i, j] = self._new_row(i, j, travelled=True)
+            link = self._link_of[i, j] = self._new_row(i, j, travelled=sigma < CARRIED_M)
             self.closures += j != self._count - 1
         n = self._times_made[link]
         self._time[link] += (self._since_s - self._time[link]) / (n + 1)
@@ -289,7 +297,11 @@ class ExperienceMap:
         share = weight / (arrival.weight + weight)
         old = arrival.move
         turn = old[2] + share * wrap_angle(move.heading_rad - old[2])
-        self._move[arrival.link] = old[0] + share * (move.x - old[0]), old[1] + share * (move.y - old[1]), wrap_angle(turn)
+        self._move[arrival.link] = (
+            old[0] + share * (move.x - old[0]),
+            old[1] + share * (move.y - old[1]),
+            wrap_angle(turn),
+        )
         self._weight[arrival.link] = arrival.weight + weight
 
 

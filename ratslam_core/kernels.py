@@ -151,7 +151,9 @@ def cluster(cells, values, n, shape, window, owner, peaks):
 
 
 @njit(cache=True, nogil=True)
-def convolve(cells, values, n, owner, peaks, clusters, out_cells, out_values, slot, shape, window, weights, box_a, box_b):
+def convolve(
+    cells, values, n, owner, peaks, clusters, out_cells, out_values, slot, shape, window, weights, box_a, box_b
+):
     """P <- eps * P: circular convolution with a 3-D Gaussian as three 1-D passes. A eq. 10.
 
     `owner` and `peaks` split the active cells into clusters that fit a small dense box each; the boxes' results add up,
@@ -188,7 +190,11 @@ def convolve(cells, values, n, owner, peaks, clusters, out_cells, out_values, sl
         _pass(box_a, box_b, 1, st, layer, weights)
         _pass(box_b, box_a, bt, sy, sx, weights)
         _pass(box_a, box_b, bt * by, sx, 1, weights)
-        first_x, first_y, first_t = (px + low_x - radius) % n_x, (py + low_y - radius) % n_y, (pt + low_t - radius) % n_theta
+        first_x, first_y, first_t = (
+            (px + low_x - radius) % n_x,
+            (py + low_y - radius) % n_y,
+            (pt + low_t - radius) % n_theta,
+        )
         for t in range(bt):
             to_t = (first_t + t) % n_theta
             for y in range(by):

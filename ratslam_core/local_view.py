@@ -16,6 +16,7 @@ from ratslam_core.types import Recognition
 
 COLUMNS, ROWS = 12, 8
 NOTHING = -1
+MOST_TURN = 3  # columns by which one tick of turning may shift the image
 
 
 class LocalView:
@@ -27,6 +28,10 @@ class LocalView:
         self._count = 0
         self.template = np.zeros((ROWS, COLUMNS), np.uint8)
         self.recognition = Recognition(NOTHING, False, NOTHING, math.inf)
+        self.surprise = (
+            0.0  # grey levels by which the image differs from the one before, whatever the turn between them
+        )
+        self._last: NDArray[np.uint8] | None = None
 
     def __len__(self) -> int:
         return self._count
@@ -43,8 +48,10 @@ class LocalView:
         [ours] An image without contrast (a wall at arm's length) shows nothing: no cell is active and none is recruited,
         since such views look alike everywhere. test_local_view.py::test_a_bland_view_shows_nothing.
         """
-        self.template = template = grey_template(image)
+        template = grey_template(image)
         column_major = np.ascontiguousarray(template.T).reshape(1, -1)
+        self.surprise = self._change(column_major)
+        self.template, self._last = template, column_major
         best, difference, shift = self._nearest(column_major)
         if float(template.std()) < self.params.min_contrast:
             self.recognition = Recognition(NOTHING, False, best, difference)
@@ -55,6 +62,11 @@ class LocalView:
             self._recruit(column_major)
             self.recognition = Recognition(self._count - 1, True, best, difference)
         return self.recognition
+
+    def _change(self, template: NDArray[np.uint8]) -> float:
+        if self._last is None:
+            return 0.0
+        return min(_difference(template[0], self._last[0], shift) for shift in range(-MOST_TURN, MOST_TURN + 1))
 
     def _nearest(self, template: NDArray[np.uint8]) -> tuple[int, float, int]:
         """The most similar known view, the mean absolute difference over the columns that overlap, and the shift."""

@@ -105,7 +105,11 @@ def solve(
         return 0.0
     i, j = links[:, 0], links[:, 1]
     laplacian = coo_matrix(
-        (np.concatenate([weights, weights, -weights, -weights]), (np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i]))), (n, n)
+        (
+            np.concatenate([weights, weights, -weights, -weights]),
+            (np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i])),
+        ),
+        (n, n),
     ).tocsc()[1:, 1:]
     factor = splu(laplacian, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     bias = 0.0
@@ -115,7 +119,11 @@ def solve(
         stiff = turning_s - drift[j] + drift[i]  # what a unit of bias leaves unexplained
         strength = float(np.sum(weights * turning_s * stiff))
     for _ in range(rounds):
-        error = poses[i, 2] + moves[:, 2] - bias * turning_s - poses[j, 2] if turning_s is not None else poses[i, 2] + moves[:, 2] - poses[j, 2]
+        error = (
+            poses[i, 2] + moves[:, 2] - bias * turning_s - poses[j, 2]
+            if turning_s is not None
+            else poses[i, 2] + moves[:, 2] - poses[j, 2]
+        )
         error -= 2 * math.pi * np.round(error / (2 * math.pi))
         step = factor.solve(_divergence(n, i, j, weights * error))
         if turning_s is not None and strength > 1e-9:
@@ -127,7 +135,9 @@ def solve(
     c, s = np.cos(poses[i, 2]), np.sin(poses[i, 2])
     ex = poses[i, 0] + c * moves[:, 0] - s * moves[:, 1] - poses[j, 0]
     ey = poses[i, 1] + s * moves[:, 0] + c * moves[:, 1] - poses[j, 1]
-    poses[1:, :2] += factor.solve(np.stack([_divergence(n, i, j, weights * ex), _divergence(n, i, j, weights * ey)], axis=1))
+    poses[1:, :2] += factor.solve(
+        np.stack([_divergence(n, i, j, weights * ex), _divergence(n, i, j, weights * ey)], axis=1)
+    )
     return bias
 
 

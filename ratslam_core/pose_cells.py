@@ -126,7 +126,9 @@ class PoseCells:
             self._cells, self._values, self._n, self._slot, np.float32(self.params.inhibit)
         )
         if self._n == 0:
-            raise ValueError(f"inhibit = {self.params.inhibit} is above the activity of every cell: all activity is gone; take less")
+            raise ValueError(
+                f"inhibit = {self.params.inhibit} is above the activity of every cell: all activity is gone; take less"
+            )
         after = kernels.centre_near(self._cells, self._values, self._n, *near)
         self._carry = (before[0] - after[0], before[1] - after[1], before[2] - after[2])
         if not self.params.carry or after[3] == 0.0:
@@ -203,7 +205,9 @@ class PoseCells:
         )
 
     def _packet(self, row: NDArray[np.float64]) -> Packet:
-        return Packet(float(row[0]), float(row[1]), wrap_angle(float(row[2]) * 2 * math.pi / self.shape[0]), float(row[3]))
+        return Packet(
+            float(row[0]), float(row[1]), wrap_angle(float(row[2]) * 2 * math.pi / self.shape[0]), float(row[3])
+        )
 
 
 def gaussian(sigma: float, radius: int) -> NDArray[np.float32]:

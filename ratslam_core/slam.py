@@ -12,6 +12,8 @@ from ratslam_core.pose_cells import PoseCells
 from ratslam_core.types import Estimate, Odometry
 from ratslam_core.view_links import ViewLinks
 
+FOUND_AGAIN = 8  # steps
+
 
 class RatSlam:
     """The whole engine: local view, pose cells, experience map."""
@@ -27,6 +29,8 @@ class RatSlam:
         )
         self.relocalisations = 0
         self._time_s = 0.0
+        self.lost = False
+        self._known_before = self._agreed = 0
         self._learnt_s: list[float] = []  # when each view was recruited
 
     def step(self, image: NDArray[np.uint8], odometry: Odometry) -> Estimate:
@@ -38,6 +42,8 @@ class RatSlam:
         self._time_s += odometry.dt
         odometry = self._calibrated(odometry)
         recognition = self.local_view.observe(image)
+        if self.local_view.surprise > self.params.local_view.surprise:
+            self._notice_kidnap()
         self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
         expected = self.pose_cells.winner
         if recognition.view != NOTHING and self.params.local_view.enabled:
@@ -47,6 +53,7 @@ class RatSlam:
         relocalised = jump > self.params.pose_cells.snap_cells
         self.relocalisations += relocalised
         created = self.experience_map.step(packet, recognition, odometry)
+        self._find_again(created, recognition.view)
         self.experience_map.correct()
         return Estimate(
             self.experience_map.active, created, self.experience_map.robot, packet, recognition, relocalised
@@ -58,6 +65,22 @@ class RatSlam:
         self.local_view.params = self.view_links.params = params.local_view
         self.experience_map.params = params.experience_map
         self.params = params
+
+    def _notice_kidnap(self) -> None:
+        """[ours] The image jumped though the wheels did not: the robot knows that it is lost.
+
+        test_slam.py::test_a_kidnap_is_noticed_and_survived.
+        """
+        self.lost, self._known_before, self._agreed = True, len(self.experience_map), 0
+        self.experience_map.lose_track()
+
+    def _find_again(self, created: bool, view: int) -> None:
+        """Lost no more once experiences from before the kidnap have been recognised FOUND_AGAIN times in a row."""
+        if not self.lost or view == NOTHING:
+            return
+        known = not created and self.experience_map.active < self._known_before
+        self._agreed = self._agreed + 1 if known else 0
+        self.lost = self._agreed < FOUND_AGAIN
 
     def _calibrated(self, odometry: Odometry) -> Odometry:
         """[ours] Odometry without the yaw bias that the map has learnt; wheels that stand have none."""
@@ -74,7 +97,7 @@ class RatSlam:
             self.view_links.learn(view, cells, activity, self.pose_cells.slot)
         if self._time_s - self._learnt_s[view] < self.params.local_view.rest:
             return
-        linked, injection = self.view_links.recall(view)
+        linked, injection = self.view_links.recall(view, self.lost)
         linked = linked.copy()
         self.view_links.learn(view, cells, activity, self.pose_cells.slot)
         self.pose_cells.inject(linked, injection)

@@ -78,7 +78,9 @@ class Recognition:
     recruited: bool  # the cell is new
     best_view: int  # the most similar view known before, -1 when there was none
     difference: float  # mean absolute grey difference to it, inf when there was none
-    facing_rad: float = 0.0  # heading of the robot relative to where the active view was taken from, by the image's shift
+    facing_rad: float = (
+        0.0  # heading of the robot relative to where the active view was taken from, by the image's shift
+    )
 
 
 @dataclass(frozen=True, slots=True)

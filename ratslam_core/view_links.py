@@ -30,7 +30,9 @@ class ViewLinks:
         start, used, _ = self._blocks[view] if view < len(self._blocks) else (0, 0, 0)
         return self._cells[start : start + used], self._strength[start : start + used]
 
-    def learn(self, view: int, cells: NDArray[np.int32], activity: NDArray[np.float32], slot: NDArray[np.int32]) -> None:
+    def learn(
+        self, view: int, cells: NDArray[np.int32], activity: NDArray[np.float32], slot: NDArray[np.int32]
+    ) -> None:
         """beta <- (1 - delta) beta + eta P for all active pose cells. ACRA 2004 eqs. 2-3.
 
         cells, activity, slot: the active set of the pose cells (`PoseCells.active`, `PoseCells.slot`).
@@ -42,7 +44,7 @@ class ViewLinks:
             cells, activity, slot, self._seen, np.float32(self.params.learning_rate), np.float32(self.params.decay),
         )  # fmt: skip
 
-    def recall(self, view: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+    def recall(self, view: int, lost: bool = False) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """What the active view injects: min(beta, s_max) per link. ACRA 2004 eq. 4.
 
         [ours] Scaled down so that all links together inject at most `injection`: one look-alike must not move a packet, a
@@ -51,7 +53,9 @@ class ViewLinks:
         cells, strength = self.of(view)
         values = np.minimum(strength, np.float32(self.params.saturation))
         total = float(values.sum(dtype=np.float64))
-        if total > self.params.injection:
+        if lost and total > 0:
+            values *= np.float32(self.params.lost_injection / total)
+        elif total > self.params.injection:
             values *= np.float32(self.params.injection / total)
         return cells, values
 
