@@ -140,7 +140,7 @@ class Runner:
 
     # ------------------------------------------------------------ commands
 
-    def _carry_out(self, command: m.Command) -> m.Refused | None:  # noqa: PLR0911
+    def _carry_out(self, command: m.Command) -> m.Refused | None:
         """Do what the command says; the field, its value and the reason when it cannot be."""
         session, note = self.session, self._chronicle.note
         match command:

@@ -225,7 +225,7 @@ def _pass(source, target, outer, size, inner, weights):
 
 
 @njit(cache=True, nogil=True)
-def subtract(cells, values, n, slot, other_cells, other_values, m, gain):
+def subtract(values, slot, other_cells, other_values, m, gain):
     """P <- P - gain Q where P is active. `slot` indexes P."""
     for i in range(m):
         at = slot[other_cells[i, FLAT]]

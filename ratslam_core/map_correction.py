@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
+LEAST_STRENGTH = 1e-9  # below it no loop tells the bias from a bent way
+
 
 class Adjacency:
     """The links at each experience, as chains through one array: `first[node]`, `following[2 * link + end]`, -1 ends."""
@@ -112,25 +114,18 @@ def solve(
         (n, n),
     ).tocsc()[1:, 1:]
     factor = splu(laplacian, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    seconds = np.zeros(len(links)) if turning_s is None else turning_s
+    drift = np.zeros(n)  # headings that a unit of bias would bend the map to
+    drift[1:] = factor.solve(_divergence(n, i, j, weights * seconds))
+    unexplained = seconds - drift[j] + drift[i]
+    strength = float(np.sum(weights * seconds * unexplained))
     bias = 0.0
-    if turning_s is not None:
-        drift = np.zeros(n)
-        drift[1:] = factor.solve(_divergence(n, i, j, weights * turning_s))
-        stiff = turning_s - drift[j] + drift[i]  # what a unit of bias leaves unexplained
-        strength = float(np.sum(weights * turning_s * stiff))
     for _ in range(rounds):
-        error = (
-            poses[i, 2] + moves[:, 2] - bias * turning_s - poses[j, 2]
-            if turning_s is not None
-            else poses[i, 2] + moves[:, 2] - poses[j, 2]
-        )
+        error = poses[i, 2] + moves[:, 2] - bias * seconds - poses[j, 2]
         error -= 2 * math.pi * np.round(error / (2 * math.pi))
-        step = factor.solve(_divergence(n, i, j, weights * error))
-        if turning_s is not None and strength > 1e-9:
-            more = float(np.sum(weights * stiff * error)) / strength
-            bias += more
-            step -= more * drift[1:]
-        poses[1:, 2] += step
+        more = float(np.sum(weights * unexplained * error)) / strength if strength > LEAST_STRENGTH else 0.0
+        bias += more
+        poses[1:, 2] += factor.solve(_divergence(n, i, j, weights * (error - more * seconds)))
     poses[:, 2] -= 2 * math.pi * np.round(poses[:, 2] / (2 * math.pi))
     c, s = np.cos(poses[i, 2]), np.sin(poses[i, 2])
     ex = poses[i, 0] + c * moves[:, 0] - s * moves[:, 1] - poses[j, 0]
@@ -143,4 +138,4 @@ def solve(
 
 def _divergence(n: int, i: NDArray[np.int64], j: NDArray[np.int64], error: NDArray[np.float64]) -> NDArray[np.float64]:
     """What each node but the first is asked to move in sum."""
-    return (np.bincount(j, error, n) - np.bincount(i, error, n))[1:]
+    return np.asarray(np.bincount(j, error, n) - np.bincount(i, error, n), np.float64)[1:]

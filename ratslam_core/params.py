@@ -22,7 +22,15 @@ def param(
     live: bool = True,
 ) -> Any:
     """A dataclass field that knows what it means. `live` parameters may change while the engine runs."""
-    about = dict(symbol=symbol, unit=unit, low=low, high=high, meaning=meaning, source=source, live=live)
+    about = {
+        "symbol": symbol,
+        "unit": unit,
+        "low": low,
+        "high": high,
+        "meaning": meaning,
+        "source": source,
+        "live": live,
+    }
     return field(default=default, metadata=about)
 
 
@@ -54,7 +62,16 @@ class PoseCellParams:
     n_y: int = param(
         64, symbol="n_y'", unit="cells", low=8, high=1000, meaning="cells along y'", source="D 5.3", live=False
     )
-    n_theta: int = param(36, symbol="n_θ'", unit="layers", low=8, high=360, meaning="layers of heading; 36 are 10 degrees each", source="A 4", live=False)  # fmt: skip
+    n_theta: int = param(
+        36,
+        symbol="n_θ'",
+        unit="layers",
+        low=8,
+        high=360,
+        meaning="layers of heading; 36 are 10 degrees each",
+        source="A 4",
+        live=False,
+    )
     cell_m: float = param(
         0.25, unit="m", low=0.01, high=100.0, meaning="side of one cell", source="A 4, D 5.3", live=False
     )
@@ -91,7 +108,14 @@ class PoseCellParams:
         6, unit="cells", low=2, high=12, meaning="half-width of the window that holds one packet", source="ours"
     )
     carry: bool = param(True, meaning="give back the motion that the attractor swallows", source="ours")
-    snap_cells: float = param(3.0, unit="cells", low=1.0, high=100.0, meaning="a longer jump of the winning packet is a relocalisation", source="ours")  # fmt: skip
+    snap_cells: float = param(
+        3.0,
+        unit="cells",
+        low=1.0,
+        high=100.0,
+        meaning="a longer jump of the winning packet is a relocalisation",
+        source="ours",
+    )
 
     def __post_init__(self) -> None:
         check_ranges(self)
@@ -101,11 +125,25 @@ class PoseCellParams:
 class LocalViewParams:
     """Recognising scenes (D section 7) and their Hebbian links to pose cells (A 4)."""
 
-    match_threshold: float = param(6.0, unit="grey levels", low=0.0, high=255.0, meaning="mean absolute difference below which a view is recognised", source="D 7; value ours")  # fmt: skip
+    match_threshold: float = param(
+        6.0,
+        unit="grey levels",
+        low=0.0,
+        high=255.0,
+        meaning="mean absolute difference below which a view is recognised",
+        source="D 7; value ours",
+    )
     shift: int = param(
         2, unit="columns", low=0, high=5, meaning="horizontal shifts tried to either side", source="D 7; value ours"
     )
-    field_of_view: float = param(math.radians(50), unit="rad", low=0.1, high=6.3, meaning="width of the camera's view, to read headings from shifts", source="A 3, C IV.A")  # fmt: skip
+    field_of_view: float = param(
+        math.radians(50),
+        unit="rad",
+        low=0.1,
+        high=6.3,
+        meaning="width of the camera's view, to read headings from shifts",
+        source="A 3, C IV.A",
+    )
     min_contrast: float = param(
         12.0, unit="grey levels", low=0.0, high=255.0, meaning="a view with less contrast shows nothing", source="ours"
     )
@@ -122,8 +160,21 @@ class LocalViewParams:
     rest: float = param(
         10.0, unit="s", low=0.0, high=1e6, meaning="a view younger than this does not inject", source="ours"
     )
-    surprise: float = param(20.0, unit="grey levels", low=0.0, high=255.0, meaning="an image that differs so much from the one before was not driven to", source="ours")  # fmt: skip
-    lost_injection: float = param(0.5, low=0.0, high=5.0, meaning="what a view may inject while the robot knows that it is lost", source="ours")  # fmt: skip
+    surprise: float = param(
+        20.0,
+        unit="grey levels",
+        low=0.0,
+        high=255.0,
+        meaning="an image that differs so much from the one before was not driven to",
+        source="ours",
+    )
+    lost_injection: float = param(
+        0.5,
+        low=0.0,
+        high=5.0,
+        meaning="what a view may inject while the robot knows that it is lost",
+        source="ours",
+    )
     enabled: bool = param(
         True, meaning="vision moves the pose cells; off = path integration only", source="A figures 9, 10"
     )
@@ -146,16 +197,37 @@ class ExperienceMapParams:
         0.0, low=0.0, high=2.0, meaning="a new experience when no energy is above it", source="B 4.1"
     )
     correction: float = param(0.5, symbol="α", low=0.0, high=1.0, meaning="correction rate", source="B table 1, D 3.3")
-    anchor_sigma: float = param(0.05, unit="m per grey level", low=0.0, high=1.0, meaning="how far off a match may be; looser matches weigh less in map correction, 0 = all weigh the same", source="ours")  # fmt: skip
+    anchor_sigma: float = param(
+        0.05,
+        unit="m per grey level",
+        low=0.0,
+        high=1.0,
+        meaning="how far off a match may be; looser matches weigh less in map correction, 0 = all weigh the same",
+        source="ours",
+    )
     odometry_sigma: float = param(
         0.01, unit="m", low=1e-4, high=1.0, meaning="error of a transition of one step", source="ours"
     )
-    odometry_drift: float = param(0.03, unit="m/m", low=0.0, high=1.0, meaning="how the error of odometry grows with the way", source="ours")  # fmt: skip
+    odometry_drift: float = param(
+        0.03,
+        unit="m/m",
+        low=0.0,
+        high=1.0,
+        meaning="how the error of odometry grows with the way",
+        source="ours",
+    )
     calibrate: bool = param(
         True, meaning="learn the bias of the yaw rate from what the map cannot explain", source="ours"
     )
     sweeps: int = param(1, unit="1/step", low=0, high=100, meaning="correction sweeps in each step", source="B 4.3")
-    solve_every: int = param(50, unit="steps", low=0, high=10_000, meaning="exact correction this often while loops close; 0 = never", source="ours")  # fmt: skip
+    solve_every: int = param(
+        50,
+        unit="steps",
+        low=0,
+        high=10_000,
+        meaning="exact correction this often while loops close; 0 = never",
+        source="ours",
+    )
 
     def __post_init__(self) -> None:
         check_ranges(self)

@@ -7,6 +7,7 @@ integration), are pulled by recognised scenes (visual calibration) and compete (
 from __future__ import annotations
 
 import math
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from ratslam_core.params import PoseCellParams
 from ratslam_core.types import Packet, require_finite, wrap_angle
 
 MAX_PACKETS = 8
+Cell = TypeVar("Cell", np.int32, np.float32)
 ROOM = 4096  # active cells there is room for at first; grows when needed
 
 
@@ -182,7 +184,7 @@ class PoseCells:
         self._cells[:n], self._values[:n], self._n = cells, values, n
         kernels.index(self._cells, n, self._slot)
         gain = np.float32(self.params.local_inhibit)
-        kernels.subtract(self._cells, self._values, n, self._slot, wide_cells, wide_values, m, gain)
+        kernels.subtract(self._values, self._slot, wide_cells, wide_values, m, gain)
 
     def _swap(self, n: int) -> None:
         self._cells, self._spare_cells = self._spare_cells, self._cells
@@ -194,7 +196,10 @@ class PoseCells:
         if wanted <= len(self._cells):
             return
         extra = max(wanted, 2 * len(self._cells)) - len(self._cells)
-        grow = lambda a: np.concatenate([a, np.zeros((extra, *a.shape[1:]), a.dtype)])  # noqa: E731
+
+        def grow(array: NDArray[Cell]) -> NDArray[Cell]:
+            return np.concatenate([array, np.zeros((extra, *array.shape[1:]), array.dtype)])
+
         self._cells, self._values = grow(self._cells), grow(self._values)
         self._spare_cells, self._spare_values = grow(self._spare_cells), grow(self._spare_values)
         self._owner, self._peaks = grow(self._owner), grow(self._peaks)

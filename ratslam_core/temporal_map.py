@@ -31,6 +31,7 @@ class TemporalMap:
     def __init__(self, experiences: ExperienceMap) -> None:
         n, links = len(experiences), experiences.links
         self._size = n
+        self._answer: tuple[int, NDArray[np.float64], NDArray[np.int32]] | None = None
         time = np.maximum(experiences.link_times, LEAST_S)
         i = np.concatenate([links[:, 0], links[:, 1]])
         j = np.concatenate([links[:, 1], links[:, 0]])
@@ -43,21 +44,26 @@ class TemporalMap:
 
     def times_to(self, experience: int) -> NDArray[np.float64]:
         """Seconds from every experience to this one (and back), shape (n,); inf where no way is known."""
-        self._require(experience)
-        return dijkstra(self._graph, indices=experience)
+        return self._tree(experience)[0]
 
     def route(self, start: int, goal: int) -> Route | None:
         """The quickest way, None when there is none."""
         self._require(start)
-        self._require(goal)
-        times, before = dijkstra(self._graph, indices=start, return_predecessors=True)
-        if not np.isfinite(times[goal]):
+        times, following = self._tree(goal)
+        if not np.isfinite(times[start]):
             return None
-        path = [goal]
-        while path[-1] != start:
-            path.append(int(before[path[-1]]))
-        nodes = np.array(path[::-1])
-        return Route(nodes, times[nodes])
+        path = [start]
+        while path[-1] != goal:
+            path.append(int(following[path[-1]]))
+        nodes = np.array(path)
+        return Route(nodes, times[start] - times[nodes])
+
+    def _tree(self, goal: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+        """Times to the goal and the next experience on the way there; the last answer is kept."""
+        self._require(goal)
+        if self._answer is None or self._answer[0] != goal:
+            self._answer = (goal, *dijkstra(self._graph, indices=goal, return_predecessors=True))
+        return self._answer[1:]
 
     def _require(self, experience: int) -> None:
         if not 0 <= experience < self._size:

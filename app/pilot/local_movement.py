@@ -87,7 +87,7 @@ def _best_arc(echoes, x, y, speed, turn_rate, clearance):
             steps = 8
             if v > 0.0:
                 dt = HORIZON_S / steps
-                for k in range(steps):
+                for _ in range(steps):
                     heading += w * dt / 2
                     px += v * dt * math.cos(heading)
                     py += v * dt * math.sin(heading)
@@ -95,11 +95,10 @@ def _best_arc(echoes, x, y, speed, turn_rate, clearance):
                     for e in range(echoes.shape[0]):
                         ex, ey = echoes[e, 0] - px, echoes[e, 1] - py
                         d = ex * ex + ey * ey
-                        if d < clearance * clearance:
-                            # an echo that is close already does not forbid to move away from it
-                            if d < echoes[e, 0] ** 2 + echoes[e, 1] ** 2 - 1e-4:
-                                free = False
-                                break
+                        # an echo that is too close already does not forbid to move away from it
+                        if d < clearance * clearance and d < echoes[e, 0] ** 2 + echoes[e, 1] ** 2 - 1e-4:
+                            free = False
+                            break
                         if d < nearest:
                             nearest = d
                     if not free:

@@ -17,10 +17,38 @@ class PilotParams:
     turn_rate: float = param(
         1.0, symbol="ω", unit="rad/s", low=0.2, high=1.57, meaning="turning on the spot", source="A 6"
     )
-    clearance: float = param(0.27, unit="m", low=0.2, high=1.0, meaning="least distance of the robot's middle from an obstacle", source="ours")  # fmt: skip
-    wall_distance: float = param(0.55, unit="m", low=0.3, high=2.0, meaning="distance kept from the wall on the left", source="C IV.D; value ours")  # fmt: skip
-    look_back_after_m: float = param(5.0, unit="m", low=1.0, high=1000.0, meaning="turn back and look after so much way", source="C IV.D: 3 m")  # fmt: skip
-    cross_after_s: float = param(16.0, unit="s", low=2.0, high=1e6, meaning="mean time of wall following before a crossing", source="ours")  # fmt: skip
+    clearance: float = param(
+        0.27,
+        unit="m",
+        low=0.2,
+        high=1.0,
+        meaning="least distance of the robot's middle from an obstacle",
+        source="ours",
+    )
+    wall_distance: float = param(
+        0.55,
+        unit="m",
+        low=0.3,
+        high=2.0,
+        meaning="distance kept from the wall on the left",
+        source="C IV.D; value ours",
+    )
+    look_back_after_m: float = param(
+        5.0,
+        unit="m",
+        low=1.0,
+        high=1000.0,
+        meaning="turn back and look after so much way",
+        source="C IV.D: 3 m",
+    )
+    cross_after_s: float = param(
+        16.0,
+        unit="s",
+        low=2.0,
+        high=1e6,
+        meaning="mean time of wall following before a crossing",
+        source="ours",
+    )
     lookahead_m: float = param(
         0.6, unit="m", low=0.2, high=3.0, meaning="how far ahead on the route the robot aims", source="ours"
     )

@@ -12,9 +12,9 @@ from app.pilot.params import PilotParams
 from ratslam_core import ExperienceMap, Route, TemporalMap
 
 REPLAN_S = 1.0
-SAME_PLACE_M = 0.35  # experiences so close in the map stand for the same place
 NEAR_M = 0.6  # [ours] links that are only thought of, from the robot to experiences so near
 LOST_S = 25.0
+CLOSE_ENOUGH_S = 5.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,6 +39,8 @@ class RouteFollower:
         self._age_s = math.inf  # of the route
         self._plan_in_s = 0.0
         self._no_route_s = 0.0
+        self._nearest_m = math.inf  # so near to the goal it was
+        self._since_nearer_s = 0.0
 
     def step(self, experiences: ExperienceMap, dt: float, p: PilotParams) -> tuple[float, float] | None:
         """The next point to head for, metres in the robot's frame; None when there, or when no route is known."""
@@ -48,7 +50,7 @@ class RouteFollower:
         goal = experiences.pose(self.goal)
         self._age_s += dt
         self._plan_in_s -= dt
-        if math.hypot(goal.x - robot.x, goal.y - robot.y) < p.arrival_m:
+        if self._there(math.hypot(goal.x - robot.x, goal.y - robot.y), dt, p):
             self.state = "arrived"
             return None
         if self._plan_in_s <= 0:
@@ -77,9 +79,16 @@ class RouteFollower:
         remaining = first + float(np.hypot(*np.diff(xy, axis=0).T).sum())
         return Progress(self.goal, self.state, float(arrival[-1]), remaining, nodes, arrival)
 
+    def _there(self, away: float, dt: float, p: PilotParams) -> bool:
+        """Near enough; or close by and not getting nearer, as at a goal in a corner where the robot just does not fit."""
+        self._since_nearer_s = 0.0 if away < self._nearest_m - 0.02 else self._since_nearer_s + dt
+        self._nearest_m = min(self._nearest_m, away)
+        return away < p.arrival_m or (away < 2 * p.arrival_m and self._since_nearer_s > CLOSE_ENOUGH_S)
+
     def _plan(self, experiences: ExperienceMap) -> None:
         """The quickest route, started at the active experience or, by links only thought of, at one close by."""
-        times = TemporalMap(experiences).times_to(self.goal)
+        ways = TemporalMap(experiences)
+        times = ways.times_to(self.goal)
         robot = experiences.robot
         poses = experiences.poses
         away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
@@ -91,7 +100,7 @@ class RouteFollower:
         start = int(near[np.argmin(cost)])
         if not np.isfinite(times[start]):
             return
-        self._route = TemporalMap(experiences).route(start, self.goal)
+        self._route = ways.route(start, self.goal)
         self._age_s = 0.0
 
     def _nearest(self, experiences: ExperienceMap) -> int:
