@@ -77,7 +77,8 @@ def test_it_is_alive(program, browser):
 
 
 def test_a_click_on_a_far_node_brings_the_robot_there(explored, browser):
-    with open_page(browser, explored.url, light=True) as page:  # another palette draws the map anew
+    with open_page(browser, explored.url) as page:
+        page.keyboard.press("t")  # another palette draws the map anew: where it lies follows from its nodes alone
         show(page, "map")
         state = explored.state(full=True)
         nodes = np.array(state["map"]["xy"])
@@ -233,7 +234,7 @@ def test_the_page_comes_back_after_the_server(browser):
         second = Program("--port", str(first.port), "--seed", "2")
         try:
             page.wait_for_selector("#toasts .toast:has-text('Connected again')", timeout=3000)
-            until(page, "() => document.getElementById('seed').textContent === '2'")
+            until(page, "() => document.getElementById('seed').textContent === '2'", 20)
             page.wait_for_timeout(1500)
             for path in ("/api/stream", "/viser/ws/"):  # the stage has come back as well
                 assert any(path in socket.url and not socket.is_closed() for socket in sockets), path

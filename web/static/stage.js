@@ -45,6 +45,11 @@ export class Stage {
     // viser reconnects only while its own frame has the focus; the person looks at the page as a whole.
     paper.hasFocus = () => !document.hidden;
     this.keys.listen(inside);
+    // viser prevents the default of a press on a draggable thing in a passive listener: without effect, but the
+    // browser notes an error each time.
+    inside.addEventListener("pointerdown", (event) => {
+      if (event.target.tagName === "CANVAS") event.preventDefault = () => {};
+    }, true);
     this.style = paper.createElement("style");
     paper.head.append(this.style);
     this.showPanels(this.panels);
