@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core import map_correction
+from ratslam_core.belief import Belief
 from ratslam_core.params import ExperienceMapParams
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, wrap_angle
 
@@ -45,6 +46,7 @@ class ExperienceMap:
         self._offset = IDENTITY  # the robot in the frame of the active experience when it was seen best
         self._sigma = 0.0  # how well that is known, m
         self._travel = IDENTITY  # odometry since then
+        self._belief = Belief()
         self._arrival: _Arrival | None = None
         self._latest = -1  # the experience made last: where it was made is known exactly
         self._from_latest = IDENTITY  # odometry since then
@@ -86,8 +88,8 @@ class ExperienceMap:
 
     @property
     def local_pose(self) -> Pose2:
-        """The robot in the frame of the active experience."""
-        return self._offset.compose(self._travel)
+        """Where the robot believes to be in the frame of the active experience."""
+        return self._belief.local
 
     @property
     def robot(self) -> Pose2:
@@ -130,15 +132,15 @@ class ExperienceMap:
         self._turning_s += turning_s
         self._turning_from_latest_s += turning_s
         self._since_s += odometry.dt
+        self._belief.move(moved, self.params.odometry_drift * abs(step))
         best = self._most_energetic(packet, seen.view)
+        before, came, sigma = self.active, self._offset.compose(self._travel), self._sigma
         if best < 0:
-            before, came, sigma = self.active, self.local_pose, self._sigma
             self._create(packet, seen.view, self.robot)
             self._learn_link(before, came, sigma)
             self._learn_spine(before)
             return True
-        if best != self.active or self._sigma >= CARRIED_M:
-            before, came, sigma = self.active, self.local_pose, self._sigma
+        if best != before:
             self._enter(best, packet, seen)
             self._learn_link(before, came, sigma)
         elif self._arrival is not None and self._deviation(seen) < self._sigma:
@@ -150,7 +152,8 @@ class ExperienceMap:
 
         test_experience_map.py::test_a_kidnap_makes_no_way.
         """
-        self._sigma, self._latest = CARRIED_M, -1
+        self._sigma = self._belief.sigma = CARRIED_M
+        self._latest = -1
 
     def correct(self) -> None:
         """One step of map correction: sweeps in every step, the exact solution now and then while loops close.
@@ -208,6 +211,7 @@ class ExperienceMap:
         self._graph.add_node()
         self._count += 1
         self.active, self._offset, self._travel, self._sigma = i, IDENTITY, IDENTITY, 0.0
+        self._belief.local = IDENTITY
 
     def _enter(self, experience: int, packet: Packet, seen: Recognition) -> None:
         """Make an experience active; the robot may enter its zone beside its centre."""
@@ -217,7 +221,9 @@ class ExperienceMap:
         dx, dy = dx * self.cell_m, dy * self.cell_m
         turn = seen.facing_rad if seen.view >= 0 else dtheta * 2 * math.pi / self.shape[0]
         self._offset = Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(turn))
+        self._belief.local = self.pose(experience).inverse().compose(self.robot)
         self._travel, self.active, self._sigma = IDENTITY, experience, self._deviation(seen)
+        self._belief.see(self._offset, self._sigma)
 
     def _deviation(self, seen: Recognition) -> float:
         """How far (m) the robot may be from where a view was taken that differs so much."""
@@ -233,6 +239,7 @@ class ExperienceMap:
         arrival.came = arrival.came.compose(self._travel)
         self._offset, self._travel = Pose2(0.0, 0.0, seen.facing_rad), IDENTITY
         self._sigma = self._deviation(seen)
+        self._belief.see(self._offset, self._sigma)
         self._measure(arrival)
 
     def _learn_link(self, i: int, came: Pose2, sigma: float) -> None:

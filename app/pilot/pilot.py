@@ -32,6 +32,7 @@ class Pilot:
         self._hand = (0.0, 0.0)  # speed, yaw rate
         self._place = np.zeros(3)  # by odometry, from where it last got ahead
         self._still_s = 0.0
+        self._astray = False  # exploring because no route leads on
         self._free_self_s = 0.0
         self._free_self = (0.0, 0.0)
 
@@ -90,15 +91,28 @@ class Pilot:
                 return 0.0, 0.0
             if target is not None:
                 self.doing = "following the route" if state == "tracking" else "coasting on the old route"
+                self._astray = False
                 p = self.params
                 return self._local.towards(*target, p.cruise_speed, p.turn_rate, p.clearance)
+            if not self._astray:
+                self._astray = True
+                self._explorer.begin_crossing()
         drive = self._explorer.step(ranges_m, odometry, self._local, self.params)
         self.doing = self._explorer.doing
         return drive
 
     def digest(self) -> bytes:
         """All that decides what it will do, for the state hash."""
-        parts = (self.mode, self.goal_state, self._hand, self._still_s, self._free_self_s, self._free_self, self.params)
+        parts = (
+            self.mode,
+            self.goal_state,
+            self._astray,
+            self._hand,
+            self._still_s,
+            self._free_self_s,
+            self._free_self,
+            self.params,
+        )
         return repr(parts).encode() + self._place.tobytes() + self._explorer.digest() + self._local.digest()
 
     def _by_hand(self) -> tuple[float, float]:

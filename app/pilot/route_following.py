@@ -15,6 +15,8 @@ REPLAN_S = 1.0
 NEAR_M = 0.6  # [ours] links that are only thought of, from the robot to experiences so near
 LOST_S = 25.0
 CLOSE_ENOUGH_S = 5.0
+NO_HEADWAY_S = 25.0  # [ours] a robot that does not get along its route for so long looks around instead ...
+LOOK_AROUND_S = 15.0  # ... for so long: what the map takes for a way may be a wall
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,6 +43,8 @@ class RouteFollower:
         self._no_route_s = 0.0
         self._nearest_m = math.inf  # so near to the goal it was
         self._since_nearer_s = 0.0
+        self._least_left_s = math.inf  # of the way to the goal
+        self._since_headway_s = self._look_around_s = 0.0
 
     def step(self, experiences: ExperienceMap, dt: float, p: PilotParams) -> tuple[float, float] | None:
         """The next point to head for, metres in the robot's frame; None when there, or when no route is known."""
@@ -56,6 +60,9 @@ class RouteFollower:
         if self._plan_in_s <= 0:
             self._plan_in_s = REPLAN_S
             self._plan(experiences)
+        if self._without_headway(dt):
+            self.state = "exploring"
+            return None
         if self._route is None or self._age_s > p.coast_s:
             self._no_route_s += dt
             self.state = "unreachable" if self._no_route_s > LOST_S else "exploring"
@@ -78,6 +85,19 @@ class RouteFollower:
         first = math.hypot(xy[0, 0] - robot.x, xy[0, 1] - robot.y)
         remaining = first + float(np.hypot(*np.diff(xy, axis=0).T).sum())
         return Progress(self.goal, self.state, float(arrival[-1]), remaining, nodes, arrival)
+
+    def _without_headway(self, dt: float) -> bool:
+        """Whether to look around because following the route leads nowhere. test_pilot.py::test_a_blocked_way_is_left."""
+        if self._look_around_s > 0:
+            self._look_around_s -= dt
+            return True
+        left_s = math.inf if self._route is None else float(self._route.arrival_s[-1])
+        self._since_headway_s += dt
+        if left_s < self._least_left_s - 0.5:
+            self._least_left_s, self._since_headway_s = left_s, 0.0
+        if self._since_headway_s > NO_HEADWAY_S:
+            self._least_left_s, self._since_headway_s, self._look_around_s = math.inf, 0.0, LOOK_AROUND_S
+        return self._look_around_s > 0
 
     def _there(self, away: float, dt: float, p: PilotParams) -> bool:
         """Near enough; or close by and not getting nearer, as at a goal in a corner where the robot just does not fit."""
