@@ -1,0 +1,139 @@
+"""Laws of the pose cells on random activity: agreement with a slow literal twin, mass, sign, symmetry."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ratslam_core import PoseCellParams, PoseCells, kernels
+from tests.unit.ratslam_core import literal
+
+sizes = st.tuples(st.integers(8, 21), st.integers(8, 21), st.integers(8, 21))
+EXAMPLES = settings(max_examples=40, deadline=None)
+
+
+@st.composite
+def activities(draw: st.DrawFn) -> np.ndarray:
+    """Sparse activity that sums to 1: a few clusters of cells anywhere, across faces too."""
+    shape = draw(sizes)
+    dense = np.zeros(shape)
+    for _ in range(draw(st.integers(1, 4))):
+        middle = [draw(st.integers(0, n - 1)) for n in shape]
+        cells = st.tuples(st.integers(-2, 2), st.integers(-2, 2), st.integers(-2, 2), st.floats(0.01, 1))
+        for dt, dy, dx, value in draw(st.lists(cells, min_size=1, max_size=6)):
+            at = tuple((m + d) % n for m, d, n in zip(middle, (dt, dy, dx), shape, strict=True))
+            dense[at] += value
+    return dense / dense.sum()
+
+
+def network(dense: np.ndarray, **params: float) -> PoseCells:
+    n_theta, n_y, n_x = dense.shape
+    pose_cells = PoseCells(PoseCellParams(n_x=n_x, n_y=n_y, n_theta=n_theta, **params))  # type: ignore[arg-type]
+    literal.fill(pose_cells, dense)
+    return pose_cells
+
+
+@EXAMPLES
+@given(activities(), st.floats(-4, 4), st.floats(-4, 4))
+def test_path_integration_is_that_of_the_papers(dense: np.ndarray, cells: float, layers: float) -> None:
+    pose_cells = network(dense)
+    pose_cells.integrate(cells * 0.25, layers * 2 * math.pi / dense.shape[0])
+    assert np.abs(pose_cells.activity - literal.shift(dense, cells, layers)).max() < 1e-6
+    assert pose_cells.activity.sum(dtype=np.float64) == pytest.approx(1.0, abs=1e-6)
+
+
+@EXAMPLES
+@given(activities(), st.floats(0.3, 1.5), st.integers(1, 3), st.integers(2, 6), st.sampled_from([0.0, 1e-4, 1e-3]))
+def test_the_attractor_is_that_of_the_papers(
+    dense: np.ndarray, sigma: float, radius: int, window: int, phi: float
+) -> None:
+    pose_cells = network(dense, excite_sigma=sigma, excite_radius=radius, window=window, inhibit=phi)
+    pose_cells.attract()
+    expected = literal.inhibit(literal.convolve(dense, literal.gaussian(sigma, radius)), phi)
+    assert np.abs(pose_cells.activity - expected).max() < 2e-6
+
+
+@settings(max_examples=20, deadline=None)
+@given(activities(), st.floats(0.05, 0.9))
+def test_local_inhibition_is_a_second_wider_gaussian_taken_away(dense: np.ndarray, gain: float) -> None:
+    pose_cells = network(dense, local_inhibit=gain)
+    pose_cells.attract()
+    excited = literal.convolve(dense, literal.gaussian(0.5, 2))
+    left = excited - gain * literal.convolve(excited, literal.gaussian(2.0, 2))
+    assert np.abs(pose_cells.activity - literal.inhibit(left, 3e-4)).max() < 2e-6
+
+
+@EXAMPLES
+@given(activities(), st.lists(st.tuples(st.floats(-3, 3), st.floats(-3, 3)), min_size=1, max_size=8))
+def test_activity_is_a_distribution_whatever_happens(dense: np.ndarray, drives: list[tuple[float, float]]) -> None:
+    pose_cells = network(dense)
+    for speed, yaw_rate in drives:
+        pose_cells.step(speed=speed, yaw_rate=yaw_rate, dt=0.1)
+        activity = pose_cells.activity
+        assert activity.min() >= 0
+        assert activity.sum(dtype=np.float64) == pytest.approx(1.0, abs=1e-6)
+        winner = pose_cells.winner
+        assert 0 <= winner.x < dense.shape[2]
+        assert 0 <= winner.y < dense.shape[1]
+        assert -math.pi < winner.heading_rad <= math.pi
+        assert sum(p.mass for p in pose_cells.packets) <= 1 + 1e-5
+
+
+shifts = st.tuples(st.integers(-30, 30), st.integers(-30, 30))
+
+
+@EXAMPLES
+@given(activities(), shifts, st.lists(st.tuples(st.floats(-3, 3), st.floats(-3, 3)), min_size=1, max_size=4))
+def test_no_place_of_the_torus_is_special(
+    dense: np.ndarray, by: tuple[int, int], drives: list[tuple[float, float]]
+) -> None:
+    """A whole-cell shift of the start is a whole-cell shift of all that follows."""
+    here, there = (network(activity, inhibit=0.0, carry=False) for activity in (dense, np.roll(dense, by, (1, 2))))
+    for speed, yaw_rate in drives:
+        for pose_cells in (here, there):
+            pose_cells.integrate(speed * 0.1, yaw_rate * 0.1)
+            pose_cells._rows[0, 4] = 1.0  # the twins may name another of two equal packets the winner
+            pose_cells.attract()
+            pose_cells._rows[0, 4] = 1.0
+    assert np.abs(np.roll(here.activity, by, (1, 2)) - there.activity).max() < 1e-5
+
+
+@EXAMPLES
+@given(activities(), st.integers(-40, 40), st.integers(-40, 40), st.integers(-40, 40))
+def test_a_whole_cell_shift_is_a_roll_and_back_is_the_identity(dense: np.ndarray, x: int, y: int, theta: int) -> None:
+    pose_cells = network(dense)
+    cells, values = (a.copy() for a in pose_cells.active)
+    shape, slot = pose_cells.shape, pose_cells.slot.copy()
+    n = len(values)
+    away_cells, away_values = np.zeros((8 * n, 4), np.int32), np.zeros(8 * n, np.float32)
+    m = kernels.shift(cells, values, n, away_cells, away_values, slot, shape, 0.0, theta, x, y)
+    away = np.zeros(dense.size)
+    away[away_cells[:m, kernels.FLAT]] = away_values[:m]
+    assert np.abs(away.reshape(dense.shape) - np.roll(dense, (theta, y, x), (0, 1, 2))).max() < 1e-6
+    back_cells, back_values = np.zeros((8 * n, 4), np.int32), np.zeros(8 * n, np.float32)
+    k = kernels.shift(away_cells, away_values, m, back_cells, back_values, slot, shape, 0.0, -theta, -x, -y)
+    back = np.zeros(dense.size, np.float32)
+    back[back_cells[:k, kernels.FLAT]] = back_values[:k]
+    assert np.array_equal(back.reshape(dense.shape), pose_cells.activity)
+
+
+@EXAMPLES
+@given(activities(), st.integers(2, 6))
+def test_every_active_cell_belongs_to_one_cluster_within_the_window(dense: np.ndarray, window: int) -> None:
+    pose_cells = network(dense)
+    cells, values = pose_cells.active
+    n = len(values)
+    owner, peaks = np.zeros(n, np.int32), np.zeros(n, np.int32)
+    found = kernels.cluster(cells, values, n, dense.shape, window, owner, peaks)
+    assert set(owner) == set(range(found))
+    for c in range(found):
+        peak = cells[peaks[c]]
+        assert values[peaks[c]] == values[owner == c].max()
+        for axis in range(3):
+            size = dense.shape[2 - axis]
+            apart = np.abs((cells[owner == c, axis] - peak[axis] + size // 2) % size - size // 2)
+            assert apart.max() <= min(window, (size - 1) // 2)

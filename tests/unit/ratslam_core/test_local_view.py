@@ -1,0 +1,205 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ratslam_core import LocalView, LocalViewParams, Recognition
+from ratslam_core.local_view import grey_template
+
+Image = NDArray[np.uint8]
+FOV = math.radians(50)
+
+
+def panorama(seed: int, columns: int = 60) -> NDArray[np.float64]:
+    """A smooth, lively scene much wider than one view, shape (8, columns)."""
+    rng = np.random.default_rng(seed)
+    coarse = rng.uniform(20, 235, (8, columns // 3 + 2))
+    at = np.arange(columns) / 3
+    left = at.astype(int)
+    return coarse[:, left] * (1 - at + left) + coarse[:, left + 1] * (at - left)
+
+
+def look(scene: NDArray[np.float64], column: float) -> Image:
+    """The 12 columns from this one on; columns count to the right."""
+    left = math.floor(column)
+    part = column - left
+    seen = scene[:, left : left + 12] * (1 - part) + scene[:, left + 1 : left + 13] * part
+    return np.round(seen).astype(np.uint8)
+
+
+def image(seed: int) -> Image:
+    return look(panorama(seed), 20)
+
+
+def literal_match(new: Image, known: list[Image], most: int) -> tuple[float, int, int]:
+    """Least mean absolute difference over the columns that overlap, its view and its shift, by loops."""
+    best = (math.inf, -1, 0)
+    for view, old in enumerate(known):
+        for shift in range(-most, most + 1):
+            total = count = 0
+            for column in range(12):
+                if 0 <= column - shift < 12:
+                    for row in range(8):
+                        total += abs(int(new[row, column]) - int(old[row, column - shift]))
+                        count += 1
+            best = min(best, (total / count, view, shift), key=lambda b: b[0])
+    return best
+
+
+@pytest.mark.parametrize("most", [0, 1, 2, 5])
+def test_matching_is_the_least_sum_of_absolute_differences(most: int) -> None:
+    rng = np.random.default_rng(most)
+    scenes = [panorama(seed) for seed in range(12)]
+    local_view = LocalView(LocalViewParams(shift=most, match_threshold=0.0))
+    known: list[Image] = []
+    for _ in range(60):
+        new = look(scenes[rng.integers(12)], float(rng.uniform(5, 40)))
+        expected, view, _ = literal_match(new, known, most)
+        got = local_view.observe(new)
+        assert got.difference == pytest.approx(expected, rel=1e-6)
+        if known:
+            again, _, _ = literal_match(new, [known[got.best_view]], most)
+            assert again == pytest.approx(expected, rel=1e-6)
+            if expected > 0:
+                assert got.best_view == view
+        if got.recruited:
+            known.append(new)
+    assert len(known) == len(local_view) > 50
+
+
+def test_a_new_scene_recruits_a_cell_and_is_known_from_then_on() -> None:
+    local_view = LocalView()
+    first = local_view.observe(image(1))
+    assert first == Recognition(view=0, recruited=True, best_view=-1, difference=math.inf)
+    second = local_view.observe(image(2))
+    assert (second.view, second.recruited, second.best_view) == (1, True, 0)
+    assert second.difference > local_view.params.match_threshold
+    again = local_view.observe(image(1))
+    assert again == Recognition(view=0, recruited=False, best_view=0, difference=0.0, facing_rad=0.0)
+    assert len(local_view) == 2
+    assert np.array_equal(local_view.stored(0), image(1))
+    assert np.array_equal(local_view.stored(1), image(2))
+
+
+def test_the_threshold_decides() -> None:
+    base = image(4)
+    brighter = (base.astype(int) + 6).clip(0, 255).astype(np.uint8)
+    for threshold, recruited in ((6.0, False), (5.9, True)):
+        local_view = LocalView(LocalViewParams(match_threshold=threshold, shift=0))
+        local_view.observe(base)
+        assert local_view.observe(brighter).recruited is recruited
+
+
+def test_thousands_of_views_are_all_kept() -> None:
+    rng = np.random.default_rng(0)
+    local_view = LocalView(LocalViewParams(shift=0))
+    images = rng.integers(0, 255, (2500, 8, 12)).astype(np.uint8)
+    for number, one in enumerate(images):
+        assert local_view.observe(one).view == number
+    for number in (0, 1023, 1024, 2048, 2499):
+        assert local_view.observe(images[number]).view == number
+    assert len(local_view) == 2500
+
+
+def test_a_bland_view_shows_nothing() -> None:
+    local_view = LocalView()
+    wall = np.full((8, 12), 140, np.uint8)
+    wall[:, 6:] += 20  # contrast 10
+    nothing = local_view.observe(wall)
+    assert (nothing.view, nothing.recruited, nothing.best_view) == (-1, False, -1)
+    assert len(local_view) == 0
+    local_view.observe(image(1))
+    assert local_view.observe(wall).view == -1
+    wall[:, 6:] += 6  # contrast 13
+    assert local_view.observe(wall).recruited
+
+
+@pytest.mark.parametrize("columns", [-2.0, -1.4, -1.0, -0.5, 0.0, 0.3, 1.0, 1.6, 2.0])
+def test_the_shift_of_the_image_tells_the_heading(columns: float) -> None:
+    """A robot that turns left sees everything move to the right in the image: it looks at columns further left."""
+    wrong = []
+    for seed in range(20):
+        scene = panorama(seed)
+        local_view = LocalView(LocalViewParams(match_threshold=40.0))
+        local_view.observe(look(scene, 20))
+        seen = local_view.observe(look(scene, 20 - columns))
+        assert seen.view == 0
+        wrong.append(seen.facing_rad - columns * FOV / 12)
+    column = FOV / 12
+    assert abs(float(np.median(wrong))) < 0.15 * column
+    assert np.abs(wrong).max() < 0.5 * column
+
+
+def test_without_shifts_nothing_is_known_of_the_heading() -> None:
+    local_view = LocalView(LocalViewParams(shift=0, match_threshold=60.0))
+    local_view.observe(look(panorama(1), 20))
+    seen = local_view.observe(look(panorama(1), 19))
+    assert (seen.view, seen.facing_rad) == (0, 0.0)
+
+
+def test_a_scene_without_an_edge_tells_no_fraction_of_a_shift() -> None:
+    """All shifts fit a scene of stripes that lie along the rows equally well."""
+    stripes = np.repeat(np.linspace(0, 250, 8).astype(np.uint8)[:, None], 12, axis=1)
+    local_view = LocalView()
+    local_view.observe(stripes)
+    seen = local_view.observe(stripes)
+    assert (seen.view, seen.difference) == (0, 0.0)
+    assert abs(seen.facing_rad) <= 2 * FOV / 12
+
+
+def test_surprise_is_the_change_that_no_turn_explains() -> None:
+    scene = panorama(7)
+    local_view = LocalView()
+    local_view.observe(look(scene, 20))
+    assert local_view.surprise == 0.0
+    for column in (23, 20, 19, 17):  # within three columns of the one before
+        local_view.observe(look(scene, column))
+        assert local_view.surprise == 0.0
+    elsewhere = look(panorama(8), 20)
+    local_view.observe(elsewhere)
+    expected, _, _ = literal_match(elsewhere, [look(scene, 17)], 3)
+    assert local_view.surprise == pytest.approx(expected, rel=1e-6)
+    assert local_view.surprise > 20
+
+
+def test_a_camera_image_becomes_the_mean_of_its_areas() -> None:
+    rng = np.random.default_rng(0)
+    grey = rng.integers(0, 256, (48, 60)).astype(np.uint8)
+    means = grey.reshape(8, 6, 12, 5).mean((1, 3))
+    assert np.abs(grey_template(grey) - means).max() <= 0.5 + 1e-6
+    rgb = rng.integers(0, 256, (48, 60, 3)).astype(np.uint8)
+    luminance = (rgb @ np.array([0.299, 0.587, 0.114])).reshape(8, 6, 12, 5).mean((1, 3))
+    template = grey_template(rgb)
+    assert np.abs(template - luminance).max() < 1.0
+    assert (template.shape, template.dtype) == ((8, 12), np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("bad", "message"),
+    [
+        (np.zeros((48, 64)), "image must be an array of uint8, got float64"),
+        (np.full((48, 64), math.nan, np.float32), "image must be an array of uint8, got float32"),
+        ([[1, 2], [3, 4]], "image must be an array of uint8, got list"),
+        (None, "image must be an array of uint8, got NoneType"),
+        (np.zeros(64, np.uint8), r"image must have shape \(h, w\) or \(h, w, 3\), got \(64,\)"),
+        (np.zeros((48, 64, 4), np.uint8), r"image must have shape \(h, w\) or \(h, w, 3\), got \(48, 64, 4\)"),
+        (np.zeros((7, 64), np.uint8), r"image must be at least 8 x 12 pixels, got \(7, 64\)"),
+        (np.zeros((8, 11), np.uint8), r"image must be at least 8 x 12 pixels, got \(8, 11\)"),
+    ],
+)
+def test_what_is_not_an_image_is_refused(bad: object, message: str) -> None:
+    local_view = LocalView()
+    with pytest.raises(ValueError, match=message):
+        local_view.observe(bad)  # type: ignore[arg-type]
+    assert len(local_view) == 0
+
+
+@pytest.mark.parametrize("view", [-1, 1])
+def test_only_known_views_are_stored(view: int) -> None:
+    local_view = LocalView()
+    local_view.observe(image(1))
+    with pytest.raises(ValueError, match=f"view must be from 0 to 0, got {view}"):
+        local_view.stored(view)

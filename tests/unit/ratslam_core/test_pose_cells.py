@@ -1,0 +1,324 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ratslam_core import PoseCellParams, PoseCells, kernels
+
+from . import literal
+
+DT = 0.1
+DEEP = 0.25  # metres in a cell
+
+
+def settled(x: int = 32, y: int = 32, theta: int = 0, params: PoseCellParams | None = None) -> PoseCells:
+    """A packet of the shape that the attractor gives it."""
+    pose_cells = PoseCells(params)
+    pose_cells.place(x, y, theta)
+    rest(pose_cells, 60)
+    return pose_cells
+
+
+def rest(pose_cells: PoseCells, steps: int) -> None:
+    for _ in range(steps):
+        pose_cells.step(speed=0.0, yaw_rate=0.0, dt=DT)
+
+
+def drive(pose_cells: PoseCells, cells_a_step: float, layers_a_step: float, steps: int) -> NDArray[np.float64]:
+    """Drive and add up the way of the winner: x, y in cells, heading in layers."""
+    n_theta, n_y, n_x = pose_cells.shape
+    turn = layers_a_step * 2 * math.pi / n_theta / DT
+    size = np.array([n_x, n_y, n_theta])
+    way = np.zeros(3)
+    before = where(pose_cells)
+    for _ in range(steps):
+        pose_cells.step(speed=cells_a_step * DEEP / DT, yaw_rate=turn, dt=DT)
+        after = where(pose_cells)
+        way += (after - before + size / 2) % size - size / 2
+        before = after
+    return way
+
+
+def where(pose_cells: PoseCells) -> NDArray[np.float64]:
+    winner = pose_cells.winner
+    return np.array([winner.x, winner.y, winner.heading_rad * pose_cells.shape[0] / (2 * math.pi)])
+
+
+# ---------------------------------------------------------------- path integration
+
+
+@pytest.mark.parametrize("heading", [0, 1, 9, 23])
+@pytest.mark.parametrize("cells_a_step", [0.01, 0.03, 0.1, 0.3, 1.0, 2.0, 3.0])
+def test_gain_is_one_from_crawl_to_three_cells(cells_a_step: float, heading: int) -> None:
+    pose_cells = settled(theta=heading)
+    steps = max(40, round(4 / cells_a_step))
+    way = drive(pose_cells, cells_a_step, 0.0, steps)
+    angle = 2 * math.pi * heading / 36
+    forwards = way[:2] @ [math.cos(angle), math.sin(angle)] / (steps * cells_a_step)
+    sideways = way[:2] @ [-math.sin(angle), math.cos(angle)] / (steps * cells_a_step)
+    assert forwards == pytest.approx(1.0, abs=0.012)
+    assert sideways == pytest.approx(0.0, abs=0.05)
+
+
+@pytest.mark.parametrize("layers_a_step", [-2.3, -1.0, -0.1, 0.02, 0.4, 1.0, 3.0])
+def test_gain_of_turning_is_one(layers_a_step: float) -> None:
+    pose_cells = settled()
+    steps = max(40, round(4 / abs(layers_a_step)))
+    way = drive(pose_cells, 0.0, layers_a_step, steps)
+    assert way[2] / (steps * layers_a_step) == pytest.approx(1.0, abs=0.012)
+    assert np.abs(way[:2]).max() < 0.01
+
+
+def test_without_carry_a_slow_packet_is_pinned() -> None:
+    """What `carry` is for: the attractor swallows part of a small shift."""
+    with_carry, without = (
+        drive(settled(params=PoseCellParams(carry=carry)), 0.03, 0.0, 200)[0] for carry in (True, False)
+    )
+    assert without < 0.97 * 200 * 0.03
+    assert with_carry == pytest.approx(200 * 0.03, rel=0.012)
+
+
+def test_standing_still_does_not_drift() -> None:
+    pose_cells = settled(5, 60, 30)
+    drive(pose_cells, 0.37, 0.21, 25)  # to somewhere between the cells
+    rest(pose_cells, 40)  # settle there
+    before, shape = where(pose_cells), pose_cells.activity
+    rest(pose_cells, 1000)
+    assert np.abs(where(pose_cells) - before).max() < 0.01
+    assert np.abs(pose_cells.activity - shape).max() < 1e-3
+
+
+@pytest.mark.parametrize(("speed", "yaw_rate"), [(0.5, 0.0), (0.3, 0.4), (-0.4, -0.7), (0.5, 1.3)])
+def test_the_end_point_does_not_depend_on_the_rate(speed: float, yaw_rate: float) -> None:
+    ends = []
+    for rate in (5, 10, 50):
+        pose_cells = settled()
+        for _ in range(8 * rate):
+            pose_cells.step(speed=speed, yaw_rate=yaw_rate, dt=1 / rate)
+        ends.append(pose_cells.winner)
+    for end in ends[:2]:
+        assert pose_cells.cells_apart(end.x, end.y, ends[2].x, ends[2].y) < 1.0
+        assert abs(math.remainder(end.heading_rad - ends[2].heading_rad, 2 * math.pi)) < math.radians(10)
+
+
+# ---------------------------------------------------------------- the torus
+
+FACES = {"+x": (0, 0.8, 0.0), "-x": (18, 0.8, 0.0), "+y": (9, 0.8, 0.0), "-y": (27, 0.8, 0.0)}
+FACES |= {"+theta": (0, 0.0, 0.7), "-theta": (0, 0.0, -0.7), "corner": (4, 0.9, 0.3)}
+
+
+@pytest.mark.parametrize("face", FACES)
+def test_a_packet_crosses_every_face_unchanged(face: str) -> None:
+    theta, forwards, turn = FACES[face]
+    size = PoseCellParams(n_x=24, n_y=24, n_theta=36)
+    inside, across = settled(3, 4, theta, size), settled(12, 12, theta, size)
+    for step in range(60):  # 48 cells: twice around
+        drive(inside, forwards, turn, 1)
+        drive(across, forwards, turn, 1)
+        shifted = np.roll(inside.activity, (8, 9), (1, 2))
+        assert np.abs(across.activity - shifted).max() < 1e-5, f"step {step}"
+        assert across.activity.sum(dtype=np.float64) == pytest.approx(1.0, abs=1e-6)
+        assert across.winner.mass > 0.9
+
+
+def test_a_packet_turns_through_the_last_layer_unchanged() -> None:
+    """Layers are headings, so here the plane turns with them: 9 layers on are a quarter turn on."""
+    size = PoseCellParams(n_x=24, n_y=24, n_theta=36)
+    inside, across = settled(12, 12, 14, size), settled(12, 12, 32, size)
+    for _ in range(20):
+        drive(inside, 0.0, 0.7, 1)
+        drive(across, 0.0, 0.7, 1)
+        assert np.abs(across.activity - np.roll(inside.activity, 18, 0)).max() < 1e-5
+
+
+# ---------------------------------------------------------------- competition
+
+
+def two_packets(apart: float, share: float) -> PoseCells:
+    one = settled().activity.astype(np.float64)
+    pose_cells = PoseCells()
+    literal.fill(pose_cells, share * one + (1 - share) * np.roll(one, round(apart), 2))
+    return pose_cells
+
+
+def test_two_packets_close_together_merge() -> None:
+    pose_cells = two_packets(3, 0.5)
+    rest(pose_cells, 100)
+    assert len(pose_cells.packets) == 1
+    assert pose_cells.winner.x == pytest.approx(33.5, abs=0.1)
+    along_x = pose_cells.activity.sum((0, 1))
+    assert np.argmax(along_x) in (33, 34)
+    assert np.all(np.diff(along_x[30:34]) >= 0)
+    assert np.all(np.diff(along_x[34:38]) <= 0)
+
+
+@pytest.mark.parametrize("apart", [20, 32])
+@pytest.mark.parametrize("share", [0.45, 0.6])
+def test_two_packets_far_apart_compete_and_the_heavier_wins(apart: int, share: float) -> None:
+    pose_cells = two_packets(apart, share)
+    pose_cells.attract()
+    assert len(pose_cells.packets) == 2
+    assert sum(p.mass for p in pose_cells.packets) == pytest.approx(1.0, abs=1e-5)
+    assert pose_cells.packets[0].mass > pose_cells.packets[1].mass
+    rest(pose_cells, 400)
+    assert len(pose_cells.packets) == 1
+    assert pose_cells.winner.x == pytest.approx(32 if share > 0.5 else (32 + apart) % 64, abs=0.01)
+
+
+def test_nothing_is_carried_over_when_another_packet_wins() -> None:
+    """A jump of the winner is not a motion that the attractor swallowed."""
+    pose_cells = settled()
+    other = np.roll(pose_cells.activity, 20, 2)
+    drive(pose_cells, 0.37, 0.0, 3)
+    flats = np.flatnonzero(other)
+    pose_cells.inject(flats.astype(np.int32), (3 * other.flat[flats]).astype(np.float32))
+    pose_cells.attract()
+    before = where(pose_cells)
+    assert before[0] == pytest.approx(52, abs=0.01)
+    rest(pose_cells, 1)
+    assert np.abs(where(pose_cells) - before).max() < 0.005
+
+
+def test_more_packets_than_can_be_reported() -> None:
+    params = PoseCellParams(inhibit=0.0)
+    pose_cells = PoseCells(params)
+    dense = np.zeros(pose_cells.shape)
+    dense[5, 10, 4::14] = 1.0
+    dense[20, 40, 4::14] = np.arange(2, 7)
+    literal.fill(pose_cells, dense / dense.sum())
+    pose_cells.attract()
+    masses = [p.mass for p in pose_cells.packets]
+    assert len(masses) == 8
+    assert masses == sorted(masses, reverse=True)
+    assert masses[:5] == pytest.approx([0.24, 0.20, 0.16, 0.12, 0.08], abs=1e-3)
+
+
+# ---------------------------------------------------------------- the attractor
+
+
+def test_golden_numbers_of_the_attractor() -> None:
+    """Stored answers of another implementation: one unit of activity in one cell, standing still (docs: peers)."""
+    params = PoseCellParams(
+        n_x=21, n_y=21, n_theta=36, excite_sigma=1.0, excite_radius=3, inhibit=2e-5,
+        local_inhibit=1.0, local_inhibit_sigma=2.0, local_inhibit_radius=2,
+    )  # fmt: skip
+    pose_cells = PoseCells(params)
+    pose_cells.place(10, 10, 18)
+    golden = {1: 0.113585533, 2: 0.064391511, 3: 0.051676944, 5: 0.044672531, 10: 0.042833774, 50: 0.042770436}
+    for step in range(1, 51):
+        pose_cells.step(speed=0.0, yaw_rate=0.0, dt=DT)
+        if step in golden:
+            assert pose_cells.activity.max() == pytest.approx(golden[step], abs=2e-7)
+    activity = pose_cells.activity
+    assert np.count_nonzero(activity) == 93
+    along_x = activity.sum((0, 1), dtype=np.float64)
+    assert math.sqrt(along_x @ (np.arange(21) - 10) ** 2) == pytest.approx(0.990, abs=0.001)
+
+
+def test_growing_room_changes_nothing() -> None:
+    """More cells become active than there was room for at first."""
+    params = PoseCellParams(inhibit=0.0, n_x=24, n_y=24, n_theta=24)
+    pose_cells = PoseCells(params)
+    dense = np.random.default_rng(3).random(pose_cells.shape)
+    dense /= dense.sum()
+    literal.fill(pose_cells, dense)
+    assert np.abs(pose_cells.activity - dense).max() < 1e-9
+    pose_cells.attract()
+    assert pose_cells.active[0].shape == (24**3, 4)
+    assert pose_cells.activity.sum(dtype=np.float64) == pytest.approx(1.0, abs=1e-6)
+    for axis in range(3):
+        dense = sum(w * np.roll(dense, k - 2, axis) for k, w in enumerate(literal.gaussian(0.5, 2)))
+    assert np.abs(pose_cells.activity - dense).max() < 1e-9
+
+
+def test_active_slot_and_activity_say_the_same() -> None:
+    pose_cells = settled(63, 0, 35)
+    cells, values = pose_cells.active
+    dense = np.zeros(pose_cells.shape, np.float32)
+    dense[cells[:, kernels.THETA], cells[:, kernels.Y], cells[:, kernels.X]] = values
+    assert np.array_equal(dense, pose_cells.activity)
+    assert np.array_equal(np.flatnonzero(pose_cells.slot), np.sort(cells[:, kernels.FLAT]))
+    assert np.array_equal(pose_cells.slot[cells[:, kernels.FLAT]], np.arange(len(cells)) + 1)
+
+
+@pytest.mark.parametrize("local_inhibit", [0.0, 0.4])
+def test_interpreted_kernels_do_what_the_compiled_ones_do(
+    local_inhibit: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    params = PoseCellParams(n_x=9, n_y=8, n_theta=10, inhibit=1e-4, local_inhibit=local_inhibit)
+    runs = []
+    for interpreted in (False, True):
+        if interpreted:
+            literal.interpret(kernels, monkeypatch)
+        pose_cells = PoseCells(params)
+        pose_cells.place(7, 7, 9)
+        activity = []
+        for forwards, turn in [(0.0, 0.0), (0.3, 0.2), (-1.7, 0.0), (0.0, -2.5), (1.0, 1.0)]:
+            drive(pose_cells, forwards, turn, 1)
+            pose_cells.inject(np.array([5, 300], np.int32), np.array([0.05, 0.02], np.float32))
+            activity.append(pose_cells.activity)
+        runs.append(np.array(activity))
+    assert np.abs(runs[0] - runs[1]).max() < 1e-6
+
+
+def test_no_activity_near_a_place_has_no_centre() -> None:
+    pose_cells = settled()
+    cells, values = pose_cells.active
+    assert kernels.centre_near(cells, values, len(values), pose_cells.shape, 2, 5.0, 5.0, 18.0) == (0, 0, 0, 0)
+    x, y, t, mass = kernels.centre_near(cells, values, len(values), pose_cells.shape, 6, 31.0, 32.0, 0.0)
+    assert (x, y, t) == pytest.approx((1.0, 0.0, 0.0), abs=1e-4)
+    assert mass == pytest.approx(1.0, abs=1e-5)
+
+
+# ---------------------------------------------------------------- parameters and refusals
+
+
+def test_live_parameters_act_at_once_and_the_size_is_fixed() -> None:
+    pose_cells = settled()
+    sharp = len(pose_cells.active[0])
+    pose_cells.set_params(PoseCellParams(excite_sigma=1.0, excite_radius=3))
+    rest(pose_cells, 30)
+    assert len(pose_cells.active[0]) > sharp
+    for other in (dict(n_x=65), dict(n_y=63), dict(n_theta=72), dict(cell_m=0.5)):
+        with pytest.raises(ValueError, match="size of the pose cells is fixed at 64 x 64 x 36 until a reset"):
+            pose_cells.set_params(PoseCellParams(**other))
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_what_is_not_finite_is_refused(bad: float) -> None:
+    pose_cells = PoseCells()
+    with pytest.raises(ValueError, match="speed must be a finite number, got"):
+        pose_cells.step(speed=bad, yaw_rate=0.0, dt=DT)
+    with pytest.raises(ValueError, match="yaw_rate must be a finite number, got"):
+        pose_cells.step(speed=0.0, yaw_rate=bad, dt=DT)
+    with pytest.raises(ValueError, match="dt must be a positive number of seconds, got"):
+        pose_cells.step(speed=0.0, yaw_rate=0.0, dt=bad)
+    assert pose_cells.activity[0, 32, 32] == 1.0  # nothing moved
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.1])
+def test_time_must_pass(dt: float) -> None:
+    with pytest.raises(ValueError, match=f"dt must be a positive number of seconds, got {dt}"):
+        PoseCells().step(speed=0.0, yaw_rate=0.0, dt=dt)
+
+
+@pytest.mark.parametrize(
+    ("place", "message"),
+    [
+        ((64, 0, 0), "x must be a cell from 0 to 63, got 64"),
+        ((0, -1, 0), "y must be a cell from 0 to 63, got -1"),
+        ((0, 0, 36), "theta must be a cell from 0 to 35, got 36"),
+    ],
+)
+def test_a_place_outside_is_refused(place: tuple[int, int, int], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        PoseCells().place(*place)
+
+
+def test_inhibition_that_takes_all_activity_is_refused() -> None:
+    pose_cells = PoseCells(PoseCellParams(excite_sigma=3.0, excite_radius=9, inhibit=0.02))
+    with pytest.raises(ValueError, match=r"inhibit = 0\.02 is above the activity of every cell"):
+        pose_cells.attract()

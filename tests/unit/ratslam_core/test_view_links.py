@@ -1,0 +1,105 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ratslam_core import LocalViewParams, PoseCells, ViewLinks, view_links
+
+from . import literal
+
+
+def learn(links: ViewLinks, view: int, pose_cells: PoseCells) -> None:
+    cells, activity = pose_cells.active
+    links.learn(view, cells, activity, pose_cells.slot)
+
+
+def dense(links: ViewLinks, view: int, size: int) -> np.ndarray:
+    """beta of one view over all pose cells; no cell twice."""
+    cells, strength = links.of(view)
+    assert len(set(cells.tolist())) == len(cells)
+    beta = np.zeros(size)
+    beta[cells] = strength
+    return beta
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+@pytest.mark.parametrize("decay", [0.0, 0.1, 1.0])
+def test_learning_is_hebbian(decay: float, interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if interpreted:
+        literal.interpret(view_links, monkeypatch)
+    links = ViewLinks(LocalViewParams(learning_rate=0.3, decay=decay))
+    pose_cells = PoseCells()
+    beta = np.zeros((3, pose_cells.slot.size))
+    rng = np.random.default_rng(0)
+    for _ in range(25):
+        pose_cells.step(speed=float(rng.uniform(0, 2)), yaw_rate=float(rng.uniform(-1, 1)), dt=0.1)
+        view = int(rng.integers(3))
+        learn(links, view, pose_cells)
+        beta[view] = (1 - decay) * beta[view] + 0.3 * pose_cells.activity.ravel()
+        for each in range(3):
+            assert np.abs(dense(links, each, beta.shape[1]) - beta[each]).max() < 1e-6
+
+
+def test_a_view_never_seen_is_linked_to_nothing() -> None:
+    links = ViewLinks()
+    for view in (0, 7, 5000):
+        cells, values = links.recall(view)
+        assert len(cells) == len(values) == 0
+        assert len(links.recall(view, lost=True)[0]) == 0
+
+
+def test_one_link_injects_no_more_than_its_saturation() -> None:
+    params = LocalViewParams(saturation=0.02, injection=5.0, learning_rate=1.0)
+    links, pose_cells = ViewLinks(params), PoseCells()
+    pose_cells.attract()
+    for _ in range(3):
+        learn(links, 0, pose_cells)
+    cells, values = links.recall(0)
+    expected = np.minimum(3 * pose_cells.activity.ravel()[cells], 0.02)
+    assert values == pytest.approx(expected, rel=1e-5)
+    assert values.max() == pytest.approx(0.02)
+    assert values.min() < 0.02
+
+
+def test_injection_is_capped_in_sum() -> None:
+    """However strong its links, a view injects 0.14 in all, shared as its links say; a weak view injects what it has."""
+    links, pose_cells = ViewLinks(), PoseCells()
+    for _ in range(30):
+        pose_cells.attract()
+    learn(links, 0, pose_cells)
+    weak = links.recall(0)[1]
+    before = links.of(0)[1].copy()
+    for _ in range(200):
+        learn(links, 0, pose_cells)
+    cells, values = links.recall(0)
+    assert values.sum(dtype=np.float64) == pytest.approx(0.14, rel=1e-5)
+    saturated = np.minimum(links.of(0)[1], 0.02)
+    assert saturated.sum() > 0.14
+    assert values / values.sum() == pytest.approx(saturated / saturated.sum(), rel=1e-4)
+    assert len(cells) == len(before)
+    weak_links = ViewLinks(LocalViewParams(learning_rate=0.05))
+    learn(weak_links, 0, pose_cells)
+    assert weak_links.recall(0)[1].sum(dtype=np.float64) == pytest.approx(0.05, rel=0.01)
+    assert weak.sum(dtype=np.float64) <= 0.14 * (1 + 1e-5)
+
+
+def test_a_lost_robot_lets_its_views_inject_more() -> None:
+    links, pose_cells = ViewLinks(LocalViewParams(learning_rate=0.01)), PoseCells()
+    pose_cells.attract()
+    learn(links, 0, pose_cells)
+    cells, values = links.recall(0)
+    lost_cells, lost_values = links.recall(0, lost=True)
+    assert np.array_equal(cells, lost_cells)
+    assert values.sum(dtype=np.float64) == pytest.approx(0.01, rel=0.01)
+    assert lost_values.sum(dtype=np.float64) == pytest.approx(0.5, rel=1e-5)
+    assert lost_values / lost_values.sum() == pytest.approx(values / values.sum(), rel=1e-4)
+
+
+def test_recalling_changes_nothing() -> None:
+    links, pose_cells = ViewLinks(), PoseCells()
+    for _ in range(20):
+        learn(links, 0, pose_cells)
+    before = links.of(0)[1].copy()
+    links.recall(0)
+    links.recall(0, lost=True)
+    assert np.array_equal(links.of(0)[1], before)
