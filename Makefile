@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUN_ARGS ?=
-export UV_PROJECT_ENVIRONMENT := .venv
+TEST_ARGS ?=
 
 .PHONY: run test setup lock clean
 
@@ -10,7 +10,8 @@ run: setup
 	@$(BIN)/ratslam $(RUN_ARGS)
 
 test: setup .venv/.dev
-	@$(BIN)/python tests/run_checks.py
+	@$(BIN)/python tests/get_chromium.py
+	@$(BIN)/python tests/run_checks.py $(TEST_ARGS)
 
 setup: .venv/.ready
 
