@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 import time
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.chronicle import Chronicle
+from app.config import Value
 from app.session import Session
 from ratslam_core import Pose2, TemporalMap
 from sim2d import SONAR_ANGLES_RAD, World, draw_world
@@ -112,23 +114,10 @@ class Snapshots:
     def _parameter_rows(self) -> tuple[Parameter, ...]:
         config = self._session.config
         if self._parameters is None or self._parameters[0] is not config:
-            rows = []
-            for name, item, value in config.items():
-                m = item.metadata
-                rows.append(
-                    Parameter(
-                        name,
-                        value,
-                        item.default,
-                        m["symbol"],
-                        m["unit"],
-                        m["low"],
-                        m["high"],
-                        m["meaning"],
-                        m["source"],
-                        m["live"],
-                    )
-                )
+            rows = [
+                Parameter(name=name, value=value, default=cast(Value, item.default), **item.metadata)
+                for name, item, value in config.items()
+            ]
             self._parameters = (config, tuple(rows))
         return self._parameters[1]
 

@@ -122,13 +122,13 @@ def _add_commands(app: FastAPI, submit: Submit) -> None:
 
 def _add_stream(app: FastAPI, stream: Stream) -> None:
     @app.websocket("/api/stream")
-    async def api_stream(socket: WebSocket, page: str = "") -> None:
+    async def api_stream(socket: WebSocket, page: str = "", got: bool = False) -> None:
         if page and not PAGE_ID.fullmatch(page):
             await _deny(socket, 422, "page must be 22 to 64 letters, digits, - or _")
         elif stream.full:
             await _deny(socket, 503, "32 pages are open already; close one")
         else:
-            await stream.serve(socket, page)
+            await stream.serve(socket, page, got)
 
 
 def _add_viser(app: FastAPI, proxy: ViserProxy) -> None:

@@ -3,7 +3,8 @@
 Out: {"type": "hello", ...} once, {"type": "state", "state": <contract>, "page": ...}, {"type": "events", ...} and
 {"type": "answer", "id", ...} to a command that carried an id or went wrong. In: any command of `POST /api/commands`
 with an optional "id", and two that concern pages alone: {"type": "view", "name"} and {"type": "theme", "name"}.
-Each browser has its own sender, newest wins; one that takes nothing for five seconds is let go.
+Each browser has its own sender, newest wins; one that takes nothing for five seconds is let go. A page that connects with
+`got=1` says {"type": "got"} after each state and gets no other before: a slow one never falls behind in what lies in buffers.
 """
 
 from __future__ import annotations
@@ -55,8 +56,10 @@ async def ask(submit: Submit, command: Command) -> Accepted | Refused:
 class Client:
     """One page that listens."""
 
-    def __init__(self, socket: WebSocket, page: str) -> None:
+    def __init__(self, socket: WebSocket, page: str, confirms: bool) -> None:
         self.socket = socket
+        self.confirms = confirms  # says "got" to each state
+        self.got = asyncio.Event()
         self.page = page
         self.news = asyncio.Event()
         self.limits = Limits()
@@ -98,10 +101,10 @@ class Stream:
             self._wake()
             await asyncio.sleep(PERIOD_S)
 
-    async def serve(self, socket: WebSocket, page: str) -> None:
+    async def serve(self, socket: WebSocket, page: str, confirms: bool = False) -> None:
         """One page from its arrival to its end."""
         await socket.accept()
-        client = Client(socket, page)
+        client = Client(socket, page, confirms)
         self._clients.add(client)
         client.news.set()
         tasks = {asyncio.create_task(self._tell(client)), asyncio.create_task(self._listen(client))}
@@ -127,10 +130,13 @@ class Stream:
             _, snapshot = self._latest.get()
             if snapshot is None:
                 continue
+            client.got.clear()
             await client.send(self._state_message(snapshot))
             tail = self._events_for(client, snapshot)
             if tail is not None:
                 await client.send(tail)
+            if client.confirms:
+                await client.got.wait()
 
     def _state_message(self, snapshot: Snapshot) -> bytes:
         parts = (b'{"type":"state","theme":', to_json(self.theme), b',"state":', self.text.light(snapshot))
@@ -163,6 +169,9 @@ class Stream:
 
     async def _take(self, client: Client, document: dict[str, Any], identity: object) -> None:
         kind = document.get("type")
+        if kind == "got":
+            client.got.set()
+            return
         refusal = client.limits.refusal(kind if isinstance(kind, str) else "")
         if refusal is not None:
             await client.send(_answer(identity, 429, [wrong("type", kind, refusal)]))

@@ -14,7 +14,7 @@ export class Link extends EventTarget {
   }
 
   connect() {
-    const socket = new WebSocket(`ws://${location.host}/api/stream?page=${this.page}`);
+    const socket = new WebSocket(`ws://${location.host}/api/stream?got=1&page=${this.page}`);
     this.socket = socket;
     const slow = setTimeout(() => socket.close(), 3000);
     socket.onopen = () => {
@@ -26,6 +26,7 @@ export class Link extends EventTarget {
       const message = JSON.parse(event.data);
       if (message.type === "answer") this.settle(message);
       else this.dispatchEvent(new CustomEvent(message.type, { detail: message }));
+      if (message.type === "state") this.tell({ type: "got" }); // the next, please: the newest there is by then
     };
     socket.onclose = () => {
       clearTimeout(slow);

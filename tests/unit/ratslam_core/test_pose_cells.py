@@ -282,7 +282,7 @@ def test_live_parameters_act_at_once_and_the_size_is_fixed() -> None:
     pose_cells.set_params(PoseCellParams(excite_sigma=1.0, excite_radius=3))
     rest(pose_cells, 30)
     assert len(pose_cells.active[0]) > sharp
-    for other in (dict(n_x=65), dict(n_y=63), dict(n_theta=72), dict(cell_m=0.5)):
+    for other in ({"n_x": 65}, {"n_y": 63}, {"n_theta": 72}, {"cell_m": 0.5}):
         with pytest.raises(ValueError, match="size of the pose cells is fixed at 64 x 64 x 36 until a reset"):
             pose_cells.set_params(PoseCellParams(**other))
 

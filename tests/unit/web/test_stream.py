@@ -67,6 +67,17 @@ def test_newest_state_wins_and_only_new_events_are_told(server):
         assert (again["fresh"], again["events"], again["run"]) == (True, [], 2)
 
 
+def test_a_page_that_confirms_gets_the_newest_when_it_is_ready(server):
+    with server.stream(f"/api/stream?got=1&page={PAGE}") as socket:
+        until(socket, "events", fresh=True)
+        snapshot = fake_snapshot(12)
+        for tick in (13, 14, 15):
+            server.latest.put(replace(snapshot, tick=tick))
+            time.sleep(0.15)
+        socket.send_text('{"type": "got"}')
+        assert until(socket, "state")["state"]["tick"] == 15
+
+
 def test_a_page_that_comes_before_the_first_tick_waits():
     with house(empty=True) as young, young.stream() as socket:
         until(socket, "hello")
@@ -255,7 +266,7 @@ def test_a_client_s_background_failure_ends_nothing():
     async def run():
         stage = StubStage()
         stream = Stream(Latest(), StubEngine().submit, stage, Cameras(stage))
-        client = Client(StalledSocket(), PAGE)  # type: ignore[arg-type]
+        client = Client(StalledSocket(), PAGE, False)  # type: ignore[arg-type]
 
         async def fail():
             raise RuntimeError("the browser went away")
