@@ -125,7 +125,7 @@ def _run(args: argparse.Namespace) -> int:
             webbrowser.open(url)
 
     dashboard.on_ready = ready
-    print("RatSLAM wakes up ...", flush=True)
+    print("RatSLAM wakes up (the very first time it compiles itself, for some ten seconds) ...", flush=True)
     runner.start()
     try:
         dashboard.run()
