@@ -248,9 +248,12 @@ class ExperienceMap:
         came: the robot in the frame of i as it arrived; sigma: how well its place in i was known.
         """
         j = self.active
-        link = self._link_of.get((i, j))
+        carried = sigma >= CARRIED_M
+        link = None if carried else self._link_of.get((i, j))
         if link is None:
-            link = self._link_of[i, j] = self._new_row(i, j, travelled=sigma < CARRIED_M)
+            link = self._new_row(i, j, travelled=not carried)
+            if not carried:
+                self._link_of[i, j] = link
             self.closures += j != self._count - 1
         n = self._times_made[link]
         self._time[link] += (self._since_s - self._time[link]) / (n + 1)

@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ratslam_core import Pose2
+from ratslam_core.belief import LEAST_SIGMA_M, SNAP_M, SNAP_RAD, Belief
+
+near = st.builds(Pose2, st.floats(-0.6, 0.6), st.floats(-0.6, 0.6), st.floats(-0.7, 0.7))
+sigmas = st.floats(0.001, 0.9)
+
+
+@given(near, sigmas, sigmas)
+def test_a_look_and_odometry_are_weighed_by_their_variances(look: Pose2, own: float, sigma: float) -> None:
+    belief = Belief(Pose2(0.0, 0.0, 0.0), own)
+    belief.see(look, sigma)
+    own = max(own, LEAST_SIGMA_M)
+    share = (1 / sigma**2) / (1 / sigma**2 + 1 / own**2)
+    assert belief.local.x == pytest.approx(share * look.x, abs=1e-9)
+    assert belief.local.y == pytest.approx(share * look.y, abs=1e-9)
+    assert belief.local.heading_rad == pytest.approx(share * look.heading_rad, abs=1e-9)
+    assert 1 / belief.sigma**2 == pytest.approx(1 / sigma**2 + 1 / own**2, rel=1e-6)
+
+
+def test_a_doubtful_look_moves_the_belief_little() -> None:
+    moved = []
+    for sigma in (0.02, 0.1, 0.3, 1.0):
+        belief = Belief(Pose2(0.0, 0.0, 0.0), 0.1)
+        belief.see(Pose2(0.5, 0.0, 0.4), sigma)
+        moved.append(belief.local.x)
+        assert belief.sigma < 0.1
+    assert moved == sorted(moved, reverse=True)
+    assert moved[0] > 0.45
+    assert moved[-1] < 0.01
+
+
+@pytest.mark.parametrize(
+    "look", [Pose2(SNAP_M + 0.01, 0.0, 0.0), Pose2(0.0, -1.5, 0.0), Pose2(0.0, 0.0, -SNAP_RAD - 0.01)]
+)
+def test_a_look_that_disagrees_altogether_is_believed_at_once(look: Pose2) -> None:
+    belief = Belief(Pose2(0.0, 0.0, 0.0), 0.05)
+    belief.see(look, 0.4)
+    assert (belief.local, belief.sigma) == (look, 0.4)
+
+
+def test_a_perfect_look_is_taken_at_its_word() -> None:
+    belief = Belief(Pose2(0.1, 0.2, 0.3), 0.2)
+    belief.see(Pose2(0.0, 0.0, 0.0), 0.0)
+    assert (belief.local, belief.sigma) == (Pose2(0.0, 0.0, 0.0), 0.0)
+
+
+def test_doubt_grows_with_the_way() -> None:
+    belief = Belief(Pose2(0.0, 0.0, math.pi / 2), 0.1)
+    belief.move(Pose2(1.0, 0.0, 0.2), 0.03)
+    assert (belief.local.x, belief.local.y) == pytest.approx((0.0, 1.0))
+    assert belief.local.heading_rad == pytest.approx(math.pi / 2 + 0.2)
+    assert belief.sigma == pytest.approx(0.13)
+
+
+def test_headings_are_weighed_the_shorter_way_round() -> None:
+    belief = Belief(Pose2(0.0, 0.0, math.pi - 0.1), 0.1)
+    belief.see(Pose2(0.0, 0.0, -math.pi + 0.1), 0.1)
+    assert abs(belief.local.heading_rad) == pytest.approx(math.pi)

@@ -1,0 +1,391 @@
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition
+
+from .drives import CELL_M, SHAPE, Robot
+
+EXACT = ExperienceMapParams(anchor_sigma=0.0, odometry_drift=0.0, sweeps=0, solve_every=0)  # each passage counts 1
+
+
+def literal_energy(map_: ExperienceMap, i: int, packet: Packet, view: int) -> float:
+    """D1-D4 with every wrapping tried."""
+    x, y, theta, seen = map_.cell_state(i)
+    layer = packet.heading_rad * 36 / (2 * math.pi)
+    r = min(
+        math.hypot(packet.x - x + a, packet.y - y + b) for a in (-64, 0, 64) for b in (-64, 0, 64)
+    ) / map_.params.zone_xy  # fmt: skip
+    q = min(abs(layer - theta + c) for c in (-36, 0, 36)) / map_.params.zone_theta
+    return 0.0 if r > 1 or q > 1 or view != seen else 2 - r - q
+
+
+cells = st.one_of(st.floats(0, 63.99), st.sampled_from([0.0, 0.5, 62.0, 63.9]))
+headings = st.one_of(st.floats(-3.14, math.pi), st.sampled_from([math.pi, -3.1, 0.0]))
+
+
+@settings(max_examples=300)
+@given(cells, cells, headings, st.floats(-5, 5), st.floats(-5, 5), st.floats(-1, 1), st.booleans())
+def test_energy_is_that_of_the_papers(
+    x: float, y: float, heading: float, dx: float, dy: float, turn: float, same: bool
+) -> None:
+    map_ = ExperienceMap(SHAPE, CELL_M, ExperienceMapParams(zone_xy=3.0, zone_theta=2.5))
+    map_.step(Packet(x, y, heading, 1.0), Recognition(4, True, -1, math.inf), Odometry(0.0, 0.0, 0.1))
+    packet = Packet((x + dx) % 64, (y + dy) % 64, math.remainder(heading + turn, 2 * math.pi), 1.0)
+    view = 4 if same else 5
+    assert map_.energy(0, packet, view) == pytest.approx(literal_energy(map_, 0, packet, view), abs=1e-9)
+
+
+def test_energy_is_two_at_the_middle_and_nothing_beyond_the_zone() -> None:
+    robot = Robot()
+    robot.see(0, new=True)
+    assert robot.map.energy(0, robot.packet(), 0) == pytest.approx(2.0)
+    at = robot.packet()
+    assert robot.map.energy(0, replace(at, x=at.x + 2.01), 0) == 0.0
+    assert robot.map.energy(0, replace(at, heading_rad=math.radians(20.1)), 0) == 0.0
+    assert robot.map.energy(0, replace(at, x=at.x + 1.0, heading_rad=math.radians(10)), 0) == pytest.approx(1.0)
+    assert robot.map.energy(0, at, 1) == 0.0
+
+
+def test_the_first_experience_is_the_origin_of_the_map() -> None:
+    robot = Robot(start=Pose2(3.0, -2.0, 1.0))
+    assert robot.see(0, new=True)
+    assert (len(robot.map), robot.map.active, robot.map.link_count) == (1, 0, 0)
+    assert robot.map.robot == Pose2(0.0, 0.0, 0.0)
+    x, y, theta, view = robot.map.cell_state(0)
+    assert (x, y, theta, view) == pytest.approx((32 + 12, 32 - 8, 36 / (2 * math.pi), 0))
+
+
+def test_a_new_experience_outside_the_zone_or_of_another_view() -> None:
+    robot = Robot(EXACT)
+    robot.see(0, new=True)
+    assert not robot.see(0)
+    assert robot.see(1, new=True)  # the same place, another view
+    assert robot.go(0.75, 0.0, 0)  # three cells on, the same view
+    assert not robot.see(0)
+    assert robot.map.active == 2
+    assert len(robot.map) == 3
+
+
+def test_the_most_energetic_of_several_experiences_is_taken() -> None:
+    robot = Robot(EXACT)
+    robot.see(0, new=True)
+    robot.see(1, new=True)
+    robot.go(0.6, 0.0, 0)
+    assert len(robot.map) == 3
+    first, third = (Packet(*robot.map.cell_state(i)[:2], 0.0, 1.0) for i in (0, 2))
+    for share, expected in ((0.3, 0), (0.45, 0), (0.55, 2), (0.9, 2)):
+        between = Packet(first.x + share * (third.x - first.x), first.y, 0.0, 1.0)
+        robot.see(1, packet=first)  # elsewhere first
+        robot.see(0, packet=between)
+        assert robot.map.active == expected
+
+
+def test_a_threshold_makes_more_experiences() -> None:
+    for threshold, created in ((0.0, False), (1.5, True)):
+        robot = Robot(replace(EXACT, threshold=threshold))
+        robot.see(0, new=True)
+        robot.go(0.25, 0.0, 1, new=True)
+        assert robot.see(0) is created  # one cell beside the first: energy 1.5
+
+
+# ---------------------------------------------------------------- transitions
+
+SQUARE = [(1.0, 0.0), (1.0, math.pi / 2)] * 4
+
+
+def test_links_of_a_square_are_what_odometry_says() -> None:
+    robot = Robot(EXACT)
+    robot.see(0, new=True)
+    corners = [robot.pose]
+    for view, (forwards, turn) in enumerate(SQUARE[:-1], start=1):
+        assert robot.go(forwards, turn, view, new=True)
+        corners.append(robot.pose)
+    assert not robot.go(*SQUARE[-1], 0)
+    assert robot.map.active == 0
+    assert robot.map.closures == 1
+    map_ = robot.map
+    assert map_.links.tolist() == [[i, (i + 1) % 8] for i in range(8)]
+    assert map_.link_times == pytest.approx([1.0] * 8)
+    for (i, j), move in zip(map_.links, map_.moves, strict=True):
+        expected = corners[i].inverse().compose(corners[j] if j else robot.pose)
+        assert move[:2] == pytest.approx([expected.x, expected.y], abs=1e-6)
+        assert math.cos(move[2] - expected.heading_rad) == pytest.approx(1.0, abs=1e-9)
+    for pose, corner in zip(map_.poses, corners, strict=True):
+        assert pose[:2] == pytest.approx([corner.x, corner.y], abs=1e-9)
+
+
+def test_where_the_robot_enters_a_zone_is_taken_off_its_link() -> None:
+    """It need not drive through the middle of the zone: its packet tells how far beside it is."""
+    robot = Robot(EXACT, start=Pose2(0.0, 0.0, 0.4))
+    robot.see(0, new=True)
+    middle = robot.pose
+    robot.go(1.0, 0.3, 1, new=True)
+    start = robot.pose
+    robot.pose = middle.compose(Pose2(0.3, -0.15, 0.0))
+    moved = start.inverse().compose(robot.pose)
+    odometry = Odometry(math.hypot(moved.x, moved.y) / 0.1, 0.0, 0.1)
+    robot.see(0, odometry=odometry, facing=0.05)
+    assert robot.map.active == 0
+    assert (robot.map.local_pose.x, robot.map.local_pose.y) == pytest.approx((0.3, -0.15), abs=1e-6)
+    assert robot.map.local_pose.heading_rad == pytest.approx(0.05)  # the image tells better than the packet
+    came = Pose2(math.hypot(moved.x, moved.y), 0.0, 0.0)
+    expected = came.compose(Pose2(0.3, -0.15, 0.05).inverse())
+    assert robot.map.links[-1].tolist() == [1, 0]
+    assert robot.map.moves[-1] == pytest.approx([expected.x, expected.y, expected.heading_rad], abs=1e-6)
+
+
+def test_a_view_that_shows_nothing_tells_no_heading() -> None:
+    robot = Robot(EXACT)
+    robot.see(-1)
+    robot.go(0.5, 0.0, 1, new=True)
+    robot.see(-1, facing=0.3, packet=replace(robot.packet(Pose2(0, 0, 0)), heading_rad=0.1))
+    assert robot.map.active == 0
+    assert robot.map.moves[-1, 2] == pytest.approx(-0.1)
+
+
+@settings(max_examples=100)
+@given(st.lists(st.tuples(st.floats(0.3, 1.5), st.floats(-1.5, 1.5)), min_size=2, max_size=6))
+def test_repeats_of_a_transition_are_averaged(passages: list[tuple[float, float]]) -> None:
+    robot = Robot(EXACT)
+    robot.see(0, new=True)
+    here = robot.packet()
+    ends, durations = [], []
+    for number, (forwards, turn) in enumerate(passages):
+        robot.pose = Pose2(0.0, 0.0, 0.0)
+        robot.see(0, packet=here)
+        steps = 3 + number
+        robot.go(forwards, turn, 1, steps=steps, new=number == 0, packet=replace(here, x=here.x + 10))
+        ends.append(robot.pose)
+        durations.append(steps * 0.1 + (0.1 if number == 0 else 0.0))  # it stood a tick before the first
+    row = robot.map.links.tolist().index([0, 1])
+    turns = [e.heading_rad for e in ends]
+    assert robot.map.moves[row] == pytest.approx(
+        [np.mean([e.x for e in ends]), np.mean([e.y for e in ends]), np.mean(turns)], abs=1e-6
+    )
+    assert robot.map.link_times[row] == pytest.approx(np.mean(durations), abs=1e-6)
+
+
+def test_a_passage_counts_by_how_well_it_is_known() -> None:
+    """1 / (1 + variance / variance of a step), both ends and the way together."""
+    params = ExperienceMapParams(anchor_sigma=0.05, odometry_sigma=0.01, odometry_drift=0.03, sweeps=0, solve_every=0)
+    robot = Robot(params)
+    robot.see(0, new=True)
+    here = robot.packet()
+    expected_sum = weights = 0.0
+    for number, (way, difference, before) in enumerate([(1.0, 0.0, 0.0), (1.3, 2.0, 0.5), (0.8, 4.0, 1.0)]):
+        if number:
+            robot.see(0, packet=here, difference=before)
+        robot.pose = Pose2(0.0, 0.0, 0.0)
+        robot.go(way, 0.0, 1, new=number == 0, difference=difference, packet=replace(here, x=here.x + 10))
+        at_end = 0.0 if number == 0 else 0.05 * difference
+        variance = at_end**2 + (0.05 * before) ** 2 + (0.03 * way) ** 2
+        weight = 1e-4 / (1e-4 + variance)
+        expected_sum, weights = expected_sum + weight * way, weights + weight
+        row = robot.map.links.tolist().index([0, 1])
+        assert robot.map.moves[row, 0] == pytest.approx(expected_sum / weights, rel=1e-6)
+        assert robot.map._weight[row] == pytest.approx(weights, rel=1e-6)
+
+
+def test_the_best_look_decides_the_transition() -> None:
+    """A zone is entered at its rim; the image matches best where the experience was made: measured there."""
+    params = ExperienceMapParams(anchor_sigma=0.05, odometry_drift=0.0, sweeps=0, solve_every=0)
+    robot = Robot(params)
+    robot.see(0, new=True)
+    goal = Pose2(2.0, 0.0, 0.0)
+    robot.go(2.0, 0.0, 1, new=True)
+    robot.go(2.0, 0.0, 2, new=True)
+    back = robot.packet(Pose2(0.0, 0.0, 0.0))
+    robot.see(0, packet=back)
+    robot.pose = Pose2(0.0, 0.0, 0.0)
+    rows = robot.map.links.tolist()
+    row = rows.index([0, 1])
+    alone = robot.map.moves[row].copy()
+    assert alone[0] == pytest.approx(2.0)
+    # again, with odometry that reads 10 % too much; the packet is off, so that the first look is wrong by 0.2 m
+    robot.go(1.76, 0.0, 1, difference=5.0, packet=robot.packet(Pose2(goal.x - 0.2, 0.0, 0.0)))
+    rim = robot.map.moves[row].copy()
+    weight = robot.map._weight[row]
+    robot.see(1, odometry=Odometry(2.2, 0.0, 0.1), difference=6.0, packet=robot.packet(goal))
+    assert np.array_equal(robot.map.moves[row], rim)  # a worse look changes nothing
+    robot.see(1, odometry=Odometry(0.22, 0.0, 0.1), difference=1.0, packet=robot.packet(goal))
+    better = robot.map.moves[row]
+    assert robot.map._weight[row] > weight
+    share = (1e-4 / (1e-4 + 0.05**2)) / (1 + 1e-4 / (1e-4 + 0.05**2))
+    came = 1.76 + 0.22 + 0.022
+    assert better[0] == pytest.approx(2.0 + share * (came - 2.0), abs=1e-6)
+    assert len(robot.map.links) == len(rows)
+
+
+def test_odometry_past_known_places_keeps_the_chain_rigid() -> None:
+    """Two new experiences with a known one between them: the spine between the new ones is no way to travel."""
+    robot = Robot(ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0))
+    robot.see(0, new=True)
+    robot.go(1.0, 0.2, 1, new=True)
+    first_new = robot.pose
+    robot.see(0, difference=5.0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)))  # a look-alike
+    robot.go(0.8, -0.1, 2, new=True)
+    assert robot.map.links.tolist() == [[0, 1], [1, 0], [0, 2]]
+    assert robot.map.link_count == len(robot.map.moves) == len(robot.map.link_times) == 3
+    rows = robot.map._ends[: robot.map._links].tolist()
+    assert rows == [[0, 1], [1, 0], [0, 2], [1, 2]]
+    spine = first_new.inverse().compose(robot.pose)
+    assert robot.map._move[3] == pytest.approx([spine.x, spine.y, spine.heading_rad], abs=1e-9)
+    assert robot.map._weight[3] == pytest.approx(1e-4 / (1e-4 + (0.03 * 0.8) ** 2))
+
+
+def test_a_kidnap_makes_no_way() -> None:
+    """What led from the place before a kidnap to the one after it is not a transition, now or later."""
+    robot = Robot(replace(EXACT, odometry_drift=0.03))
+    robot.see(0, new=True)
+    robot.go(1.0, 0.0, 1, new=True)
+    ways = [[0, 1]]
+    robot.map.lose_track()
+    robot.pose = Pose2(5.0, 3.0, 0.0)
+    assert robot.see(2, new=True)  # carried to where it has never been
+    assert robot.map.links.tolist() == ways
+    robot.go(0.5, 0.0, 3, new=True)
+    ways += [[2, 3]]
+    assert robot.map.links.tolist() == ways
+    robot.map.lose_track()
+    robot.pose = Pose2(0.0, 0.0, 0.0)
+    robot.see(0)  # carried to a known place
+    assert robot.map.active == 0
+    assert robot.map.links.tolist() == ways
+    assert robot.map.link_count == len(ways)
+    assert robot.map._weight[: robot.map._links].min() < 1e-6  # and it pulls at nothing
+    assert robot.map.local_pose.x == pytest.approx(0.0)
+
+
+def test_a_way_driven_after_a_kidnap_along_it_is_a_way() -> None:
+    robot = Robot(replace(EXACT, odometry_drift=0.03))
+    robot.see(0, new=True)
+    robot.go(1.0, 0.0, 1, new=True)
+    robot.map.lose_track()
+    robot.pose = Pose2(0.0, 0.0, 0.0)
+    robot.see(0)  # carried from 1 to 0
+    assert robot.map.links.tolist() == [[0, 1]]
+    robot.go(1.0, 0.0, 1)
+    robot.go(-1.0, 0.0, 0)  # and now driven
+    assert robot.map.links.tolist() == [[0, 1], [1, 0]]
+    assert robot.map.moves[1] == pytest.approx([-1.0, 0.0, 0.0], abs=0.01)
+    assert robot.map.link_times[1] == pytest.approx(1.0)
+    assert robot.map.link_count == 2
+
+
+def test_a_robot_put_back_where_it_was_goes_on() -> None:
+    robot = Robot(replace(EXACT, odometry_drift=0.03))
+    robot.see(0, new=True)
+    robot.map.lose_track()
+    assert not robot.see(0)
+    assert (len(robot.map), robot.map.link_count) == (1, 0)
+
+
+def test_wheels_that_stand_have_no_time_of_turning() -> None:
+    robot = Robot(EXACT)
+    robot.see(0, new=True)
+    for _ in range(7):
+        robot.see(0)  # standing
+    robot.go(0.5, 0.3, 1, new=True, steps=5)
+    assert robot.map.link_times[0] == pytest.approx(1.2)
+    assert robot.map._turning[0] == pytest.approx(0.5)
+
+
+def test_maps_of_thousands_of_experiences_keep_everything() -> None:
+    robot = Robot(replace(EXACT, odometry_drift=0.03))
+    robot.see(0, new=True)
+    n = 2500
+    for view in range(1, n):
+        robot.go(0.1, 0.01, view, steps=1, new=True)
+    map_ = robot.map
+    assert (len(map_), map_.link_count, len(map_.links)) == (n, n - 1, n - 1)
+    assert map_.links.tolist() == [[i, i + 1] for i in range(n - 1)]
+    assert map_.moves == pytest.approx(np.tile([0.1 * math.cos(0.005), 0.1 * math.sin(0.005), 0.01], (n - 1, 1)))
+    last = map_.pose(n - 1)
+    assert (last.x, last.y) == pytest.approx((robot.pose.x, robot.pose.y), abs=1e-6)
+    before = map_.poses.copy()
+    map_.params = replace(map_.params, sweeps=1)
+    map_.correct()
+    assert np.abs(map_.poses - before).max() < 1e-9
+
+
+# ---------------------------------------------------------------- correction
+
+
+def lap(robot: Robot, reads: float, bias: float = 0.0) -> None:
+    """A square of 16 views, driven exactly, while the wheels report `reads` times the way and a biased yaw rate."""
+    for side in range(4):
+        for part in range(4):
+            view = (4 * side + part + 1) % 16
+            turn = math.pi / 2 if part == 3 else 0.0
+            steps = 5
+            for step in range(steps):
+                middle = turn / steps / 2
+                robot.pose = robot.pose.compose(
+                    Pose2(0.75 / steps * math.cos(middle), 0.75 / steps * math.sin(middle), turn / steps)
+                )
+                odometry = Odometry(reads * 0.75 / steps / 0.1, turn / steps / 0.1 + bias, 0.1)
+                now = view if step == steps - 1 else (view - 1) % 16
+                known = any(robot.map.cell_state(i)[3] == now for i in range(len(robot.map)))
+                packet = robot.packet(PLACES[now]) if known else robot.packet()
+                if now not in PLACES:
+                    PLACES[now] = robot.pose
+                robot.map.step(packet, Recognition(now, not known, now, 0.1), odometry)
+            robot.map.correct()
+
+
+PLACES: dict[int, Pose2] = {}
+
+
+def loop(params: ExperienceMapParams, reads: float, bias: float, laps: int) -> Robot:
+    PLACES.clear()
+    PLACES[0] = Pose2(0.0, 0.0, 0.0)
+    robot = Robot(params)
+    robot.see(0, new=True)
+    for _ in range(laps):
+        lap(robot, reads, bias)
+    return robot
+
+
+def test_a_closed_loop_straightens_the_map_and_finds_the_bias() -> None:
+    bias = math.radians(1.0)
+    learnt = loop(ExperienceMapParams(solve_every=5), 1.0, bias, 6)
+    assert learnt.map.yaw_bias == pytest.approx(bias, rel=0.15)
+    assert len(learnt.map) == 16
+    true = [PLACES[learnt.map.cell_state(i)[3]] for i in range(16)]
+    for i in range(16):
+        d_map = np.hypot(*(learnt.map.poses[i, :2] - learnt.map.poses[(i + 8) % 16, :2]))
+        d_true = math.hypot(true[i].x - true[(i + 8) % 16].x, true[i].y - true[(i + 8) % 16].y)
+        assert d_map == pytest.approx(d_true, rel=0.1)
+
+
+def test_without_calibration_no_bias_is_learnt() -> None:
+    robot = loop(ExperienceMapParams(solve_every=5, calibrate=False), 1.0, 0.02, 3)
+    assert robot.map.yaw_bias == 0.0
+    assert robot.map.closures > 0
+
+
+def test_the_exact_solution_is_asked_for_only_after_closures() -> None:
+    robot = Robot(ExperienceMapParams(solve_every=1, sweeps=0))
+    robot.see(0, new=True)
+    robot.go(1.0, 0.5, 1, new=True)
+    robot.map._pose[1, 0] += 0.5  # bent by hand
+    bent = robot.map.poses.copy()
+    robot.map.correct()
+    assert np.array_equal(robot.map.poses, bent)
+    robot.see(0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)))
+    robot.map.correct()
+    assert not np.array_equal(robot.map.poses, bent)
+    never = Robot(ExperienceMapParams(solve_every=0, sweeps=0))
+    never.see(0, new=True)
+    never.go(1.0, 0.5, 1, new=True)
+    never.see(0, packet=never.packet(Pose2(0.0, 0.0, 0.0)))
+    before = never.map.poses.copy()
+    never.map.correct()
+    assert np.array_equal(never.map.poses, before)
