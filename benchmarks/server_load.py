@@ -1,0 +1,55 @@
+"""The program's processor time and memory with one browser at x1: `python -m benchmarks.server_load`. Bar: 40 % of a core.
+
+Counted is the program's own process; the browser draws in software elsewhere and is left out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+
+import psutil
+from playwright.sync_api import sync_playwright
+
+from tests.e2e.browser import launch, open_page
+from tests.e2e.program import Program
+
+BAR = 0.40
+GROWTH_MB_PER_MINUTE = 3.0
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split(":")[0])
+    parser.add_argument("--seconds", type=float, default=60.0)
+    options = parser.parse_args()
+    program = Program("--port", "0", "--seed", "1")
+    try:
+        server = psutil.Process(program.process.pid)
+        with sync_playwright() as playwright:
+            alone = _load(server, program, min(10.0, options.seconds))
+            with open_page(launch(playwright), program.url) as page:
+                page.wait_for_timeout(8000)
+                before = server.memory_info().rss
+                watched = _load(server, program, options.seconds)
+                grown = (server.memory_info().rss - before) / 1e6 / options.seconds * 60
+        memory = server.memory_info().rss / 1e6
+    finally:
+        program.stop()
+    print(f"nobody watches {alone:.1%} of a core; one browser {watched:.1%}, bar {BAR:.0%}")
+    print(f"memory {memory:.0f} MB, growing {grown:.1f} MB a minute while the map grows")
+    met = watched <= BAR and grown <= GROWTH_MB_PER_MINUTE
+    print("met" if met else "MISSED")
+    return not met
+
+
+def _load(server: psutil.Process, program: Program, seconds: float) -> float:
+    server.cpu_percent()
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        time.sleep(min(5.0, seconds))
+        program.state()
+    return server.cpu_percent() / 100
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
