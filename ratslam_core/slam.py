@@ -46,6 +46,8 @@ class RatSlam:
             self._notice_kidnap()
         self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
         expected = self.pose_cells.winner
+        if recognition.recruited:
+            self._learnt_s.append(self._time_s)
         if recognition.view != NOTHING and self.params.local_view.enabled:
             self._associate(recognition.view, recognition.recruited)
         packet = self.pose_cells.attract()
@@ -93,7 +95,6 @@ class RatSlam:
         """Visual calibration by what the view is linked to, then association with where the packet is."""
         cells, activity = self.pose_cells.active
         if recruited:
-            self._learnt_s.append(self._time_s)
             self.view_links.learn(view, cells, activity, self.pose_cells.slot)
         if self._time_s - self._learnt_s[view] < self.params.local_view.rest:
             return

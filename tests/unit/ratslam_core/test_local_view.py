@@ -150,19 +150,30 @@ def test_a_scene_without_an_edge_tells_no_fraction_of_a_shift() -> None:
     assert abs(seen.facing_rad) <= 2 * FOV / 12
 
 
-def test_surprise_is_the_change_that_no_turn_explains() -> None:
+def test_surprised_by_what_no_turn_explains() -> None:
     scene = panorama(7)
     local_view = LocalView()
     local_view.observe(look(scene, 20))
-    assert local_view.surprise == 0.0
+    assert not local_view.surprised
     for column in (23, 20, 19, 17):  # within three columns of the one before
         local_view.observe(look(scene, column))
-        assert local_view.surprise == 0.0
+        assert not local_view.surprised
     elsewhere = look(panorama(8), 20)
     local_view.observe(elsewhere)
-    expected, _, _ = literal_match(elsewhere, [look(scene, 17)], 3)
-    assert local_view.surprise == pytest.approx(expected, rel=1e-6)
-    assert local_view.surprise > 20
+    assert local_view.surprised
+    local_view.observe(elsewhere)
+    assert not local_view.surprised
+
+
+@pytest.mark.parametrize("jump", [-7, 6, 9])
+def test_surprise_is_a_matter_of_degree(jump: int) -> None:
+    scene = panorama(7)
+    change, _, _ = literal_match(look(scene, 20 + jump), [look(scene, 20)], 3)
+    for limit, surprised in ((change - 0.01, True), (change + 0.01, False)):
+        local_view = LocalView(LocalViewParams(surprise=limit))
+        local_view.observe(look(scene, 20))
+        local_view.observe(look(scene, 20 + jump))
+        assert local_view.surprised is surprised
 
 
 def test_a_camera_image_becomes_the_mean_of_its_areas() -> None:
