@@ -1,0 +1,78 @@
+"""axe finds nothing in the page and its documents, dark and light, wide and narrow; the keyboard reaches everything."""
+
+from __future__ import annotations
+
+import importlib.resources
+
+import pytest
+from playwright.sync_api import Page
+
+from tests.e2e.browser import open_page
+
+AXE = importlib.resources.files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8")
+RUN = """async () => (await axe.run(document, {iframes: false})).violations.map(
+    (found) => `${found.impact}: ${found.help}: ${found.nodes.map((node) => node.html.slice(0, 120)).join(" ")}`)"""
+
+
+CONTROLS = """() => [...document.querySelectorAll("button, select, summary")].filter((part) => part.checkVisibility())
+    .map((part) => part.id || part.getAttribute("aria-label") || part.textContent)"""
+
+
+def findings(page: Page) -> list[str]:
+    page.evaluate(AXE)
+    return page.evaluate(RUN)
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844), (360, 740)])
+def test_axe_finds_nothing(program, browser, size):
+    with open_page(browser, program.url, *size) as page:
+        if size[0] < 500:
+            page.click("#more")
+        for _ in range(2):
+            page.wait_for_timeout(300)
+            assert findings(page) == []
+            page.keyboard.press("t")
+        page.keyboard.press("?")
+        assert findings(page) == []
+
+
+def test_axe_finds_nothing_in_the_documents(program, browser):
+    with browser.new_context() as context:
+        page = context.new_page()
+        page.goto(f"{program.url}docs")
+        page.wait_for_selector("#commands article")
+        assert findings(page) == []
+        page.select_option("#which", label="pause")
+        page.click("text=Send")
+        page.wait_for_selector("#answer:has-text('accepted')")
+
+
+@pytest.mark.parametrize("width", [360, 390, 760, 1024, 1440])
+def test_nothing_sticks_out(program, browser, width):
+    with open_page(browser, program.url, width, 740) as page:
+        program.command("kidnap")
+        assert page.evaluate("() => document.documentElement.scrollWidth") <= width
+        sticking_out = """() => [...document.querySelectorAll("button, select, summary, p, section")]
+            .filter((part) => part.checkVisibility() && !part.closest("dialog, details .pop"))
+            .filter((part) => { const box = part.getBoundingClientRect();
+                return box.width && (box.right > innerWidth + 1 || box.left < -1 || box.bottom > innerHeight + 1); })
+            .map((part) => part.id || part.textContent.slice(0, 40))"""
+        assert page.evaluate(sticking_out) == []
+        if width < 500:
+            small = """() => [...document.querySelectorAll(".pad button, .views button, .transport button, #more")]
+                .filter((part) => Math.min(part.getBoundingClientRect().height, part.getBoundingClientRect().width) < 43)
+                .map((part) => part.textContent || part.id)"""
+            assert page.evaluate(small) == []
+
+
+def test_the_keyboard_reaches_every_control(program, browser):
+    with open_page(browser, program.url) as page:
+        wanted = set(page.evaluate(CONTROLS))
+        reached = set()
+        for _ in range(80):
+            page.keyboard.press("Tab")
+            reached.add(
+                page.evaluate("""() => { const part = document.activeElement;
+                return part.id || part.getAttribute("aria-label") || part.textContent; }""")
+            )
+        assert wanted - reached == set()
