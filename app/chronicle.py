@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import deque
 
 import numpy as np
@@ -114,7 +113,3 @@ class Chronicle:
         columns = np.array(self._samples, np.float64).T.copy()
         columns.setflags(write=False)
         self.series = Series(*columns)
-
-
-def finite_or_none(value: float | None) -> float | None:
-    return value if value is not None and math.isfinite(value) else None

@@ -143,8 +143,8 @@ def _headless(args: argparse.Namespace) -> int:
         if not low <= value < 1e6:
             raise ValueError(f"{name} must be from {low:g} to 1e6, got {value!r}")
     for at in args.kidnap_at:
-        if not 0 <= at <= args.minutes * 60:
-            raise ValueError(f"--kidnap-at must be from 0 to {args.minutes * 60:g} s, got {at:g}")
+        if not 0 <= at < args.minutes * 60:
+            raise ValueError(f"--kidnap-at must be from 0 to below {args.minutes * 60:g} s, got {at:g}")
     world, config = _session_of(args)
     if args.report is not None and not args.report.absolute().parent.is_dir():
         raise ValueError(f"--report {args.report}: there is no folder {args.report.absolute().parent}")

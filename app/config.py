@@ -12,6 +12,7 @@ import tomlkit
 
 from app.pilot import PilotParams
 from ratslam_core import ExperienceMapParams, LocalViewParams, PoseCellParams, RatSlamParams
+from ratslam_core.local_view import COLUMNS
 from sim2d import SimParams
 
 Value = float | int | bool | str
@@ -26,6 +27,10 @@ class Config:
     experience_map: ExperienceMapParams = ExperienceMapParams()
     robot: SimParams = SimParams()
     pilot: PilotParams = PilotParams()
+
+    def __post_init__(self) -> None:
+        if self.robot.image_width < COLUMNS:
+            raise ValueError(f"image_width must be at least {COLUMNS}, a pixel for each column of a view")
 
     @property
     def engine(self) -> RatSlamParams:
@@ -46,10 +51,12 @@ class Config:
             close = difflib.get_close_matches(name, known, n=3) or sorted(known)
             raise ValueError(f"unknown parameter {name!r}; expected one of: {', '.join(close)}")
         section, key = name.split(".")
-        if isinstance(known[name], float) and type(value) is int:
-            value = float(value)
         try:
+            if isinstance(known[name], float) and type(value) is int:
+                value = float(value)
             return replace(self, **{section: replace(getattr(self, section), **{key: value})})
+        except OverflowError:
+            raise ValueError(f"{name} must be within its range; the number given is far too large") from None
         except ValueError as error:
             raise ValueError(f"{section}.{error}") from None
 

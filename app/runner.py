@@ -68,7 +68,8 @@ class Runner:
             now = time.perf_counter()
             if now >= self._hand_expires:
                 self._hand_expires = math.inf
-                self.session.pilot.drive(0.0, 0.0)
+                if self.session.pilot.mode == "manual":
+                    self.session.pilot.drive(0.0, 0.0)
             if self._running and now >= self._due:
                 self._tick()
                 step = self.session.frame.dt / self._speed if self._speed > 0 else 0.0
@@ -198,7 +199,10 @@ class Runner:
                 return m.Refused("world", name, f"unknown world {name!r}; expected one of: {', '.join(known)}")
             world = self._own_worlds.get(name) or load_world(name)
         was_faulty = self._fault is not None
-        self._begin(world, session.seed if seed is None else seed, session.config)
+        try:
+            self._begin(world, session.seed if seed is None else seed, session.config)
+        except ValueError as error:
+            return m.Refused("world", world.name, str(error))
         self._running = self._running or was_faulty
         return None
 

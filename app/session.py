@@ -65,7 +65,7 @@ class Session:
         poses = self.brain.experience_map.poses
         away = np.hypot(poses[:, 0] - x, poses[:, 1] - y)
         nearest = int(np.argmin(away))
-        if away[nearest] > OFF_THE_MAP_M:
+        if not away[nearest] <= OFF_THE_MAP_M:  # not a number is nowhere
             raise ValueError(
                 f"({x:g}, {y:g}) is off the map: the nearest experience is {away[nearest]:.1f} m away, "
                 f"at ({poses[nearest, 0]:.1f}, {poses[nearest, 1]:.1f}); choose a place within {OFF_THE_MAP_M:g} m of one"

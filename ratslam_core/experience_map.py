@@ -52,6 +52,8 @@ class ExperienceMap:
         self._from_latest = IDENTITY  # odometry since then
         self._way_m = self._way_from_latest_m = 0.0
         self._travelled = np.zeros(1024, np.bool_)
+        self._chain = np.zeros(1024, np.bool_)  # links by which experiences were made: odometry, not looks
+        self._believed = np.zeros(1024)  # weights times how far the map bears the links out
         self._since_s = 0.0
         self.closures = 0  # links made to experiences that existed before
         self._solved_at = self._links_at_solve = 0
@@ -164,15 +166,16 @@ class ExperienceMap:
         """
         for _ in range(self.params.sweeps):
             map_correction.sweep(
-                self._pose[: self._count], self._graph, self._ends, self._move, self._weight, self.params.correction
+                self._pose[: self._count], self._graph, self._ends, self._move, self._believed, self.params.correction
             )
         due = self.params.solve_every and self._steps - self._solved_at >= self.params.solve_every
         if due and self.closures > self._links_at_solve:
             rows = slice(self._links)
-            turning = self._turning[rows] if self.params.calibrate else None
-            more = map_correction.solve(
-                self._pose[: self._count], self._ends[rows], self._move[rows], self._weight[rows], turning
-            )
+            ends, moves, weights = self._ends[rows], self._move[rows], self._weight[rows]
+            poses, turning = self._pose[: self._count], self._turning[rows] if self.params.calibrate else None
+            doubt = map_correction.trust(poses, ends, moves, weights, self._chain[rows], self.params.odometry_sigma)
+            self._believed[rows] = weights * doubt
+            more = map_correction.solve(poses, ends, moves, self._believed[rows], turning)
             if turning is not None:
                 self.yaw_bias += more
                 self._move[: self._links, 2] -= more * turning
@@ -276,7 +279,7 @@ class ExperienceMap:
             move = self._from_latest
             sigma = self.params.odometry_drift * self._way_from_latest_m
             self._move[link] = move.x, move.y, move.heading_rad
-            self._weight[link] = self._weight_of(sigma)
+            self._weight[link] = self._believed[link] = self._weight_of(sigma)
             self._turning[link] = self._turning_from_latest_s
         self._latest, self._from_latest = self.active, IDENTITY
         self._way_from_latest_m = self._turning_from_latest_s = 0.0
@@ -294,8 +297,10 @@ class ExperienceMap:
             self._ends, self._move, self._travelled = _double(self._ends), _double(self._move), _double(self._travelled)
             self._time, self._times_made = _double(self._time), _double(self._times_made)
             self._weight, self._turning = _double(self._weight), _double(self._turning)
+            self._chain, self._believed = _double(self._chain), _double(self._believed)
         row = self._links
         self._ends[row], self._travelled[row] = (i, j), travelled
+        self._chain[row] = self._graph.first[j] < 0 or not travelled
         self._links += 1
         self._graph.add_link(i, j)
         return row
@@ -312,7 +317,7 @@ class ExperienceMap:
             old[1] + share * (move.y - old[1]),
             wrap_angle(turn),
         )
-        self._weight[arrival.link] = arrival.weight + weight
+        self._weight[arrival.link] = self._believed[arrival.link] = arrival.weight + weight
 
 
 @dataclass(slots=True)

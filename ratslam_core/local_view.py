@@ -16,7 +16,7 @@ from ratslam_core.types import Recognition
 
 COLUMNS, ROWS = 12, 8
 NOTHING = -1
-MOST_TURN = 3  # columns by which one tick of turning may shift the image
+TURNS = (0, 1, -1, 2, -2, 3, -3)  # columns by which one tick of turning may shift the image
 
 
 class LocalView:
@@ -28,9 +28,7 @@ class LocalView:
         self._count = 0
         self.template = np.zeros((ROWS, COLUMNS), np.uint8)
         self.recognition = Recognition(NOTHING, False, NOTHING, math.inf)
-        self.surprise = (
-            0.0  # grey levels by which the image differs from the one before, whatever the turn between them
-        )
+        self.surprised = False  # the image is so unlike the one before that the robot cannot have driven here
         self._last: NDArray[np.uint8] | None = None
 
     def __len__(self) -> int:
@@ -50,10 +48,10 @@ class LocalView:
         """
         template = grey_template(image)
         column_major = np.ascontiguousarray(template.T).reshape(1, -1)
-        self.surprise = self._change(column_major)
+        self.surprised = self._jumped(column_major)
         self.template, self._last = template, column_major
         best, difference, shift = self._nearest(column_major)
-        if float(template.std()) < self.params.min_contrast:
+        if float(cv2.meanStdDev(template)[1][0, 0]) < self.params.min_contrast:
             self.recognition = Recognition(NOTHING, False, best, difference)
         elif difference <= self.params.match_threshold:
             facing = self._sub_column(column_major, best, shift) * self.params.field_of_view / COLUMNS
@@ -63,10 +61,11 @@ class LocalView:
             self.recognition = Recognition(self._count - 1, True, best, difference)
         return self.recognition
 
-    def _change(self, template: NDArray[np.uint8]) -> float:
+    def _jumped(self, template: NDArray[np.uint8]) -> bool:
+        """Whether no turn within one tick makes the last image look like this one."""
         if self._last is None:
-            return 0.0
-        return min(_difference(template[0], self._last[0], shift) for shift in range(-MOST_TURN, MOST_TURN + 1))
+            return False
+        return all(_difference(template[0], self._last[0], shift) > self.params.surprise for shift in TURNS)
 
     def _nearest(self, template: NDArray[np.uint8]) -> tuple[int, float, int]:
         """The most similar known view, the mean absolute difference over the columns that overlap, and the shift."""

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
+RAD_PER_M = 0.7  # a link that is off by a metre is off by so much in heading
+CHAIN_GIVES = 5.0  # standard deviations at which odometry lets go
+LOOK_GIVES = 1.0  # standard deviations from which a look pulls no harder
 LEAST_STRENGTH = 1e-9  # below it no loop tells the bias from a bent way
 
 
@@ -49,44 +52,56 @@ def sweep(
 
 @njit(cache=True, nogil=True)
 def _sweep(poses, first, following, ends, moves, weights, gain):
-    """dth_i = alpha [sum wrap(...)] / links, then dx_i, dy_i the same. B eqs. 12-14, divided by the degree."""
-    turn = 2.0 * math.pi
-    for i in range(1, poses.shape[0]):
-        dth = total = 0.0
+    """dth_i = alpha [sum wrap(...)] / links for all, then dx_i, dy_i the same. B eqs. 12-14, divided by the weights' sum."""
+    n = poses.shape[0]
+    facing = np.empty((n, 2))
+    facing[0] = math.cos(poses[0, 2]), math.sin(poses[0, 2])
+    for i in range(1, n):
+        turn = total = 0.0
         at = first[i]
-        if at < 0:
-            continue
         while at >= 0:
             link = at >> 1
             if at & 1:
-                want = poses[ends[link, 0], 2] + moves[link, 2]
+                error = poses[ends[link, 0], 2] + moves[link, 2] - poses[i, 2]
             else:
-                want = poses[ends[link, 1], 2] - moves[link, 2]
-            error = want - poses[i, 2]
-            dth += weights[link] * (error - turn * np.round(error / turn))
+                error = poses[ends[link, 1], 2] - moves[link, 2] - poses[i, 2]
+            turn += weights[link] * _wrapped(error)
             total += weights[link]
             at = following[at]
-        heading = poses[i, 2] + gain * dth / total
-        poses[i, 2] = heading - turn * np.round(heading / turn)
-        dx = dy = 0.0
+        if total > 0.0:
+            poses[i, 2] = _wrapped(poses[i, 2] + gain * turn / total)
+        facing[i, 0] = math.cos(poses[i, 2])
+        facing[i, 1] = math.sin(poses[i, 2])
+    for i in range(1, n):
+        dx = dy = total = 0.0
         at = first[i]
         while at >= 0:
             link = at >> 1
             a = ends[link, 0]
-            b = ends[link, 1]
-            c = math.cos(poses[a, 2])
-            s = math.sin(poses[a, 2])
-            mx = c * moves[link, 0] - s * moves[link, 1]
-            my = s * moves[link, 0] + c * moves[link, 1]
+            w = weights[link]
+            mx = facing[a, 0] * moves[link, 0] - facing[a, 1] * moves[link, 1]
+            my = facing[a, 1] * moves[link, 0] + facing[a, 0] * moves[link, 1]
             if at & 1:
-                dx += weights[link] * (poses[a, 0] + mx - poses[i, 0])
-                dy += weights[link] * (poses[a, 1] + my - poses[i, 1])
+                dx += w * (poses[a, 0] + mx - poses[i, 0])
+                dy += w * (poses[a, 1] + my - poses[i, 1])
             else:
-                dx += weights[link] * (poses[b, 0] - mx - poses[i, 0])
-                dy += weights[link] * (poses[b, 1] - my - poses[i, 1])
+                b = ends[link, 1]
+                dx += w * (poses[b, 0] - mx - poses[i, 0])
+                dy += w * (poses[b, 1] - my - poses[i, 1])
+            total += w
             at = following[at]
-        poses[i, 0] += gain * dx / total
-        poses[i, 1] += gain * dy / total
+        if total > 0.0:
+            poses[i, 0] += gain * dx / total
+            poses[i, 1] += gain * dy / total
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _wrapped(angle):
+    while angle > math.pi:
+        angle -= 2.0 * math.pi
+    while angle <= -math.pi:
+        angle += 2.0 * math.pi
+    return angle
 
 
 def solve(
@@ -134,6 +149,30 @@ def solve(
         np.stack([_divergence(n, i, j, weights * ex), _divergence(n, i, j, weights * ey)], axis=1)
     )
     return bias
+
+
+def trust(
+    poses: NDArray[np.float64],
+    links: NDArray[np.int64],
+    moves: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    chain: NDArray[np.bool_],
+    sigma: float,
+) -> NDArray[np.float64]:
+    """[ours] By how much each link is believed, 0 to 1, given what the map has made of it.
+
+    weights are sigma^2 / variance. Looks pull with a force that stops growing (Huber); odometry, which cannot be far off,
+    lets go (Cauchy): many looks that agree tear the one link over which the robot was carried, and no single look does.
+    test_map_correction.py::test_many_looks_tear_the_link_of_a_kidnap.
+    """
+    i, j = links[:, 0], links[:, 1]
+    c, s = np.cos(poses[i, 2]), np.sin(poses[i, 2])
+    ex = poses[i, 0] + c * moves[:, 0] - s * moves[:, 1] - poses[j, 0]
+    ey = poses[i, 1] + s * moves[:, 0] + c * moves[:, 1] - poses[j, 1]
+    turn = poses[i, 2] + moves[:, 2] - poses[j, 2]
+    turn -= 2 * math.pi * np.round(turn / (2 * math.pi))
+    chi = np.sqrt(weights * (ex**2 + ey**2 + (turn / RAD_PER_M) ** 2)) / sigma
+    return np.where(chain, 1 / (1 + (chi / CHAIN_GIVES) ** 2), np.minimum(1, LOOK_GIVES / np.maximum(chi, LOOK_GIVES)))
 
 
 def _divergence(n: int, i: NDArray[np.int64], j: NDArray[np.int64], error: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -42,7 +42,7 @@ class RatSlam:
         self._time_s += odometry.dt
         odometry = self._calibrated(odometry)
         recognition = self.local_view.observe(image)
-        if self.local_view.surprise > self.params.local_view.surprise:
+        if self.local_view.surprised:
             self._notice_kidnap()
         self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
         expected = self.pose_cells.winner
