@@ -1,0 +1,136 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.config import Config, from_toml, parse_value, to_toml
+
+NAMES = [name for name, _, _ in Config().items()]
+
+
+def values(name: str) -> st.SearchStrategy:
+    """Any value that a parameter may have."""
+    item, default = next((item, value) for dotted, item, value in Config().items() if dotted == name)
+    low, high = item.metadata["low"], item.metadata["high"]
+    if name == "robot.physics_rate_hz":
+        return st.sampled_from([60, 120, 240, 1000, 2000])
+    if name == "robot.sensor_rate_hz":
+        return st.sampled_from([1, 5, 10, 20, 60])
+    if name == "robot.image_width":
+        low = 12
+    if isinstance(default, bool):
+        return st.booleans()
+    return st.integers(low, high) if isinstance(default, int) else st.floats(low, high)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.data())
+def test_toml_there_and_back_is_the_identity(data: st.DataObject) -> None:
+    config = Config()
+    for name in data.draw(st.lists(st.sampled_from(NAMES), max_size=12, unique=True)):
+        config = config.with_value(name, data.draw(values(name)))
+    text = to_toml(config)
+    assert from_toml(text) == config
+    assert to_toml(from_toml(text)) == text
+
+
+def test_toml_explains_every_parameter() -> None:
+    text = to_toml(Config())
+    for name, item, _ in Config().items():
+        assert f"\n{name.split('.')[1]} = " in text
+        assert item.metadata["meaning"] in text
+    assert "# n_x': cells along x' [cells]; 8 to 1000; D 5.3; takes effect at the next reset\nn_x = 64\n" in text
+    assert "# φ: global inhibition taken from every cell; 0 to 0.02; A eq. 11; value ours\ninhibit = 0.0003\n" in text
+
+
+def test_every_parameter_says_what_it_is() -> None:
+    assert len(NAMES) == len(set(NAMES)) > 50
+    for name, item, value in Config().items():
+        about = item.metadata
+        assert set(about) == {"symbol", "unit", "low", "high", "meaning", "source", "live"}, name
+        assert about["meaning"], name
+        assert about["source"], name
+        if not isinstance(value, bool):
+            assert about["low"] <= value <= about["high"], name
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_range_is_kept(name: str) -> None:
+    item, default = next((item, value) for dotted, item, value in Config().items() if dotted == name)
+    wrong: list[object] = ["much", None]
+    if isinstance(default, bool):
+        wrong += [1, 0.5]
+    else:
+        low, high = item.metadata["low"], item.metadata["high"]
+        wrong += [low - 1, high + 1, math.nan, math.inf, -math.inf, 10**400, True]
+        if isinstance(default, int):
+            wrong += [default + 0.5]
+    for value in wrong:
+        with pytest.raises(ValueError, match=name.replace(".", r"\.")):
+            Config().with_value(name, value)  # type: ignore[arg-type]
+
+
+def test_left_out_parameters_keep_their_value() -> None:
+    base = Config().with_value("pilot.cruise_speed", 0.2)
+    config = from_toml("[pose_cells]\nn_x = 32\n", base)
+    assert (config.pose_cells.n_x, config.pilot.cruise_speed) == (32, 0.2)
+    assert from_toml("") == Config()
+
+
+def test_a_whole_number_for_a_float() -> None:
+    value = Config().with_value("local_view.match_threshold", 8).local_view.match_threshold
+    assert (value, type(value)) == (8.0, float)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[robott]\n", "unknown section 'robott'; expected one of: pose_cells, local_view, experience_map, robot, pilot"),
+        ("robot = 3\n", "unknown section 'robot'; expected one of: pose_cells, local_view, experience_map, robot, pilot"),
+        ("[pilot]\ncruise = 1\n", "unknown parameter 'pilot.cruise'; expected one of: cruise_speed, turn_rate"),
+        ("[pilot]\ncruise_speed = 9\n", r"pilot\.cruise_speed must be between 0\.05 and 0\.5 m/s, got 9\.0"),
+        ("[pilot]\ncruise_speed = [1]\n", r"pilot\.cruise_speed must be float, got \[1\]"),
+        ("[pilot\n", "not valid TOML: "),
+        ("[robot]\nsensor_rate_hz = 7\n", r"robot\.physics_rate_hz must be a multiple of sensor_rate_hz \(7\), got 240"),
+        ("[robot]\nimage_width = 8\n", r"robot\.image_width must be at least 12"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_in_a_file_is_named_with_what_would_be_right(text: str, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        from_toml(text)
+
+
+@pytest.mark.parametrize(
+    ("name", "right"),
+    [("local_view.treshold", "local_view.match_threshold"), ("pilot.cruise", "pilot.cruise_speed"),
+     ("inhibit", "pose_cells.inhibit"), ("pose_cells", "pose_cells.n_x")],
+)  # fmt: skip
+def test_an_unknown_name_lists_the_right_ones(name: str, right: str) -> None:
+    with pytest.raises(ValueError, match=f"unknown parameter '{name}'; expected one of: .*{right}"):
+        Config().with_value(name, 1.0)
+
+
+def test_a_name_like_none_lists_all() -> None:
+    with pytest.raises(ValueError) as error:
+        Config().with_value("~", 1)
+    assert all(name in str(error.value) for name in NAMES)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("3", 3), ("0.5", 0.5), ("1e-4", 1e-4), ("true", True), ("false", False), ('"a b"', "a b"), ("office", "office"),
+     ("-2", -2), ("inf", math.inf), ("", "")],
+)  # fmt: skip
+def test_a_value_from_the_command_line(text: str, value: object) -> None:
+    got = parse_value(text)
+    assert got == value
+    assert type(got) is type(value)
+
+
+@pytest.mark.parametrize("text", ["[1, 2]", "{a = 1}", "2024-01-01"])
+def test_what_is_not_a_value_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="is not a number, true, false or a word"):
+        parse_value(text)

@@ -1,0 +1,181 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from evo.core import metrics
+from evo.core.geometry import umeyama_alignment
+from evo.core.trajectory import PoseTrajectory3D
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.evaluation import Evaluation, align, alignment, rmse
+from ratslam_core import Odometry, Pose2
+from sim2d import Truth
+
+DT = 0.1
+
+
+def walk(rng: np.random.Generator, n: int) -> np.ndarray:
+    return np.cumsum(rng.uniform(-1, 1, (n, 2)), axis=0)
+
+
+def moved(points: np.ndarray, frame: Pose2) -> np.ndarray:
+    c, s = math.cos(frame.heading_rad), math.sin(frame.heading_rad)
+    return points @ np.array([[c, s], [-s, c]]) + (frame.x, frame.y)
+
+
+seeds = st.integers(0, 2**32 - 1)
+frames = st.builds(Pose2, st.floats(-20, 20), st.floats(-20, 20), st.floats(-3.1, 3.1))
+
+
+@settings(max_examples=80, deadline=None)
+@given(seeds, st.integers(3, 60), st.floats(0.0, 2.0))
+def test_evo_aligns_the_same_way(seed: int, n: int, noise: float) -> None:
+    rng = np.random.default_rng(seed)
+    truth = walk(rng, n)
+    estimate = moved(truth, Pose2(3.0, -2.0, 2.1)) + rng.normal(0, noise, (n, 2))
+    rotation, translation, _ = umeyama_alignment(estimate.T, truth.T)
+    frame = alignment(estimate, truth)
+    assert math.atan2(rotation[1, 0], rotation[0, 0]) == pytest.approx(frame.heading_rad, abs=1e-7)
+    assert translation == pytest.approx([frame.x, frame.y], abs=1e-6)
+    assert align(estimate, truth) == pytest.approx((rotation @ estimate.T).T + translation, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_evo_finds_the_same_error(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    truth = walk(rng, 200)
+    estimate = moved(truth, Pose2(1.0, 5.0, -0.7)) + rng.normal(0, 0.3, truth.shape)
+
+    def trajectory(points: np.ndarray) -> PoseTrajectory3D:
+        xyz = np.column_stack([points, np.zeros(len(points))])
+        quaternions = np.tile([1.0, 0.0, 0.0, 0.0], (len(points), 1))
+        return PoseTrajectory3D(xyz, quaternions, np.arange(len(points)) * DT)
+
+    reference, estimated = trajectory(truth), trajectory(estimate)
+    estimated.align(reference)
+    ape = metrics.APE(metrics.PoseRelation.translation_part)
+    ape.process_data((reference, estimated))
+    assert rmse(estimate, truth) == pytest.approx(ape.get_statistic(metrics.StatisticsType.rmse), rel=1e-6)
+
+
+@settings(max_examples=60, deadline=None)
+@given(seeds, frames)
+def test_the_frame_of_the_estimate_is_no_error(seed: int, frame: Pose2) -> None:
+    truth = walk(np.random.default_rng(seed), 30)
+    assert rmse(moved(truth, frame), truth) < 1e-9
+    back = alignment(moved(truth, frame), truth).compose(frame)
+    assert math.hypot(back.x, back.y) < 1e-7
+    assert abs(back.heading_rad) < 1e-7
+
+
+@settings(max_examples=40, deadline=None)
+@given(seeds, st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3))
+def test_no_other_frame_fits_better(seed: int, dx: float, dy: float, turn: float) -> None:
+    rng = np.random.default_rng(seed)
+    truth = walk(rng, 20)
+    estimate = truth + rng.normal(0, 0.5, truth.shape)
+    other = moved(align(estimate, truth), Pose2(dx, dy, turn))
+    assert rmse(estimate, truth) <= math.sqrt(float(np.mean(np.sum((other - truth) ** 2, 1)))) + 1e-9
+
+
+def test_scale_is_an_error() -> None:
+    truth = np.array([[0.0, 0.0], [2.0, 0.0]])
+    assert rmse(2 * truth, truth) == pytest.approx(1.0)
+
+
+def test_fewer_than_two_points_have_no_error() -> None:
+    assert rmse(np.zeros((1, 2)), np.ones((1, 2))) == 0.0
+    assert rmse(np.zeros((0, 2)), np.zeros((0, 2))) == 0.0
+
+
+class Map:
+    """As much of an experience map as the evaluation reads; one experience, the robot beside it."""
+
+    def __init__(self) -> None:
+        self.poses = np.zeros((1, 3))
+        self.active = 0
+        self.local_pose = Pose2(0.0, 0.0, 0.0)
+
+    @property
+    def robot(self) -> Pose2:
+        return Pose2(*self.poses[self.active]).compose(self.local_pose)
+
+
+def drive(evaluation: Evaluation, map_: Map, ticks: int, *, wrong_m: float = 0.0, start: int = 0) -> None:
+    """Along +x of the office with 0.3 m/s; the map, which lies elsewhere and turned, is wrong by so much."""
+    for tick in range(start, start + ticks):
+        x = 0.03 * tick
+        map_.local_pose = Pose2(x, wrong_m, 0.0)
+        truth = Truth(7.0, 1.0 + x, math.pi / 2, 0.3 if tick else 0.0, 0.0)
+        odometry = Odometry(0.33 if tick else 0.0, 0.0, DT)
+        evaluation.record(tick * DT, truth, map_, tick == 0, odometry)  # type: ignore[arg-type]
+
+
+def test_paths_and_errors() -> None:
+    evaluation, map_ = Evaluation(), Map()
+    drive(evaluation, map_, 5001)
+    truth, mapped, odometry = evaluation.trajectories(map_)  # type: ignore[arg-type]
+    assert len(truth) == len(mapped) == len(odometry) == 5001
+    assert truth[-1] == pytest.approx([7.0, 151.0])
+    assert mapped[-1] == pytest.approx([150.0, 0.0])
+    assert odometry[-1] == pytest.approx([165.0, 0.0])
+    assert evaluation.path_m == pytest.approx(150.0)
+    map_error, odometry_error = evaluation.errors(map_)  # type: ignore[arg-type]
+    assert map_error == pytest.approx(0.0, abs=1e-9)
+    assert odometry_error == pytest.approx(15 / math.sqrt(12), rel=1e-3)  # a tenth too long, evenly
+    assert evaluation.errors(map_, 10)[1] == pytest.approx(odometry_error, rel=0.01)  # type: ignore[arg-type]
+    assert evaluation.made_at(0) == (7.0, 1.0)
+
+
+def test_the_map_is_judged_as_it_is_now() -> None:
+    evaluation, map_ = Evaluation(), Map()
+    map_.poses = np.zeros((2, 3))
+    drive(evaluation, map_, 100)
+    map_.active = 1
+    drive(evaluation, map_, 100, start=100)
+    assert evaluation.errors(map_)[0] == pytest.approx(0.0, abs=1e-9)  # type: ignore[arg-type]
+    map_.poses[1] = 0.0, 2.0, 0.0
+    assert evaluation.errors(map_)[0] > 0.5  # type: ignore[arg-type]
+
+
+def test_consistency_counts_old_experiences_only() -> None:
+    evaluation, map_ = Evaluation(), Map()
+    assert evaluation.revisit_consistency is None
+    drive(evaluation, map_, 200)
+    assert evaluation.revisit_consistency is None
+    drive(evaluation, map_, 101, start=200)
+    assert evaluation.revisit_consistency == 1.0
+    drive(evaluation, map_, 100, start=301, wrong_m=0.6)
+    assert evaluation.revisit_consistency == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_kidnap_is_over_when_the_robot_stays_right_for_two_seconds() -> None:
+    evaluation, map_ = Evaluation(), Map()
+    drive(evaluation, map_, 100)
+    evaluation.kidnapped(9.9, map_)  # type: ignore[arg-type]
+    kidnap = evaluation.kidnaps[0]
+    drive(evaluation, map_, 50, start=100, wrong_m=3.0)
+    drive(evaluation, map_, 10, start=150)  # right by chance, not for long
+    drive(evaluation, map_, 30, start=160, wrong_m=-2.0)
+    assert kidnap.after_s is None
+    drive(evaluation, map_, 40, start=190, wrong_m=0.5)
+    assert kidnap.at_s == 9.9
+    assert kidnap.after_s == pytest.approx(19.0 - 9.9)
+    assert kidnap.after_m == pytest.approx(0.03 * 91)
+    evaluation.kidnapped(22.9, map_)  # type: ignore[arg-type]
+    drive(evaluation, map_, 30, start=230, wrong_m=4.0)
+    assert evaluation.kidnaps[1].after_s is None
+    assert kidnap.after_s == pytest.approx(9.1)
+
+
+def test_thousands_of_experiences_keep_where_they_were_made() -> None:
+    evaluation, map_ = Evaluation(), Map()
+    map_.poses = np.zeros((2500, 3))
+    for i in range(2500):
+        map_.active = i
+        evaluation.record(i * DT, Truth(i, -i, 0.0, 0.0, 0.0), map_, True, Odometry(0.0, 0.0, DT))  # type: ignore[arg-type]
+    for i in (0, 1023, 1024, 2499):
+        assert evaluation.made_at(i) == (i, -i)
