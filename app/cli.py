@@ -1,4 +1,4 @@
-"""The command `ratslam`: run (the dashboard), headless, config, worlds."""
+"""The command `ratslam`: run (the dashboard), headless, config, bench, worlds."""
 
 from __future__ import annotations
 
@@ -55,6 +55,10 @@ def _parser() -> argparse.ArgumentParser:
     config = commands.add_parser("config", help="print every parameter as TOML with symbol, unit and source")
     _add_config(config)
     config.set_defaults(do=_config)
+
+    bench = commands.add_parser("bench", help="measure the engine, each work beside a reference")
+    bench.add_argument("--json", type=Path, metavar="FILE", help="write the rows there as JSON, too")
+    bench.set_defaults(do=_bench)
 
     worlds = commands.add_parser("worlds", help="list the worlds that come with it")
     worlds.set_defaults(do=_worlds)
@@ -188,6 +192,18 @@ def _with_progress(seconds: float, work: Any) -> Any:
 
 def _config(args: argparse.Namespace) -> int:
     print(to_toml(_config_of(args)), end="")
+    return 0
+
+
+def _bench(args: argparse.Namespace) -> int:
+    from benchmarks.engine import line, rows
+
+    measured = []
+    for row in rows():
+        print(line(row), flush=True)
+        measured.append(row)
+    if args.json is not None:
+        args.json.write_text(json.dumps(measured, indent=2) + "\n", encoding="utf-8")
     return 0
 
 
