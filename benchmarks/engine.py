@@ -211,7 +211,10 @@ def _whole_step(views: int, bar: float) -> Row:
 
 
 def _start() -> Row:
-    code = "import numpy as np; from ratslam_core import RatSlam, Odometry; RatSlam().step(np.zeros((48, 64), np.uint8), Odometry(0.1, 0.0, 0.1))"
+    code = (
+        "import numpy as np; from ratslam_core import RatSlam, Odometry; "
+        "RatSlam().step(np.zeros((48, 64), np.uint8), Odometry(0.1, 0.0, 0.1))"
+    )
     subprocess.run([sys.executable, "-c", code], check=True)
     ms = _median(lambda: subprocess.run([sys.executable, "-c", code], check=True), 3)
     bare = _median(
