@@ -68,7 +68,7 @@ def samples(page: Page, program: Program, count: int) -> dict[str, list[float]]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.split(":")[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split(":")[0])
     parser.add_argument("--count", type=int, default=60, help="of each kind")
     options = parser.parse_args()
     program = Program("--port", "0", "--seed", "1")

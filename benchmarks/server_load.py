@@ -21,7 +21,7 @@ THIRDS = 3
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.split(":")[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split(":")[0])
     parser.add_argument("--seconds", type=float, default=120.0)
     options = parser.parse_args()
     program = Program("--port", "0", "--seed", "1")

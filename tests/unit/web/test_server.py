@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import os
+import signal
 import socket
 import subprocess
 import sys
@@ -150,8 +152,6 @@ print("ended", flush=True)
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
 def test_a_signal_ends_it_within_3_s_with_code_0(name):
-    import signal
-
     program = subprocess.Popen(
         [sys.executable, "-c", PROGRAM], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
@@ -171,3 +171,24 @@ def test_a_signal_ends_it_within_3_s_with_code_0(name):
     finally:
         program.kill()
         program.communicate()
+
+
+def test_in_the_main_thread_a_signal_ends_run_and_the_old_handler_is_back():
+    before = signal.getsignal(signal.SIGTERM)
+    made = dashboard()
+    made.stop()  # nothing runs yet: nothing happens
+    made.bind()
+    made.on_ready = lambda _url: os.kill(os.getpid(), signal.SIGTERM)
+    made.run()
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_without_anybody_to_tell_it_just_runs():
+    made = dashboard()
+    thread = threading.Thread(target=made.run)
+    thread.start()
+    while made._server is None or not made._server.started:
+        time.sleep(0.01)
+    made.stop()
+    thread.join(5)
+    assert not thread.is_alive()
