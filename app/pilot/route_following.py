@@ -60,14 +60,14 @@ class RouteFollower:
         if self._plan_in_s <= 0:
             self._plan_in_s = REPLAN_S
             self._plan(experiences)
-        if self._without_headway(dt):
-            self.state = "exploring"
-            return None
         if self._route is None or self._age_s > p.coast_s:
             self._no_route_s += dt
             self.state = "unreachable" if self._no_route_s > LOST_S else "exploring"
             return None
         self._no_route_s = 0.0
+        if self._without_headway(dt):
+            self.state = "exploring"
+            return None
         self.state = "tracking" if self._age_s <= REPLAN_S + dt else "coasting"
         return self._aim(experiences, p.lookahead_m)
 
