@@ -18,7 +18,8 @@ def interpret(module: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     """Replace the module's compiled functions by the Python they were compiled from, so that coverage sees them."""
     for name, function in vars(module).copy().items():
         if hasattr(function, "py_func"):
-            monkeypatch.setattr(module, name, function.py_func)
+            quiet = np.errstate(all="ignore")  # as compiled code is
+            monkeypatch.setattr(module, name, quiet(function.py_func))
 
 
 def fill(pose_cells: PoseCells, dense: Array) -> None:

@@ -1,0 +1,60 @@
+"""Rooms for robots and maps made by hand."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from ratslam_core import Pose2
+from sim2d import Drive, SimParams, Simulator, Start, Wall, World
+
+GREY = (160, 160, 160)
+EXACT = SimParams(odometry_noise=0.0, odometry_scale_error=0.0, gyro_bias=0.0, sonar_noise_m=0.0, image_noise=0.0)
+
+
+def room(*inner: tuple[float, float, float, float], side: float = 4.0, start: tuple[float, float, float]) -> World:
+    """A square room from (0, 0) with walls inside it, and where the robot starts: x, y, heading."""
+    corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)]
+    outer = [Wall(*corners[i], *corners[(i + 1) % 4], "wall", 2.6, GREY, outer=True) for i in range(4)]
+    walls = [Wall(*ends, "partition", 1.4, GREY) for ends in inner]
+    return World("room", "A room", "test", (*outer, *walls), (Start("home", *start),), ())
+
+
+class HandMadeMap:
+    """As much of an experience map as the pilot reads: nodes at places, links with times, and a robot that knows where
+    it is. Map frame = office frame."""
+
+    def __init__(self, places: list[tuple[float, float]], links: list[tuple[int, int]], speed: float = 0.3) -> None:
+        self.poses = np.array([(x, y, 0.0) for x, y in places])
+        self.links = np.array(links, np.int64).reshape(-1, 2)
+        lengths = [math.dist(places[i], places[j]) for i, j in links]
+        self.link_times = np.array(lengths) / speed
+        self.robot = Pose2(*places[0], 0.0)
+
+    def __len__(self) -> int:
+        return len(self.poses)
+
+    @property
+    def active(self) -> int:
+        return int(np.argmin(np.hypot(self.poses[:, 0] - self.robot.x, self.poses[:, 1] - self.robot.y)))
+
+    def pose(self, experience: int) -> Pose2:
+        return Pose2(*map(float, self.poses[experience]))
+
+    def know(self, simulator: Simulator) -> None:
+        truth = simulator.truth
+        self.robot = Pose2(truth.x, truth.y, truth.heading_rad)
+
+
+def chain(*stops: tuple[float, float], every: float = 0.25) -> tuple[list[tuple[float, float]], list[tuple[int, int]]]:
+    """Places along straight lines between the stops, each linked to the next."""
+    places = [stops[0]]
+    for a, b in pairwise(stops):
+        n = math.ceil(math.dist(a, b) / every)
+        places += [(a[0] + (b[0] - a[0]) * k / n, a[1] + (b[1] - a[1]) * k / n) for k in range(1, n + 1)]
+    return places, [(k, k + 1) for k in range(len(places) - 1)]
+
+
+STOP = Drive(0.0, 0.0)
