@@ -1,0 +1,291 @@
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from app import cli, runner
+from app.config import Config, from_toml
+from web import server
+from web.stage import stage
+
+
+def test_config_is_taken_back(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["config", "--set", "pose_cells.n_x=32", "local_view.enabled=false"]) == 0
+    text = capsys.readouterr().out
+    assert from_toml(text) == Config().with_value("pose_cells.n_x", 32).with_value("local_view.enabled", False)
+    file = tmp_path / "mine.toml"
+    file.write_text(text, encoding="utf-8")
+    assert cli.main(["config", "--config", str(file)]) == 0
+    assert capsys.readouterr().out == text
+
+
+def test_worlds_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["worlds"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("office ")
+    assert {line.split()[0] for line in lines} >= {"office", "loop", "floor"}
+
+
+def test_headless_prints_its_report(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["headless", "--minutes", "0.1", "--seed", "3", "--world", "loop"]) == 0
+    out = capsys.readouterr().out
+    report = json.loads(out)
+    assert (report["world"], report["seed"], report["ticks"]) == ("loop", 3, 60)
+
+
+def test_headless_writes_its_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "report.json"
+    command = ["headless", "--minutes", "0.3", "--goals", "1", "--kidnap-at", "3", "7.5", "--report", str(file)]
+    assert cli.main(command) == 0
+    report = json.loads(file.read_text("utf-8"))
+    assert len(report["goals"]) == 1
+    assert [kidnap["at_s"] for kidnap in report["kidnaps"]] == [3.0, 7.5]
+    out = capsys.readouterr().out
+    assert out.startswith("office, seed 1: map error ")
+    assert f"{int(report['goals'][0]['reached'])} of 1 goals reached" in out
+    assert str(file) in out
+
+
+def test_parameters_reach_the_run(tmp_path: Path) -> None:
+    reports = []
+    for options in ([], ["--set", "pilot.cruise_speed=0.2"]):
+        file = tmp_path / "report.json"
+        assert cli.main(["headless", "--minutes", "0.2", "--report", str(file), *options]) == 0
+        reports.append(json.loads(file.read_text("utf-8")))
+    assert reports[0]["state_hash"] != reports[1]["state_hash"]
+
+
+@pytest.mark.parametrize(
+    ("command", "sentence"),
+    [
+        (["headless", "--world", "castle"], "no world 'castle'; expected one of: office"),
+        (["headless", "--seed", "-1"], "--seed must be from 0 to 4294967295, got -1"),
+        (["headless", "--seed", "4294967296"], "--seed must be from 0 to 4294967295, got 4294967296"),
+        (["headless", "--minutes", "-1"], "--minutes must be from 0 to 1e6, got -1.0"),
+        (["headless", "--minutes", "nan"], "--minutes must be from 0 to 1e6, got nan"),
+        (["headless", "--goals", "-2"], "--goals must be from 0 to 1e6, got -2"),
+        (["headless", "--minutes", "1", "--kidnap-at", "60"], "--kidnap-at must be from 0 to below 60 s, got 60"),
+        (["headless", "--minutes", "1", "--kidnap-at", "5", "-3"], "--kidnap-at must be from 0 to below 60 s, got -3"),
+        (["headless", "--report", "/nowhere/at/all.json"], "there is no folder"),
+        (["headless", "--config", "/nowhere.toml"], "--config /nowhere.toml: No such file or directory"),
+        (["headless", "--set", "pilot.cruise_speed"], "--set takes NAME=VALUE, got 'pilot.cruise_speed'"),
+        (
+            ["config", "--set", "pilot.cruise=1"],
+            "unknown parameter 'pilot.cruise'; expected one of: pilot.cruise_speed",
+        ),
+        (["config", "--set", "pilot.cruise_speed=9"], "pilot.cruise_speed must be between 0.05 and 0.5 m/s, got 9.0"),
+        (["config", "--set", "pilot.cruise_speed=[1]"], "'[1]' is not a number, true, false or a word"),
+        (["config", "--set", "robot.light=1" + 400 * "0"], "robot.light must be within its range"),
+        (["run", "--speed", "-1"], "--speed must be from 0 to 1000, got -1"),
+        (["run", "--speed", "nan"], "--speed must be from 0 to 1000, got nan"),
+        (["run", "--world", "castle"], "no world 'castle'"),
+        (["--paused", "--speed", "2000"], "--speed must be from 0 to 1000, got 2000"),
+        (["headless", "--set", "robot.image_width=8"], "robot.image_width must be at least 12"),
+    ],
+)
+def test_what_cannot_be_is_a_sentence(command: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(command) == 2
+    captured = capsys.readouterr()
+    assert captured.err.startswith("ratslam: ")
+    assert sentence in captured.err
+    assert len(captured.err.splitlines()) == 1
+    assert captured.out == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("[robott]\n", "unknown section 'robott'; expected one of: pose_cells"),
+        ("[robot]\nlight = 7\n", "robot.light must be from 0.1 to 2, got 7.0"),
+        ("light\n", "not valid TOML"),
+    ],
+)
+def test_a_bad_config_file_is_named(
+    text: str, sentence: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text(text, encoding="utf-8")
+    assert cli.main(["config", "--config", str(file)]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"ratslam: --config {file}: ")
+    assert sentence in error
+
+
+def test_a_config_file_that_is_not_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_bytes(b"\xff\xfe\x00")
+    assert cli.main(["config", "--config", str(file)]) == 2
+    assert str(file) in capsys.readouterr().err
+
+
+def test_a_world_file_that_cannot_be_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "mine.json"
+    file.write_text("{", encoding="utf-8")
+    assert cli.main(["headless", "--world", str(file)]) == 2
+    assert "mine.json: not JSON: line 1" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "command", [["run", "--port", "70000"], ["run", "--port", "web"], ["fly"], ["headless", "--goals", "x"]]
+)
+def test_what_argparse_refuses_ends_with_two(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        cli.main(command)
+    assert end.value.code == 2
+    assert "error:" in capsys.readouterr().err
+
+
+def test_a_port_is_a_whole_number() -> None:
+    assert cli._port("0") == 0
+    assert cli._port("65535") == 65535
+    for text in ("65536", "-1", "8000.0", ""):
+        with pytest.raises(argparse.ArgumentTypeError, match="a port is a whole number from 0 to 65535, got"):
+            cli._port(text)
+
+
+def test_help_is_not_a_run(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        cli.main(["--help"])
+    assert end.value.code == 0
+    assert "headless" in capsys.readouterr().out
+
+
+def test_it_runs_as_a_module() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", "import sys; from app.cli import main; sys.exit(main())", "worlds"],
+        capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0
+    assert done.stdout.startswith("office ")
+
+
+def test_control_c_ends_quietly(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_args: object, **_more: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("app.headless.run_headless", interrupted)
+    assert cli.main(["headless", "--minutes", "0.1"]) == 130
+
+
+def test_progress_is_counted_beyond_what_was_expected(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Goals come after the minutes that were asked for."""
+    bars = []
+    tqdm = __import__("tqdm").tqdm
+
+    class Bar(tqdm):
+        def __init__(self, **options: object) -> None:
+            super().__init__(**{**options, "disable": False, "file": open("/dev/null", "w", encoding="utf-8")})  # type: ignore[arg-type]  # noqa: SIM115
+            bars.append(self)
+
+        def close(self) -> None:
+            super().close()
+            self.fp.close()
+
+    monkeypatch.setattr("tqdm.tqdm", Bar)
+
+    def work(progress) -> str:
+        for _ in range(7):
+            progress(10.0, "exploring")
+        return "done"
+
+    assert cli._with_progress(50.0, work) == "done"
+    assert bars[0].n == 70
+    assert bars[0].total == 70
+
+
+class Doubles:
+    """Stands in for runner, stage and dashboard, and notes what is done with them."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, refuse: bool = False) -> None:
+        self.log: list[str] = []
+        self.made: dict[str, tuple] = {}
+        doubles, log = self, self.log
+
+        class Runner:
+            latest, submit = "latest", "submit"
+
+            def __init__(self, world, seed, config, **options) -> None:
+                doubles.made["runner"] = (world.name, seed, config, options)
+
+            def start(self) -> None:
+                log.append("runner starts")
+
+            def stop(self) -> None:
+                log.append("runner stops")
+
+        class Dashboard:
+            on_ready = None
+
+            def __init__(self, latest, submit, stage, *, port) -> None:
+                doubles.made["dashboard"] = (latest, submit, stage, port)
+
+            def bind(self) -> None:
+                if refuse:
+                    raise server.CannotListen("port 8000 is taken; try --port 0")
+                log.append("bound")
+
+            def run(self) -> None:
+                log.append("serving")
+                assert self.on_ready is not None
+                self.on_ready("http://127.0.0.1:8000/")
+
+        monkeypatch.setattr(runner, "Runner", Runner)
+        monkeypatch.setattr(server, "Dashboard", Dashboard)
+        monkeypatch.setattr(stage, "Stage", lambda *_: "stage")
+        monkeypatch.setattr("webbrowser.open", lambda url: log.append(f"opens {url}"))
+
+
+def test_run_binds_first_then_starts_and_stops(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    doubles = Doubles(monkeypatch)
+    monkeypatch.setattr(cli, "_has_screen", lambda: True)
+    command = ["--world", "loop", "--seed", "9", "--port", "0", "--paused", "--speed", "3", "--set", "robot.light=0.8"]
+    assert cli.main(command) == 0
+    assert doubles.log == ["bound", "runner starts", "serving", "opens http://127.0.0.1:8000/", "runner stops"]
+    name, seed, config, options = doubles.made["runner"]
+    assert (name, seed, options) == ("loop", 9, {"speed": 3.0, "running": False})
+    assert config == Config().with_value("robot.light", 0.8)
+    assert doubles.made["dashboard"] == ("latest", "submit", "stage", 0)
+    assert "RatSLAM is alive at http://127.0.0.1:8000/" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("options", "screen"), [(["--no-browser"], True), ([], False)])
+def test_no_browser_opens_unasked_or_unseen(options: list[str], screen: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    doubles = Doubles(monkeypatch)
+    monkeypatch.setattr(cli, "_has_screen", lambda: screen)
+    assert cli.main(["run", *options]) == 0
+    assert not any(entry.startswith("opens") for entry in doubles.log)
+
+
+def test_a_taken_port_is_a_sentence(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    doubles = Doubles(monkeypatch, refuse=True)
+    assert cli.main([]) == 2
+    assert capsys.readouterr().err == "ratslam: port 8000 is taken; try --port 0\n"
+    assert doubles.log == []  # nothing was started
+
+
+def test_the_engine_stops_when_serving_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    doubles = Doubles(monkeypatch)
+    monkeypatch.setattr(server.Dashboard, "run", lambda _self: (_ for _ in ()).throw(KeyboardInterrupt))
+    assert cli.main(["run"]) == 130
+    assert doubles.log[-1] == "runner stops"
+
+
+@pytest.mark.parametrize(
+    ("platform", "environment", "screen"),
+    [("linux", {}, False), ("linux", {"DISPLAY": ":0"}, True), ("linux", {"WAYLAND_DISPLAY": "w"}, True),
+     ("darwin", {}, True), ("win32", {}, True)],
+)  # fmt: skip
+def test_a_screen(platform: str, environment: dict[str, str], screen: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "platform", platform)
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    assert cli._has_screen() is screen

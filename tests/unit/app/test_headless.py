@@ -1,0 +1,67 @@
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from app.headless import run_headless
+from app.session import Session
+from sim2d import load_world
+
+OFFICE = load_world("office")
+KEYS = [
+    "world", "seed", "simulated_s", "wall_s", "real_time_factor", "ticks", "views", "experiences", "links",
+    "relocalisations", "error_m", "revisit_consistency", "goals", "kidnaps", "state_hash",
+]  # fmt: skip
+
+
+def test_the_report_has_its_shape() -> None:
+    told: list[tuple[float, str]] = []
+    report = run_headless(OFFICE, 2, 0.5, goals=2, kidnap_at_s=[20, 5], progress=lambda s, what: told.append((s, what)))
+    assert list(report) == KEYS
+    assert list(report["error_m"]) == ["map", "odometry"]
+    assert list(report["revisit_consistency"]) == ["within_half_metre"]
+    assert [list(goal) for goal in report["goals"]] == [
+        ["experience", "reached", "time_s", "path_m", "shortest_m", "miss_m"]
+    ] * 2
+    assert [list(kidnap) for kidnap in report["kidnaps"]] == [["at_s", "recovered", "after_s", "after_m"]] * 2
+    assert [kidnap["at_s"] for kidnap in report["kidnaps"]] == [5.0, 20.0]
+    assert (report["world"], report["seed"]) == ("office", 2)
+    assert report["ticks"] == round(report["simulated_s"] * 10) >= 300
+    assert report["simulated_s"] == pytest.approx(30 + sum(goal["time_s"] for goal in report["goals"]))
+    assert json.loads(json.dumps(report, allow_nan=False)) == report
+    assert sum(s for s, _ in told) == pytest.approx(report["simulated_s"], abs=2.0)
+    assert list(dict.fromkeys(what for _, what in told)) == ["exploring", "goal 1 of 2", "goal 2 of 2"]
+    for goal in report["goals"]:
+        assert isinstance(goal["reached"], bool)
+        assert goal["path_m"] >= 0
+        assert not goal["reached"] or goal["miss_m"] <= 1.0
+
+
+def test_headless_is_the_session_and_nothing_else() -> None:
+    report = run_headless(OFFICE, 4, 0.3)
+    session = Session(OFFICE, 4)
+    for _ in range(180):
+        session.tick()
+    assert report["state_hash"] == session.state_hash()
+    assert report["goals"] == report["kidnaps"] == []
+    assert report["experiences"] == len(session.brain.experience_map)
+    assert report["links"] == session.brain.experience_map.link_count
+    assert report["views"] == len(session.brain.local_view)
+
+
+def test_nothing_simulated_is_a_report_too() -> None:
+    report = run_headless(OFFICE, 1, 0.0)
+    assert (report["ticks"], report["experiences"], report["simulated_s"]) == (0, 1, 0.0)
+    assert report["error_m"] == {"map": 0.0, "odometry": 0.0}
+    assert report["revisit_consistency"] == {"within_half_metre": None}
+    json.dumps(report, allow_nan=False)
+
+
+def test_a_goal_that_is_not_reached_in_time_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.headless.GOAL_TIMEOUT_S", 2.0)
+    report = run_headless(OFFICE, 2, 0.7, goals=1)
+    goal = report["goals"][0]
+    assert goal["reached"] is False
+    assert goal["time_s"] == pytest.approx(2.0, abs=0.15)
+    assert goal["miss_m"] > 0.3

@@ -1,0 +1,362 @@
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+from app import runner as runner_module
+from app.config import Config
+from app.runner import Runner
+from app.session import Session
+from sim2d import load_world
+from web import messages as m
+
+from .worlds import room
+
+OFFICE = load_world("office")
+PATIENCE_S = 60
+
+
+class Watched(Runner):
+    """Tells when the snapshot that follows an answer has been published."""
+
+    def __init__(self, *args: object, **options: object) -> None:
+        super().__init__(*args, **options)  # type: ignore[arg-type]
+        self._round_ended = threading.Condition()
+        self._rounds = self._answered_in = 0
+
+    def _answer(self, request: m.Request) -> None:
+        self._answered_in = self._rounds
+        super()._answer(request)
+
+    def _take_requests(self) -> None:
+        super()._take_requests()
+        with self._round_ended:
+            self._rounds += 1
+            self._round_ended.notify_all()
+
+    def settle(self) -> None:
+        with self._round_ended:
+            assert self._round_ended.wait_for(lambda: self._rounds > self._answered_in, PATIENCE_S)
+
+
+@pytest.fixture
+def start() -> Iterator[Callable[..., Runner]]:
+    """Runners that are stopped at the end; paused and as fast as possible unless told otherwise."""
+    running: list[Runner] = []
+
+    def begin(**options: object) -> Runner:
+        world = options.pop("world", OFFICE)
+        config = options.pop("config", Config())
+        options = {"speed": 0.0, "running": False} | options
+        made = Watched(world, 5, config, **options)
+        made.start()
+        running.append(made)
+        snapshot(made)
+        return made
+
+    yield begin
+    for made in running:
+        made.stop()
+
+
+def do(runner: Runner, command: m.Command) -> m.Accepted | m.Refused:
+    answer = runner.submit(command).result(timeout=PATIENCE_S)
+    if isinstance(runner, Watched):
+        runner.settle()
+    return answer
+
+
+def accept(runner: Runner, command: m.Command) -> m.Snapshot:
+    """Give a command that has to be accepted; the snapshot after it."""
+    answer = do(runner, command)
+    assert isinstance(answer, m.Accepted), answer
+    return snapshot(runner)
+
+
+def refuse(runner: Runner, command: m.Command) -> m.Refused:
+    answer = do(runner, command)
+    assert isinstance(answer, m.Refused), answer
+    return answer
+
+
+def snapshot(runner: Runner) -> m.Snapshot:
+    version, now = runner.latest.wait(0, PATIENCE_S)
+    assert version > 0
+    assert now is not None
+    return now
+
+
+def wait_for(runner: Runner, condition: Callable[[m.Snapshot], bool]) -> m.Snapshot:
+    version, now = runner.latest.get()
+    while now is None or not condition(now):
+        before = version
+        version, now = runner.latest.wait(version, PATIENCE_S)
+        assert version > before, "nothing new came"
+    return now
+
+
+def step(ticks: int = 1) -> m.Step:
+    return m.Step(type="step", ticks=ticks)
+
+
+# ---------------------------------------------------------------- pace
+
+
+def test_the_first_snapshot_comes_before_anything_moves(start: Callable[..., Runner]) -> None:
+    now = snapshot(start())
+    assert (now.tick, now.run, now.running, now.seed, now.fault) == (0, 1, False, 5, None)
+    assert now.speed == float("inf")
+    assert ("office", OFFICE.title) in now.worlds
+
+
+def test_steps_are_counted(start: Callable[..., Runner]) -> None:
+    runner = start()
+    assert accept(runner, step()).tick == 1
+    assert accept(runner, step(7)).tick == 8
+    now = accept(runner, step(100))
+    assert now.tick == 108
+    assert not now.running
+    assert now.time_s == pytest.approx(10.8)
+
+
+def test_stepping_is_the_same_as_the_session_alone(start: Callable[..., Runner]) -> None:
+    runner = start()
+    for ticks in (1, 30, 69):
+        accept(runner, step(ticks))
+    alone = Session(OFFICE, 5)
+    for _ in range(100):
+        alone.tick()
+    assert runner.session.state_hash() == alone.state_hash()
+
+
+def test_running_pauses_and_resumes_at_any_speed(start: Callable[..., Runner]) -> None:
+    runner = start(running=True)
+    wait_for(runner, lambda now: now.tick >= 30)
+    paused = accept(runner, m.Pause(type="pause"))
+    assert not paused.running
+    tick = paused.tick
+    assert do(runner, m.Pause(type="pause")) == m.Accepted(tick)
+    assert accept(runner, m.SetSpeed(type="set_speed", factor=500.0)).speed == 500.0
+    assert accept(runner, m.Resume(type="resume")).running
+    later = wait_for(runner, lambda now: now.tick >= tick + 30)
+    assert later.speed == 500.0
+    assert accept(runner, step()).running is False
+    alone = Session(OFFICE, 5)
+    while alone.tick_count < runner.session.tick_count:
+        alone.tick()
+    assert runner.session.state_hash() == alone.state_hash()
+
+
+def test_the_real_time_factor_is_measured(start: Callable[..., Runner]) -> None:
+    runner = start(running=True)
+    assert wait_for(runner, lambda now: now.real_time_factor > 0).tick > 0
+
+
+# ---------------------------------------------------------------- the hand
+
+
+def test_the_hand_drives(start: Callable[..., Runner], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner_module, "HAND_EXPIRES_S", 1e9)
+    runner = start()
+    assert accept(runner, m.Drive(type="drive", speed=0.3, yaw_rate=0.0)).mode == "manual"
+    now = accept(runner, step(20))
+    assert now.doing == "driven by hand"
+    start_at = OFFICE.starts[0]
+    assert now.truth.x - start_at.x > 0.4
+    assert now.truth.y == pytest.approx(start_at.y, abs=0.02)
+
+
+def test_the_hand_expires(start: Callable[..., Runner], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner_module, "HAND_EXPIRES_S", 0.0)
+    runner = start()
+    accept(runner, m.Drive(type="drive", speed=0.3, yaw_rate=0.0))
+    now = accept(runner, step())
+    while now.doing != "waiting for the hand":
+        assert now.tick < 200
+        now = accept(runner, step())
+    assert now.mode == "manual"
+
+
+def test_a_hand_that_expires_does_not_take_back_a_later_order(
+    start: Callable[..., Runner], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runner_module, "HAND_EXPIRES_S", 0.05)
+    runner = start(running=True)
+    accept(runner, m.Drive(type="drive", speed=0.3, yaw_rate=0.0))
+    accept(runner, m.SetMode(type="set_mode", mode="explore"))
+    wait_for(runner, lambda _: runner._hand_expires == float("inf"))
+    now = accept(runner, step(3))
+    assert now.mode == "explore"
+
+
+# ---------------------------------------------------------------- orders and refusals
+
+
+def test_goals(start: Callable[..., Runner]) -> None:
+    runner = start()
+    accept(runner, step(80))
+    now = accept(runner, m.SetGoal(type="set_goal", x=0.0, y=0.0))
+    assert now.goal is not None
+    assert now.mode == "goal"
+    assert now.events[-1].kind == "goal"
+    assert now.events[-1].text == f"to experience {now.goal.experience}"
+    refused = refuse(runner, m.SetGoal(type="set_goal", x=55.0, y=0.0))
+    assert (refused.field, refused.value) == ("x, y", (55.0, 0.0))
+    assert "is off the map" in refused.reason
+    now = accept(runner, m.CancelGoal(type="cancel_goal"))
+    assert (now.goal, now.mode) == (None, "explore")
+    refused = refuse(runner, m.SetMode(type="set_mode", mode="goal"))
+    assert (refused.field, refused.value) == ("mode", "goal")
+    assert "set one first" in refused.reason
+    assert accept(runner, m.SetMode(type="set_mode", mode="manual")).mode == "manual"
+
+
+def test_kidnaps(start: Callable[..., Runner]) -> None:
+    runner = start()
+    now = accept(runner, m.Kidnap(type="kidnap", x=7.0, y=7.4, heading_rad=1.0))
+    assert (now.truth.x, now.truth.y, now.truth.heading_rad) == pytest.approx((7.0, 7.4, 1.0))
+    assert now.events[-1].kind == "kidnap"
+    refused = refuse(runner, m.Kidnap(type="kidnap", x=5.0, y=0.05))
+    assert (refused.field, refused.value) == ("x, y", (5.0, 0.05))
+    assert "the robot needs" in refused.reason
+    assert [event.kind for event in snapshot(runner).events] == ["kidnap"]
+    by_chance = accept(runner, m.Kidnap(type="kidnap"))
+    assert (by_chance.truth.x, by_chance.truth.y) != (now.truth.x, now.truth.y)
+
+
+def test_parameters(start: Callable[..., Runner]) -> None:
+    runner = start()
+
+    def value(now: m.Snapshot, name: str) -> object:
+        return {p.name: p.value for p in now.parameters}[name]
+
+    def change(name: str, new: object) -> m.Command:
+        return m.SetParameter(type="set_parameter", name=name, value=new)  # type: ignore[arg-type]
+
+    now = accept(runner, change("robot.light", 0.6))
+    assert value(now, "robot.light") == 0.6
+    assert (now.events[-1].kind, now.events[-1].text) == ("parameter", "robot.light = 0.6")
+    now = accept(runner, change("pose_cells.n_x", 32))
+    assert now.events[-1].text == "pose_cells.n_x = 32, from the next reset on"
+    assert now.pose_cells.shape == (36, 64, 64)
+    refused = refuse(runner, change("robot.light", 5.0))
+    assert (refused.field, refused.value) == ("value", 5.0)
+    assert refused.reason == "robot.light must be from 0.1 to 2, got 5.0"
+    refused = refuse(runner, change("robot.lights", 1.0))
+    assert (refused.field, refused.value) == ("name", "robot.lights")
+    assert "robot.light" in refused.reason
+    now = accept(runner, m.Reset(type="reset"))
+    assert now.pose_cells.shape == (36, 64, 32)
+    assert value(now, "robot.light") == 0.6
+
+
+# ---------------------------------------------------------------- reset and faults
+
+
+def test_reset(start: Callable[..., Runner]) -> None:
+    runner = start()
+    first = accept(runner, step(50))
+    again = accept(runner, m.Reset(type="reset"))
+    assert (again.run, again.tick, again.seed, again.world.name) == (2, 0, 5, "office")
+    assert accept(runner, step(50)).truth == first.truth
+    other_seed = accept(runner, m.Reset(type="reset", seed=6))
+    assert (other_seed.run, other_seed.seed) == (3, 6)
+    loop = accept(runner, m.Reset(type="reset", world="loop"))
+    assert (loop.world.name, loop.seed) == ("loop", 6)
+    assert accept(runner, m.Reset(type="reset", world="office")).world.name == "office"
+    refused = refuse(runner, m.Reset(type="reset", world="castle"))
+    assert (refused.field, refused.value) == ("world", "castle")
+    assert "expected one of: office" in refused.reason
+    assert snapshot(runner).run == 5
+
+
+def test_a_world_of_ones_own_can_be_come_back_to(start: Callable[..., Runner]) -> None:
+    runner = start(world=room(start=(2.0, 2.0, 0.0)))
+    assert snapshot(runner).worlds[-1] == ("room", "A room")
+    accept(runner, m.Reset(type="reset", world="loop"))
+    assert accept(runner, m.Reset(type="reset", world="room")).world.name == "room"
+
+
+def test_a_reset_that_cannot_be_is_refused_and_the_old_run_goes_on(start: Callable[..., Runner]) -> None:
+    runner = start(world=room(start=(0.4, 2.0, 0.0)))
+    accept(runner, step(5))
+    accept(runner, m.SetParameter(type="set_parameter", name="robot.robot_radius_m", value=0.5))
+    refused = refuse(runner, m.Reset(type="reset"))
+    assert (refused.field, refused.value) == ("world", "room")
+    assert "the robot cannot start at home" in refused.reason
+    now = accept(runner, step())
+    assert (now.run, now.tick) == (1, 6)
+
+
+def fail() -> None:
+    raise RuntimeError("a wheel came off")
+
+
+def test_a_fault_pauses_and_says_why(start: Callable[..., Runner], capsys: pytest.CaptureFixture[str]) -> None:
+    runner = start()
+    accept(runner, step(10))
+    runner.session.tick = fail  # type: ignore[method-assign]
+    now = accept(runner, step(5))
+    assert (now.running, now.fault, now.tick) == (False, "RuntimeError: a wheel came off", 10)
+    assert [(e.kind, e.text) for e in now.events] == [("fault", "RuntimeError: a wheel came off")]  # once
+    assert "a wheel came off" in capsys.readouterr().err
+    for command in (m.Resume(type="resume"), step()):
+        refused = refuse(runner, command)
+        assert refused.field == "type"
+        assert refused.value == command.type
+        assert "the session stopped at a fault (RuntimeError: a wheel came off); reset it" in refused.reason
+    anew = accept(runner, m.Reset(type="reset"))
+    assert (anew.fault, anew.run, anew.running) == (None, 2, True)
+
+
+def test_a_fault_while_running(start: Callable[..., Runner]) -> None:
+    runner = start(running=True)
+    wait_for(runner, lambda now: now.tick > 5)
+    runner.session.tick = fail  # type: ignore[method-assign]
+    now = wait_for(runner, lambda now: now.fault is not None)
+    assert not now.running
+    assert accept(runner, m.Reset(type="reset")).running
+
+
+def test_an_order_that_breaks_is_answered_with_its_error(
+    start: Callable[..., Runner], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runner = start()
+
+    def broken(*_: object) -> None:
+        raise RuntimeError("no teleporter")
+
+    monkeypatch.setattr(runner.session, "kidnap", broken)
+    answer = runner.submit(m.Kidnap(type="kidnap"))
+    with pytest.raises(RuntimeError, match="no teleporter"):
+        answer.result(timeout=PATIENCE_S)
+    assert accept(runner, step()).tick == 1  # the engine lives on
+
+
+def test_stopping_ends_a_long_step() -> None:
+    runner = Runner(OFFICE, 5, Config(), running=False)
+    runner.start()
+    snapshot(runner)
+    answer = runner.submit(step(1000))
+    wait_for_step = runner.submit(step(1000))
+    runner.stop()
+    assert not runner._thread.is_alive()
+    assert answer.done() or wait_for_step.done() or runner.session.tick_count < 2000
+
+
+def test_snapshots_of_a_run_only_go_forwards(start: Callable[..., Runner]) -> None:
+    runner = start(running=True)
+    seen = []
+    version = 0
+    for _ in range(12):
+        version, now = runner.latest.wait(version, PATIENCE_S)
+        assert now is not None
+        seen.append((now.run, now.tick))
+        assert len(now.map.ids) == len(now.times.seconds)
+        assert now.stage_ms.keys() == {"office and senses", "RatSLAM", "pilot"}
+    assert seen == sorted(seen)
+    assert seen[-1][1] > seen[0][1]
+    assert np.isfinite(list(now.stage_ms.values())).all()
