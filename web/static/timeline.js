@@ -60,7 +60,7 @@ export class Timeline {
     const y = height * 0.52;
     const parts = [line(x(0), x(end), y, "rest"), line(x(0), x(this.time_s), y, "done"), ...this.ticks(x, y, end, width)];
     parts.push(...this.marks(x, y), ...this.labels(x, y, width));
-    parts.push(svg("path", { d: `M${x(this.time_s)} ${y - 20}v34`, class: "now" }));
+    parts.push(svg("path", { d: `M${x(this.time_s)} ${y - 12}v25`, class: "now" }));
     this.place.replaceChildren(...parts);
     this.place.setAttribute("aria-label", `Timeline: ${clock(this.time_s)}, ${this.events.length} events`);
   }
