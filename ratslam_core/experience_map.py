@@ -15,9 +15,11 @@ from numpy.typing import NDArray
 from ratslam_core import map_correction
 from ratslam_core.belief import Belief
 from ratslam_core.params import ExperienceMapParams
+from ratslam_core.transitions import Transitions
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, wrap_angle
 
 CARRIED_M = 100.0  # how well the robot knows where it is after it was carried away
+BLIND_M = 1.0  # so near in the map must be what is not seen
 NOWHERE_M = 0.5  # an experience of a view that shows nothing is only known to be somewhere in its zone
 
 
@@ -30,17 +32,10 @@ class ExperienceMap:
         self._pose = np.zeros((1024, 3))  # x, y, heading in the map
         self._at = np.zeros((1024, 3))  # x', y', theta' in cells and layers
         self._view = np.zeros(1024, np.int64)
-        self._ends = np.zeros((1024, 2), np.int64)
-        self._move = np.zeros((1024, 3))  # dx, dy in the frame of the first experience, change of facing
-        self._weight = np.zeros(1024)
-        self._turning = np.zeros(1024)  # seconds of each link during which the wheels turned
         self.yaw_bias = 0.0  # rad/s, learnt
         self._turning_s = self._turning_from_latest_s = 0.0
-        self._time = np.zeros(1024)
-        self._times_made = np.zeros(1024, np.int64)
-        self._graph = map_correction.Adjacency()
-        self._count = self._links = 0
-        self._link_of: dict[tuple[int, int], int] = {}
+        self.transitions = Transitions()
+        self._count = 0
         self._of_view: dict[int, list[int]] = {}
         self.active = -1
         self._offset = IDENTITY  # the robot in the frame of the active experience when it was seen best
@@ -51,12 +46,9 @@ class ExperienceMap:
         self._latest = -1  # the experience made last: where it was made is known exactly
         self._from_latest = IDENTITY  # odometry since then
         self._way_m = self._way_from_latest_m = 0.0
-        self._travelled = np.zeros(1024, np.bool_)
-        self._chain = np.zeros(1024, np.bool_)  # links by which experiences were made: odometry, not looks
-        self._believed = np.zeros(1024)  # weights times how far the map bears the links out
         self._since_s = 0.0
         self.closures = 0  # links made to experiences that existed before
-        self._solved_at = self._links_at_solve = 0
+        self._solved_at = self._closures_at_solve = 0
         self._steps = 0
 
     # ------------------------------------------------------------ reading
@@ -66,7 +58,7 @@ class ExperienceMap:
 
     @property
     def link_count(self) -> int:
-        return len(self._link_of)
+        return len(self.transitions.row_of)
 
     @property
     def poses(self) -> NDArray[np.float64]:
@@ -76,17 +68,21 @@ class ExperienceMap:
     @property
     def links(self) -> NDArray[np.int64]:
         """From and to of every link, shape (m, 2)."""
-        return self._ends[: self._links][self._travelled[: self._links]]
+        return self.transitions.ends[self._travelled]
 
     @property
     def moves(self) -> NDArray[np.float64]:
         """Of every link: dx, dy (m) in the frame of the first experience and change of facing (rad), shape (m, 3)."""
-        return self._move[: self._links][self._travelled[: self._links]]
+        return self.transitions.move[self._travelled]
 
     @property
     def link_times(self) -> NDArray[np.float64]:
         """Seconds that each transition takes, shape (m,)."""
-        return self._time[: self._links][self._travelled[: self._links]]
+        return self.transitions.time_s[self._travelled]
+
+    @property
+    def _travelled(self) -> NDArray[np.int64]:
+        return np.flatnonzero(self.transitions.travelled[: self.transitions.count])
 
     @property
     def local_pose(self) -> Pose2:
@@ -164,28 +160,38 @@ class ExperienceMap:
         behind a growing map, so their fixed point is computed directly every `solve_every` steps when loops have closed.
         test_map_correction.py::{test_a_sweep_never_raises_the_residual, test_sweeps_and_solution_agree}.
         """
+        t, poses = self.transitions, self._pose[: self._count]
         for _ in range(self.params.sweeps):
-            map_correction.sweep(
-                self._pose[: self._count], self._graph, self._ends, self._move, self._believed, self.params.correction
-            )
+            map_correction.sweep(poses, t.graph, t.ends, t.move, t.believed, self.params.correction)
         due = self.params.solve_every and self._steps - self._solved_at >= self.params.solve_every
-        if due and self.closures > self._links_at_solve:
-            rows = slice(self._links)
-            ends, moves, weights = self._ends[rows], self._move[rows], self._weight[rows]
-            poses, turning = self._pose[: self._count], self._turning[rows] if self.params.calibrate else None
-            doubt = map_correction.trust(poses, ends, moves, weights, self._chain[rows], self.params.odometry_sigma)
-            self._believed[rows] = weights * doubt
-            more = map_correction.solve(poses, ends, moves, self._believed[rows], turning)
-            if turning is not None:
-                self.yaw_bias += more
-                self._move[: self._links, 2] -= more * turning
-            self._solved_at, self._links_at_solve = self._steps, self.closures
+        if due and self.closures > self._closures_at_solve:
+            self._solve(poses)
+
+    def _solve(self, poses: NDArray[np.float64]) -> None:
+        t, rows = self.transitions, slice(self.transitions.count)
+        ends, moves, turning = t.ends[rows], t.move[rows], t.turning_s[rows] if self.params.calibrate else None
+        trust = map_correction.trust(poses, ends, moves, t.weight[rows], t.chain[rows], self.params.odometry_sigma)
+        t.believed[rows] = t.weight[rows] * trust
+        more = map_correction.solve(poses, ends, moves, t.believed[rows], turning)
+        if turning is not None:
+            self.yaw_bias += more
+            moves[:, 2] -= more * turning
+        self._solved_at, self._closures_at_solve = self._steps, self.closures
 
     # ------------------------------------------------------------ inside
 
     def _most_energetic(self, packet: Packet, view: int) -> int:
+        """The experience with the most energy above the threshold, -1 for none.
+
+        [ours] Where there is nothing to see only the pose cells speak, and they use the same cells for places far apart:
+        then an experience must be near in the map, too. test_experience_map.py::test_seeing_nothing_closes_no_loop.
+        """
         best, most = -1, self.params.threshold
+        robot = self.robot
         for experience in self._of_view.get(view, ()):
+            x, y, _ = self._pose[experience]
+            if view < 0 and math.hypot(x - robot.x, y - robot.y) > BLIND_M:
+                continue
             energy = self.energy(experience, packet, view)
             if energy > most:
                 best, most = experience, energy
@@ -211,7 +217,7 @@ class ExperienceMap:
         self._at[i] = packet.x, packet.y, (packet.heading_rad * n_theta / (2 * math.pi)) % n_theta
         self._view[i] = view
         self._of_view.setdefault(view, []).append(i)
-        self._graph.add_node()
+        self.transitions.graph.add_node()
         self._count += 1
         self.active, self._offset, self._travel, self._sigma = i, IDENTITY, IDENTITY, 0.0
         self._belief.local = IDENTITY
@@ -252,20 +258,15 @@ class ExperienceMap:
         """
         j = self.active
         carried = sigma >= CARRIED_M
-        link = None if carried else self._link_of.get((i, j))
-        if link is None:
-            link = self._new_row(i, j, travelled=not carried)
-            if not carried:
-                self._link_of[i, j] = link
+        row = None if carried else self.transitions.row_of.get((i, j))
+        if row is None:
+            row = self.transitions.add(i, j, travelled=not carried)
             self.closures += j != self._count - 1
-        n = self._times_made[link]
-        self._time[link] += (self._since_s - self._time[link]) / (n + 1)
-        self._turning[link] += (self._turning_s - self._turning[link]) / (n + 1)
-        self._times_made[link] = n + 1
-        self._since_s = self._turning_s = 0.0
+        self.transitions.take_time(row, self._since_s, self._turning_s)
         sigma = math.hypot(sigma, self.params.odometry_drift * self._way_m)
-        self._way_m = 0.0
-        self._arrival = _Arrival(link, self._move[link].copy(), float(self._weight[link]), came, sigma)
+        self._since_s = self._turning_s = self._way_m = 0.0
+        t = self.transitions
+        self._arrival = _Arrival(row, t.move[row].copy(), float(t.weight[row]), came, sigma)
         self._measure(self._arrival)
 
     def _learn_spine(self, before: int) -> None:
@@ -275,12 +276,11 @@ class ExperienceMap:
         decimetres only, cuts the rigid chain of odometry, and the map shrinks.
         """
         if self._latest >= 0 and self._latest != before:
-            link = self._new_row(self._latest, self.active, travelled=False)
-            move = self._from_latest
-            sigma = self.params.odometry_drift * self._way_from_latest_m
-            self._move[link] = move.x, move.y, move.heading_rad
-            self._weight[link] = self._believed[link] = self._weight_of(sigma)
-            self._turning[link] = self._turning_from_latest_s
+            t = self.transitions
+            row = t.add(self._latest, self.active, travelled=False)
+            weight = self._weight_of(self.params.odometry_drift * self._way_from_latest_m)
+            t.measure(row, self._from_latest, weight, t.move[row], 0.0)
+            t.take_time(row, 0.0, self._turning_from_latest_s)
         self._latest, self._from_latest = self.active, IDENTITY
         self._way_from_latest_m = self._turning_from_latest_s = 0.0
 
@@ -292,40 +292,18 @@ class ExperienceMap:
         least = self.params.odometry_sigma**2
         return least / (least + sigma**2)
 
-    def _new_row(self, i: int, j: int, *, travelled: bool) -> int:
-        if self._links == len(self._ends):
-            self._ends, self._move, self._travelled = _double(self._ends), _double(self._move), _double(self._travelled)
-            self._time, self._times_made = _double(self._time), _double(self._times_made)
-            self._weight, self._turning = _double(self._weight), _double(self._turning)
-            self._chain, self._believed = _double(self._chain), _double(self._believed)
-        row = self._links
-        self._ends[row], self._travelled[row] = (i, j), travelled
-        self._chain[row] = self._graph.first[j] < 0 or not travelled
-        self._links += 1
-        self._graph.add_link(i, j)
-        return row
-
     def _measure(self, arrival: _Arrival) -> None:
-        """Average what this transition says of its move into its link, each passage by its weight."""
         move = arrival.came.compose(self._offset.inverse())
         weight = self._weight_of(math.hypot(arrival.sigma, self._sigma))
-        share = weight / (arrival.weight + weight)
-        old = arrival.move
-        turn = old[2] + share * wrap_angle(move.heading_rad - old[2])
-        self._move[arrival.link] = (
-            old[0] + share * (move.x - old[0]),
-            old[1] + share * (move.y - old[1]),
-            wrap_angle(turn),
-        )
-        self._weight[arrival.link] = self._believed[arrival.link] = arrival.weight + weight
+        self.transitions.measure(arrival.row, move, weight, arrival.move, arrival.weight)
 
 
 @dataclass(slots=True)
 class _Arrival:
     """The transition that led to the active experience, as long as it may be measured better."""
 
-    link: int
-    move: NDArray[np.float64]  # of the link before this passage
+    row: int
+    move: NDArray[np.float64]  # of the row before this passage
     weight: float
     came: Pose2  # the robot in the frame of the experience before, when the active one was seen best
     sigma: float

@@ -196,7 +196,14 @@ class ExperienceMapParams:
     threshold: float = param(
         0.0, low=0.0, high=2.0, meaning="a new experience when no energy is above it", source="B 4.1"
     )
-    correction: float = param(0.5, symbol="α", low=0.0, high=1.0, meaning="correction rate", source="B table 1, D 3.3")
+    correction: float = param(
+        0.5,
+        symbol="α",
+        low=0.0,
+        high=0.95,
+        meaning="correction rate; 0.5 settles a node at once, from 1 on it would swing for ever",
+        source="B table 1, D 3.3",
+    )
     anchor_sigma: float = param(
         0.05,
         unit="m per grey level",

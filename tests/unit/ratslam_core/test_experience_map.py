@@ -190,7 +190,7 @@ def test_a_passage_counts_by_how_well_it_is_known() -> None:
         expected_sum, weights = expected_sum + weight * way, weights + weight
         row = robot.map.links.tolist().index([0, 1])
         assert robot.map.moves[row, 0] == pytest.approx(expected_sum / weights, rel=1e-6)
-        assert robot.map._weight[row] == pytest.approx(weights, rel=1e-6)
+        assert robot.map.transitions.weight[row] == pytest.approx(weights, rel=1e-6)
 
 
 def test_the_best_look_decides_the_transition() -> None:
@@ -211,12 +211,12 @@ def test_the_best_look_decides_the_transition() -> None:
     # again, with odometry that reads 10 % too much; the packet is off, so that the first look is wrong by 0.2 m
     robot.go(1.76, 0.0, 1, difference=5.0, packet=robot.packet(Pose2(goal.x - 0.2, 0.0, 0.0)))
     rim = robot.map.moves[row].copy()
-    weight = robot.map._weight[row]
+    weight = robot.map.transitions.weight[row]
     robot.see(1, odometry=Odometry(2.2, 0.0, 0.1), difference=6.0, packet=robot.packet(goal))
     assert np.array_equal(robot.map.moves[row], rim)  # a worse look changes nothing
     robot.see(1, odometry=Odometry(0.22, 0.0, 0.1), difference=1.0, packet=robot.packet(goal))
     better = robot.map.moves[row]
-    assert robot.map._weight[row] > weight
+    assert robot.map.transitions.weight[row] > weight
     share = (1e-4 / (1e-4 + 0.05**2)) / (1 + 1e-4 / (1e-4 + 0.05**2))
     came = 1.76 + 0.22 + 0.022
     assert better[0] == pytest.approx(2.0 + share * (came - 2.0), abs=1e-6)
@@ -233,11 +233,11 @@ def test_odometry_past_known_places_keeps_the_chain_rigid() -> None:
     robot.go(0.8, -0.1, 2, new=True)
     assert robot.map.links.tolist() == [[0, 1], [1, 0], [0, 2]]
     assert robot.map.link_count == len(robot.map.moves) == len(robot.map.link_times) == 3
-    rows = robot.map._ends[: robot.map._links].tolist()
+    rows = robot.map.transitions.ends[: robot.map.transitions.count].tolist()
     assert rows == [[0, 1], [1, 0], [0, 2], [1, 2]]
     spine = first_new.inverse().compose(robot.pose)
-    assert robot.map._move[3] == pytest.approx([spine.x, spine.y, spine.heading_rad], abs=1e-9)
-    assert robot.map._weight[3] == pytest.approx(1e-4 / (1e-4 + (0.03 * 0.8) ** 2))
+    assert robot.map.transitions.move[3] == pytest.approx([spine.x, spine.y, spine.heading_rad], abs=1e-9)
+    assert robot.map.transitions.weight[3] == pytest.approx(1e-4 / (1e-4 + (0.03 * 0.8) ** 2))
 
 
 def test_a_kidnap_makes_no_way() -> None:
@@ -259,7 +259,7 @@ def test_a_kidnap_makes_no_way() -> None:
     assert robot.map.active == 0
     assert robot.map.links.tolist() == ways
     assert robot.map.link_count == len(ways)
-    assert robot.map._weight[: robot.map._links].min() < 1e-6  # and it pulls at nothing
+    assert robot.map.transitions.weight[: robot.map.transitions.count].min() < 1e-6  # and it pulls at nothing
     assert robot.map.local_pose.x == pytest.approx(0.0)
 
 
@@ -294,7 +294,7 @@ def test_wheels_that_stand_have_no_time_of_turning() -> None:
         robot.see(0)  # standing
     robot.go(0.5, 0.3, 1, new=True, steps=5)
     assert robot.map.link_times[0] == pytest.approx(1.2)
-    assert robot.map._turning[0] == pytest.approx(0.5)
+    assert robot.map.transitions.turning_s[0] == pytest.approx(0.5)
 
 
 def test_maps_of_thousands_of_experiences_keep_everything() -> None:
@@ -389,3 +389,16 @@ def test_the_exact_solution_is_asked_for_only_after_closures() -> None:
     before = never.map.poses.copy()
     never.map.correct()
     assert np.array_equal(never.map.poses, before)
+
+
+@pytest.mark.parametrize(("view", "closes"), [(-1, False), (5, True)])
+def test_seeing_nothing_closes_no_loop(view: int, closes: bool) -> None:
+    """Sixteen metres on, the torus uses the same pose cells again; only a scene may take that for the same place."""
+    robot = Robot(EXACT)
+    robot.see(7, new=True)
+    assert robot.see(view, new=True)
+    assert not robot.see(view)  # near in the map
+    robot.see(7)
+    robot.go(16.0, 0.0, 3, new=True)
+    assert robot.see(view) is not closes
+    assert (robot.map.active == 1) is closes
