@@ -1,0 +1,139 @@
+"""The whole loop in the office, over several seeds. Bounds are generous: twice what the worst of ten seeds needed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from app.config import Config
+from app.headless import run_headless
+from app.runner import Runner
+from app.session import Session, spread_goals
+from ratslam_core import LocalView, LocalViewParams, Recognition
+from sim2d import load_world
+from web import messages as m
+
+OFFICE = load_world("office")
+SEEDS = (1, 2, 3, 4, 5)
+MINUTES = 5
+
+
+@dataclass
+class Life:
+    """Five minutes of exploring, then a goal, then a kidnap."""
+
+    session: Session
+    errors_m: tuple[float, float]
+    consistency: float | None
+    miss_m: float
+    arrived: bool
+    recovered_s: float | None
+    after_m: float
+
+
+def live(seed: int) -> Life:
+    session = Session(OFFICE, seed)
+    brain, evaluation = session.brain, session.evaluation
+    track = []
+    for _ in range(MINUTES * 600):
+        session.tick()
+        truth = session.simulator.truth
+        track.append((truth.x, truth.y, truth.heading_rad))
+    errors, consistency = evaluation.errors(brain.experience_map), evaluation.revisit_consistency
+    goal = spread_goals(session, 1)[0]
+    session.pilot.set_goal(goal)
+    began = session.time_s
+    while session.pilot.goal_state != (goal, "arrived") and session.time_s - began < 180:
+        session.tick()
+    truth = session.simulator.truth
+    miss = math.dist((truth.x, truth.y), evaluation.made_at(goal))
+    arrived = session.pilot.goal_state == (goal, "arrived")
+    session.pilot.cancel_goal()
+    known = np.array(track[600:])
+    session.kidnap(*known[np.argmax(np.hypot(known[:, 0] - truth.x, known[:, 1] - truth.y))])  # far, but seen before
+    kidnap = evaluation.kidnaps[-1]
+    for _ in range(1200):
+        session.tick()
+        if kidnap.after_s is not None:
+            break
+    robot = kidnap.map_in_office.compose(brain.experience_map.robot)
+    truth = session.simulator.truth
+    return Life(
+        session, errors, consistency, miss, arrived, kidnap.after_s, math.dist((robot.x, robot.y), (truth.x, truth.y))
+    )
+
+
+@pytest.fixture(scope="module")
+def lives() -> list[Life]:
+    return [live(seed) for seed in SEEDS]
+
+
+def test_the_map_is_truer_than_odometry(lives: list[Life]) -> None:
+    for life in lives:
+        map_m, odometry_m = life.errors_m
+        assert map_m < 0.95
+        assert map_m < odometry_m
+    assert sum(life.errors_m[0] for life in lives) < 0.65 * sum(life.errors_m[1] for life in lives)
+
+
+def test_places_are_found_again_where_they_are(lives: list[Life]) -> None:
+    shares = [life.consistency for life in lives if life.consistency is not None]
+    assert len(shares) >= 3
+    assert min(shares) > 0.85
+
+
+def test_views_experiences_and_links_stay_in_proportion(lives: list[Life]) -> None:
+    for life in lives:
+        map_ = life.session.brain.experience_map
+        assert 400 < len(map_) < 3000
+        assert len(map_) - 2 <= map_.link_count < 3 * len(map_)  # one link is missing: the kidnap's
+        assert map_.closures > 10
+        assert len(life.session.brain.local_view) <= len(map_)
+
+
+def test_a_goal_is_reached_in_truth(lives: list[Life]) -> None:
+    reached = [life for life in lives if life.arrived and life.miss_m < 1.0]
+    assert len(reached) >= len(lives) - 1
+
+
+def test_a_kidnap_is_survived(lives: list[Life]) -> None:
+    survived = [life for life in lives if life.recovered_s is not None]
+    assert len(survived) >= len(lives) - 1
+    for life in survived:
+        assert life.after_m < 1.0
+
+
+def test_the_same_seed_gives_the_same_run_with_and_without_a_thread() -> None:
+    reports = [run_headless(OFFICE, 11, 0.8, kidnap_at_s=[20.0]) for _ in range(2)]
+    assert reports[0]["state_hash"] == reports[1]["state_hash"]
+    one, two = ({k: v for k, v in r.items() if k not in ("wall_s", "real_time_factor")} for r in reports)
+    assert one == two
+    runner = Runner(OFFICE, 11, Config(), speed=0.0, running=False)
+    runner.start()
+    try:
+        for command in (m.Step(type="step", ticks=200), m.Kidnap(type="kidnap"), m.Step(type="step", ticks=280)):
+            assert isinstance(runner.submit(command).result(timeout=120), m.Accepted)
+        assert runner.session.state_hash() == reports[0]["state_hash"]
+    finally:
+        runner.stop()
+    assert run_headless(OFFICE, 12, 0.8, kidnap_at_s=[20.0])["state_hash"] != reports[0]["state_hash"]
+
+
+@pytest.mark.parametrize("turn_deg", [-7.0, -3.0, 0.0, 3.0, 7.0])
+def test_the_camera_tells_headings_with_the_right_sign(turn_deg: float) -> None:
+    """A robot turned left by some degrees reads that off the image that it took before."""
+    read = []
+    for x, y in ((1.0, 1.0), (5.0, 4.3), (9.0, 7.0), (5.0, 1.0), (9.0, 4.2), (1.0, 4.0)):
+        for heading in (-2.0, 0.0, 1.0, 2.5):
+            session = Session(OFFICE, 1, Config().with_value("robot.image_noise", 0.0))
+            session.kidnap(x, y, heading)
+            local_view = LocalView(LocalViewParams(match_threshold=60.0, min_contrast=0.0))
+            local_view.observe(session.frame.image)
+            session.kidnap(x, y, heading + math.radians(turn_deg))
+            seen: Recognition = local_view.observe(session.frame.image)
+            assert seen.view == 0
+            read.append(seen.facing_rad)
+    assert float(np.median(read)) == pytest.approx(math.radians(turn_deg), abs=math.radians(1.2))
