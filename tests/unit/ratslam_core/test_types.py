@@ -63,7 +63,7 @@ def test_odometry_is_checked(bad: float) -> None:
         (lambda: PoseCellParams(carry=1), r"carry must be bool, got 1"),  # type: ignore[arg-type]
         (lambda: LocalViewParams(shift=6), r"shift must be between 0 and 5 columns, got 6"),
         (lambda: LocalViewParams(match_threshold="8"), r"match_threshold must be float, got '8'"),  # type: ignore[arg-type]
-        (lambda: ExperienceMapParams(correction=-0.1), r"correction must be between 0\.0 and 1\.0, got -0\.1"),
+        (lambda: ExperienceMapParams(correction=-0.1), r"correction must be between 0\.0 and 0\.95, got -0\.1"),
         (lambda: ExperienceMapParams(zone_xy=math.inf), r"zone_xy must be between 0\.5 and 20\.0 cells, got inf"),
     ],
 )
