@@ -69,7 +69,8 @@ class Chronicle:
         self._before = packet
         lost = is_lost(session)
         if lost and not self.lost:
-            self.note("lost", f"{len(session.brain.pose_cells.packets)} packets compete")
+            packets = len(session.brain.pose_cells.packets)
+            self.note("lost", "the image jumped: carried away?" if session.brain.lost else f"{packets} packets compete")
         self.lost = lost
         self._watch_goal()
         self._watch_kidnaps()

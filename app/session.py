@@ -6,7 +6,6 @@ No thread, no clock, no page: the same seed and the same calls give the same run
 from __future__ import annotations
 
 import hashlib
-import math
 import time
 from dataclasses import replace
 
@@ -150,6 +149,6 @@ def spread_goals(session: Session, count: int) -> list[int]:
 
 
 def is_lost(session: Session) -> bool:
-    """Whether a second packet holds at least a fifth of the activity."""
+    """Whether the robot knows that it was carried away, or a second packet holds at least a fifth of the activity."""
     packets = session.brain.pose_cells.packets
-    return len(packets) > 1 and packets[1].mass > 0.2 and math.isfinite(packets[1].mass)
+    return session.brain.lost or (len(packets) > 1 and packets[1].mass > 0.2)

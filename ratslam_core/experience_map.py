@@ -47,6 +47,7 @@ class ExperienceMap:
         self._from_latest = IDENTITY  # odometry since then
         self._way_m = self._way_from_latest_m = 0.0
         self._since_s = 0.0
+        self._driven_m = self._driving_s = 0.0
         self.closures = 0  # links made to experiences that existed before
         self._solved_at = self._closures_at_solve = 0
         self._steps = 0
@@ -77,8 +78,16 @@ class ExperienceMap:
 
     @property
     def link_times(self) -> NDArray[np.float64]:
-        """Seconds that each transition takes, shape (m,)."""
-        return self.transitions.time_s[self._travelled]
+        """Seconds that each transition takes, shape (m,).
+
+        [ours] Never less than its length in the map takes at the robot's own pace: from the edge of one zone into the next
+        it is only a step, and a route over many such would promise to be there in half the time.
+        test_experience_map.py::test_no_link_is_quicker_than_the_robot.
+        """
+        t, rows = self.transitions, self._travelled
+        apart = self._pose[t.ends[rows, 1], :2] - self._pose[t.ends[rows, 0], :2]
+        pace = self._driving_s / self._driven_m if self._driven_m > 0 else 0.0
+        return np.maximum(t.time_s[rows], pace * np.hypot(apart[:, 0], apart[:, 1]))
 
     @property
     def _travelled(self) -> NDArray[np.int64]:
@@ -130,6 +139,8 @@ class ExperienceMap:
         self._turning_s += turning_s
         self._turning_from_latest_s += turning_s
         self._since_s += odometry.dt
+        self._driven_m += abs(step)
+        self._driving_s += odometry.dt * (odometry.speed != 0)
         self._belief.move(moved, self.params.odometry_drift * abs(step))
         best = self._most_energetic(packet, seen.view)
         before, came, sigma = self.active, self._offset.compose(self._travel), self._sigma

@@ -44,14 +44,14 @@ class LocalView:
         """The active cell for this image, shape (h, w) grey or (h, w, 3) RGB, uint8; a new one if it is like none known.
 
         [ours] An image without contrast (a wall at arm's length) shows nothing: no cell is active and none is recruited,
-        since such views look alike everywhere. test_local_view.py::test_a_bland_view_shows_nothing.
+        since such views look alike everywhere. test_local_view.py::test_a_bland_view_shows_nothing. With vision off nothing does.
         """
         template = grey_template(image)
         column_major = np.ascontiguousarray(template.T).reshape(1, -1)
         self.surprised = self._jumped(column_major)
         self.template, self._last = template, column_major
         best, difference, shift = self._nearest(column_major)
-        if float(cv2.meanStdDev(template)[1][0, 0]) < self.params.min_contrast:
+        if not self.params.enabled or float(cv2.meanStdDev(template)[1][0, 0]) < self.params.min_contrast:
             self.recognition = Recognition(NOTHING, False, best, difference)
         elif difference <= self.params.match_threshold:
             facing = self._sub_column(column_major, best, shift) * self.params.field_of_view / COLUMNS
@@ -63,7 +63,7 @@ class LocalView:
 
     def _jumped(self, template: NDArray[np.uint8]) -> bool:
         """Whether no turn within one tick makes the last image look like this one."""
-        if self._last is None:
+        if self._last is None or not self.params.enabled:
             return False
         return all(_difference(template[0], self._last[0], shift) > self.params.surprise for shift in TURNS)
 

@@ -175,9 +175,7 @@ class LocalViewParams:
         meaning="what a view may inject while the robot knows that it is lost",
         source="ours",
     )
-    enabled: bool = param(
-        True, meaning="vision moves the pose cells; off = path integration only", source="A figures 9, 10"
-    )
+    enabled: bool = param(True, meaning="vision; off = path integration only", source="A figures 9, 10")
 
     def __post_init__(self) -> None:
         check_ranges(self)

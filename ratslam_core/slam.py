@@ -48,7 +48,7 @@ class RatSlam:
         expected = self.pose_cells.winner
         if recognition.recruited:
             self._learnt_s.append(self._time_s)
-        if recognition.view != NOTHING and self.params.local_view.enabled:
+        if recognition.view != NOTHING:
             self._associate(recognition.view, recognition.recruited)
         packet = self.pose_cells.attract()
         jump = self.pose_cells.cells_apart(expected.x, expected.y, packet.x, packet.y)

@@ -169,7 +169,7 @@ def test_repeats_of_a_transition_are_averaged(passages: list[tuple[float, float]
     assert robot.map.moves[row] == pytest.approx(
         [np.mean([e.x for e in ends]), np.mean([e.y for e in ends]), np.mean(turns)], abs=1e-6
     )
-    assert robot.map.link_times[row] == pytest.approx(np.mean(durations), abs=1e-6)
+    assert robot.map.transitions.time_s[row] == pytest.approx(np.mean(durations), abs=1e-6)
 
 
 def test_a_passage_counts_by_how_well_it_is_known() -> None:
@@ -402,3 +402,17 @@ def test_seeing_nothing_closes_no_loop(view: int, closes: bool) -> None:
     robot.go(16.0, 0.0, 3, new=True)
     assert robot.see(view) is not closes
     assert (robot.map.active == 1) is closes
+
+
+def test_no_link_is_quicker_than_the_robot() -> None:
+    """From the edge of one zone into the next is only a step; from place to place it takes what the way takes."""
+    robot = Robot(EXACT)
+    robot.see(0, new=True)
+    robot.go(1.0, 0.0, 1, new=True)  # a metre in a second
+    slow = robot.map.link_times.copy()
+    assert slow == pytest.approx([1.1], abs=0.11)
+    robot.see(0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)), difference=5.0)  # a step, says the clock
+    assert robot.map.transitions.time_s[1] == pytest.approx(0.1)
+    assert robot.map.link_times[1] == pytest.approx(np.hypot(*(robot.map.poses[1, :2] - robot.map.poses[0, :2])))
+    robot.map.poses[1, :2] *= 2  # the map stretches, and the time with it
+    assert robot.map.link_times[1] == pytest.approx(2.0)
