@@ -31,12 +31,8 @@ def _add(x, y, t, flat, value, cells, values, n, slot):
 
 @njit(cache=True, nogil=True, inline="always")
 def _wrap(place, size):
-    """A place on a ring of this size, from one turn beyond at most."""
-    if place >= size:
-        return place - size
-    if place < 0:
-        return place + size
-    return place
+    """A place on a ring of this size, from less than one turn beyond."""
+    return place - size if place >= size else place
 
 
 @njit(cache=True, nogil=True, inline="always")

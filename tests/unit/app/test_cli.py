@@ -289,3 +289,16 @@ def test_a_screen(platform: str, environment: dict[str, str], screen: bool, monk
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     assert cli._has_screen() is screen
+
+
+def test_bench_prints_and_writes_its_rows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = [{"work": "sweep", "ms": 0.1}, {"work": "match", "ms": 0.2}]
+    monkeypatch.setattr("benchmarks.engine.rows", lambda: iter(rows))
+    monkeypatch.setattr("benchmarks.engine.line", lambda row: f"{row['work']}: {row['ms']}")
+    file = tmp_path / "bench.json"
+    assert cli.main(["bench", "--json", str(file)]) == 0
+    assert json.loads(file.read_text("utf-8")) == rows
+    assert cli.main(["bench"]) == 0
+    assert capsys.readouterr().out == 2 * "sweep: 0.1\nmatch: 0.2\n"

@@ -264,7 +264,10 @@ def test_interpreted_kernels_do_what_the_compiled_ones_do(
     assert np.abs(runs[0] - runs[1]).max() < 1e-6
 
 
-def test_no_activity_near_a_place_has_no_centre() -> None:
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_no_activity_near_a_place_has_no_centre(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if interpreted:
+        literal.interpret(kernels, monkeypatch)
     pose_cells = settled()
     cells, values = pose_cells.active
     assert kernels.centre_near(cells, values, len(values), pose_cells.shape, 2, 5.0, 5.0, 18.0) == (0, 0, 0, 0)

@@ -1,12 +1,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from ratslam_core import ExperienceMapParams, LocalViewParams, Odometry, Pose2, PoseCellParams, wrap_angle
+from ratslam_core.params import check_ranges, param
 
 places = st.floats(-50, 50)
 poses = st.builds(Pose2, places, places, st.floats(-math.pi, math.pi).map(wrap_angle))
@@ -74,3 +76,14 @@ def test_a_parameter_out_of_range_is_named_with_its_range(make, message: str) ->
 
 def test_a_whole_number_serves_as_a_float() -> None:
     assert PoseCellParams(excite_sigma=1).excite_sigma == 1
+
+
+def test_only_declared_numbers_are_checked() -> None:
+    @dataclass(frozen=True)
+    class Mixed:
+        size: int = param(5, low=1, high=9, meaning="a size", source="test")
+        note: str = "free text"
+
+    check_ranges(Mixed(note=""))
+    with pytest.raises(ValueError, match="size must be between 1 and 9, got 10"):
+        check_ranges(Mixed(size=10))
