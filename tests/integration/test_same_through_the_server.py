@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
-import httpx
+import httpx2
 
 from app.config import Config
 from app.runner import Runner
@@ -29,7 +29,7 @@ def test_the_server_at_real_time_gives_the_headless_state() -> None:
     serving.start()
     try:
         assert ready.wait(30)
-        with httpx.Client(base_url=dashboard.url.rstrip("/")) as client:
+        with httpx2.Client(base_url=dashboard.url.rstrip("/")) as client:
 
             def order(**command: object) -> int:
                 answer = client.post("/api/commands", json=command)
