@@ -1,8 +1,17 @@
 """RatSLAM after Milford, Wyeth and Prasser (2004-2006): arrays in, arrays out."""
 
 from ratslam_core.experience_map import ExperienceMap
+from ratslam_core.goal_memory import GoalMemory
 from ratslam_core.local_view import LocalView
-from ratslam_core.params import ExperienceMapParams, LocalViewParams, PoseCellParams, RatSlamParams
+from ratslam_core.occupancy_grid import MapGrid, MetricPicture, OccupancyGrid
+from ratslam_core.params import (
+    ExperienceMapParams,
+    GoalMemoryParams,
+    LocalViewParams,
+    OccupancyParams,
+    PoseCellParams,
+    RatSlamParams,
+)
 from ratslam_core.pose_cells import PoseCells
 from ratslam_core.slam import RatSlam
 from ratslam_core.temporal_map import Route, TemporalMap
@@ -13,8 +22,14 @@ __all__ = [
     "Estimate",
     "ExperienceMap",
     "ExperienceMapParams",
+    "GoalMemory",
+    "GoalMemoryParams",
     "LocalView",
     "LocalViewParams",
+    "MapGrid",
+    "MetricPicture",
+    "OccupancyGrid",
+    "OccupancyParams",
     "Odometry",
     "Packet",
     "Pose2",

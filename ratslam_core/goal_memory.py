@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from ratslam_core.kernels import X, Y, _offset, _wrap
+from ratslam_core.kernels import X, Y, _offset
 from ratslam_core.params import GoalMemoryParams
 from ratslam_core.types import Packet, require_finite
 
@@ -137,9 +137,7 @@ class GoalMemory:
 
     def _project(self, cells: NDArray[np.int32], activity: NDArray[np.float32], time_s: float) -> _Iteration:
         if cells.ndim != 2 or cells.shape[1] != 4 or activity.shape != cells.shape[:1]:
-            raise ValueError(
-                f"cells must have shape (n, 4) and activity (n,), got {cells.shape} and {activity.shape}"
-            )
+            raise ValueError(f"cells must have shape (n, 4) and activity (n,), got {cells.shape} and {activity.shape}")
         n_y, n_x = self.shape[1:]
         flats, values, wrong = _project(cells, activity, self.shape, self.params.share, self._place)
         if wrong >= 0:
@@ -297,7 +295,7 @@ def _lowest(T, x, y, reach, keys):
         for dx in range(-reach, reach + 1):
             if dx * dx + dy * dy > reach * reach:
                 continue
-            there_x, there_y = _wrap(x + dx, n_x), _wrap(y + dy, n_y)
+            there_x, there_y = (x + dx) % n_x, (y + dy) % n_y
             if T[there_y, there_x] < lowest:
                 there = there_y * n_x + there_x
                 key = min(here, there) * (n_y * n_x) + max(here, there)

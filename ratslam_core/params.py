@@ -239,6 +239,85 @@ class ExperienceMapParams:
 
 
 @dataclass(frozen=True, slots=True)
+class GoalMemoryParams:
+    """Times between places, learnt on the pose cells (C III)."""
+
+    time_weight: float = param(
+        1.0, symbol="α", low=0.0, high=10.0, meaning="weight of the time between two iterations", source="C IV.C"
+    )
+    activity_weight: float = param(
+        0.25, symbol="β", unit="s", low=0.0, high=10.0, meaning="added between weakly active cells", source="C IV.C"
+    )
+    distance_weight: float = param(
+        0.1, symbol="γ", unit="s/cell", low=0.0, high=10.0, meaning="added for the distance of cells", source="C IV.C"
+    )
+    rate: float = param(
+        0.2,
+        low=0.01,
+        high=1.0,
+        meaning="what the newest time counts in a link's moving average",
+        source="C III.A; ours",
+    )
+    share: float = param(
+        0.5, low=0.05, high=0.95, meaning="cells below this share of the strongest are not linked", source="ours"
+    )
+    stride_m: float = param(
+        0.25,
+        unit="m",
+        low=0.0,
+        high=5.0,
+        meaning="the packet moves so far before its cells are linked; 0 = linked in every iteration",
+        source="ours",
+    )
+    reach: int = param(
+        3,
+        unit="cells",
+        low=1,
+        high=10,
+        meaning="how far around the packet the way is looked for",
+        source="C III.B; ours",
+    )
+
+    def __post_init__(self) -> None:
+        check_ranges(self)
+
+
+@dataclass(frozen=True, slots=True)
+class OccupancyParams:
+    """The wide sonar beam of the occupancy pictures (A 6.1, C V.A)."""
+
+    beam_rad: float = param(
+        math.radians(15), unit="rad", low=0.01, high=1.5, meaning="width of a sonar's beam", source="Moravec and Elfes"
+    )
+    farthest_m: float = param(
+        5.0, symbol="R_max", unit="m", low=0.5, high=20.0, meaning="a range from here on is no echo", source="ours"
+    )
+    depth_m: float = param(
+        0.1, symbol="ε", unit="m", low=0.0, high=1.0, meaning="how far off an echo may be", source="Moravec and Elfes"
+    )
+    free: float = param(
+        0.4, low=0.0, high=0.95, meaning="how sure one echo is of the free floor before it", source="A 6.1; value ours"
+    )
+    occupied: float = param(
+        0.6, low=0.0, high=0.95, meaning="how sure one echo is of what it met", source="A 6.1; value ours"
+    )
+    bound: float = param(
+        5.0, low=0.5, high=20.0, meaning="log odds stay within ± this, so that the picture can change", source="ours"
+    )
+    scans: int = param(
+        6,
+        low=1,
+        high=100,
+        meaning="scans kept for each experience, the oldest gives way",
+        source="ours",
+        live=False,
+    )
+
+    def __post_init__(self) -> None:
+        check_ranges(self)
+
+
+@dataclass(frozen=True, slots=True)
 class RatSlamParams:
     """All of the engine."""
 

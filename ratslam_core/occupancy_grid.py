@@ -1,0 +1,222 @@
+"""Occupancy: a picture for people of where the sonars met something. ACRA 2004 section 6.1, IROS 2005 section V.A.
+
+A simplified wide sonar beam after Moravec and Elfes and a Bayesian update in log odds. SLAM and navigation do not read it.
+`OccupancyGrid` is the papers' picture, in the pose cells' own frame. `MapGrid` bends with the experience map.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from ratslam_core.params import OccupancyParams
+from ratslam_core.types import Packet, Pose2, require_finite, wrap_angle
+
+MOST_CELLS = 1024  # along one side of a metric picture; a larger map is drawn with larger cells
+SAME_PLACE_M = 0.1  # a scan as near as this to the newest of its experience, and
+SAME_FACING_RAD = math.radians(10)  # facing as it does, takes its place
+
+
+class OccupancyGrid:
+    """The picture in the frame of the pose cells: it wraps as they do and jumps when they relocalise."""
+
+    def __init__(
+        self,
+        params: OccupancyParams | None,
+        shape: tuple[int, int, int],
+        cell_m: float,
+        sonar_angles_rad: Sequence[float] | NDArray[np.float64],
+    ) -> None:
+        """shape: (n_theta, n_y, n_x) of the pose cells; sonar_angles_rad: from straight ahead, left is positive."""
+        if len(shape) != 3 or min(shape) < 1:
+            raise ValueError(f"shape must be (n_theta, n_y, n_x), each at least 1 cell, got {shape!r}")
+        self.params = params or OccupancyParams()
+        self.cell_m = _positive("cell_m", cell_m)
+        self._angles = _angles(sonar_angles_rad)
+        self._log_odds = np.zeros(shape[1:], np.float32)
+
+    @property
+    def log_odds(self) -> NDArray[np.float32]:
+        """log p / (1 - p), shape (n_y, n_x), within +-bound; 0 where nothing is known. A view."""
+        return self._log_odds
+
+    @property
+    def probability(self) -> NDArray[np.float32]:
+        """That something stands in a cell, shape (n_y, n_x); 0.5 where nothing is known. A copy."""
+        return _probability(self._log_odds)
+
+    def update(self, packet: Packet, ranges_m: NDArray[np.float32]) -> None:
+        """One scan, shape (n_sonars,), m from the robot's middle, taken at the packet's place. No echo: farthest_m or more."""
+        ranges = _ranges(ranges_m, self._angles)
+        x, y = require_finite("packet.x", packet.x), require_finite("packet.y", packet.y)
+        heading = require_finite("packet.heading_rad", packet.heading_rad)
+        _scan(self._log_odds, x, y, heading, self._angles, ranges, *_model(self.params, self.cell_m))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MetricPicture:
+    """Occupancy in the frame of the experience map."""
+
+    probability: NDArray[np.float32]  # shape (n_y, n_x), 0.5 where nothing is known
+    origin_xy_m: tuple[float, float]  # the middle of cell [0, 0]
+    cell_m: float
+
+
+class MapGrid:
+    """[ours] The picture that bends with the experience map: scans are kept with the experience that they were made from, in
+    its own frame, and drawn where it is now. test_occupancy_grid.py::test_the_picture_bends_with_the_map.
+    """
+
+    def __init__(self, params: OccupancyParams | None, sonar_angles_rad: Sequence[float] | NDArray[np.float64]) -> None:
+        self.params = params or OccupancyParams()
+        self._angles = _angles(sonar_angles_rad)
+        self._kept = self.params.scans
+        self._scans = np.zeros((256, self._kept, 3 + self._angles.size), np.float32)  # x, y, heading, ranges
+        self._count = np.zeros(256, np.int64)  # scans ever kept of each experience; the newest is at (count - 1) % kept
+        self._known = 0  # 1 + the last experience with a scan
+
+    def __len__(self) -> int:
+        """How many scans are kept."""
+        return int(np.minimum(self._count, self._kept).sum())
+
+    @property
+    def memory_bytes(self) -> int:
+        return self._scans.nbytes + self._count.nbytes
+
+    def add(self, experience: int, local: Pose2, ranges_m: NDArray[np.float32]) -> None:
+        """Keep one scan. local: the robot in the frame of this experience (`ExperienceMap.local_pose`)."""
+        if experience < 0:
+            raise ValueError(f"experience must be 0 or more, got {experience!r}")
+        ranges = _ranges(ranges_m, self._angles)
+        x, y = require_finite("local.x", local.x), require_finite("local.y", local.y)
+        heading = require_finite("local.heading_rad", local.heading_rad)
+        while experience >= len(self._count):
+            self._scans = np.concatenate([self._scans, np.zeros_like(self._scans)])
+            self._count = np.concatenate([self._count, np.zeros_like(self._count)])
+        count = int(self._count[experience])
+        newest = self._scans[experience, (count - 1) % self._kept]
+        moved = math.hypot(x - newest[0], y - newest[1]) > SAME_PLACE_M
+        if count == 0 or moved or abs(wrap_angle(heading - newest[2])) > SAME_FACING_RAD:
+            newest = self._scans[experience, count % self._kept]
+            self._count[experience] += 1
+        newest[:3] = x, y, heading
+        newest[3:] = ranges
+        self._known = max(self._known, experience + 1)
+
+    def draw(self, poses: NDArray[np.float64], cell_m: float = 0.25) -> MetricPicture:
+        """All kept scans through the experiences' poses of now, shape (n, 3): x, y (m), heading (rad). On demand, not each step.
+
+        The picture reaches as far as the beams do. A map too large for MOST_CELLS a side is drawn with larger cells.
+        """
+        if poses.ndim != 2 or poses.shape[1] != 3 or len(poses) < self._known:
+            raise ValueError(f"poses must have shape (n, 3) with n at least {self._known}, got {poses.shape}")
+        if not np.isfinite(poses[: self._known]).all():
+            raise ValueError("poses must be finite numbers; at least one is not")
+        cell_m = _positive("cell_m", cell_m)
+        count = np.minimum(self._count[: self._known], self._kept)
+        scans = self._scans[: self._known][np.arange(self._kept) < count[:, None]]
+        at = np.repeat(np.asarray(poses[: self._known], np.float64), count, axis=0)
+        if len(at) == 0:
+            return MetricPicture(np.full((1, 1), 0.5, np.float32), (0.0, 0.0), cell_m)
+        c, s = np.cos(at[:, 2]), np.sin(at[:, 2])
+        x, y = at[:, 0] + c * scans[:, 0] - s * scans[:, 1], at[:, 1] + s * scans[:, 0] + c * scans[:, 1]
+        ranges = scans[:, 3:].astype(np.float64)
+        reach = min(float(ranges.max()), self.params.farthest_m) + self.params.depth_m
+        size = max(float(np.ptp(x)), float(np.ptp(y))) + 2 * reach
+        while size / cell_m + 5 > MOST_CELLS:
+            cell_m *= 2
+        left, low = (math.floor((float(v.min()) - reach) / cell_m) - 1 for v in (x, y))
+        right, high = (math.ceil((float(v.max()) + reach) / cell_m) + 1 for v in (x, y))
+        log_odds = np.zeros((high - low + 1, right - left + 1), np.float32)
+        x, y = x / cell_m - left, y / cell_m - low
+        _scans(log_odds, x, y, at[:, 2] + scans[:, 2], self._angles, ranges, *_model(self.params, cell_m))
+        return MetricPicture(_probability(log_odds), (left * cell_m, low * cell_m), cell_m)
+
+
+def _model(p: OccupancyParams, cell_m: float) -> tuple[float, ...]:
+    return cell_m, p.farthest_m, p.beam_rad / 2, p.depth_m, p.free, p.occupied, p.bound
+
+
+def _probability(log_odds: NDArray[np.float32]) -> NDArray[np.float32]:
+    return (1 / (1 + np.exp(-log_odds))).astype(np.float32)
+
+
+def _positive(name: str, value: float) -> float:
+    if not (math.isfinite(value) and value > 0):
+        raise ValueError(f"{name} must be a positive number of metres, got {value!r}")
+    return float(value)
+
+
+def _angles(sonar_angles_rad: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+    angles = np.array(sonar_angles_rad, np.float64)
+    if angles.ndim != 1 or angles.size == 0 or not np.isfinite(angles).all():
+        raise ValueError(f"sonar_angles_rad must be a row of at least one finite angle, got {sonar_angles_rad!r}")
+    return angles
+
+
+def _ranges(ranges_m: NDArray[np.float32], angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    ranges = np.asarray(ranges_m, np.float64)
+    if ranges.shape != angles.shape:
+        raise ValueError(f"ranges_m must have shape {angles.shape}, one for each sonar, got {ranges.shape}")
+    if not (ranges >= 0).all():
+        raise ValueError(f"ranges_m must be 0 m or more, got {ranges.tolist()}")
+    return ranges
+
+
+@njit(cache=True, nogil=True)
+def _scans(log_odds, x, y, heading, angles, ranges, cell_m, farthest, half_beam, depth, free, occupied, bound):
+    for k in range(len(x)):
+        _scan(
+            log_odds, x[k], y[k], heading[k], angles, ranges[k],
+            cell_m, farthest, half_beam, depth, free, occupied, bound,
+        )  # fmt: skip
+
+
+@njit(cache=True, nogil=True)
+def _scan(log_odds, x, y, heading, angles, ranges, cell_m, farthest, half_beam, depth, free, occupied, bound):
+    """l <- clip(l + log p / (1 - p)) for one beam after the other, on a grid that wraps. x, y in cells, the rest SI.
+
+    p = (1 - free E) / 2 before the echo at R, E = (1 - (d / (R - eps))^2) (1 - (theta / w)^2)
+    p = (1 + occupied O) / 2 around it,       O = (1 - ((d - R) / eps)^2) (1 - (theta / w)^2)
+    d, theta: distance and angle of a cell's middle from the sonar's axis. After Moravec and Elfes 1985.
+
+    [ours] eps and w, half the beam's width, are widened by half a cell as it is seen from the robot, so that a beam
+    narrower than a cell meets it. test_occupancy_grid.py::test_a_narrow_beam_still_meets_cells.
+    """
+    n_y, n_x = log_odds.shape
+    half = 0.5 * cell_m
+    eps = depth + half
+    for k in range(angles.size):
+        echo = ranges[k] < farthest
+        R = min(ranges[k], farthest)
+        near = max(R - eps, 0.0)  # the floor before it is free
+        far = R + eps if echo else near
+        c, s = np.cos(heading + angles[k]), np.sin(heading + angles[k])
+        wide = far * np.sin(half_beam) + half
+        x_low = int(np.ceil(x + (min(0.0, far * c) - wide) / cell_m))
+        x_high = int(np.floor(x + (max(0.0, far * c) + wide) / cell_m))
+        y_low = int(np.ceil(y + (min(0.0, far * s) - wide) / cell_m))
+        y_high = int(np.floor(y + (max(0.0, far * s) + wide) / cell_m))
+        for at_y in range(y_low, y_high + 1):
+            for at_x in range(x_low, x_high + 1):
+                dx, dy = (at_x - x) * cell_m, (at_y - y) * cell_m
+                d = np.sqrt(dx * dx + dy * dy)
+                if d >= far:
+                    continue
+                w = half_beam + (np.arcsin(half / d) if d > half else 0.5 * np.pi)
+                off = np.arctan2(c * dy - s * dx, c * dx + s * dy) / w
+                if abs(off) >= 1.0:
+                    continue
+                sure = 1.0 - off * off
+                if d < near:
+                    sure *= -free * (1.0 - (d / near) ** 2)
+                else:
+                    sure *= occupied * (1.0 - ((d - R) / eps) ** 2)
+                row, column = at_y % n_y, at_x % n_x
+                odds = log_odds[row, column] + np.log((1.0 + sure) / (1.0 - sure))
+                log_odds[row, column] = min(max(odds, -bound), bound)
