@@ -25,6 +25,7 @@ ROOM = 4096  # links there is room for at first; doubles when half full
 FREE = -1  # key of an empty place in the table
 NEAR = 3  # cells around the strongest one that say where the packet is
 ARRIVED = 1.0  # cells
+WIDER = 3  # times `reach` is looked for a way when there is none nearer
 
 
 class GoalMemory:
@@ -86,8 +87,10 @@ class GoalMemory:
         T: from `times_to`. None within one cell of the goal, and when no way is known from here.
 
         [ours] Of the cells in reach only those count that the packet's own cell is linked to: the robot has been driving
-        from here to there, while what is near may lie behind a wall. Since the next cell of the quickest way is linked,
-        there is no local minimum. test_goal_memory.py::test_it_does_not_point_through_a_wall.
+        from here to there, while what is near may lie behind a wall. Links are longer than `reach`, so when none in reach
+        is lower, WIDER reaches are tried. The next cell of the quickest way is linked and lower, so there is no local
+        minimum, but for places whose only way is a leap of the packet: there is no direction to drive then.
+        test_goal_memory.py::test_it_does_not_point_through_a_wall, ::test_there_are_no_local_minima.
         """
         n_y, n_x = self.shape[1:]
         if T.shape != (n_y, n_x):
@@ -96,10 +99,11 @@ class GoalMemory:
         goal = int(np.argmin(T))
         if self._apart(x, y, goal % n_x, goal // n_x) <= ARRIVED:
             return None
-        best = _lowest(T, round(x) % n_x, round(y) % n_y, self.params.reach, self._keys)
-        if best < 0:
-            return None
-        return math.atan2(_offset(best // n_x, y, n_y), _offset(best % n_x, x, n_x))
+        for wider in range(1, WIDER + 1):
+            best = _lowest(T, round(x) % n_x, round(y) % n_y, wider * self.params.reach, self._keys)
+            if best >= 0:
+                return math.atan2(_offset(best // n_x, y, n_y), _offset(best % n_x, x, n_x))
+        return None
 
     # ------------------------------------------------------------ learning
 

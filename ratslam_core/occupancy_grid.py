@@ -190,6 +190,7 @@ def _scan(log_odds, x, y, heading, angles, ranges, cell_m, farthest, half_beam, 
     """
     n_y, n_x = log_odds.shape
     half = 0.5 * cell_m
+    sine = np.sin(half_beam)
     eps = depth + half
     for k in range(angles.size):
         echo = ranges[k] < farthest
@@ -197,7 +198,7 @@ def _scan(log_odds, x, y, heading, angles, ranges, cell_m, farthest, half_beam, 
         near = max(R - eps, 0.0)  # the floor before it is free
         far = R + eps if echo else near
         c, s = np.cos(heading + angles[k]), np.sin(heading + angles[k])
-        wide = far * np.sin(half_beam) + half
+        wide = far * sine + half
         x_low = int(np.ceil(x + (min(0.0, far * c) - wide) / cell_m))
         x_high = int(np.floor(x + (max(0.0, far * c) + wide) / cell_m))
         y_low = int(np.ceil(y + (min(0.0, far * s) - wide) / cell_m))
@@ -206,10 +207,11 @@ def _scan(log_odds, x, y, heading, angles, ranges, cell_m, farthest, half_beam, 
             for at_x in range(x_low, x_high + 1):
                 dx, dy = (at_x - x) * cell_m, (at_y - y) * cell_m
                 d = np.sqrt(dx * dx + dy * dy)
-                if d >= far:
+                across = c * dy - s * dx
+                if d >= far or abs(across) > d * sine + half:  # the second spares most cells the angle below
                     continue
                 w = half_beam + (np.arcsin(half / d) if d > half else 0.5 * np.pi)
-                off = np.arctan2(c * dy - s * dx, c * dx + s * dy) / w
+                off = np.arctan2(across, c * dx + s * dy) / w
                 if abs(off) >= 1.0:
                     continue
                 sure = 1.0 - off * off

@@ -262,7 +262,7 @@ class GoalMemoryParams:
         0.5, low=0.05, high=0.95, meaning="cells below this share of the strongest are not linked", source="ours"
     )
     stride_m: float = param(
-        0.25,
+        0.5,
         unit="m",
         low=0.0,
         high=5.0,
