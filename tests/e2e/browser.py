@@ -43,7 +43,7 @@ def open_page(
     try:
         page.goto(url)
         page.wait_for_selector("#stage.awake", timeout=60_000)
-        page.wait_for_selector("body[data-alive]", timeout=10_000)
+        page.wait_for_selector("body[data-alive]", timeout=30_000)
         yield page
         left = [text for text in faults if not (gone and "ERR_CONNECTION_REFUSED" in text)]
         assert not left, "\n".join(left)
@@ -51,7 +51,7 @@ def open_page(
         context.close()
 
 
-def until(page: Page, condition: str, timeout_s: float = 3.0, argument: object = None) -> None:
+def until(page: Page, condition: str, timeout_s: float = 10.0, argument: object = None) -> None:
     """Wait until a JavaScript function says yes. Playwright's own wait is refused by the page's security policy."""
     deadline = time.monotonic() + timeout_s
     while not page.evaluate(condition, argument):

@@ -9,7 +9,7 @@ from tests.e2e.browser import launch
 from tests.e2e.program import Program
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")  # its event loop must not outlive these tests
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
         chromium = launch(playwright)
