@@ -103,27 +103,29 @@ class Runner:
     def _take_requests(self) -> None:
         """Carry out all commands that wait; with none, sleep until the next tick or command."""
         wait = min(self._due, self._hand_expires) - time.perf_counter() if self._running else 0.5
-        took = False
+        answers: list[tuple[m.Request, m.Accepted | m.Refused | Exception]] = []
         while True:
             try:
-                request = self._requests.get(block=wait > 0 and not took, timeout=min(max(wait, 0.0), 0.5))
+                request = self._requests.get(block=wait > 0 and not answers, timeout=min(max(wait, 0.0), 0.5))
             except queue.Empty:
                 break
             if request is None:
-                return
-            took = True
-            self._answer(request)
-        if took:
-            self._publish()
+                break
+            answers.append((request, self._answer(request.command)))
+        if answers:
+            self._publish()  # first: who reads right after the answer sees what it did
+        for request, answer in answers:
+            if isinstance(answer, Exception):
+                request.answer.set_exception(answer)
+            else:
+                request.answer.set_result(answer)
 
-    def _answer(self, request: m.Request) -> None:
+    def _answer(self, command: m.Command) -> m.Accepted | m.Refused | Exception:
         try:
-            answer = self._carry_out(request.command)
+            return self._carry_out(command) or m.Accepted(self.session.tick_count)
         except Exception as error:
             traceback.print_exc()
-            request.answer.set_exception(error)
-            return
-        request.answer.set_result(answer or m.Accepted(self.session.tick_count))
+            return error
 
     def _measure(self, now: float) -> None:
         then, simulated = self._measured

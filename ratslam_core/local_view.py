@@ -34,6 +34,11 @@ class LocalView:
     def __len__(self) -> int:
         return self._count
 
+    @property
+    def templates(self) -> NDArray[np.uint8]:
+        """All known scenes, shape (n, 96), column by column. A view."""
+        return self._templates[: self._count]
+
     def stored(self, view: int) -> NDArray[np.uint8]:
         """The template of one view, shape (8, 12)."""
         if not 0 <= view < self._count:

@@ -58,6 +58,11 @@ class PoseCells:
         return self._slot
 
     @property
+    def carry(self) -> tuple[float, float, float]:
+        """What the attractor swallowed of the last motion: cells in x', y' and layers."""
+        return self._carry
+
+    @property
     def packets(self) -> tuple[Packet, ...]:
         """All packets, the heaviest first: the competing hypotheses."""
         return tuple(self._packet(row) for row in self._rows[: self._found])

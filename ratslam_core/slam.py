@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -60,6 +62,22 @@ class RatSlam:
         return Estimate(
             self.experience_map.active, created, self.experience_map.robot, packet, recognition, relocalised
         )
+
+    def digest(self) -> bytes:
+        """SHA-256 of all that decides what the engine will do: equal for equal histories."""
+        cells, activity = self.pose_cells.active
+        map_, t = self.experience_map, self.experience_map.transitions
+        rows = slice(t.count)
+        state = hashlib.sha256()
+        for array in (cells, activity, map_.poses, t.ends[rows], t.move[rows], t.weight[rows], t.time_s[rows]):
+            state.update(np.ascontiguousarray(array).tobytes())
+        state.update(self.local_view.templates.tobytes())
+        for view in range(len(self.local_view)):
+            for array in self.view_links.of(view):
+                state.update(array.tobytes())
+        numbers = (self.pose_cells.carry, map_.active, map_.local_pose, map_.yaw_bias, self.relocalisations)
+        state.update(repr((*numbers, self.lost, self._agreed, self._time_s, self._learnt_s, self.params)).encode())
+        return state.digest()
 
     def set_params(self, params: RatSlamParams) -> None:
         """Take new live parameters while running; ValueError when the size of the pose cells would change."""

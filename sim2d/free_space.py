@@ -75,7 +75,7 @@ class FreeSpace:
 
         The grid's 16 directions make a way longer than it is, by 2.7 % at worst, and its cells by a cell at each end.
         """
-        if not (self.is_free(*a) and self.is_free(*b)):
+        if not (self._touches_free(*a) and self._touches_free(*b)):
             return math.inf
         straight = math.dist(a, b)
         if straight <= self.clearance(*a) - self._radius:  # b lies on the free disc around a
@@ -84,6 +84,13 @@ class FreeSpace:
         nodes, graph = self._graph
         metres = dijkstra(graph, directed=False, indices=nodes[start])[nodes[goal]]
         return max(straight, float(metres))
+
+    def _touches_free(self, x: float, y: float) -> bool:
+        """Free, or a cell too near to a wall, as for a robot that leans on it."""
+        if self.is_free(x, y):
+            return True
+        leans = inside_ring(self._ring, x, y) and self._radius > self.clearance(x, y) >= self._radius - self._cell
+        return leans and self._open_cell(self._reachable, x, y) is not None
 
     @cached_property
     def _open(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -32,6 +32,7 @@ class Explorer:
         self._begin_following()
         self._way = 0.0
         self._clock = 0.0
+        self._cross_in_s = math.inf  # of wall following; looking back does not put it off
 
     @property
     def doing(self) -> str:
@@ -39,12 +40,13 @@ class Explorer:
 
     def digest(self) -> bytes:
         turn = self._turn.left if self._turn else math.nan
-        return repr((self._state, turn, self._stage, self._way, self._clock, self._until)).encode()
+        return repr((self._state, turn, self._stage, self._way, self._clock, self._until, self._cross_in_s)).encode()
 
     def begin_crossing(self) -> None:
         """Turn to a random direction and go."""
         self._state, self._turn, self._stage = "cross", _Turn(float(self._rng.uniform(-math.pi, math.pi))), 0
         self._clock, self._until = 0.0, float(self._rng.uniform(6.0, 20.0))
+        self._cross_in_s = math.inf
 
     def step(self, ranges_m, odometry: Odometry, local: LocalMovement, p: PilotParams) -> tuple[float, float]:
         """ranges_m: (8,) sonars from left to right."""
@@ -60,21 +62,22 @@ class Explorer:
             return self._look(moved, local, p)
         if self._state == "cross":
             return self._cross(local, p)
-        return self._follow(ranges_m, local, p)
+        return self._follow(ranges_m, odometry.dt, local, p)
 
     def _begin_following(self) -> None:
         self._state, self._turn, self._stage = "follow", None, 0
         self._clock, self._until = 0.0, math.inf
 
-    def _follow(self, ranges_m, local: LocalMovement, p: PilotParams) -> tuple[float, float]:
-        if self._until == math.inf:
-            self._until = p.cross_after_s * float(self._rng.uniform(0.75, 1.25))
+    def _follow(self, ranges_m, dt: float, local: LocalMovement, p: PilotParams) -> tuple[float, float]:
+        if self._cross_in_s == math.inf:
+            self._cross_in_s = p.cross_after_s * float(self._rng.uniform(0.75, 1.25))
+        self._cross_in_s -= dt
         if self._way > p.look_back_after_m:
             self._way, self._state, self._stage, self._clock = 0.0, "look", 0, 0.0
             self._turn = _Turn(math.pi)
             self._back = LOOK_BACK_M
             return 0.0, p.turn_rate
-        if self._clock > self._until:
+        if self._cross_in_s <= 0:
             self.begin_crossing()
             return 0.0, 0.0
         left, ahead_left, front = float(ranges_m[0]), float(ranges_m[1]), float(min(ranges_m[2:6]))

@@ -27,9 +27,9 @@ class Watched(Runner):
         self._round_ended = threading.Condition()
         self._rounds = self._answered_in = 0
 
-    def _answer(self, request: m.Request) -> None:
+    def _answer(self, command: m.Command) -> m.Accepted | m.Refused | Exception:
         self._answered_in = self._rounds
-        super()._answer(request)
+        return super()._answer(command)
 
     def _take_requests(self) -> None:
         super()._take_requests()

@@ -58,3 +58,9 @@ def test_random_points_are_free_and_everywhere() -> None:
 def test_no_start_fits() -> None:
     free = FreeSpace(room(side=0.8), 0.5)
     assert free.refusal(0.4, 0.4) == "(0.4, 0.4) is 0.400 m from walls[0] (wall); the robot needs 0.5 m"
+
+
+def test_a_robot_that_leans_on_a_wall_still_has_a_way() -> None:
+    assert not FREE.is_free(0.2, 0.5)
+    assert FREE.shortest_m((0.2, 0.5), (3.5, 0.5)) == pytest.approx(3.3, abs=0.15)
+    assert FREE.shortest_m((0.15, 0.5), (3.5, 0.5)) == math.inf
