@@ -22,6 +22,7 @@ from ratslam_core.params import GoalMemoryParams
 from ratslam_core.types import Packet, require_finite
 
 ROOM = 4096  # links there is room for at first; doubles when half full
+MOST_CELLS = 2**20  # in the plane, so that keys stay below 2^40 and their hash below 2^63
 FREE = -1  # key of an empty place in the table
 NEAR = 3  # cells around the strongest one that say where the packet is
 ARRIVED = 1.0  # cells
@@ -35,6 +36,8 @@ class GoalMemory:
         """shape: (n_theta, n_y, n_x) of the pose cells; cell_m: side of one cell, m."""
         if len(shape) != 3 or min(shape) < 1:
             raise ValueError(f"shape must be (n_theta, n_y, n_x), each at least 1 cell, got {shape!r}")
+        if shape[1] * shape[2] > MOST_CELLS:
+            raise ValueError(f"shape must have at most {MOST_CELLS} cells in the plane, got {shape!r}")
         if not (math.isfinite(cell_m) and cell_m > 0):
             raise ValueError(f"cell_m must be a positive number of metres, got {cell_m!r}")
         self.params = params or GoalMemoryParams()
@@ -232,7 +235,7 @@ def _centre(flats, values, shape):
 
 @njit(cache=True, nogil=True)
 def _find(key, keys):
-    """Where a key is in the table, or the free place where it belongs. Keys are below 2^40, so nothing overflows."""
+    """Where a key is in the table, or the free place where it belongs. The table is never full."""
     mask = keys.size - 1
     mixed = key * 5_872_781
     at = (mixed ^ (mixed >> 21)) & mask

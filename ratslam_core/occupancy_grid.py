@@ -185,8 +185,9 @@ def _scan(log_odds, x, y, heading, angles, ranges, cell_m, farthest, half_beam, 
     p = (1 + occupied O) / 2 around it,       O = (1 - ((d - R) / eps)^2) (1 - (theta / w)^2)
     d, theta: distance and angle of a cell's middle from the sonar's axis. After Moravec and Elfes 1985.
 
-    [ours] eps and w, half the beam's width, are widened by half a cell as it is seen from the robot, so that a beam
-    narrower than a cell meets it. test_occupancy_grid.py::test_a_narrow_beam_still_meets_cells.
+    [ours] eps and w, half the beam's width, are widened by half a cell as it is seen from the robot, so that near
+    the robot, where the beam is narrower than a cell, it is not lost between two of them.
+    test_occupancy_grid.py::test_a_beam_is_never_lost_between_cells.
     """
     n_y, n_x = log_odds.shape
     half = 0.5 * cell_m
@@ -211,7 +212,7 @@ def _scan(log_odds, x, y, heading, angles, ranges, cell_m, farthest, half_beam, 
                 if d >= far or abs(across) > d * sine + half:  # the second spares most cells the angle below
                     continue
                 w = half_beam + (np.arcsin(half / d) if d > half else 0.5 * np.pi)
-                off = np.arctan2(across, c * dx + s * dy) / w
+                off = np.arctan2(across, c * dx + s * dy) / w if d > 0.0 else 0.0
                 if abs(off) >= 1.0:
                     continue
                 sure = 1.0 - off * off

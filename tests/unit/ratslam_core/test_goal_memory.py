@@ -1,0 +1,347 @@
+from __future__ import annotations
+
+import math
+from dataclasses import fields, replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ratslam_core import GoalMemory, GoalMemoryParams, Packet, PoseCells, goal_memory
+
+from . import literal
+
+SHAPE = (4, 64, 64)
+CELL_M = 0.25
+DT = 0.1
+Place = tuple[float, float]
+SHORT_AND_SLOW: list[Place] = [(10, 30), (40, 30)]
+LONG_AND_FAST: list[Place] = [(40, 30), (40, 44), (10, 44), (10, 30)]
+
+
+def packet_cells(x: float, y: float, shape: tuple[int, int, int] = SHAPE) -> tuple[NDArray, NDArray]:
+    """A Gaussian packet over two layers, as wide as those of the pose cells."""
+    rows, values = [], []
+    for dy in range(-4, 5):
+        for dx in range(-4, 5):
+            at_x, at_y = round(x) + dx, round(y) + dy
+            value = math.exp(-((at_x - x) ** 2 + (at_y - y) ** 2) / (2 * 1.8**2))
+            for theta, part in ((1, 0.7), (2, 0.3)):
+                cx, cy = at_x % shape[2], at_y % shape[1]
+                rows.append((cx, cy, theta, (theta * shape[1] + cy) * shape[2] + cx))
+                values.append(part * value)
+    return np.array(rows, np.int32), (np.array(values) / sum(values)).astype(np.float32)
+
+
+def drive(memory: GoalMemory, corners: list[Place], speed: float, start_s: float = 0.0) -> float:
+    """A packet goes from corner to corner, in cells, at this speed in m/s; returns when it arrives."""
+    time_s = start_s
+    for a, b in pairwise(corners):
+        steps = max(1, round(math.dist(a, b) * CELL_M / speed / DT))
+        for k in range(steps):
+            time_s += DT
+            part = k / steps
+            memory.learn(*packet_cells(a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])), time_s)
+    return time_s
+
+
+def two_ways(params: GoalMemoryParams) -> GoalMemory:
+    """From (10, 30) to (40, 30) straight at 0.1 m/s, 75 s, and round the block at 0.4 m/s, 36 s."""
+    memory = GoalMemory(params, SHAPE, CELL_M)
+    arrived_s = drive(memory, SHORT_AND_SLOW, 0.1)
+    drive(memory, LONG_AND_FAST, 0.4, arrived_s)
+    return memory
+
+
+def follow(memory: GoalMemory, T: NDArray, x: float, y: float) -> list[Place]:
+    """Half a cell at a time where the memory points, until it points nowhere."""
+    way = [(x, y)]
+    while len(way) < 1000:
+        heading = memory.direction(T, Packet(x, y, 0.0, 1.0))
+        if heading is None:
+            break
+        x = (x + 0.5 * math.cos(heading)) % memory.shape[2]
+        y = (y + 0.5 * math.sin(heading)) % memory.shape[1]
+        way.append((x, y))
+    return way
+
+
+def fixed_point(pairs: NDArray, tau: NDArray, size: int, goal: int) -> list[float]:
+    """C6, literally: T_i <- min(T_i, min_j (T_j + tau_ji)) until nothing decreases."""
+    T = [math.inf] * size
+    T[goal] = 0.0
+    links = [(int(i), int(j), float(t)) for (i, j), t in zip(pairs, tau, strict=True)]
+    decreased = True
+    while decreased:
+        decreased = False
+        for i, j, t in links:
+            for a, b in ((i, j), (j, i)):
+                if T[b] + t < T[a]:
+                    T[a] = T[b] + t
+                    decreased = True
+    return T
+
+
+@pytest.fixture(scope="module")
+def explored() -> tuple[GoalMemory, PoseCells]:
+    """A real packet on a winding way over a small torus."""
+    pose_cells, rng = PoseCells(), np.random.default_rng(3)
+    memory = GoalMemory(None, pose_cells.shape, CELL_M)
+    for k in range(1500):
+        turn = math.sin(k / 40) + float(rng.normal(0, 0.3))
+        pose_cells.step(speed=float(rng.uniform(0.2, 0.6)), yaw_rate=turn, dt=DT)
+        memory.learn(*pose_cells.active, DT * (k + 1))
+    return memory, pose_cells
+
+
+def test_times_are_the_fixed_point_of_equation_6(explored: tuple[GoalMemory, PoseCells]) -> None:
+    memory, pose_cells = explored
+    x, y = round(pose_cells.winner.x) % 64, round(pose_cells.winner.y) % 64
+    T = memory.times_to(x, y)
+    pairs, tau = memory.links
+    assert len(pairs) == len(memory) > 1000
+    assert T.ravel() == pytest.approx(fixed_point(pairs, tau, 64 * 64, y * 64 + x))
+    assert np.isfinite(T).sum() > 200
+    assert T[y, x] == 0 < np.sort(T.ravel())[1]
+
+
+def test_there_are_no_local_minima(explored: tuple[GoalMemory, PoseCells]) -> None:
+    """From wherever a way is known, following the direction arrives within one cell of the goal."""
+    memory, pose_cells = explored
+    goal_x, goal_y = round(pose_cells.winner.x) % 64, round(pose_cells.winner.y) % 64
+    T = memory.times_to(goal_x, goal_y)
+    for y, x in list(zip(*np.nonzero(np.isfinite(T)), strict=True))[::10]:
+        end_x, end_y = follow(memory, T, float(x), float(y))[-1]
+        assert math.hypot((end_x - goal_x + 32) % 64 - 32, (end_y - goal_y + 32) % 64 - 32) <= 1
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_a_small_memory_by_hand(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """C1-C5 with numbers: two cells in one iteration, two in the next, and then again."""
+    if interpreted:
+        literal.interpret(goal_memory, monkeypatch)
+    monkeypatch.setattr(goal_memory, "ROOM", 2)
+    memory = GoalMemory(GoalMemoryParams(stride_m=0.0, share=0.3, rate=0.5), (2, 5, 8), CELL_M)
+    # (0, 0) holds 0.5 + 0.1 over two headings, (1, 0) holds 0.4, (5, 4) is below the share
+    cells = np.array([(0, 0, 0, 0), (1, 0, 0, 1), (0, 0, 1, 40), (5, 4, 0, 37)], np.int32)
+    memory.learn(cells, np.array([0.5, 0.4, 0.1, 0.1], np.float32), 10.0)
+    assert len(memory) == 0
+    # (7, 4) is diagonally across the corner from (0, 0), (0, 0) stays active
+    cells = np.array([(7, 4, 1, 79), (0, 0, 0, 0)], np.int32)
+    memory.learn(cells, np.array([0.8, 0.4], np.float32), 12.0)
+
+    def tau(elapsed: float, G_i: float, G_j: float, most: float, apart: float) -> float:
+        return 1.0 * elapsed + 0.25 * (1 - G_i * G_j / most**2) + 0.1 * apart
+
+    expected = {
+        (0, 39): tau(2, 0.6, 0.8, 0.8, math.sqrt(2)),
+        (1, 39): tau(2, 0.4, 0.8, 0.8, math.sqrt(5)),
+        (0, 1): tau(2, 0.4, 0.4, 0.8, 1),
+    }
+    pairs, times = memory.links
+    got = dict(zip(map(tuple, pairs.tolist()), times.tolist(), strict=True))
+    assert got == pytest.approx(expected)
+    memory.learn(cells[1:], np.array([0.9], np.float32), 12.5)
+    pairs, times = memory.links
+    got = dict(zip(map(tuple, pairs.tolist()), times.tolist(), strict=True))
+    expected[0, 39] = 0.5 * expected[0, 39] + 0.5 * tau(0.5, 0.8, 0.9, 0.9, math.sqrt(2))
+    assert got == pytest.approx(expected)
+    T = memory.times_to(0, 0)
+    assert T.shape == (5, 8)
+    assert (T[0, 0], T[4, 7], T[0, 1]) == pytest.approx((0, expected[0, 39], expected[0, 1]))
+    assert np.isinf(T).sum() == 37
+    assert memory.direction(T, Packet(6.2, 3.4, 0.0, 1.0)) == pytest.approx(math.atan2(1.6, 1.8))  # nothing known here
+    assert memory.direction(T, Packet(7.0, 4.0, 0.0, 1.0)) == pytest.approx(math.pi / 4)
+    assert memory.direction(T, Packet(7.3, 4.4, 0.0, 1.0)) is None  # arrived, across the corner
+    assert memory.direction(T, Packet(4.0, 2.0, 0.0, 1.0)) is not None
+    assert memory.direction(np.full((5, 8), np.inf), Packet(4.0, 2.0, 0.0, 1.0)) is None
+    assert memory.memory_bytes >= 12 * 3 + 4 * 40
+
+
+def test_the_faster_way_wins_over_the_shorter_one() -> None:
+    """It does because linked packets are a stride apart. Linked in every iteration, as printed, the shorter way seems faster."""
+    memory = two_ways(GoalMemoryParams())
+    T = memory.times_to(40, 30)
+    assert max(y for _, y in follow(memory, T, 10, 30)) > 42
+    slow = GoalMemory(None, SHAPE, CELL_M)
+    drive(slow, SHORT_AND_SLOW, 0.1)
+    assert slow.times_to(40, 30)[30, 10] > 1.2 * T[30, 10]
+
+    printed = two_ways(GoalMemoryParams(stride_m=0.0))
+    assert max(y for _, y in follow(printed, printed.times_to(40, 30), 10, 30)) < 34
+
+
+def test_times_grow_with_the_time_that_a_way_took() -> None:
+    times = []
+    for speed in (0.4, 0.2, 0.1):
+        memory = GoalMemory(None, SHAPE, CELL_M)
+        drive(memory, SHORT_AND_SLOW, speed)
+        times.append(memory.times_to(36, 30)[30, 12] / (24 * CELL_M / speed))
+    # A link from the rear of a packet to the front of the next is longer than the stride: times are too short, all alike.
+    assert all(0.33 < part < 0.8 for part in times), times
+    assert max(times) < 2 * min(times)  # over a fourfold range of speeds
+
+
+@pytest.mark.parametrize("name", [item.name for item in fields(GoalMemoryParams) if item.name != "reach"])
+@pytest.mark.parametrize("factor", [0.8, 1.2])
+def test_small_changes_of_the_parameters_keep_the_route(name: str, factor: float) -> None:
+    """C IV.C: insensitive to small changes."""
+    params = GoalMemoryParams()
+    memory = two_ways(replace(params, **{name: factor * getattr(params, name)}))
+    way = follow(memory, memory.times_to(40, 30), 10, 30)
+    assert max(y for _, y in way) > 42
+    assert math.dist(way[-1], (40, 30)) <= 1
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_it_does_not_point_through_a_wall(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Down one corridor and back up the next, 1.5 m away: the goal's corridor is in reach but its cells are not linked."""
+    memory = GoalMemory(GoalMemoryParams(reach=4), SHAPE, CELL_M)
+    drive(memory, [(10, 30), (40, 30), (40, 36), (10, 36)], 0.4)
+    T = memory.times_to(12, 36)
+    way = follow(memory, T, 14, 31)
+    if interpreted:
+        literal.interpret(goal_memory, monkeypatch)
+    heading = memory.direction(T, Packet(14.0, 31.0, 0.0, 1.0))
+    assert heading is not None
+    assert abs(heading) < math.radians(45)
+    assert T[34:36, 13:16].min() < T[28:33, 10:19].min()  # the goal's corridor is lower, and within reach
+    assert max(x for x, _ in way) > 35
+
+
+def test_a_leap_of_the_packet_is_linked_but_is_no_direction() -> None:
+    """C V.E: places that are the same but lie apart in the pose cells. There is a time, but no way to drive."""
+    memory = GoalMemory(None, SHAPE, CELL_M)
+    memory.learn(*packet_cells(10, 10), 1.0)
+    memory.learn(*packet_cells(40, 40), 1.1)
+    T = memory.times_to(40, 40)
+    assert T[10, 10] == pytest.approx(0.1 + 0.1 * math.hypot(30, 30), rel=1e-5)
+    assert memory.direction(T, Packet(10.0, 10.0, 0.0, 1.0)) is None
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_a_weaker_packet_takes_part_but_does_not_say_where_the_robot_is(
+    interpreted: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if interpreted:
+        literal.interpret(goal_memory, monkeypatch)
+    memory = GoalMemory(None, SHAPE, CELL_M)
+    for k, x in enumerate((10.0, 11.0, 12.0)):
+        cells, activity = packet_cells(x, 10)
+        rival, weaker = packet_cells(63 - 7 * k, 40)
+        both = np.concatenate([0.6 * activity, 0.4 * weaker]).astype(np.float32)
+        memory.learn(np.concatenate([cells, rival]), both, 1.0 + k)
+        assert (len(memory) > 0) == (k == 2)  # a stride after two cells, however far the rival went
+    link = 2 + 0.25 * (1 - 0.4 / 0.6) + 0.1 * math.hypot(13, 30)
+    assert memory.times_to(12, 10)[40, 63] == pytest.approx(link, rel=1e-3)
+
+
+@pytest.mark.parametrize("by", [(40, 0), (0, 30), (45, 29)])
+def test_it_wraps_around(by: tuple[int, int]) -> None:
+    """The same drive elsewhere on the torus gives the same times there."""
+    corners: list[Place] = [(20, 34), (40, 34), (40, 40)]
+    here, there = GoalMemory(None, SHAPE, CELL_M), GoalMemory(None, SHAPE, CELL_M)
+    drive(here, corners, 0.5)
+    drive(there, [(x + by[0], y + by[1]) for x, y in corners], 0.5)
+    goal = (40 + by[0]) % 64, (38 + by[1]) % 64
+    T = here.times_to(40, 38)
+    assert there.times_to(*goal) == pytest.approx(np.roll(T, (by[1], by[0]), (0, 1)), rel=1e-4)
+    heading = here.direction(T, Packet(30.0, 34.0, 0.0, 1.0))
+    moved = Packet((30.0 + by[0]) % 64, (34.0 + by[1]) % 64, 0.0, 1.0)
+    assert there.direction(there.times_to(*goal), moved) == pytest.approx(heading)
+
+
+def test_a_robot_that_stands_learns_nothing_until_it_moves() -> None:
+    memory = GoalMemory(None, SHAPE, CELL_M)
+    for k in range(50):
+        memory.learn(*packet_cells(10, 10), 0.1 * (k + 1))
+    assert len(memory) == 0
+    memory.learn(*packet_cells(12, 10), 5.1)
+    back = math.exp(-(2**2) / 1.8**2)  # the same link the other way: both ends active, but weakly
+    expected = 5.0 + 0.2 + 0.2 * 0.25 * (1 - back)
+    assert memory.times_to(12, 10)[10, 10] == pytest.approx(expected, rel=1e-3)
+
+
+def test_what_is_learnt_later_changes_the_times() -> None:
+    memory = GoalMemory(None, SHAPE, CELL_M)
+    time_s = drive(memory, SHORT_AND_SLOW, 0.1)
+    before = memory.times_to(38, 30)[30, 12]
+    for _ in range(5):
+        time_s = drive(memory, [*SHORT_AND_SLOW, SHORT_AND_SLOW[0]], 0.5, time_s)
+    assert memory.times_to(38, 30)[30, 12] < 0.6 * before
+
+
+def test_links_grow_with_the_places_seen_and_not_with_time() -> None:
+    memory = GoalMemory(None, SHAPE, CELL_M)
+    corners: list[Place] = [(10, 10), (50, 10), (50, 50), (10, 50), (10, 10)]
+    time_s = drive(memory, corners, 0.5)
+    first, room = len(memory), memory.memory_bytes
+    for _ in range(3):
+        time_s = drive(memory, corners, 0.5, time_s)
+    assert len(memory) < 1.5 * first
+    assert memory.memory_bytes <= 2 * room < 2_000_000
+
+
+def test_wrong_input_is_named() -> None:
+    with pytest.raises(ValueError, match=r"shape must be .*got \(64, 64\)"):
+        GoalMemory(None, (64, 64), 0.25)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="shape must be"):
+        GoalMemory(None, (36, 0, 64), 0.25)
+    with pytest.raises(ValueError, match="at most 1048576 cells in the plane"):
+        GoalMemory(None, (1, 1025, 1024), 0.25)
+    for cell_m in (0.0, -1.0, math.nan, math.inf):
+        with pytest.raises(ValueError, match=f"cell_m must be a positive number of metres, got {cell_m!r}"):
+            GoalMemory(None, SHAPE, cell_m)
+    memory = GoalMemory(None, SHAPE, CELL_M)
+    cells, activity = packet_cells(10, 10)
+    with pytest.raises(ValueError, match="time_s must be a finite number, got nan"):
+        memory.learn(cells, activity, math.nan)
+    for wrong in (cells[:, :3], cells[0]):
+        with pytest.raises(ValueError, match=r"cells must have shape \(n, 4\) and activity \(n,\)"):
+            memory.learn(wrong, activity, 1.0)
+    with pytest.raises(ValueError, match="cells must have shape"):
+        memory.learn(cells, activity[1:], 1.0)
+    for none in (activity * 0, activity * np.nan):
+        with pytest.raises(ValueError, match="activity must be positive somewhere"):
+            memory.learn(cells, none, 1.0)
+    with pytest.raises(ValueError, match="activity must be positive somewhere"):
+        memory.learn(cells[:0], activity[:0], 1.0)
+    for axis, value in ((0, 64), (0, -1), (1, 64), (1, -1)):
+        outside = cells.copy()
+        outside[5, axis] = value
+        with pytest.raises(ValueError, match=rf"cells must lie in 0..63, 0..63, got .*{value}"):
+            memory.learn(outside, activity, 1.0)
+    memory.learn(cells, activity, 1.0)
+    for late in (1.0, 0.5):
+        with pytest.raises(ValueError, match=f"time_s must be later than the time before, 1.0, got {late}"):
+            memory.learn(cells, activity, late)
+    memory.learn(cells, activity, 2.0)
+    with pytest.raises(ValueError, match=r"later than the time before, 2\.0, got 1\.5"):
+        memory.learn(cells, activity, 1.5)
+    for x, y, name in ((64, 0, "x"), (-1, 0, "x"), (0, 64, "y"), (0.5, 0, "x"), (0, "1", "y")):
+        with pytest.raises(ValueError, match=f"{name} must be a whole cell from 0 to 63, got "):
+            memory.times_to(x, y)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"T must have shape \(64, 64\).*got \(3, 3\)"):
+        memory.direction(np.zeros((3, 3)), Packet(1.0, 1.0, 0.0, 1.0))
+    with pytest.raises(ValueError, match=r"packet\.y must be a finite number, got nan"):
+        memory.direction(memory.times_to(10, 10), Packet(1.0, math.nan, 0.0, 1.0))
+    with pytest.raises(ValueError, match="rate must be between"):
+        GoalMemoryParams(rate=0.0)
+
+
+def test_wrong_cells_leave_no_trace(monkeypatch: pytest.MonkeyPatch) -> None:
+    """After a refused call the next one is right, compiled and interpreted."""
+    for interpreted in (False, True):
+        if interpreted:
+            literal.interpret(goal_memory, monkeypatch)
+        memory, fresh = GoalMemory(None, SHAPE, CELL_M), GoalMemory(None, SHAPE, CELL_M)
+        cells, activity = packet_cells(10, 10)
+        cells[20, 0] = 99
+        with pytest.raises(ValueError, match="must lie in"):
+            memory.learn(cells, activity, 1.0)
+        for each in (memory, fresh):
+            each.learn(*packet_cells(20, 20), 2.0)
+            each.learn(*packet_cells(23, 20), 3.0)
+        assert np.array_equal(memory.links[0], fresh.links[0])
+        assert np.array_equal(memory.links[1], fresh.links[1])
