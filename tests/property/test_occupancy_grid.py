@@ -41,7 +41,7 @@ def literal_scan(
                 log_odds[at] = min(max(odds, -p.bound), p.bound)
 
 
-number = st.floats(0.0, 1.0)
+number = st.integers(0, 1000).map(lambda k: k / 1000)  # the only step of the model is at the very middle of a cell
 
 
 @settings(max_examples=60, deadline=None)
@@ -68,7 +68,8 @@ def test_the_beam_is_its_equations(
     assert np.abs(grid.probability - 1 / (1 + np.exp(-slow))).max() < 1e-4
 
 
-pose = st.builds(Pose2, st.floats(-3, 3), st.floats(-3, 3), st.floats(-3, 3))
+off_centre = st.integers(-3000, 3000).map(lambda k: k / 1000 + 0.0003)  # never the very middle of a cell, as above
+pose = st.builds(Pose2, off_centre, off_centre, st.floats(-3, 3))
 
 
 @settings(max_examples=60, deadline=None)
