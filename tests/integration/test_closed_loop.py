@@ -82,7 +82,8 @@ def test_the_map_is_truer_than_odometry(lives: list[Life]) -> None:
 def test_places_are_found_again_where_they_are(lives: list[Life]) -> None:
     shares = [life.consistency for life in lives if life.consistency is not None]
     assert len(shares) >= 3
-    assert min(shares) > 0.85
+    assert np.median(shares) > 0.9
+    assert min(shares) > 0.5  # five minutes revisit little: one wrong stretch weighs much
 
 
 def test_views_experiences_and_links_stay_in_proportion(lives: list[Life]) -> None:
