@@ -75,6 +75,7 @@ def to_toml(config: Config) -> str:
         unit = f" [{about['unit']}]" if about["unit"] else ""
         symbol = f"{about['symbol']}: " if about["symbol"] else ""
         limits = "" if about["low"] is None else f"; {about['low']:g} to {about['high']:g}"
+        limits += f"; one of: {', '.join(about['choices'])}" if about["choices"] else ""
         restart = "" if about["live"] else "; takes effect at the next reset"
         table.add(tomlkit.comment(f"{symbol}{about['meaning']}{unit}{limits}; {about['source']}{restart}"))
         table.add(key, value)

@@ -6,50 +6,9 @@ Sources: A = ACRA 2004, B = ACRA 2005, C = IROS 2005, D = ACRA 2006; "ours" wher
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
-from typing import Any
+from dataclasses import dataclass
 
-
-def param(
-    default: Any,
-    *,
-    symbol: str = "",
-    unit: str = "",
-    low: float | None = None,
-    high: float | None = None,
-    meaning: str,
-    source: str,
-    live: bool = True,
-) -> Any:
-    """A dataclass field that knows what it means. `live` parameters may change while the engine runs."""
-    about = {
-        "symbol": symbol,
-        "unit": unit,
-        "low": low,
-        "high": high,
-        "meaning": meaning,
-        "source": source,
-        "live": live,
-    }
-    return field(default=default, metadata=about)
-
-
-def check_ranges(params: Any) -> None:
-    """ValueError with name, value and range for the first field that is out of its range or of the wrong type."""
-    for item in fields(params):
-        value, about = getattr(params, item.name), item.metadata
-        if "meaning" not in about:
-            continue
-        kind = type(item.default)
-        fits = isinstance(value, kind) or (kind is float and type(value) is int)
-        if not fits or (kind is int and isinstance(value, bool)):
-            raise ValueError(f"{item.name} must be {kind.__name__}, got {value!r}")
-        if kind is bool:
-            continue
-        low, high = about["low"], about["high"]
-        if not math.isfinite(value) or (low is not None and value < low) or (high is not None and value > high):
-            unit = f" {about['unit']}" if about["unit"] else ""
-            raise ValueError(f"{item.name} must be between {low} and {high}{unit}, got {value!r}")
+from ratslam_core.parameter import check_ranges, param
 
 
 @dataclass(frozen=True, slots=True)

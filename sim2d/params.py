@@ -24,6 +24,7 @@ def _number(
         "low": low,
         "high": high,
         "meaning": meaning,
+        "choices": (),
         "live": live,
     }
     return field(default=default, metadata=metadata)

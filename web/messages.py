@@ -144,6 +144,7 @@ class Parameter:
     meaning: str
     source: str
     live: bool  # False: takes effect with the next reset
+    choices: tuple[str, ...] = ()  # of text; empty for numbers and switches
 
 
 @dataclass(frozen=True, slots=True, eq=False)

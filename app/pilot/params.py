@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ratslam_core.params import check_ranges, param
+from ratslam_core.parameter import check_ranges, param
 
 
 @dataclass(frozen=True, slots=True)

@@ -112,6 +112,8 @@ def hint(parameter: Parameter) -> str:
         parts.append(
             f"Range: {'' if low is None else f'{low:g}'} to {'' if high is None else f'{high:g}'} {parameter.unit}."
         )
+    if parameter.choices:
+        parts.append(f"One of: {', '.join(parameter.choices)}.")
     parts.append(f"Default: {parameter.default}. Source: {parameter.source}.")
     if not parameter.live:
         parts.append("Takes effect at reset.")
@@ -122,6 +124,8 @@ def _widget(gui: viser.GuiApi, parameter: Parameter) -> Any:
     value, name, words = parameter.value, label(parameter), hint(parameter)
     if isinstance(value, bool):
         return gui.add_checkbox(name, value, hint=words)
+    if parameter.choices:
+        return gui.add_dropdown(name, parameter.choices, initial_value=str(value), hint=words)
     if isinstance(value, str):
         return gui.add_text(name, value, hint=words)
     low, high = parameter.low, parameter.high

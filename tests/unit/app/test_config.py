@@ -23,6 +23,8 @@ def values(name: str) -> st.SearchStrategy:
         low = 12
     if isinstance(default, bool):
         return st.booleans()
+    if isinstance(default, str):
+        return st.sampled_from(item.metadata["choices"])
     return st.integers(low, high) if isinstance(default, int) else st.floats(low, high)
 
 
@@ -50,10 +52,12 @@ def test_every_parameter_says_what_it_is() -> None:
     assert len(NAMES) == len(set(NAMES)) > 50
     for name, item, value in Config().items():
         about = item.metadata
-        assert set(about) == {"symbol", "unit", "low", "high", "meaning", "source", "live"}, name
+        assert set(about) == {"symbol", "unit", "low", "high", "meaning", "source", "choices", "live"}, name
         assert about["meaning"], name
         assert about["source"], name
-        if not isinstance(value, bool):
+        if isinstance(value, str):
+            assert value in about["choices"], name
+        elif not isinstance(value, bool):
             assert about["low"] <= value <= about["high"], name
 
 
@@ -63,6 +67,8 @@ def test_every_range_is_kept(name: str) -> None:
     wrong: list[object] = ["much", None]
     if isinstance(default, bool):
         wrong += [1, 0.5]
+    elif isinstance(default, str):
+        wrong += [1, True, ""]
     else:
         low, high = item.metadata["low"], item.metadata["high"]
         wrong += [low - 1, high + 1, math.nan, math.inf, -math.inf, 10**400, True]

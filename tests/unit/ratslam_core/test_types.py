@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ratslam_core import ExperienceMapParams, LocalViewParams, Odometry, Pose2, PoseCellParams, wrap_angle
-from ratslam_core.params import check_ranges, param
+from ratslam_core.parameter import check_ranges, param
 
 places = st.floats(-50, 50)
 poses = st.builds(Pose2, places, places, st.floats(-math.pi, math.pi).map(wrap_angle))
@@ -87,3 +87,13 @@ def test_only_declared_numbers_are_checked() -> None:
     check_ranges(Mixed(note=""))
     with pytest.raises(ValueError, match="size must be between 1 and 9, got 10"):
         check_ranges(Mixed(size=10))
+
+
+def test_text_is_one_of_its_choices() -> None:
+    @dataclass(frozen=True)
+    class Chosen:
+        way: str = param("left", choices=("left", "right"), meaning="a way", source="test")
+
+    check_ranges(Chosen(way="right"))
+    with pytest.raises(ValueError, match="way must be one of 'left', 'right', got 'up'"):
+        check_ranges(Chosen(way="up"))
