@@ -5,26 +5,39 @@ from sim2d.free_space import FreeSpace
 from sim2d.params import SimParams
 from sim2d.ranges import SONAR_ANGLES_RAD
 from sim2d.simulator import Drive, SensorFrame, Simulator, Truth
+from sim2d.things import Box, Daylight, Door, Event, Lamp, Person, SlowZone
 from sim2d.world import Panel, Place, Start, Wall, World
-from sim2d.world_file import DEFAULT_WORLD, WorldError, load_world, world_names
+from sim2d.world_file import DEFAULT_WORLD, WorldError, load_world, world_from_json, world_names
+from sim2d.world_schema import WorldFile
+from sim2d.world_writer import world_to_json
 
 __all__ = [
     "DEFAULT_WORLD",
     "SONAR_ANGLES_RAD",
+    "Box",
+    "Daylight",
+    "Door",
     "Drawing",
     "Drive",
+    "Event",
     "FreeSpace",
+    "Lamp",
     "Panel",
+    "Person",
     "Place",
     "SensorFrame",
     "SimParams",
     "Simulator",
+    "SlowZone",
     "Start",
     "Truth",
     "Wall",
     "World",
     "WorldError",
+    "WorldFile",
     "draw_world",
     "load_world",
+    "world_from_json",
     "world_names",
+    "world_to_json",
 ]

@@ -11,9 +11,11 @@ from scipy.ndimage import label
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from sim2d.geometry import clearance_grid, inside_ring, nearest_segment
+from sim2d.geometry import free_cells, inside_ring, nearest_segment
 from sim2d.world import World
 
+CELL_M = 0.05
+MOST_CELLS = 4_000_000  # a larger floor gets larger cells
 # Eight neighbours and eight knight's moves, one of each opposite pair.
 _MOVES = ((1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (1, 2), (2, -1), (1, -2))
 
@@ -21,18 +23,20 @@ _MOVES = ((1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (1, 2), (2, -1), (1, -2))
 class FreeSpace:
     """The floor on which a disc of `radius` metres can stand and which it can reach from the world's first start."""
 
-    def __init__(self, world: World, radius: float, cell_m: float = 0.05) -> None:
+    def __init__(self, world: World, radius: float, cell_m: float | None = None) -> None:
+        x0, y0, x1, y1 = world.bounds
+        if cell_m is None:
+            cell_m = max(CELL_M, math.sqrt((x1 - x0) * (y1 - y0) / MOST_CELLS))
         self._world = world
         self._radius = radius
         self._cell = cell_m
         self._segments = world.segments()[list(world.obstacles)]
         self._ring = world.outline
-        x0, y0, x1, y1 = world.bounds
         self._xs = np.arange(x0 + 0.5 * cell_m, x1, cell_m)
         self._ys = np.arange(y0 + 0.5 * cell_m, y1, cell_m)
-        grid = clearance_grid(self._segments, self._ring, self._xs, self._ys)
+        grid = free_cells(self._segments, self._ring, self._xs, self._ys, radius)
         numbers = np.zeros(grid.shape, np.int32)
-        label(grid >= radius, structure=np.ones((3, 3)), output=numbers)
+        label(grid, structure=np.ones((3, 3)), output=numbers)
         cells = [self._open_cell(numbers > 0, start.x, start.y) for start in world.starts]
         self._reachable: NDArray[np.bool_] = np.isin(numbers, [numbers[cell] for cell in cells if cell is not None])
 

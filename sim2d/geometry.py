@@ -64,13 +64,56 @@ def inside_ring(ring: NDArray[np.float64], x: float, y: float) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def clearance_grid(
-    segments: NDArray[np.float64], ring: NDArray[np.float64], xs: NDArray[np.float64], ys: NDArray[np.float64]
-) -> NDArray[np.float32]:
-    """(len(ys), len(xs)): metres to the nearest segment, 0 outside of the ring."""
-    out = np.zeros((ys.size, xs.size), np.float32)
-    for j in range(ys.size):
-        for i in range(xs.size):
-            if inside_ring(ring, xs[i], ys[j]):
-                out[j, i] = nearest_segment(segments, xs[i], ys[j])[1]
+def free_cells(
+    segments: NDArray[np.float64],
+    ring: NDArray[np.float64],
+    xs: NDArray[np.float64],
+    ys: NDArray[np.float64],
+    radius: float,
+) -> NDArray[np.bool_]:
+    """(len(ys), len(xs)): cells whose centre is in the ring and at least `radius` metres from every segment.
+
+    xs, ys: evenly spaced, growing. Touches only the cells in the ring and those around a segment.
+    """
+    out = np.zeros((ys.size, xs.size), np.bool_)
+    _fill_ring(ring, xs, ys, out)
+    step = xs[1] - xs[0] if xs.size > 1 else 1.0
+    for i in range(segments.shape[0]):
+        ax, ay, bx, by = segments[i, 0], segments[i, 1], segments[i, 2], segments[i, 3]
+        dx, dy = bx - ax, by - ay
+        low = max(0, int((min(ay, by) - radius - ys[0]) / step) - 1)
+        high = min(ys.size, int((max(ay, by) + radius - ys[0]) / step) + 3)
+        for j in range(low, high):
+            from_u, to_u = 0.0, 1.0  # the part of the segment that is near enough to this row
+            if dy != 0.0:
+                u, v = (ys[j] - radius - ay) / dy, (ys[j] + radius - ay) / dy
+                from_u, to_u = min(max(min(u, v), 0.0), 1.0), min(max(max(u, v), 0.0), 1.0)
+            left, right = ax + from_u * dx, ax + to_u * dx
+            begin = max(0, int((min(left, right) - radius - xs[0]) / step) - 1)
+            end = min(xs.size, int((max(left, right) + radius - xs[0]) / step) + 3)
+            for k in range(begin, end):
+                if out[j, k] and np.float32(nearest_segment(segments[i : i + 1], xs[k], ys[j])[1]) < np.float32(radius):
+                    out[j, k] = False
     return out
+
+
+@njit(cache=True, nogil=True)
+def _fill_ring(
+    ring: NDArray[np.float64], xs: NDArray[np.float64], ys: NDArray[np.float64], out: NDArray[np.bool_]
+) -> None:
+    """`inside_ring` of every cell, a row at a time: x is inside where an odd number of edges crosses right of it."""
+    crossings = np.empty(ring.shape[0])
+    for j in range(ys.size):
+        y, n, last = ys[j], 0, ring.shape[0] - 1
+        for i in range(ring.shape[0]):
+            xi, yi, xj, yj = ring[i, 0], ring[i, 1], ring[last, 0], ring[last, 1]
+            if (yi > y) != (yj > y):
+                crossings[n] = (xj - xi) * (y - yi) / (yj - yi) + xi
+                n += 1
+            last = i
+        row = np.sort(crossings[:n])
+        passed = 0
+        for k in range(xs.size):
+            while passed < n and row[passed] <= xs[k]:
+                passed += 1
+            out[j, k] = (n - passed) % 2 == 1

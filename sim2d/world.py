@@ -1,4 +1,4 @@
-"""A floor plan as data: walls, what hangs on them, where the robot starts, places with names. Metres, radians, z up."""
+"""A floor plan as data: walls, what hangs on them, what lives between them, where the robot starts. Metres, radians, z up."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Rgb = tuple[int, int, int]
+from sim2d.things import Box, Daylight, Door, Event, Lamp, Person, Rgb, SlowZone
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,10 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class Wall:
-    """An upright rectangle from (x1, y1) to (x2, y2). It has no thickness; panels may differ on its two sides."""
+    """An upright rectangle from (x1, y1) to (x2, y2). It has no thickness; panels may differ on its two sides.
+
+    One of kind "glass" lets light through, but for the share `reflection` that it throws back.
+    """
 
     x1: float
     y1: float
@@ -39,6 +42,8 @@ class Wall:
     outer: bool = False
     bottom: float = 0.0  # above the floor only for what stands on a desk
     panels: tuple[Panel, ...] = ()
+    name: str = ""
+    reflection: float = 0.25  # of glass
 
     @property
     def length(self) -> float:
@@ -82,6 +87,13 @@ class World:
     places: tuple[Place, ...]
     floor_colour: Rgb = (120, 112, 104)
     ceiling_colour: Rgb = (226, 226, 220)
+    doors: tuple[Door, ...] = ()
+    lamps: tuple[Lamp, ...] = ()
+    daylight: Daylight | None = None  # without one: 1 throughout
+    boxes: tuple[Box, ...] = ()
+    people: tuple[Person, ...] = ()
+    slow_zones: tuple[SlowZone, ...] = ()
+    script: tuple[Event, ...] = ()
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:

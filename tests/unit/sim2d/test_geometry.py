@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim2d import geometry, ranges
-from sim2d.geometry import clearance_grid, inside_ring, nearest_segment, ray_length
+from sim2d.geometry import free_cells, inside_ring, nearest_segment, ray_length
 
 SQUARE = np.array([[0, 0, 4, 0], [4, 0, 4, 4], [4, 4, 0, 4], [0, 4, 0, 0]], float)
 RING = SQUARE[:, :2]
@@ -16,7 +16,7 @@ RING = SQUARE[:, :2]
 def how(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
     """Everything twice: compiled, and as the Python that coverage can see."""
     if request.param == "python":
-        for name in ("nearest_segment", "ray_length", "inside_ring", "clearance_grid"):
+        for name in ("nearest_segment", "ray_length", "inside_ring", "_fill_ring", "free_cells"):
             monkeypatch.setattr(geometry, name, getattr(geometry, name).py_func)
             if name in globals():
                 monkeypatch.setitem(globals(), name, getattr(geometry, name))
@@ -44,9 +44,15 @@ class TestGeometry:
         assert inside_ring(RING, 1.0, 1.0)
         assert not any(inside_ring(RING, x, y) for x, y in [(-1.0, 1.0), (5.0, 1.0), (1.0, 5.0), (1.0, -1.0)])
 
-    def test_clearance_grid(self) -> None:
-        grid = clearance_grid(SQUARE, RING, np.array([-1.0, 0.5, 2.0]), np.array([2.0, 3.75]))
-        assert grid.tolist() == [[0.0, 0.5, 2.0], [0.0, 0.25, 0.25]]
+    def test_free_cells(self) -> None:
+        slant = np.array([[1.0, 1.0, 3.0, 2.0]])
+        xs, ys = np.arange(-0.9, 5.0, 0.2), np.arange(-0.9, 5.0, 0.2)
+        segments = np.concatenate([SQUARE, slant])
+        free = free_cells(segments, RING, xs, ys, 0.22)
+        slow = [[inside_ring(RING, x, y) and nearest_segment(segments, x, y)[1] >= 0.22 for x in xs] for y in ys]
+        assert free.tolist() == slow
+        assert free.any()
+        assert not free.all()
 
     def test_sonar(self) -> None:
         angles = np.array(ranges.SONAR_ANGLES_RAD)

@@ -19,7 +19,7 @@ def test_defaults_are_the_ones_asked_for() -> None:
 @pytest.mark.parametrize("item", fields(SimParams), ids=lambda item: item.name)
 def test_every_number_is_declared_in_full_and_checked(item) -> None:
     meta = item.metadata
-    assert set(meta) == {"symbol", "unit", "source", "low", "high", "meaning", "live"}
+    assert set(meta) == {"symbol", "unit", "source", "low", "high", "meaning", "choices", "live"}
     assert meta["low"] <= item.default <= meta["high"]
     for bad in (meta["low"] - 1, meta["high"] + 1):
         with pytest.raises(ValueError, match=rf"{item.name} must be from .* to .*, got {bad!r}"):

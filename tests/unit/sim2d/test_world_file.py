@@ -103,7 +103,7 @@ BAD: dict[str, tuple[Spoil, str]] = {
     "nan": (lambda d: d["walls"][1]["from"].__setitem__(0, math.nan), r"walls\[1\].from\[0\]: got nan; .*finite"),
     "inf": (lambda d: d["starts"][0].update(x=math.inf), r"starts\[0\].x: got inf; .*finite"),
     "unknown key": (lambda d: d["walls"][3].update(colr=1), r"walls\[3\].colr: got 1; unknown key; take it out or"),
-    "unknown top key": (lambda d: d.update(lamps=[]), r"small.json: lamps: got \[\]; unknown key"),
+    "unknown top key": (lambda d: d.update(lifts=[]), r"small.json: lifts: got \[\]; unknown key"),
     "missing key": (lambda d: d["walls"][0].pop("height"), r"walls\[0\].height: field required"),
     "bad colour": (lambda d: d["walls"][0].update(colour="red"), r"walls\[0\].colour: got 'red'; string should match"),
     "bad texture": (
@@ -132,12 +132,16 @@ BAD: dict[str, tuple[Spoil, str]] = {
     ),
     "place outside": (lambda d: d["places"][0].update(y=9), r"places\[0\] \(corner\): \(3.5, 9\) is outside of small"),
     "too large": (
-        lambda d: [w.update({k: [60 * v for v in w[k]] for k in ("from", "to")}) for w in d["walls"][:4]],
-        r"small.json: walls: the outline spans 240 by 240 m; at most 200 m each way",
+        lambda d: [w.update({k: [1000 * v for v in w[k]] for k in ("from", "to")}) for w in d["walls"][:4]],
+        r"small.json: walls: the outline spans 4000 by 4000 m; at most 3000 m each way \(line",
+    ),
+    "too much floor": (
+        lambda d: [w.update({k: [400 * v for v in w[k]] for k in ("from", "to")}) for w in d["walls"][:4]],
+        r"small.json: walls: 2560000 m\^2 of floor in all; at most 2e\+06",
     ),
     "too much wall": (
-        lambda d: d["walls"].extend([{"from": [-500, 9], "to": [500, 9], "height": 9, "colour": "#000000"}]),
-        r"small.json: walls: 9043 m\^2 of wall in all; at most 6000",
+        lambda d: d["walls"].extend([{"from": [-9000, 9], "to": [9000, 9], "height": 12, "colour": "#000000"}]),
+        r"small.json: walls: 216043 m\^2 of wall in all; at most 200000",
     ),
     "no start": (lambda d: d.update(starts=[]), r"starts: got \[\]; list should have at least 1 item"),
 }
