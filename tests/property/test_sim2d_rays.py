@@ -17,7 +17,7 @@ WIDTH = 24
 coordinate = st.floats(-6, 6).map(lambda v: round(v, 3))
 segment = st.tuples(coordinate, coordinate, coordinate, coordinate).filter(lambda s: math.dist(s[:2], s[2:]) > 0.05)
 segments = st.lists(segment, min_size=1, max_size=12).map(np.array)
-heading = st.floats(-math.pi, math.pi)
+heading = st.floats(-math.pi, math.pi).map(lambda v: round(v, 9))  # none so small that dividing by it overflows
 
 
 def literal_crossings(walls: np.ndarray, x: float, y: float, dx: float, dy: float) -> list[tuple[float, int, float]]:
