@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from ratslam_core import map_correction
 from ratslam_core.belief import Belief
+from ratslam_core.experiences import Experiences
 from ratslam_core.params import ExperienceMapParams
 from ratslam_core.transitions import Transitions
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, wrap_angle
 
 CARRIED_M = 100.0  # how well the robot knows where it is after it was carried away
-BLIND_M = 1.0  # so near in the map must be what is not seen
 NOWHERE_M = 0.5  # an experience of a view that shows nothing is only known to be somewhere in its zone
 
 
@@ -29,14 +29,10 @@ class ExperienceMap:
     def __init__(self, shape: tuple[int, int, int], cell_m: float, params: ExperienceMapParams | None = None) -> None:
         self.params = params or ExperienceMapParams()
         self.shape, self.cell_m = shape, cell_m
-        self._pose = np.zeros((1024, 3))  # x, y, heading in the map
-        self._at = np.zeros((1024, 3))  # x', y', theta' in cells and layers
-        self._view = np.zeros(1024, np.int64)
+        self._experiences = Experiences(shape)
         self.yaw_bias = 0.0  # rad/s, learnt
         self._turning_s = self._turning_from_latest_s = 0.0
         self.transitions = Transitions()
-        self._count = 0
-        self._of_view: dict[int, list[int]] = {}
         self.active = -1
         self._offset = IDENTITY  # the robot in the frame of the active experience when it was seen best
         self._sigma = 0.0  # how well that is known, m
@@ -55,7 +51,7 @@ class ExperienceMap:
     # ------------------------------------------------------------ reading
 
     def __len__(self) -> int:
-        return self._count
+        return self._experiences.count
 
     @property
     def link_count(self) -> int:
@@ -64,7 +60,7 @@ class ExperienceMap:
     @property
     def poses(self) -> NDArray[np.float64]:
         """x, y (m), heading (rad) of every experience in the map, shape (n, 3). A view."""
-        return self._pose[: self._count]
+        return self._experiences.pose[: len(self)]
 
     @property
     def links(self) -> NDArray[np.int64]:
@@ -85,7 +81,7 @@ class ExperienceMap:
         test_experience_map.py::test_no_link_is_quicker_than_the_robot.
         """
         t, rows = self.transitions, self._travelled
-        apart = self._pose[t.ends[rows, 1], :2] - self._pose[t.ends[rows, 0], :2]
+        apart = self.poses[t.ends[rows, 1], :2] - self.poses[t.ends[rows, 0], :2]
         pace = self._driving_s / self._driven_m if self._driven_m > 0 else 0.0
         return np.maximum(t.time_s[rows], pace * np.hypot(apart[:, 0], apart[:, 1]))
 
@@ -104,22 +100,23 @@ class ExperienceMap:
         return self.pose(self.active).compose(self.local_pose)
 
     def pose(self, experience: int) -> Pose2:
-        x, y, heading = self._pose[experience]
+        """An experience's place in the map."""
+        x, y, heading = self._experiences.pose[self._require(experience)]
         return Pose2(float(x), float(y), float(heading))
 
     def cell_state(self, experience: int) -> tuple[float, float, float, int]:
         """x', y' (cells), theta' (layers) and the scene of one experience."""
-        x, y, theta = self._at[experience]
-        return float(x), float(y), float(theta), int(self._view[experience])
+        x, y, theta = self._experiences.at[self._require(experience)]
+        return float(x), float(y), float(theta), int(self._experiences.view[experience])
 
     def energy(self, experience: int, packet: Packet, view: int) -> float:
-        """E_i = 0 if r_i > 1 or q_i > 1 or V != V_i, else 2 - r_i - q_i. ACRA 2006 eqs. 1-4."""
-        if view != self._view[experience]:
-            return 0.0
-        dx, dy, dtheta = self._cells_from(experience, packet)
-        r = math.hypot(dx, dy) / self.params.zone_xy
-        q = abs(dtheta) / self.params.zone_theta
-        return 0.0 if r > 1 or q > 1 else 2 - r - q
+        """How well this state of pose cells and scene fits an experience; at most 2. `Experiences.energy`."""
+        return self._experiences.energy(self._require(experience), packet, view, self.params)
+
+    def _require(self, experience: int) -> int:
+        if not 0 <= experience < len(self):
+            raise ValueError(f"experience must be from 0 to {len(self) - 1}, got {experience!r}")
+        return experience
 
     # ------------------------------------------------------------ learning
 
@@ -171,7 +168,7 @@ class ExperienceMap:
         behind a growing map, so their fixed point is computed directly every `solve_every` steps when loops have closed.
         test_map_correction.py::{test_a_sweep_never_raises_the_residual, test_sweeps_and_solution_agree}.
         """
-        t, poses = self.transitions, self._pose[: self._count]
+        t, poses = self.transitions, self._experiences.pose[: len(self)]
         for _ in range(self.params.sweeps):
             map_correction.sweep(poses, t.graph, t.ends, t.move, t.believed, self.params.correction)
         due = self.params.solve_every and self._steps - self._solved_at >= self.params.solve_every
@@ -181,8 +178,11 @@ class ExperienceMap:
     def _solve(self, poses: NDArray[np.float64]) -> None:
         t, rows = self.transitions, slice(self.transitions.count)
         ends, moves, turning = t.ends[rows], t.move[rows], t.turning_s[rows] if self.params.calibrate else None
-        trust = map_correction.trust(poses, ends, moves, t.weight[rows], t.chain[rows], self.params.odometry_sigma)
-        t.believed[rows] = t.weight[rows] * trust
+        t.believed[rows] = t.weight[rows]
+        if self.params.robust:
+            t.believed[rows] *= map_correction.trust(
+                poses, ends, moves, t.weight[rows], t.chain[rows], self.params.odometry_sigma
+            )
         more = map_correction.solve(poses, ends, moves, t.believed[rows], turning)
         if turning is not None:
             self.yaw_bias += more
@@ -192,51 +192,18 @@ class ExperienceMap:
     # ------------------------------------------------------------ inside
 
     def _most_energetic(self, packet: Packet, view: int) -> int:
-        """The experience with the most energy above the threshold, -1 for none.
-
-        [ours] Where there is nothing to see only the pose cells speak, and they use the same cells for places far apart:
-        then an experience must be near in the map, too. test_experience_map.py::test_seeing_nothing_closes_no_loop.
-        """
-        best, most = -1, self.params.threshold
-        robot = self.robot
-        for experience in self._of_view.get(view, ()):
-            x, y, _ = self._pose[experience]
-            if view < 0 and math.hypot(x - robot.x, y - robot.y) > BLIND_M:
-                continue
-            energy = self.energy(experience, packet, view)
-            if energy > most:
-                best, most = experience, energy
-        return best
-
-    def _cells_from(self, experience: int, packet: Packet) -> tuple[float, float, float]:
-        """The packet relative to an experience's state: cells and layers, the shorter way round."""
-        n_theta, n_y, n_x = self.shape
-        x, y, theta = self._at[experience]
-        layer = packet.heading_rad * n_theta / (2 * math.pi)
-        return (
-            (packet.x - x + n_x / 2) % n_x - n_x / 2,
-            (packet.y - y + n_y / 2) % n_y - n_y / 2,
-            (layer - theta + n_theta / 2) % n_theta - n_theta / 2,
-        )
+        return self._experiences.most_energetic(packet, view, self.params, self.robot)
 
     def _create(self, packet: Packet, view: int, pose: Pose2) -> None:
-        if self._count == len(self._pose):
-            self._pose, self._at, self._view = _double(self._pose), _double(self._at), _double(self._view)
-        i = self._count
-        n_theta = self.shape[0]
-        self._pose[i] = pose.x, pose.y, pose.heading_rad
-        self._at[i] = packet.x, packet.y, (packet.heading_rad * n_theta / (2 * math.pi)) % n_theta
-        self._view[i] = view
-        self._of_view.setdefault(view, []).append(i)
+        self.active = self._experiences.add(packet, view, pose)
         self.transitions.graph.add_node()
-        self._count += 1
-        self.active, self._offset, self._travel, self._sigma = i, IDENTITY, IDENTITY, 0.0
+        self._offset, self._travel, self._sigma = IDENTITY, IDENTITY, 0.0
         self._belief.local = IDENTITY
 
     def _enter(self, experience: int, packet: Packet, seen: Recognition) -> None:
         """Make an experience active; the robot may enter its zone beside its centre."""
-        dx, dy, dtheta = self._cells_from(experience, packet)
-        facing = self._at[experience, 2] * 2 * math.pi / self.shape[0]
+        dx, dy, dtheta = self._experiences.cells_from(experience, packet)
+        facing = self._experiences.at[experience, 2] * 2 * math.pi / self.shape[0]
         c, s = math.cos(facing), math.sin(facing)
         dx, dy = dx * self.cell_m, dy * self.cell_m
         turn = seen.facing_rad if seen.view >= 0 else dtheta * 2 * math.pi / self.shape[0]
@@ -272,7 +239,7 @@ class ExperienceMap:
         row = None if carried else self.transitions.row_of.get((i, j))
         if row is None:
             row = self.transitions.add(i, j, travelled=not carried)
-            self.closures += j != self._count - 1
+            self.closures += j != len(self) - 1
         self.transitions.take_time(row, self._since_s, self._turning_s)
         sigma = math.hypot(sigma, self.params.odometry_drift * self._way_m)
         self._since_s = self._turning_s = self._way_m = 0.0
@@ -318,7 +285,3 @@ class _Arrival:
     weight: float
     came: Pose2  # the robot in the frame of the experience before, when the active one was seen best
     sigma: float
-
-
-def _double(array: NDArray) -> NDArray:
-    return np.concatenate([array, np.zeros_like(array)])

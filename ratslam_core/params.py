@@ -153,6 +153,19 @@ class ExperienceMapParams:
     threshold: float = param(
         0.0, low=0.0, high=2.0, meaning="a new experience when no energy is above it", source="B 4.1"
     )
+    energy: str = param(
+        "2006",
+        symbol="E",
+        choices=("2006", "2005"),
+        meaning="2006: nothing outside the zone; 2005: place and heading count each for itself",
+        source="D eqs. 1-4, B eqs. 4-9",
+    )
+    match_view: bool = param(
+        True,
+        symbol="E_V",
+        meaning="the scene switches experiences on and off; off = only the pose cells count",
+        source="B eq. 8",
+    )
     correction: float = param(
         0.5,
         symbol="α",
@@ -179,6 +192,9 @@ class ExperienceMapParams:
         high=1.0,
         meaning="how the error of odometry grows with the way",
         source="ours",
+    )
+    robust: bool = param(
+        True, meaning="looks and odometry that the map contradicts weigh less in its exact correction", source="ours"
     )
     calibrate: bool = param(
         True, meaning="learn the bias of the yaw rate from what the map cannot explain", source="ours"

@@ -34,7 +34,7 @@ class Robot:
     def go(self, forwards: float, turn: float, view: int, *, steps: int = 10, **look: object) -> bool:
         """Drive an arc in so many steps of 0.1 s; only at its end there is something to see."""
         odometry = Odometry(forwards / steps / 0.1, turn / steps / 0.1, 0.1)
-        before = int(self.map._view[self.map.active]) if self.map.active >= 0 else view
+        before = self.map.cell_state(self.map.active)[3] if self.map.active >= 0 else view
         for step in range(steps):
             middle = turn / steps / 2
             length = forwards / steps

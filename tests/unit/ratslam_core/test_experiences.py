@@ -1,0 +1,122 @@
+"""Which experience fits best: the two energies, with and without the scene, against loops over all of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition, experiences
+from ratslam_core.experiences import Experiences
+
+from .literal import interpret
+
+SHAPES = [(36, 64, 64), (36, 8, 8), (10, 9, 21)]
+STILL = Odometry(0.0, 0.0, 0.1)
+
+
+def literal_energy(known: Experiences, i: int, packet: Packet, view: int, p: ExperienceMapParams) -> float:
+    """D1-D4 and B4-B9 with every wrapping tried."""
+    n_theta, n_y, n_x = known.shape
+    x, y, theta = known.at[i]
+    layer = packet.heading_rad * n_theta / (2 * math.pi)
+    r = min(
+        math.hypot(packet.x - x + a, packet.y - y + b)
+        for a in (-2 * n_x, -n_x, 0, n_x, 2 * n_x) for b in (-2 * n_y, -n_y, 0, n_y, 2 * n_y)
+    ) / p.zone_xy  # fmt: skip
+    q = min(abs(layer - theta + c) for c in (-2 * n_theta, -n_theta, 0, n_theta)) / p.zone_theta
+    switch = not p.match_view or view == known.view[i]
+    if p.energy == "2005":
+        return switch * (max(1 - r, 0) + max(1 - q, 0))
+    return 0.0 if r > 1 or q > 1 or not switch else 2 - r - q
+
+
+cells = st.one_of(st.floats(0, 63.99), st.sampled_from([0.0, 0.5, 7.9, 62.0, 63.9]))
+headings = st.one_of(st.floats(-3.14, math.pi), st.sampled_from([math.pi, -3.1, 0.0, -1e-17]))
+states = st.tuples(cells, cells, headings, st.integers(-1, 3))
+params = st.builds(
+    ExperienceMapParams,
+    energy=st.sampled_from(["2006", "2005"]),
+    match_view=st.booleans(),
+    zone_xy=st.one_of(st.just(2.0), st.floats(0.5, 20.0)),
+    zone_theta=st.one_of(st.just(2.0), st.floats(0.5, 20.0)),
+    threshold=st.one_of(st.just(0.0), st.floats(0.0, 2.0)),
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.sampled_from(SHAPES), params, states, states)
+def test_energy_is_that_of_the_papers(shape, p: ExperienceMapParams, made, now) -> None:
+    known = Experiences(shape)
+    known.add(Packet(*made[:3], 1.0), made[3], Pose2(0.0, 0.0, 0.0))
+    packet = Packet(now[0] % shape[2], now[1] % shape[1], now[2], 1.0)
+    expected = literal_energy(known, 0, packet, now[3], p)
+    assert known.energy(0, packet, now[3], p) == pytest.approx(expected, abs=1e-9)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.sampled_from(SHAPES), params, st.lists(states, max_size=40), states)
+def test_the_choice_is_that_of_a_loop_over_all(shape, p: ExperienceMapParams, made, now) -> None:
+    """The oldest of those with the most energy, by view or by pose cells, however the buckets lie."""
+    known = Experiences(shape)
+    for x, y, heading, view in made:
+        known.add(Packet(x, y, heading, 1.0), view, Pose2(x / 4, y / 4, heading))
+    robot = Pose2(3.0, 3.0, 0.0)
+    packet, view = Packet(now[0] % shape[2], now[1] % shape[1], now[2], 1.0), now[3]
+    best, most = -1, p.threshold
+    for i in range(len(made)):
+        far = math.hypot(known.pose[i, 0] - robot.x, known.pose[i, 1] - robot.y) > experiences.BLIND_M
+        energy = known.energy(i, packet, view, p)
+        if energy > most and not (p.match_view and view < 0 and far):
+            best, most = i, energy
+    assert known.most_energetic(packet, view, p, robot) == best
+
+
+@pytest.mark.parametrize("choice", [{}, {"match_view": False}, {"match_view": False, "energy": "2005"}])
+def test_the_interpreted_choice_is_the_compiled_one(choice, monkeypatch: pytest.MonkeyPatch) -> None:
+    p = ExperienceMapParams(**choice)
+    known = Experiences((36, 64, 64))
+    for k in range(60):
+        known.add(Packet(30 + k % 7, 30 + k % 5, k % 4 / 5, 1.0), k % 3, Pose2(0.0, 0.0, 0.0))
+    questions = [(Packet(31 + k / 3, 30 + k / 4, k / 30, 1.0), k % 3) for k in range(20)]
+    compiled = [known.most_energetic(*question, p, Pose2(0.0, 0.0, 0.0)) for question in questions]
+    interpret(experiences, monkeypatch)
+    assert [known.most_energetic(*question, p, Pose2(0.0, 0.0, 0.0)) for question in questions] == compiled
+    assert [known.energy(3, *question, p) for question in questions] == pytest.approx(
+        [literal_energy(known, 3, *question, p) for question in questions]
+    )
+    assert max(compiled) >= 0
+
+
+def a_map(**choice: object) -> ExperienceMap:
+    made = ExperienceMap((36, 64, 64), 0.25, replace(ExperienceMapParams(), **choice))  # type: ignore[arg-type]
+    made.step(Packet(20.0, 20.0, 0.0, 1.0), Recognition(0, True, -1, math.inf), STILL)
+    return made
+
+
+def test_in_2005_the_right_place_with_a_wrong_heading_still_counts() -> None:
+    turned = Packet(20.0, 20.0, 2.0, 1.0)
+    assert a_map(energy="2005").energy(0, turned, 0) == pytest.approx(1.0)
+    assert a_map(energy="2006").energy(0, turned, 0) == 0.0
+    for energy, created in (("2005", False), ("2006", True)):
+        assert a_map(energy=energy).step(turned, Recognition(0, False, 0, 0.0), STILL) is created
+
+
+def test_without_the_scene_the_same_cells_are_the_same_place() -> None:
+    for match_view, created in ((True, True), (False, False)):
+        made = a_map(match_view=match_view)
+        assert made.energy(0, Packet(20.0, 20.0, 0.0, 1.0), 5) == (0.0 if match_view else 2.0)
+        assert made.step(Packet(20.0, 20.0, 0.0, 1.0), Recognition(5, True, -1, math.inf), STILL) is created
+
+
+def test_thousands_of_experiences_keep_their_chains() -> None:
+    known = Experiences((36, 64, 64))
+    for k in range(3000):
+        known.add(Packet(k % 64, k // 64, 0.0, 1.0), k % 7, Pose2(0.0, 0.0, 0.0))
+    for match_view in (True, False):
+        p = ExperienceMapParams(match_view=match_view)
+        for k in (0, 1, 1023, 1024, 2999):
+            assert known.most_energetic(Packet(k % 64, k // 64, 0.0, 1.0), k % 7, p, Pose2(0.0, 0.0, 0.0)) == k
