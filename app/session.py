@@ -108,7 +108,7 @@ class Session:
 
     def _think(self) -> Estimate:
         odometry = self._odometry()
-        estimate = self.brain.step(self.frame.image, odometry)
+        estimate = self.brain.step(self.frame.image, odometry, self.pilot.behaviour)
         self.evaluation.record(self.time_s, self.simulator.truth, self.brain.experience_map, estimate.created, odometry)
         return estimate
 

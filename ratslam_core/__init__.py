@@ -15,6 +15,7 @@ from ratslam_core.params import (
 from ratslam_core.pose_cells import PoseCells
 from ratslam_core.slam import RatSlam
 from ratslam_core.temporal_map import Route, TemporalMap
+from ratslam_core.transitions import Link
 from ratslam_core.types import Estimate, Odometry, Packet, Pose2, Recognition, wrap_angle
 from ratslam_core.view_links import ViewLinks
 
@@ -24,6 +25,7 @@ __all__ = [
     "ExperienceMapParams",
     "GoalMemory",
     "GoalMemoryParams",
+    "Link",
     "LocalView",
     "LocalViewParams",
     "MapGrid",

@@ -13,145 +13,74 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core import map_correction
-from ratslam_core.belief import Belief
-from ratslam_core.experiences import Experiences
+from ratslam_core.confirmation import Confirmation
+from ratslam_core.map_reading import MapReading
 from ratslam_core.params import ExperienceMapParams
-from ratslam_core.transitions import Transitions
-from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, wrap_angle
+from ratslam_core.transitions import require_behaviour
+from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite, wrap_angle
 
 CARRIED_M = 100.0  # how well the robot knows where it is after it was carried away
 NOWHERE_M = 0.5  # an experience of a view that shows nothing is only known to be somewhere in its zone
 
 
-class ExperienceMap:
+class ExperienceMap(MapReading):
     """Experiences and links. `step` finds or makes the active experience and learns the transition to it."""
 
     def __init__(self, shape: tuple[int, int, int], cell_m: float, params: ExperienceMapParams | None = None) -> None:
-        self.params = params or ExperienceMapParams()
-        self.shape, self.cell_m = shape, cell_m
-        self._experiences = Experiences(shape)
+        """shape: layers, cells along y' and x' of the pose cells; cell_m: side of one cell."""
+        super().__init__(shape, cell_m, params)
         self.yaw_bias = 0.0  # rad/s, learnt
-        self._turning_s = self._turning_from_latest_s = 0.0
-        self.transitions = Transitions()
-        self.active = -1
         self._offset = IDENTITY  # the robot in the frame of the active experience when it was seen best
         self._sigma = 0.0  # how well that is known, m
         self._travel = IDENTITY  # odometry since then
-        self._belief = Belief()
+        self._leg = _Leg()  # since the last link was learnt
         self._arrival: _Arrival | None = None
         self._latest = -1  # the experience made last: where it was made is known exactly
-        self._from_latest = IDENTITY  # odometry since then
-        self._way_m = self._way_from_latest_m = 0.0
-        self._since_s = 0.0
-        self._driven_m = self._driving_s = 0.0
+        self._from_latest = _Leg()
+        self._confirmation = Confirmation()
         self.closures = 0  # links made to experiences that existed before
         self._solved_at = self._closures_at_solve = 0
         self._steps = 0
 
-    # ------------------------------------------------------------ reading
+    def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0) -> bool:
+        """One step: the robot moved as the odometry says and is now in this state. True when a new experience was made.
 
-    def __len__(self) -> int:
-        return self._experiences.count
-
-    @property
-    def link_count(self) -> int:
-        return len(self.transitions.row_of)
-
-    @property
-    def poses(self) -> NDArray[np.float64]:
-        """x, y (m), heading (rad) of every experience in the map, shape (n, 3). A view."""
-        return self._experiences.pose[: len(self)]
-
-    @property
-    def links(self) -> NDArray[np.int64]:
-        """From and to of every link, shape (m, 2)."""
-        return self.transitions.ends[self._travelled]
-
-    @property
-    def moves(self) -> NDArray[np.float64]:
-        """Of every link: dx, dy (m) in the frame of the first experience and change of facing (rad), shape (m, 3)."""
-        return self.transitions.move[self._travelled]
-
-    @property
-    def link_times(self) -> NDArray[np.float64]:
-        """Seconds that each transition takes, shape (m,).
-
-        [ours] Never less than its length in the map takes at the robot's own pace: from the edge of one zone into the next
-        it is only a step, and a route over many such would promise to be there in half the time.
-        test_experience_map.py::test_no_link_is_quicker_than_the_robot.
+        behaviour: 0 to 15, the local movement that brought it here; links remember it. ValueError for another one, and for
+        a packet that is nowhere.
         """
-        t, rows = self.transitions, self._travelled
-        apart = self.poses[t.ends[rows, 1], :2] - self.poses[t.ends[rows, 0], :2]
-        pace = self._driving_s / self._driven_m if self._driven_m > 0 else 0.0
-        return np.maximum(t.time_s[rows], pace * np.hypot(apart[:, 0], apart[:, 1]))
-
-    @property
-    def _travelled(self) -> NDArray[np.int64]:
-        return np.flatnonzero(self.transitions.travelled[: self.transitions.count])
-
-    @property
-    def local_pose(self) -> Pose2:
-        """Where the robot believes to be in the frame of the active experience."""
-        return self._belief.local
-
-    @property
-    def robot(self) -> Pose2:
-        """The robot in the map."""
-        return self.pose(self.active).compose(self.local_pose)
-
-    def pose(self, experience: int) -> Pose2:
-        """An experience's place in the map."""
-        x, y, heading = self._experiences.pose[self._require(experience)]
-        return Pose2(float(x), float(y), float(heading))
-
-    def cell_state(self, experience: int) -> tuple[float, float, float, int]:
-        """x', y' (cells), theta' (layers) and the scene of one experience."""
-        x, y, theta = self._experiences.at[self._require(experience)]
-        return float(x), float(y), float(theta), int(self._experiences.view[experience])
-
-    def energy(self, experience: int, packet: Packet, view: int) -> float:
-        """How well this state of pose cells and scene fits an experience; at most 2. `Experiences.energy`."""
-        return self._experiences.energy(self._require(experience), packet, view, self.params)
-
-    def _require(self, experience: int) -> int:
-        if not 0 <= experience < len(self):
-            raise ValueError(f"experience must be from 0 to {len(self) - 1}, got {experience!r}")
-        return experience
-
-    # ------------------------------------------------------------ learning
-
-    def step(self, packet: Packet, seen: Recognition, odometry: Odometry) -> bool:
-        """One step: the robot moved as the odometry says and is now in this state. True when a new experience was made."""
+        require_behaviour(behaviour)
+        require_finite("packet", packet.x + packet.y + packet.heading_rad)
         self._steps += 1
         if self.active < 0:
             self._create(packet, seen.view, IDENTITY)
             return True
-        middle = odometry.yaw_rate * odometry.dt / 2
-        step = odometry.speed * odometry.dt
-        moved = Pose2(step * math.cos(middle), step * math.sin(middle), wrap_angle(2 * middle))
-        turning_s = odometry.dt * (odometry.speed != 0 or odometry.yaw_rate != 0)
-        self._travel, self._from_latest = self._travel.compose(moved), self._from_latest.compose(moved)
-        self._way_m += abs(step)
-        self._way_from_latest_m += abs(step)
-        self._turning_s += turning_s
-        self._turning_from_latest_s += turning_s
-        self._since_s += odometry.dt
-        self._driven_m += abs(step)
-        self._driving_s += odometry.dt * (odometry.speed != 0)
-        self._belief.move(moved, self.params.odometry_drift * abs(step))
+        self._move(odometry)
         best = self._most_energetic(packet, seen.view)
         before, came, sigma = self.active, self._offset.compose(self._travel), self._sigma
         if best < 0:
             self._create(packet, seen.view, self.robot)
-            self._learn_link(before, came, sigma)
+            self._learn_link(before, came, sigma, behaviour)
             self._learn_spine(before)
             return True
         if best != before:
-            self._enter(best, packet, seen)
-            self._learn_link(before, came, sigma)
+            look = self._look(best, packet, seen)
+            if self._confirmed(best, look):
+                self._enter(best, look, self._deviation(seen))
+                self._learn_link(before, came, sigma, behaviour)
         elif self._arrival is not None and self._deviation(seen) < self._sigma:
             self._see_better(seen)
         return False
+
+    def tried(self, i: int, j: int, reached: bool) -> bool:
+        """One trial of the way between two experiences, either way round; True when a link was deleted for it.
+
+        [ours] The paper counts every departure under a link's behaviour as a trial (`link_trials_are`), but where many ways
+        leave a place, none of them is what the behaviour is expected to bring. Who follows a route knows what it tries.
+        test_transitions.py::test_exploring_deletes_nothing_of_what_was_not_tried.
+        """
+        rows = [self.transitions.row_of.get(ends, -1) for ends in ((i, j), (j, i))]
+        deleted = [self._judge(row, reached) for row in rows if row >= 0]
+        return any(deleted)
 
     def lose_track(self) -> None:
         """[ours] The robot was moved without its wheels: what led here is not a transition, and odometry starts anew.
@@ -168,7 +97,7 @@ class ExperienceMap:
         behind a growing map, so their fixed point is computed directly every `solve_every` steps when loops have closed.
         test_map_correction.py::{test_a_sweep_never_raises_the_residual, test_sweeps_and_solution_agree}.
         """
-        t, poses = self.transitions, self._experiences.pose[: len(self)]
+        t, poses = self.transitions, self.poses
         for _ in range(self.params.sweeps):
             map_correction.sweep(poses, t.graph, t.ends, t.move, t.believed, self.params.correction)
         due = self.params.solve_every and self._steps - self._solved_at >= self.params.solve_every
@@ -191,8 +120,34 @@ class ExperienceMap:
 
     # ------------------------------------------------------------ inside
 
+    def _move(self, odometry: Odometry) -> None:
+        middle = odometry.yaw_rate * odometry.dt / 2
+        step = odometry.speed * odometry.dt
+        moved = Pose2(step * math.cos(middle), step * math.sin(middle), wrap_angle(2 * middle))
+        turning_s = odometry.dt * (odometry.speed != 0 or odometry.yaw_rate != 0)
+        self._travel = self._travel.compose(moved)
+        self._leg.add(moved, abs(step), turning_s, odometry.dt)
+        self._from_latest.add(moved, abs(step), turning_s, odometry.dt)
+        self._driven_m += abs(step)
+        self._driving_s += odometry.dt * (odometry.speed != 0)
+        self._belief.move(moved, self.params.odometry_drift * abs(step))
+
     def _most_energetic(self, packet: Packet, view: int) -> int:
         return self._experiences.most_energetic(packet, view, self.params, self.robot)
+
+    def _look(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
+        """Where the robot is in the frame of an experience: it may enter the zone beside the centre."""
+        dx, dy, dtheta = self._experiences.cells_from(experience, packet)
+        facing = self.cell_states[experience, 2] * 2 * math.pi / self.shape[0]
+        c, s = math.cos(facing), math.sin(facing)
+        dx, dy = dx * self.cell_m, dy * self.cell_m
+        turn = seen.facing_rad if seen.view >= 0 else dtheta * 2 * math.pi / self.shape[0]
+        return Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(turn))
+
+    def _confirmed(self, experience: int, look: Pose2) -> bool:
+        """Who knows that it was carried away is surprised by nothing."""
+        needed = self.params.confirm_jumps if self._belief.sigma < CARRIED_M else 0
+        return self._confirmation.believes(self.robot, self.pose(experience).compose(look), needed)
 
     def _create(self, packet: Packet, view: int, pose: Pose2) -> None:
         self.active = self._experiences.add(packet, view, pose)
@@ -200,17 +155,11 @@ class ExperienceMap:
         self._offset, self._travel, self._sigma = IDENTITY, IDENTITY, 0.0
         self._belief.local = IDENTITY
 
-    def _enter(self, experience: int, packet: Packet, seen: Recognition) -> None:
-        """Make an experience active; the robot may enter its zone beside its centre."""
-        dx, dy, dtheta = self._experiences.cells_from(experience, packet)
-        facing = self._experiences.at[experience, 2] * 2 * math.pi / self.shape[0]
-        c, s = math.cos(facing), math.sin(facing)
-        dx, dy = dx * self.cell_m, dy * self.cell_m
-        turn = seen.facing_rad if seen.view >= 0 else dtheta * 2 * math.pi / self.shape[0]
-        self._offset = Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(turn))
+    def _enter(self, experience: int, look: Pose2, sigma: float) -> None:
+        """Make an experience active."""
         self._belief.local = self.pose(experience).inverse().compose(self.robot)
-        self._travel, self.active, self._sigma = IDENTITY, experience, self._deviation(seen)
-        self._belief.see(self._offset, self._sigma)
+        self._offset, self._travel, self.active, self._sigma = look, IDENTITY, experience, sigma
+        self._belief.see(look, sigma)
 
     def _deviation(self, seen: Recognition) -> float:
         """How far (m) the robot may be from where a view was taken that differs so much."""
@@ -229,23 +178,41 @@ class ExperienceMap:
         self._belief.see(self._offset, self._sigma)
         self._measure(arrival)
 
-    def _learn_link(self, i: int, came: Pose2, sigma: float) -> None:
+    def _learn_link(self, i: int, came: Pose2, sigma: float, behaviour: int) -> None:
         """The transition i -> active took this move and this time; repeats are averaged. ACRA 2006 eqs. 5-6.
 
         came: the robot in the frame of i as it arrived; sigma: how well its place in i was known.
         """
-        j = self.active
+        j, t, leg = self.active, self.transitions, self._leg
+        self._leg = _Leg()
         carried = sigma >= CARRIED_M
-        row = None if carried else self.transitions.row_of.get((i, j))
+        row = None if carried else t.row_of.get((i, j))
         if row is None:
-            row = self.transitions.add(i, j, travelled=not carried)
+            row = t.add(i, j, travelled=not carried, behaviour=behaviour)
             self.closures += j != len(self) - 1
-        self.transitions.take_time(row, self._since_s, self._turning_s)
-        sigma = math.hypot(sigma, self.params.odometry_drift * self._way_m)
-        self._since_s = self._turning_s = self._way_m = 0.0
-        t = self.transitions
+        t.take_time(row, leg.time_s, leg.turning_s)
+        sigma = math.hypot(sigma, self.params.odometry_drift * leg.way_m)
         self._arrival = _Arrival(row, t.move[row].copy(), float(t.weight[row]), came, sigma)
         self._measure(self._arrival)
+        if not carried:
+            self._count(row, behaviour)
+
+    def _count(self, row: int, behaviour: int) -> None:
+        """The robot came this way: a trial of it, and maybe of the others that lead from there. ACRA 2006 3.4, eq. 9."""
+        t, failed = self.transitions, []
+        if self.params.link_trials_are == "departures":
+            departures = t.departures(int(t.ends[row, 0]), behaviour)
+            failed = [int(other) for other in departures if other != row]
+        for other in failed:
+            self._judge(other, False)
+        if self.params.link_trials_are == "tried" or t.behaviour[row] == behaviour:
+            self._judge(row, True)
+
+    def _judge(self, row: int, reached: bool) -> bool:
+        deleted = self.transitions.judge(row, reached, self.params)
+        if deleted and self._arrival is not None and self._arrival.row == row:
+            self._arrival = None  # nothing more is to be measured
+        return deleted
 
     def _learn_spine(self, before: int) -> None:
         """[ours] What odometry says between an experience and the one made before it, when known ones lie between.
@@ -254,13 +221,11 @@ class ExperienceMap:
         decimetres only, cuts the rigid chain of odometry, and the map shrinks.
         """
         if self._latest >= 0 and self._latest != before:
-            t = self.transitions
+            t, leg = self.transitions, self._from_latest
             row = t.add(self._latest, self.active, travelled=False)
-            weight = self._weight_of(self.params.odometry_drift * self._way_from_latest_m)
-            t.measure(row, self._from_latest, weight, t.move[row], 0.0)
-            t.take_time(row, 0.0, self._turning_from_latest_s)
-        self._latest, self._from_latest = self.active, IDENTITY
-        self._way_from_latest_m = self._turning_from_latest_s = 0.0
+            t.measure(row, leg.moved, self._weight_of(self.params.odometry_drift * leg.way_m), t.move[row], 0.0)
+            t.take_time(row, 0.0, leg.turning_s)
+        self._latest, self._from_latest = self.active, _Leg()
 
     def _weight_of(self, sigma: float) -> float:
         """[ours] What a transition counts in map correction: 1 by odometry over a step, less the worse its ends are known.
@@ -274,6 +239,22 @@ class ExperienceMap:
         move = arrival.came.compose(self._offset.inverse())
         weight = self._weight_of(math.hypot(arrival.sigma, self._sigma))
         self.transitions.measure(arrival.row, move, weight, arrival.move, arrival.weight)
+
+
+@dataclass(slots=True)
+class _Leg:
+    """What odometry adds up to since some moment."""
+
+    moved: Pose2 = IDENTITY
+    way_m: float = 0.0
+    turning_s: float = 0.0
+    time_s: float = 0.0
+
+    def add(self, moved: Pose2, way_m: float, turning_s: float, dt: float) -> None:
+        self.moved = self.moved.compose(moved)
+        self.way_m += way_m
+        self.turning_s += turning_s
+        self.time_s += dt
 
 
 @dataclass(slots=True)

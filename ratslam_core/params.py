@@ -193,6 +193,36 @@ class ExperienceMapParams:
         meaning="how the error of odometry grows with the way",
         source="ours",
     )
+    confirm_jumps: int = param(
+        0,
+        unit="sights",
+        low=0,
+        high=50,
+        meaning="a match more than 1 m or 0.8 rad off in the map is believed after so many that agree; 0 = at once",
+        source="ours",
+    )
+    link_confidence: float = param(
+        0.2,
+        symbol="c_min",
+        low=0.0,
+        high=1.0,
+        meaning="a link of less confidence is deleted; 0 = never",
+        source="D 3.4; value ours",
+    )
+    link_trials: int = param(5, symbol="n_min", low=1, high=1000, meaning="not before so many trials", source="ours")
+    link_recency: float = param(
+        0.0,
+        low=0.0,
+        high=1.0,
+        meaning="least that the newest trial of a link counts; 0 = all count the same",
+        source="D 3.4, as next step",
+    )
+    link_trials_are: str = param(
+        "tried",
+        choices=("tried", "departures"),
+        meaning="a link is on trial when it is driven or tried by a route, or at every departure under its behaviour",
+        source="ours; D eq. 9",
+    )
     robust: bool = param(
         True, meaning="looks and odometry that the map contradicts weigh less in its exact correction", source="ours"
     )

@@ -11,6 +11,7 @@ from ratslam_core.experience_map import ExperienceMap
 from ratslam_core.local_view import NOTHING, LocalView
 from ratslam_core.params import RatSlamParams
 from ratslam_core.pose_cells import PoseCells
+from ratslam_core.transitions import require_behaviour
 from ratslam_core.types import Estimate, Odometry
 from ratslam_core.view_links import ViewLinks
 
@@ -35,12 +36,14 @@ class RatSlam:
         self._known_before = self._agreed = 0
         self._learnt_s: list[float] = []  # when each view was recruited
 
-    def step(self, image: NDArray[np.uint8], odometry: Odometry) -> Estimate:
+    def step(self, image: NDArray[np.uint8], odometry: Odometry, behaviour: int = 0) -> Estimate:
         """One iteration at the end of a movement: `odometry` is what the wheels report of it, `image` what is seen then.
 
-        image: (h, w) or (h, w, 3) uint8. The papers' four stages; path integration comes first because the image belongs
-        to the end of the movement [ours].
+        image: (h, w) or (h, w, 3) uint8; behaviour: 0 to 15, the local movement that led here (D 3.2), ValueError for
+        another one. The papers' four stages; path integration comes first because the image belongs to the end of the
+        movement [ours].
         """
+        require_behaviour(behaviour)
         self._time_s += odometry.dt
         odometry = self._calibrated(odometry)
         recognition = self.local_view.observe(image)
@@ -56,7 +59,7 @@ class RatSlam:
         jump = self.pose_cells.cells_apart(expected.x, expected.y, packet.x, packet.y)
         relocalised = jump > self.params.pose_cells.snap_cells
         self.relocalisations += relocalised
-        created = self.experience_map.step(packet, recognition, odometry)
+        created = self.experience_map.step(packet, recognition, odometry, behaviour)
         self._find_again(created, recognition.view)
         self.experience_map.correct()
         return Estimate(
@@ -69,7 +72,8 @@ class RatSlam:
         map_, t = self.experience_map, self.experience_map.transitions
         rows = slice(t.count)
         state = hashlib.sha256()
-        for array in (cells, activity, map_.poses, t.ends[rows], t.move[rows], t.weight[rows], t.time_s[rows]):
+        links = (t.ends, t.move, t.weight, t.time_s, t.travelled, t.behaviour, t.trials, t.confidence)
+        for array in (cells, activity, map_.poses, *(column[rows] for column in links)):
             state.update(np.ascontiguousarray(array).tobytes())
         state.update(self.local_view.templates.tobytes())
         for view in range(len(self.local_view)):

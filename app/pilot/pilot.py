@@ -16,6 +16,15 @@ from ratslam_core import ExperienceMap, Odometry
 
 Mode = Literal["explore", "manual", "goal"]
 BACK_OFF_S = 1.5
+BEHAVIOURS = {  # what the experience map's links remember; 0 is standing
+    "following the wall": 1,
+    "crossing": 2,
+    "turning back to look": 3,
+    "following the route": 4,
+    "coasting on the old route": 4,
+    "freeing itself": 5,
+    "driven by hand": 6,
+}
 
 
 class Pilot:
@@ -45,6 +54,11 @@ class Pilot:
     @property
     def goal_state(self) -> tuple[int, str] | None:
         return (self._follower.goal, self._follower.state) if self._follower else None
+
+    @property
+    def behaviour(self) -> int:
+        """The number of what it is doing, for the links of the experience map."""
+        return BEHAVIOURS.get(self.doing, 0)
 
     def progress(self, experiences: ExperienceMap) -> Progress | None:
         return self._follower.progress(experiences) if self._follower else None

@@ -8,6 +8,7 @@ import pytest
 
 from app.chronicle import SERIES_POINTS, Chronicle
 from app.config import Config
+from app.pilot.pilot import BEHAVIOURS
 from app.session import Session, is_lost, spread_goals
 from app.snapshots import STRONGEST, Snapshots
 from sim2d import World, load_world
@@ -37,6 +38,26 @@ def test_a_tick_is_a_tenth_of_a_second() -> None:
     assert session.evaluation.path_m > 0.5
     assert all(spent > 0 for spent in session.stage_s.values())
     assert list(session.stage_s) == ["office and senses", "RatSLAM", "pilot"]
+
+
+def test_links_remember_what_the_pilot_was_doing() -> None:
+    session = a_session()
+    learnt: dict[tuple[int, int], int] = {}
+    for _ in range(400):
+        before = session.brain.experience_map.link_count
+        session.tick()
+        if session.brain.experience_map.link_count > before:
+            i, j = session.brain.experience_map.links[-1]
+            learnt[int(i), int(j)] = BEHAVIOURS[session.pilot.doing]
+    map_ = session.brain.experience_map
+    assert {(int(i), int(j)): int(b) for (i, j), b in zip(map_.links, map_.behaviours, strict=True)} == learnt
+    assert set(learnt.values()) >= {BEHAVIOURS["following the wall"], BEHAVIOURS["turning back to look"]}
+    session.set_mode("manual")
+    session.tick()
+    assert session.pilot.behaviour == 0  # it waits
+    session.pilot.drive(0.1, 0.0)
+    session.tick()
+    assert session.pilot.behaviour == BEHAVIOURS["driven by hand"]
 
 
 def test_equal_runs_have_equal_hashes_and_others_not() -> None:

@@ -18,6 +18,7 @@ class Robot:
     def __init__(self, params: ExperienceMapParams | None = None, start: Pose2 | None = None) -> None:
         self.map = ExperienceMap(SHAPE, CELL_M, params)
         self.pose = start or Pose2(0.0, 0.0, 0.0)
+        self.behaviour = 0
 
     def packet(self, at: Pose2 | None = None) -> Packet:
         at = at or self.pose
@@ -29,7 +30,7 @@ class Robot:
     ) -> bool:  # fmt: skip
         """Look at a view without moving, unless told how."""
         seen = Recognition(view, new, view, difference, facing)
-        return self.map.step(packet or self.packet(), seen, odometry or Odometry(0.0, 0.0, 0.1))
+        return self.map.step(packet or self.packet(), seen, odometry or Odometry(0.0, 0.0, 0.1), self.behaviour)
 
     def go(self, forwards: float, turn: float, view: int, *, steps: int = 10, **look: object) -> bool:
         """Drive an arc in so many steps of 0.1 s; only at its end there is something to see."""
@@ -42,7 +43,7 @@ class Robot:
             if step < steps - 1:  # what it came from fills its view until it is there
                 at = self.map.cell_state(self.map.active)
                 still = Packet(at[0], at[1], at[2] * 2 * math.pi / 36, 1.0)
-                self.map.step(still, Recognition(before, False, before, 1e6, 0.0), odometry)
+                self.map.step(still, Recognition(before, False, before, 1e6, 0.0), odometry, self.behaviour)
         return self.see(view, odometry=odometry, **look)  # type: ignore[arg-type]
 
 
