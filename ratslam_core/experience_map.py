@@ -98,8 +98,9 @@ class ExperienceMap(MapReading):
         test_map_correction.py::{test_a_sweep_never_raises_the_residual, test_sweeps_and_solution_agree}.
         """
         t, poses = self.transitions, self.poses
+        ends, moves = t.ends[: t.count], t.move[: t.count]
         for _ in range(self.params.sweeps):
-            map_correction.sweep(poses, t.graph, t.ends, t.move, t.believed, self.params.correction)
+            map_correction.sweep(poses, t.graph, ends, moves, t.believed, self.params.correction)
         due = self.params.solve_every and self._steps - self._solved_at >= self.params.solve_every
         if due and self.closures > self._closures_at_solve:
             self._solve(poses)

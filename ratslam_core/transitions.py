@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ratslam_core.map_correction import Adjacency
+from ratslam_core.adjacency import Adjacency
 from ratslam_core.params import ExperienceMapParams
 from ratslam_core.types import Pose2, wrap_angle
 
@@ -74,9 +74,9 @@ class Transitions:
                 setattr(self, name, np.concatenate([array, np.zeros_like(array)]))
         row = self.count
         self.ends[row], self.travelled[row], self.behaviour[row] = (i, j), travelled, behaviour
-        self.chain[row] = self.graph.first[j] < 0 or not travelled
+        self.chain[row] = self.graph.degree(j) == 0 or not travelled
         self.count += 1
-        self.graph.add_link(i, j)
+        self.graph.add_link(i, j, row)
         if travelled:
             self.row_of[i, j] = row
         return row
