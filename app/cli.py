@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from app.config import Config, from_toml, parse_value, to_toml
+from ratslam_core import RatSlam, load_brain
 from sim2d import DEFAULT_WORLD, World, WorldError, load_world, world_names
 
 
@@ -47,6 +48,7 @@ def _parser() -> argparse.ArgumentParser:
     headless.add_argument("--minutes", type=float, default=20.0, help="simulated minutes of exploring (default 20)")
     headless.add_argument("--goals", type=int, default=0, metavar="K", help="then visit K places spread over the map")
     headless.add_argument("--kidnap-at", type=float, nargs="*", default=[], metavar="S", help="kidnap at these seconds")
+    headless.add_argument("--save-brain", type=Path, metavar="FILE", help="write there what the robot knows in the end")
     headless.add_argument(
         "--report", type=Path, metavar="FILE", help="write the report there as JSON (default: print it)"
     )
@@ -68,6 +70,7 @@ def _parser() -> argparse.ArgumentParser:
 def _add_session(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", default=DEFAULT_WORLD, metavar="NAME|FILE", help=f"default: {DEFAULT_WORLD}")
     parser.add_argument("--seed", type=int, default=1, help="same seed, same run (default 1)")
+    parser.add_argument("--brain", type=Path, metavar="FILE", help="start with what another robot knows (--save-brain)")
     _add_config(parser)
 
 
@@ -83,11 +86,10 @@ def _port(text: str) -> int:
     return port
 
 
-def _config_of(args: argparse.Namespace) -> Config:
-    config = Config()
+def _config_of(args: argparse.Namespace, config: Config) -> Config:
     if args.config is not None:
         try:
-            config = from_toml(args.config.read_text(encoding="utf-8"))
+            config = from_toml(args.config.read_text(encoding="utf-8"), config)
         except OSError as error:
             raise ValueError(f"--config {args.config}: {error.strerror or error}") from None
         except ValueError as error:
@@ -100,22 +102,23 @@ def _config_of(args: argparse.Namespace) -> Config:
     return config
 
 
-def _session_of(args: argparse.Namespace) -> tuple[World, Config]:
+def _session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None]:
     if not 0 <= args.seed < 2**32:
         raise ValueError(f"--seed must be from 0 to {2**32 - 1}, got {args.seed}")
-    config = _config_of(args)
-    return load_world(args.world, config.robot.robot_radius_m), config
+    brain = None if args.brain is None else load_brain(args.brain)
+    config = _config_of(args, Config() if brain is None else Config().with_engine(brain.params))
+    return load_world(args.world, config.robot.robot_radius_m), config, brain
 
 
 def _run(args: argparse.Namespace) -> int:
     if not 0 <= args.speed <= 1000:
         raise ValueError(f"--speed must be from 0 to 1000, got {args.speed:g}")
-    world, config = _session_of(args)
+    world, config, brain = _session_of(args)
     from app.runner import Runner
     from web.server import CannotListen, Dashboard
     from web.stage.stage import Stage
 
-    runner = Runner(world, args.seed, config, speed=args.speed, running=not args.paused)
+    runner = Runner(world, args.seed, config, speed=args.speed, running=not args.paused, brain=brain)
     stage = Stage(runner.latest, runner.submit)
     dashboard = Dashboard(runner.latest, runner.submit, stage, port=args.port)
     try:
@@ -149,9 +152,11 @@ def _headless(args: argparse.Namespace) -> int:
     for at in args.kidnap_at:
         if not 0 <= at < args.minutes * 60:
             raise ValueError(f"--kidnap-at must be from 0 to below {args.minutes * 60:g} s, got {at:g}")
-    world, config = _session_of(args)
+    world, config, brain = _session_of(args)
     if args.report is not None and not args.report.absolute().parent.is_dir():
         raise ValueError(f"--report {args.report}: there is no folder {args.report.absolute().parent}")
+    if args.save_brain is not None and not args.save_brain.absolute().parent.is_dir():
+        raise ValueError(f"--save-brain {args.save_brain}: there is no folder {args.save_brain.absolute().parent}")
     from app.headless import run_headless
 
     report = _with_progress(
@@ -159,6 +164,7 @@ def _headless(args: argparse.Namespace) -> int:
         lambda progress: run_headless(
             world, args.seed, args.minutes,
             config=config, goals=args.goals, kidnap_at_s=args.kidnap_at, progress=progress,
+            brain=brain, save_brain_to=args.save_brain,
         ),
     )  # fmt: skip
     text = json.dumps(report, indent=2) + "\n"
@@ -191,7 +197,7 @@ def _with_progress(seconds: float, work: Any) -> Any:
 
 
 def _config(args: argparse.Namespace) -> int:
-    print(to_toml(_config_of(args)), end="")
+    print(to_toml(_config_of(args, Config())), end="")
     return 0
 
 

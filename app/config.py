@@ -11,7 +11,14 @@ from typing import Any
 import tomlkit
 
 from app.pilot import PilotParams
-from ratslam_core import ExperienceMapParams, LocalViewParams, PoseCellParams, RatSlamParams
+from ratslam_core import (
+    ExperienceMapParams,
+    GoalMemoryParams,
+    LocalViewParams,
+    OccupancyParams,
+    PoseCellParams,
+    RatSlamParams,
+)
 from ratslam_core.local_view import COLUMNS
 from sim2d import SimParams
 
@@ -25,6 +32,8 @@ class Config:
     pose_cells: PoseCellParams = PoseCellParams()
     local_view: LocalViewParams = LocalViewParams()
     experience_map: ExperienceMapParams = ExperienceMapParams()
+    goal_memory: GoalMemoryParams = GoalMemoryParams()
+    occupancy: OccupancyParams = OccupancyParams()
     robot: SimParams = SimParams()
     pilot: PilotParams = PilotParams()
 
@@ -34,7 +43,11 @@ class Config:
 
     @property
     def engine(self) -> RatSlamParams:
-        return RatSlamParams(self.pose_cells, self.local_view, self.experience_map)
+        return RatSlamParams(self.pose_cells, self.local_view, self.experience_map, self.goal_memory, self.occupancy)
+
+    def with_engine(self, params: RatSlamParams) -> Config:
+        """A copy whose engine has these parameters."""
+        return replace(self, **{item.name: getattr(params, item.name) for item in fields(params)})
 
     def items(self) -> Iterator[tuple[str, Field[Any], Value]]:
         """Dotted name, declaration and value of every parameter."""

@@ -58,11 +58,14 @@ class Kidnapping:
 class Evaluation:
     """Keeps, tick by tick, what is needed to compare the map with the truth."""
 
-    def __init__(self) -> None:
+    def __init__(self, known: int = 0) -> None:
+        """known: experiences that a brain brought with it; where they were made nobody here has seen."""
         self._rows = np.zeros((4096, 8))  # truth x y heading, local pose x y heading, odometry alone x y
         self._experience = np.zeros(4096, np.int64)
         self._count = 0
-        self._made_at = np.zeros((1024, 4))  # truth x y heading and time when each experience was made
+        self._made_at = np.full(
+            (max(1024, known), 4), np.nan
+        )  # truth x y heading and time when each experience was made
         self._odometry = Pose2(0.0, 0.0, 0.0)
         self._revisits = self._consistent = 0
         self.path_m = 0.0
@@ -86,7 +89,7 @@ class Evaluation:
         self.path_m += abs(truth.speed) * odometry.dt
         if created:
             if experiences.active >= len(self._made_at):
-                self._made_at = np.concatenate([self._made_at, np.zeros_like(self._made_at)])
+                self._made_at = np.concatenate([self._made_at, np.full_like(self._made_at, np.nan)])
             self._made_at[experiences.active] = truth.x, truth.y, truth.heading_rad, time_s
         self._judge(time_s, truth, experiences, local, abs(truth.speed) * odometry.dt)
 
@@ -94,9 +97,15 @@ class Evaluation:
         truth, mapped, _ = self.trajectories(experiences)
         self.kidnaps.append(Kidnapping(time_s, alignment(mapped, truth)))
 
-    def made_at(self, experience: int) -> tuple[float, float]:
-        """Where the robot truly was when it made this experience, office frame."""
-        return float(self._made_at[experience, 0]), float(self._made_at[experience, 1])
+    def made_at(self, experience: int, experiences: ExperienceMap) -> tuple[float, float]:
+        """Where the robot truly was when it made this experience, office frame; of one that its brain brought with it, where
+        the map says, laid over the office as it fits the robot's path best."""
+        x, y = (float(v) for v in self._made_at[experience, :2])
+        if math.isfinite(x):
+            return x, y
+        truth, mapped, _ = self.trajectories(experiences)
+        place = alignment(mapped, truth).compose(experiences.pose(experience))
+        return place.x, place.y
 
     @property
     def revisit_consistency(self) -> float | None:

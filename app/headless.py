@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 from app.config import Config
 from app.session import Session, spread_goals
+from ratslam_core import RatSlam, save_brain
 from sim2d import World
 
 GOAL_TIMEOUT_S = 180.0
@@ -23,13 +25,16 @@ def run_headless(
     config: Config | None = None,
     goals: int = 0,
     kidnap_at_s: Sequence[float] = (),
+    brain: RatSlam | None = None,
+    save_brain_to: Path | None = None,
     progress: Callable[[float, str], None] = lambda _simulated_s, _what: None,
 ) -> dict[str, Any]:
     """Explore for so many simulated minutes, kidnapped at these times, then visit `goals` places; the report as a dict.
 
+    brain: one that knows places already. save_brain_to: a file for the brain as it is in the end.
     progress: called about once a simulated second with the simulated seconds since the last call and what goes on.
     """
-    session = Session(world, seed, config)
+    session = Session(world, seed, config, brain)
     ticks = round(minutes * 60 / session.frame.dt)
     kidnaps = sorted(kidnap_at_s)
     started = time.perf_counter()
@@ -44,13 +49,15 @@ def run_headless(
     for number, goal in enumerate(spread_goals(session, goals)):
         visits.append(_visit(session, goal, lambda s, n=number: progress(s, f"goal {n + 1} of {goals}")))
     wall = time.perf_counter() - started
+    if save_brain_to is not None:
+        save_brain(session.brain, save_brain_to)
     return _report(session, wall, visits)
 
 
 def _visit(session: Session, goal: int, progress: Callable[[float], None]) -> dict[str, Any]:
     """Send the robot to an experience and judge by truth: within 1 m of where that experience was made."""
     truth = session.simulator.truth
-    made_at = session.evaluation.made_at(goal)
+    made_at = session.evaluation.made_at(goal, session.brain.experience_map)
     shortest = session.simulator.free_space.shortest_m((truth.x, truth.y), made_at)
     began_s, began_m = session.time_s, session.evaluation.path_m
     session.pilot.set_goal(goal)

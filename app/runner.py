@@ -14,6 +14,7 @@ from app.chronicle import Chronicle
 from app.config import Config
 from app.session import Session
 from app.snapshots import Snapshots
+from ratslam_core import RatSlam
 from sim2d import World, load_world, world_names
 from web import messages as m
 from web.latest import Latest
@@ -26,13 +27,22 @@ MOST_BEHIND_S = 0.25
 class Runner:
     """Owns the session. `submit` may be called from any thread; everything else happens in the runner's own."""
 
-    def __init__(self, world: World, seed: int, config: Config, *, speed: float = 1.0, running: bool = True) -> None:
+    def __init__(
+        self,
+        world: World,
+        seed: int,
+        config: Config,
+        *,
+        speed: float = 1.0,
+        running: bool = True,
+        brain: RatSlam | None = None,
+    ) -> None:
         self.latest: Latest[m.Snapshot] = Latest()
         self._own_worlds: Mapping[str, World] = {world.name: world}
         titles = dict(world_names())
         titles.setdefault(world.name, world.title)
         self._worlds = tuple(titles.items())
-        self._first = (world, seed, config)
+        self._first = (world, seed, config, brain)
         self._requests: queue.SimpleQueue[m.Request | None] = queue.SimpleQueue()
         self._speed, self._running = speed, running
         self._fault: str | None = None
@@ -78,8 +88,8 @@ class Runner:
             if self._running and now - self._published >= PUBLISH_EVERY_S * 0.98:
                 self._publish()
 
-    def _begin(self, world: World, seed: int, config: Config) -> None:
-        self.session = Session(world, seed, config)
+    def _begin(self, world: World, seed: int, config: Config, brain: RatSlam | None = None) -> None:
+        self.session = Session(world, seed, config, brain)
         self._chronicle = Chronicle(self.session)
         self._run += 1
         self._snapshots = Snapshots(self.session, self._chronicle, self._run, self._worlds)

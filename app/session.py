@@ -24,13 +24,19 @@ STAGES = ("office and senses", "RatSLAM", "pilot")
 class Session:
     """One robot in one world with one brain."""
 
-    def __init__(self, world: World, seed: int = 0, config: Config | None = None) -> None:
+    def __init__(self, world: World, seed: int = 0, config: Config | None = None, brain: RatSlam | None = None) -> None:
+        """brain: one that knows places already; it wakes up somewhere and has to find out where."""
         self.world, self.seed, self.config = world, seed, config or Config()
         brain_seed, pilot_seed = np.random.SeedSequence([seed, 1]).spawn(2)
         self.simulator = Simulator(world, self.config.robot, seed)
-        self.brain = RatSlam(self.config.engine, np.random.default_rng(brain_seed))
+        if brain is None:
+            brain = RatSlam(self.config.engine, np.random.default_rng(brain_seed), sonar_angles_rad=SONAR_ANGLES_RAD)
+        else:
+            brain.set_params(self.config.engine)
+            brain.lose_track()
+        self.brain = brain
         self.pilot = Pilot(self.config.pilot, np.array(SONAR_ANGLES_RAD), np.random.default_rng(pilot_seed))
-        self.evaluation = Evaluation()
+        self.evaluation = Evaluation(len(brain.experience_map))
         self.stage_s = dict.fromkeys(STAGES, 0.0)
         self.frame: SensorFrame = self.simulator.observe()
         self.estimate: Estimate = self._think()
@@ -108,7 +114,9 @@ class Session:
 
     def _think(self) -> Estimate:
         odometry = self._odometry()
-        estimate = self.brain.step(self.frame.image, odometry, self.pilot.behaviour)
+        estimate = self.brain.step(
+            self.frame.image, odometry, behaviour=self.pilot.behaviour, ranges_m=self.frame.ranges_m
+        )
         self.evaluation.record(self.time_s, self.simulator.truth, self.brain.experience_map, estimate.created, odometry)
         return estimate
 

@@ -1,5 +1,6 @@
 """RatSLAM after Milford, Wyeth and Prasser (2004-2006): arrays in, arrays out."""
 
+from ratslam_core.brain_snapshot import BrainSnapshot, load_brain, restore_snapshot, save_brain, take_snapshot
 from ratslam_core.experience_map import ExperienceMap
 from ratslam_core.goal_memory import GoalMemory
 from ratslam_core.local_view import LocalView
@@ -20,6 +21,7 @@ from ratslam_core.types import Estimate, Odometry, Packet, Pose2, Recognition, w
 from ratslam_core.view_links import ViewLinks
 
 __all__ = [
+    "BrainSnapshot",
     "Estimate",
     "ExperienceMap",
     "ExperienceMapParams",
@@ -43,5 +45,9 @@ __all__ = [
     "Route",
     "TemporalMap",
     "ViewLinks",
+    "load_brain",
+    "restore_snapshot",
+    "save_brain",
+    "take_snapshot",
     "wrap_angle",
 ]

@@ -32,6 +32,8 @@ WIDER = 3  # times `reach` is looked for a way when there is none nearer
 class GoalMemory:
     """tau_ij between the cells of the (x', y') plane. `learn` in every iteration, `times_to` once a goal is chosen."""
 
+    CACHES = ("_graph",)  # left out of snapshots
+
     def __init__(self, params: GoalMemoryParams | None, shape: tuple[int, int, int], cell_m: float) -> None:
         """shape: (n_theta, n_y, n_x) of the pose cells; cell_m: side of one cell, m."""
         if len(shape) != 3 or min(shape) < 1:
@@ -139,6 +141,10 @@ class GoalMemory:
             time_s - last.time_s, p.time_weight, p.activity_weight, p.distance_weight, p.rate,
         )  # fmt: skip
         self._last, self._graph = now, None
+
+    def interrupt(self) -> None:
+        """The next iteration follows no other: the packet was not driven to where it is."""
+        self._last = None
 
     # ------------------------------------------------------------ inside
 

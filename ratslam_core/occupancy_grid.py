@@ -50,6 +50,10 @@ class OccupancyGrid:
         """That something stands in a cell, shape (n_y, n_x); 0.5 where nothing is known. A copy."""
         return _probability(self._log_odds)
 
+    def require(self, ranges_m: NDArray[np.float32]) -> None:
+        """ValueError when this cannot be a scan."""
+        _ranges(ranges_m, self._angles)
+
     def update(self, packet: Packet, ranges_m: NDArray[np.float32]) -> None:
         """One scan, shape (n_sonars,), m from the robot's middle, taken at the packet's place. No echo: farthest_m or more."""
         ranges = _ranges(ranges_m, self._angles)

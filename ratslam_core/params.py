@@ -107,6 +107,11 @@ class LocalViewParams:
         12.0, unit="grey levels", low=0.0, high=255.0, meaning="a view with less contrast shows nothing", source="ours"
     )
     learning_rate: float = param(0.15, symbol="η", low=0.0, high=1.0, meaning="Hebbian learning rate", source="C IV.C")
+    adaptive: bool = param(
+        False,
+        meaning="learning rate that follows the strength of vision and the confidence of the estimate",
+        source="A 6.3 (future work); ours",
+    )
     decay: float = param(
         0.0, symbol="δ", low=0.0, high=1.0, meaning="share of a link forgotten at each sight", source="A eq. 2"
     )
@@ -329,3 +334,5 @@ class RatSlamParams:
     pose_cells: PoseCellParams = PoseCellParams()
     local_view: LocalViewParams = LocalViewParams()
     experience_map: ExperienceMapParams = ExperienceMapParams()
+    goal_memory: GoalMemoryParams = GoalMemoryParams()
+    occupancy: OccupancyParams = OccupancyParams()

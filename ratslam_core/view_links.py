@@ -31,17 +31,24 @@ class ViewLinks:
         return self._cells[start : start + used], self._strength[start : start + used]
 
     def learn(
-        self, view: int, cells: NDArray[np.int32], activity: NDArray[np.float32], slot: NDArray[np.int32]
+        self,
+        view: int,
+        cells: NDArray[np.int32],
+        activity: NDArray[np.float32],
+        slot: NDArray[np.int32],
+        rate: float | None = None,
     ) -> None:
         """beta <- (1 - delta) beta + eta P for all active pose cells. ACRA 2004 eqs. 2-3.
 
-        cells, activity, slot: the active set of the pose cells (`PoseCells.active`, `PoseCells.slot`).
+        cells, activity, slot: the active set of the pose cells (`PoseCells.active`, `PoseCells.slot`). rate: eta, without it
+        the parameter `learning_rate`.
         """
+        eta = self.params.learning_rate if rate is None else rate
         self._make_room(view, len(cells))
         block = self._blocks[view]
         block[1] = _learn(
             self._cells[block[0] : block[0] + block[2]], self._strength[block[0] : block[0] + block[2]], block[1],
-            cells, activity, slot, self._seen, np.float32(self.params.learning_rate), np.float32(self.params.decay),
+            cells, activity, slot, self._seen, np.float32(eta), np.float32(self.params.decay),
         )  # fmt: skip
 
     def recall(self, view: int, lost: bool = False) -> tuple[NDArray[np.int32], NDArray[np.float32]]:

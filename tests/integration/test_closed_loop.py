@@ -49,7 +49,7 @@ def live(seed: int) -> Life:
     while session.pilot.goal_state != (goal, "arrived") and session.time_s - began < 180:
         session.tick()
     truth = session.simulator.truth
-    miss = math.dist((truth.x, truth.y), evaluation.made_at(goal))
+    miss = math.dist((truth.x, truth.y), evaluation.made_at(goal, session.brain.experience_map))
     arrived = session.pilot.goal_state == (goal, "arrived")
     session.pilot.cancel_goal()
     known = np.array(track[600:])

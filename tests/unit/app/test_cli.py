@@ -249,7 +249,7 @@ def test_run_binds_first_then_starts_and_stops(
     assert cli.main(command) == 0
     assert doubles.log == ["bound", "runner starts", "serving", "opens http://127.0.0.1:8000/", "runner stops"]
     name, seed, config, options = doubles.made["runner"]
-    assert (name, seed, options) == ("loop", 9, {"speed": 3.0, "running": False})
+    assert (name, seed, options) == ("loop", 9, {"speed": 3.0, "running": False, "brain": None})
     assert config == Config().with_value("robot.light", 0.8)
     assert doubles.made["dashboard"] == ("latest", "submit", "stage", 0)
     assert "RatSLAM is alive at http://127.0.0.1:8000/" in capsys.readouterr().out

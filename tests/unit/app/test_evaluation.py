@@ -127,7 +127,7 @@ def test_paths_and_errors() -> None:
     assert map_error == pytest.approx(0.0, abs=1e-9)
     assert odometry_error == pytest.approx(15 / math.sqrt(12), rel=1e-3)  # a tenth too long, evenly
     assert evaluation.errors(map_, 10)[1] == pytest.approx(odometry_error, rel=0.01)  # type: ignore[arg-type]
-    assert evaluation.made_at(0) == (7.0, 1.0)
+    assert evaluation.made_at(0, map_) == (7.0, 1.0)  # type: ignore[arg-type]
 
 
 def test_the_map_is_judged_as_it_is_now() -> None:
@@ -178,4 +178,16 @@ def test_thousands_of_experiences_keep_where_they_were_made() -> None:
         map_.active = i
         evaluation.record(i * DT, Truth(i, -i, 0.0, 0.0, 0.0), map_, True, Odometry(0.0, 0.0, DT))  # type: ignore[arg-type]
     for i in (0, 1023, 1024, 2499):
-        assert evaluation.made_at(i) == (i, -i)
+        assert evaluation.made_at(i, map_) == (i, -i)
+
+
+def test_experiences_that_a_brain_brought_are_where_the_map_says() -> None:
+    evaluation, map_ = Evaluation(known=2000), Map()
+    map_.poses = np.zeros((2001, 3))
+    map_.poses[:, 0] = np.arange(2001)
+    map_.active = 1500  # not made here
+    drive(evaluation, map_, 300)
+    assert evaluation.revisit_consistency is None
+    x, y = evaluation.made_at(1510, map_)  # type: ignore[arg-type]
+    here = evaluation.trajectories(map_)  # type: ignore[arg-type]
+    assert math.dist((x, y), here[0][0]) == pytest.approx(10.0, abs=1e-6)

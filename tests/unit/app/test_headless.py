@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
 from app.headless import run_headless
 from app.session import Session
+from ratslam_core import load_brain
 from sim2d import load_world
 
 OFFICE = load_world("office")
@@ -65,3 +67,13 @@ def test_a_goal_that_is_not_reached_in_time_is_given_up(monkeypatch: pytest.Monk
     assert goal["reached"] is False
     assert goal["time_s"] == pytest.approx(2.0, abs=0.15)
     assert goal["miss_m"] > 0.3
+
+
+def test_a_saved_brain_finds_its_way_again(tmp_path: Path) -> None:
+    world, file = load_world("office"), tmp_path / "brain.npz"
+    run_headless(world, 4, 6.0, save_brain_to=file)
+    brain = load_brain(file)
+    known = len(brain.experience_map)
+    report = run_headless(world, 11, 3.0, brain=brain, goals=1)
+    assert report["experiences"] < 1.5 * known  # it knows most places that it comes to
+    assert report["goals"][0]["reached"]

@@ -1,15 +1,20 @@
-"""Robots that drive through experience maps by hand, without pose cells or cameras."""
+"""Robots driven by hand: through an experience map without pose cells or cameras, and along a circle with both."""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
-from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition
+from ratslam_core import Estimate, ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, RatSlam, Recognition
 
 SHAPE = (36, 64, 64)
 CELL_M = 0.25
+RADIUS_M = 1.5
+STEP_RAD = 0.02  # along the circle in a tick: 0.03 m
+LAP = round(2 * math.pi / STEP_RAD)
+COLUMN_RAD = math.radians(50) / 12
 
 
 class Robot:
@@ -50,3 +55,40 @@ class Robot:
 def relative(a: np.ndarray, b: np.ndarray) -> Pose2:
     """The pose b in the frame of a, rows x, y, heading."""
     return Pose2(*map(float, a)).inverse().compose(Pose2(*map(float, b)))
+
+
+class Circle:
+    """A robot that drives a circle of 1.5 m and sees the part of a panorama that lies ahead."""
+
+    def __init__(self, seed: int = 0) -> None:
+        rng = np.random.default_rng(seed)
+        columns = round(2 * math.pi / COLUMN_RAD / 3)
+        self._coarse = rng.uniform(20, 235, (8, columns))
+        self.angle = 0.0
+
+    @property
+    def image(self) -> np.ndarray:
+        """Columns count to the right, headings to the left."""
+        heading = self.angle - np.arange(-5.5, 6.0) * COLUMN_RAD
+        at = (heading / (2 * math.pi) % 1.0) * self._coarse.shape[1]
+        left = np.floor(at).astype(int)
+        right = (left + 1) % self._coarse.shape[1]
+        seen = self._coarse[:, left % self._coarse.shape[1]] * (1 - at + left) + self._coarse[:, right] * (at - left)
+        return np.round(seen).astype(np.uint8)
+
+    @property
+    def truth(self) -> Pose2:
+        """In the frame of the start."""
+        a = self.angle
+        return Pose2(RADIUS_M * math.sin(a), RADIUS_M * (1 - math.cos(a)), math.remainder(a, 2 * math.pi))
+
+    def advance(self, brain: RatSlam, ticks: int, **senses: Any) -> list[Estimate]:
+        estimates = []
+        for _ in range(ticks):
+            self.angle += STEP_RAD
+            odometry = Odometry(RADIUS_M * STEP_RAD / 0.1, STEP_RAD / 0.1, 0.1)
+            estimates.append(brain.step(self.image, odometry, **senses))
+        return estimates
+
+    def miss_m(self, estimate: Estimate) -> float:
+        return math.hypot(estimate.pose_map_robot.x - self.truth.x, estimate.pose_map_robot.y - self.truth.y)

@@ -1,13 +1,11 @@
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from ratslam_core import (
-    Estimate,
     ExperienceMapParams,
     LocalViewParams,
     Odometry,
@@ -17,47 +15,7 @@ from ratslam_core import (
     RatSlam,
     RatSlamParams,
 )
-
-RADIUS_M = 1.5
-STEP_RAD = 0.02  # along the circle in a tick: 0.03 m
-LAP = round(2 * math.pi / STEP_RAD)
-COLUMN_RAD = math.radians(50) / 12
-
-
-class Circle:
-    """A robot that drives a circle of 1.5 m and sees the part of a panorama that lies ahead."""
-
-    def __init__(self, seed: int = 0) -> None:
-        rng = np.random.default_rng(seed)
-        columns = round(2 * math.pi / COLUMN_RAD / 3)
-        self._coarse = rng.uniform(20, 235, (8, columns))
-        self.angle = 0.0
-
-    @property
-    def image(self) -> np.ndarray:
-        """Columns count to the right, headings to the left."""
-        heading = self.angle - np.arange(-5.5, 6.0) * COLUMN_RAD
-        at = (heading / (2 * math.pi) % 1.0) * self._coarse.shape[1]
-        left = np.floor(at).astype(int)
-        right = (left + 1) % self._coarse.shape[1]
-        seen = self._coarse[:, left % self._coarse.shape[1]] * (1 - at + left) + self._coarse[:, right] * (at - left)
-        return np.round(seen).astype(np.uint8)
-
-    @property
-    def truth(self) -> Pose2:
-        """In the frame of the start."""
-        a = self.angle
-        return Pose2(RADIUS_M * math.sin(a), RADIUS_M * (1 - math.cos(a)), math.remainder(a, 2 * math.pi))
-
-    def advance(self, brain: RatSlam, ticks: int) -> list[Estimate]:
-        estimates = []
-        for _ in range(ticks):
-            self.angle += STEP_RAD
-            estimates.append(brain.step(self.image, Odometry(RADIUS_M * STEP_RAD / 0.1, STEP_RAD / 0.1, 0.1)))
-        return estimates
-
-    def miss_m(self, estimate: Estimate) -> float:
-        return math.hypot(estimate.pose_map_robot.x - self.truth.x, estimate.pose_map_robot.y - self.truth.y)
+from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, Circle
 
 
 def start(seed: int = 0, params: RatSlamParams | None = None) -> tuple[Circle, RatSlam]:
@@ -204,3 +162,90 @@ def test_what_is_not_an_image_changes_nothing() -> None:
         brain.step(circle.image.astype(np.float32), Odometry(1.0, 0.0, 0.1))
     assert np.array_equal(brain.pose_cells.activity, before)
     assert len(brain.experience_map) == 1
+
+
+SONARS = (-0.5, 0.0, 0.5)
+ECHOES = np.array([1.0, 2.0, 3.0], np.float32)
+
+
+def test_sonars_draw_both_pictures() -> None:
+    circle, brain = Circle(), RatSlam(sonar_angles_rad=SONARS)
+    deaf = RatSlam()
+    circle.advance(brain, 100, ranges_m=ECHOES)
+    circle.angle = 0.0
+    circle.advance(deaf, 100)
+    assert brain.occupancy is not None
+    assert brain.map_grid is not None
+    assert brain.occupancy.probability.max() > 0.55
+    assert brain.occupancy.probability.min() < 0.4
+    assert len(brain.map_grid) >= len(brain.experience_map)
+    assert brain.experience_map.poses.tobytes() == deaf.experience_map.poses.tobytes()  # nobody reads them
+
+
+@pytest.mark.parametrize(
+    ("sonars", "ranges", "message"),
+    [
+        ((), ECHOES, "ranges_m needs a RatSlam that was made with sonar_angles_rad"),
+        (SONARS, ECHOES[:2], r"ranges_m must have shape \(3,\), one for each sonar, got \(2,\)"),
+        (SONARS, np.array([1, np.nan, 1], np.float32), "ranges_m must be 0 m or more"),
+    ],
+)
+def test_a_scan_that_cannot_be_changes_nothing(sonars: tuple, ranges: np.ndarray, message: str) -> None:
+    circle, brain = Circle(), RatSlam(sonar_angles_rad=sonars)
+    before = brain.digest()
+    with pytest.raises(ValueError, match=message):
+        circle.advance(brain, 1, ranges_m=ranges)
+    assert brain.digest() == before
+
+
+def test_goal_memory_learns_the_way_round() -> None:
+    circle, brain = start()
+    circle.advance(brain, LAP)
+    packet = brain.pose_cells.winner
+    goal = round(packet.x) % 64, round(packet.y) % 64
+    circle.advance(brain, LAP // 2)
+    here = brain.pose_cells.winner
+    times = brain.goal_memory.times_to(*goal)
+    taken = times[round(here.y) % 64, round(here.x) % 64]
+    assert 0.5 < taken / (LAP / 2 * 0.1) < 2.5  # each link adds its share of activity and distance
+    assert brain.goal_memory.direction(times, here) is not None
+    before = len(brain.goal_memory)
+    for _ in range(50):
+        brain.step(circle.image, Odometry(0.0, 0.0, 0.1))
+    assert len(brain.goal_memory) == before  # waiting is no way
+
+
+def test_a_leap_of_the_packet_is_no_way() -> None:
+    circle, brain = start()
+    circle.advance(brain, 2 * LAP)
+    circle.angle += 2.6
+    circle.advance(brain, LAP // 2)
+    assert brain.relocalisations >= 1
+    pairs, _ = brain.goal_memory.links
+    y, x = np.divmod(pairs, 64)
+    apart = np.hypot((x[:, 0] - x[:, 1] + 32) % 64 - 32, (y[:, 0] - y[:, 1] + 32) % 64 - 32)
+    assert apart.max() < 7  # half a metre and the width of two packets; the leap was 10 cells
+
+
+def test_the_adaptive_rate_follows_vision_and_confidence() -> None:
+    params = RatSlamParams(local_view=LocalViewParams(adaptive=True))
+    circle, brain = start(params=params)
+    eta = params.local_view.learning_rate
+    rates = []
+    for _ in range(LAP + 60):
+        circle.advance(brain, 1)
+        rates.append(brain.learning_rate)
+    assert 0 <= min(rates) < max(rates) <= 2 * eta
+    one = circle.advance(brain, 1)[0]
+    strength = 1 - one.recognition.difference / params.local_view.match_threshold
+    assert brain.learning_rate == pytest.approx(2 * eta * strength * brain.pose_cells.winner.mass, rel=0.05)
+    circle.angle += 2.6
+    circle.advance(brain, 1)
+    assert brain.lost
+    assert brain.learning_rate == 0.0
+
+
+def test_the_fixed_rate_is_fixed() -> None:
+    circle, brain = start()
+    circle.advance(brain, LAP)
+    assert brain.learning_rate == brain.params.local_view.learning_rate
