@@ -71,9 +71,11 @@ def test_a_goal_that_is_not_reached_in_time_is_given_up(monkeypatch: pytest.Monk
 
 def test_a_saved_brain_finds_its_way_again(tmp_path: Path) -> None:
     world, file = load_world("office"), tmp_path / "brain.npz"
-    run_headless(world, 4, 6.0, save_brain_to=file)
+    run_headless(world, 4, 8.0, save_brain_to=file)
     brain = load_brain(file)
     known = len(brain.experience_map)
-    report = run_headless(world, 11, 3.0, brain=brain, goals=1)
-    assert report["experiences"] < 1.5 * known  # it knows most places that it comes to
-    assert report["goals"][0]["reached"]
+    report = run_headless(world, 11, 2.0, brain=brain, goals=2)
+    goals = report["goals"]
+    assert all(goal["experience"] < known for goal in goals)  # places that this robot has never been to
+    assert all(goal["reached"] for goal in goals)
+    assert report["error_m"]["map"] < 1.0
