@@ -10,7 +10,7 @@ import webbrowser
 from pathlib import Path
 from typing import Any
 
-from app.config import Config, from_toml, parse_value, to_toml
+from app.config import Config, from_toml, parse_value, to_markdown, to_toml
 from ratslam_core import RatSlam, load_brain
 from sim2d import DEFAULT_WORLD, World, WorldError, load_world, world_names
 
@@ -55,6 +55,7 @@ def _parser() -> argparse.ArgumentParser:
     headless.set_defaults(do=_headless)
 
     config = commands.add_parser("config", help="print every parameter as TOML with symbol, unit and source")
+    config.add_argument("--table", action="store_true", help="as a Markdown table")
     _add_config(config)
     config.set_defaults(do=_config)
 
@@ -197,7 +198,8 @@ def _with_progress(seconds: float, work: Any) -> Any:
 
 
 def _config(args: argparse.Namespace) -> int:
-    print(to_toml(_config_of(args, Config())), end="")
+    write = to_markdown if args.table else to_toml
+    print(write(_config_of(args, Config())), end="")
     return 0
 
 

@@ -95,6 +95,36 @@ def to_toml(config: Config) -> str:
     return tomlkit.dumps(document)
 
 
+def to_markdown(config: Config) -> str:
+    """A table of all parameters for the documentation."""
+    lines = [
+        "# Parameters",
+        "",
+        "Made by `ratslam config --table`. ↻: takes effect at the next reset. Sources: A = ACRA 2004, ",
+    ]
+    lines[-1] += "B = ACRA 2005, C = IROS 2005, D = ACRA 2006."
+    section = ""
+    for name, item, value in config.items():
+        group, key = name.split(".")
+        if group != section:
+            section = group
+            lines += ["", f"## {section}", "", "| name | symbol | default | range | unit | meaning | source |"]
+            lines += ["|---|---|---|---|---|---|---|"]
+        about = item.metadata
+        limits = " or ".join(about["choices"]) if about["low"] is None else f"{about['low']:g} to {about['high']:g}"
+        shown = f"{value:.6g}" if isinstance(value, float) else str(value).lower() if isinstance(value, bool) else value
+        cells = (
+            f"`{key}`{'' if about['live'] else ' ↻'}",
+            about["symbol"],
+            shown,
+            limits,
+            about["unit"],
+            about["meaning"],
+        )
+        lines.append(f"| {' | '.join(str(cell) for cell in cells)} | {about['source']} |")
+    return "\n".join(lines) + "\n"
+
+
 def from_toml(text: str, base: Config | None = None) -> Config:
     """A config from TOML; what is left out keeps its default. ValueError lists the right keys when one is unknown."""
     try:
