@@ -76,7 +76,9 @@ class Adjacency:
 
     def _find(self, node: int, half: int) -> int:
         """Place of a half-edge in its block, -1 when it is not there."""
-        found = np.flatnonzero(self.at(node)[0] == half) if 0 <= node < self._nodes else ()
+        if not 0 <= node < self._nodes:
+            return -1
+        found = np.flatnonzero(self.at(node)[0] == half)
         return int(found[0]) if len(found) else -1
 
     def _take(self, node: int, place: int) -> None:
