@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from app.config import Config, from_toml, parse_value, to_markdown, to_toml
+from app.worlds_command import add_worlds
 from ratslam_core import RatSlam, load_brain
-from sim2d import DEFAULT_WORLD, World, WorldError, load_world, world_names
+from sim2d import DEFAULT_WORLD, World, WorldError
+from sim2d.importers import open_world
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -63,13 +65,18 @@ def _parser() -> argparse.ArgumentParser:
     bench.add_argument("--json", type=Path, metavar="FILE", help="write the rows there as JSON, too")
     bench.set_defaults(do=_bench)
 
-    worlds = commands.add_parser("worlds", help="list the worlds that come with it")
-    worlds.set_defaults(do=_worlds)
+    add_worlds(commands)
     return parser
 
 
 def _add_session(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--world", default=DEFAULT_WORLD, metavar="NAME|FILE", help=f"default: {DEFAULT_WORLD}")
+    parser.add_argument(
+        "--world",
+        default=DEFAULT_WORLD,
+        metavar="NAME|FILE",
+        help=f"default: {DEFAULT_WORLD}; any plan that can be imported",
+    )
+    parser.add_argument("--scale", type=float, metavar="M", help="metres a pixel, when the world is a plain picture")
     parser.add_argument("--seed", type=int, default=1, help="same seed, same run (default 1)")
     parser.add_argument("--brain", type=Path, metavar="FILE", help="start with what another robot knows (--save-brain)")
     _add_config(parser)
@@ -108,7 +115,7 @@ def _session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None
         raise ValueError(f"--seed must be from 0 to {2**32 - 1}, got {args.seed}")
     brain = None if args.brain is None else load_brain(args.brain)
     config = _config_of(args, Config() if brain is None else Config().with_engine(brain.params))
-    return load_world(args.world, config.robot.robot_radius_m), config, brain
+    return open_world(args.world, args.scale, robot_radius_m=config.robot.robot_radius_m), config, brain
 
 
 def _run(args: argparse.Namespace) -> int:
@@ -212,10 +219,4 @@ def _bench(args: argparse.Namespace) -> int:
         measured.append(row)
     if args.json is not None:
         args.json.write_text(json.dumps(measured, indent=2) + "\n", encoding="utf-8")
-    return 0
-
-
-def _worlds(_args: argparse.Namespace) -> int:
-    for name, title in world_names():
-        print(f"{name:12} {title}")
     return 0

@@ -94,6 +94,8 @@ class World:
     people: tuple[Person, ...] = ()
     slow_zones: tuple[SlowZone, ...] = ()
     script: tuple[Event, ...] = ()
+    paper: str = ""
+    about: str = ""  # one sentence
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 
@@ -34,21 +34,37 @@ class Fault(ValueError):  # noqa: N818
 
 def check_world(world: World, radius: float) -> None:
     """Raises Fault at the first thing that is wrong. radius: of the robot, metres."""
-    for i, wall in enumerate(world.walls):
-        _check_wall(("walls", i), wall)
-    _check_outline(world)
-    _check_size(world)
-    _check_things(world)
+    for fault in world_faults(world, radius):
+        raise fault
+
+
+def world_faults(world: World, radius: float) -> Iterator[Fault]:
+    """All that is wrong; what can only be judged of a sound outline comes when nothing else is wrong."""
+    sound = True
+    walls = (_wall_faults(("walls", i), wall) for i, wall in enumerate(world.walls))
+    for fault in chain(chain.from_iterable(walls), _outline_faults(world)):
+        sound = False
+        yield fault
+    if not sound:
+        return
+    for fault in _thing_faults(world):
+        sound = False
+        yield fault
+    if sound:
+        yield from _place_faults(world, radius)
+
+
+def _place_faults(world: World, radius: float) -> Iterator[Fault]:
     free = FreeSpace(world, radius)
     for kind, points in (("starts", world.starts), ("places", world.places)):
         for i, point in enumerate(points):
             refusal = free.refusal(point.x, point.y)
             if refusal is not None:
-                raise Fault((kind, i), f"({point.name}): {refusal}")
+                yield Fault((kind, i), f"({point.name}): {refusal}")
     for i, start in enumerate(world.starts):
         for box in world.boxes:
             if box.present and distance_to_box(box, start.x, start.y) < radius:
-                raise Fault(("starts", i), f"({start.name}): box {box.name!r} is on it; the robot needs {radius:g} m")
+                yield Fault(("starts", i), f"({start.name}): box {box.name!r} is on it; the robot needs {radius:g} m")
 
 
 def distance_to_box(box: Box, x: float, y: float) -> float:
@@ -58,92 +74,94 @@ def distance_to_box(box: Box, x: float, y: float) -> float:
     return math.hypot(max(abs(u) - 0.5 * box.width, 0.0), max(abs(v) - 0.5 * box.depth, 0.0))
 
 
-def _check_wall(where: Where, wall: Wall) -> None:
+def _wall_faults(where: Where, wall: Wall) -> Iterator[Fault]:
     if wall.length < 0.01:
-        raise Fault(
+        yield Fault(
             where,
             f"no length: runs from ({wall.x1:g}, {wall.y1:g}) to ({wall.x2:g}, {wall.y2:g}); "
             "its ends must be at least 0.01 m apart",
         )
     if wall.bottom >= wall.height:
-        raise Fault(where, f"bottom {wall.bottom:g} must be below its height {wall.height:g}")
+        yield Fault(where, f"bottom {wall.bottom:g} must be below its height {wall.height:g}")
     if not wall.stands and wall.bottom < ROBOT_HEIGHT_M:
-        raise Fault(where, f"bottom {wall.bottom:g} must be 0 or at least {ROBOT_HEIGHT_M} m, above the robot")
+        yield Fault(where, f"bottom {wall.bottom:g} must be 0 or at least {ROBOT_HEIGHT_M} m, above the robot")
     for j, panel in enumerate(wall.panels):
         if panel.at + panel.width > wall.length + 1e-9:
-            raise Fault(
+            yield Fault(
                 (*where, "panels", j),
                 f"reaches to {panel.at + panel.width:g} m; the wall is {wall.length:g} m long",
             )
         if not wall.bottom <= panel.bottom < panel.top <= wall.height:
-            raise Fault(
+            yield Fault(
                 (*where, "panels", j),
                 f"from {panel.bottom:g} up to {panel.top:g} m; must be upright and "
                 f"between the wall's {wall.bottom:g} and {wall.height:g} m",
             )
 
 
-def _check_outline(world: World) -> None:
+def _outline_faults(world: World) -> Iterator[Fault]:
     """Outer walls come first, each begins where the one before ends, and the ring runs counter-clockwise."""
     outer = [i for i, wall in enumerate(world.walls) if wall.outer]
     if len(outer) < 3:
-        raise Fault(("walls",), f"{len(outer)} are outer; at least 3 must close the outline")
+        yield Fault(("walls",), f"{len(outer)} are outer; at least 3 must close the outline")
+        return
     if outer != list(range(len(outer))):
-        raise Fault(("walls", outer[-1]), "is outer but comes after inner ones; the outer walls come first")
+        yield Fault(("walls", outer[-1]), "is outer but comes after inner ones; the outer walls come first")
     for i, k in [*pairwise(outer), (outer[-1], outer[0])]:
         ends, begins = world.walls[i], world.walls[k]
         if math.hypot(begins.x1 - ends.x2, begins.y1 - ends.y2) > _JOIN_M:
-            raise Fault(
+            yield Fault(
                 ("walls", i),
                 f"the outline is open: it ends at ({ends.x2:g}, {ends.y2:g}) but walls[{k}] begins "
                 f"at ({begins.x1:g}, {begins.y1:g}); each outer wall must begin where the one before ends",
             )
         if not ends.stands:
-            raise Fault(("walls", i), f"bottom {ends.bottom:g} must be 0 in the outer wall")
+            yield Fault(("walls", i), f"bottom {ends.bottom:g} must be 0 in the outer wall")
     ring = world.outline
     after = np.roll(ring, -1, axis=0)
     area = 0.5 * float(np.sum(ring[:, 0] * after[:, 1] - ring[:, 1] * after[:, 0]))
     if area <= 0:
-        raise Fault(("walls", 0), f"the outline encloses {area:g} m^2; it must run counter-clockwise")
+        yield Fault(("walls", 0), f"the outline encloses {area:g} m^2; it must run counter-clockwise")
+    yield from _size_faults(world)
 
 
-def _check_size(world: World) -> None:
+def _size_faults(world: World) -> Iterator[Fault]:
     x0, y0, x1, y1 = world.bounds
     if max(x1 - x0, y1 - y0) > MOST_M:
-        raise Fault(("walls",), f"the outline spans {x1 - x0:g} by {y1 - y0:g} m; at most {MOST_M:g} m each way")
+        yield Fault(("walls",), f"the outline spans {x1 - x0:g} by {y1 - y0:g} m; at most {MOST_M:g} m each way")
     if (x1 - x0) * (y1 - y0) > MOST_FLOOR_M2:
-        raise Fault(("walls",), f"{(x1 - x0) * (y1 - y0):.0f} m^2 of floor in all; at most {MOST_FLOOR_M2:g}")
+        yield Fault(("walls",), f"{(x1 - x0) * (y1 - y0):.0f} m^2 of floor in all; at most {MOST_FLOOR_M2:g}")
     area = sum(wall.length * (wall.height - wall.bottom) for wall in world.walls)
     if area > MOST_WALL_M2:
-        raise Fault(("walls",), f"{area:.0f} m^2 of wall in all; at most {MOST_WALL_M2:g}")
+        yield Fault(("walls",), f"{area:.0f} m^2 of wall in all; at most {MOST_WALL_M2:g}")
 
 
-def _check_things(world: World) -> None:
+def _thing_faults(world: World) -> Iterator[Fault]:
     kinds = ("starts", "places", "doors", "lamps", "boxes", "people", "slow_zones")
     names = {kind: [item.name for item in getattr(world, kind)] for kind in kinds}
     for kind in kinds[2:]:
         for i, name in enumerate(names[kind]):
             if name in names[kind][:i]:
-                raise Fault((kind, i, "name"), f"{name!r} is taken by {kind}[{names[kind].index(name)}]; use another")
+                yield Fault((kind, i, "name"), f"{name!r} is taken by {kind}[{names[kind].index(name)}]; use another")
     for where, what, x, y in _points(world):
         if not inside_ring(world.outline, x, y):
             x0, y0, x1, y1 = world.bounds
-            raise Fault(
+            yield Fault(
                 where,
                 f"{what} ({x:g}, {y:g}) is outside of {world.name}, which spans {x0:g} to {x1:g} by {y0:g} to {y1:g} m",
             )
     for i, door in enumerate(world.doors):
         if door.open_s > door.period_s:
-            raise Fault(("doors", i, "open_s"), f"{door.open_s:g} s must be at most its period_s, {door.period_s:g} s")
+            yield Fault(("doors", i, "open_s"), f"{door.open_s:g} s must be at most its period_s, {door.period_s:g} s")
     for i, person in enumerate(world.people):
         if len(person.wait_s) != len(person.path):
-            raise Fault(
+            yield Fault(
                 ("people", i, "wait_s"),
                 f"has {len(person.wait_s)} times; must be one time, or one for each of the {len(person.path)} points",
             )
-    _check_daylight(world)
+    yield from _daylight_faults(world)
     for i, event in enumerate(world.script):
-        _check_event(("script", i), event, names)
+        yield from _event_faults(("script", i), event, names)
 
 
 def _points(world: World) -> Iterator[tuple[Where, str, float, float]]:
@@ -158,24 +176,24 @@ def _points(world: World) -> Iterator[tuple[Where, str, float, float]]:
             yield ("people", i, "path", j), f"a point of {person.name!r}", x, y
 
 
-def _check_daylight(world: World) -> None:
+def _daylight_faults(world: World) -> Iterator[Fault]:
     day = world.daylight
     if day is None:
         return
     for j, (at, level) in enumerate(zip(day.at_s, day.level, strict=True)):
         where = ("daylight", "points", j)
         if at < 0 or (j > 0 and at <= day.at_s[j - 1]):
-            raise Fault(where, f"is at {at:g} s; times must grow from point to point and begin at 0 or later")
+            yield Fault(where, f"is at {at:g} s; times must grow from point to point and begin at 0 or later")
         if not 0 <= level <= 3:
-            raise Fault(where, f"has level {level:g}; must be from 0 to 3")
+            yield Fault(where, f"has level {level:g}; must be from 0 to 3")
     if 0 < day.repeat_s < day.at_s[-1]:
-        raise Fault(
+        yield Fault(
             ("daylight", "repeat_s"), f"{day.repeat_s:g} s must be 0 or at least the last point's {day.at_s[-1]:g} s"
         )
 
 
-def _check_event(where: Where, event: Event, names: dict[str, list[str]]) -> None:
+def _event_faults(where: Where, event: Event, names: dict[str, list[str]]) -> Iterator[Fault]:
     kind = _NEEDS.get(event.do)
     if kind is not None and event.name not in names[kind]:
         known = ", ".join(names[kind]) or f"none, since the world has no {kind}"
-        raise Fault((*where, "name"), f"no {kind} named {event.name!r}; expected one of: {known}")
+        yield Fault((*where, "name"), f"no {kind} named {event.name!r}; expected one of: {known}")

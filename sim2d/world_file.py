@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
 from sim2d.json_lines import line_of
 from sim2d.params import SimParams
 from sim2d.world import World
-from sim2d.world_check import Fault, Where, check_world
+from sim2d.world_check import Where, world_faults
 from sim2d.world_schema import WorldFile
 
 WORLDS = Path(__file__).parent / "worlds"
 DEFAULT_WORLD = "office"
+SCHEMA = WORLDS / "schema.json"  # kept equal to `schema_text` by test_world_file.py::test_schema_is_published
 MOST_BYTES = 16_000_000
 
 
@@ -24,7 +27,9 @@ class WorldError(ValueError):
 
 def world_names() -> tuple[tuple[str, str], ...]:
     """(name, title) of the worlds that come with the package, the default first."""
-    names = sorted((path.stem for path in WORLDS.glob("*.json")), key=lambda name: (name != DEFAULT_WORLD, name))
+    names = sorted(
+        (path.stem for path in WORLDS.glob("*.json") if path != SCHEMA), key=lambda name: (name != DEFAULT_WORLD, name)
+    )
     return tuple((name, str(json.loads((WORLDS / f"{name}.json").read_text("utf-8"))["title"])) for name in names)
 
 
@@ -45,24 +50,58 @@ def load_world(name_or_path: str | Path = DEFAULT_WORLD, robot_radius_m: float |
 
 def world_from_json(text: str, file_name: str, robot_radius_m: float | None = None) -> World:
     """The world in the text of a file; `file_name` is for complaints alone. Raises WorldError."""
+    raw = parse_json(text, file_name)
     try:
-        raw = json.loads(text)
+        world = WorldFile.model_validate(raw).world()
+    except ValidationError as error:
+        raise WorldError(next(_schema_complaints(error, text, file_name))) from None
+    for complaint in _complaints(world, text, file_name, robot_radius_m):
+        raise WorldError(complaint)
+    return world
+
+
+def complaints(text: str, file_name: str, robot_radius_m: float | None = None) -> list[str]:
+    """All that is wrong with the text of a world file, in sentences; what needs sound walls waits until they are."""
+    try:
+        world = WorldFile.model_validate(parse_json(text, file_name)).world()
+    except ValidationError as error:
+        return list(_schema_complaints(error, text, file_name))
+    except WorldError as error:
+        return [str(error)]
+    return list(_complaints(world, text, file_name, robot_radius_m))
+
+
+def schema_text() -> str:
+    """The JSON schema of world files."""
+    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", **WorldFile.model_json_schema()}
+    return json.dumps(schema, indent=2) + "\n"
+
+
+def parse_json(text: str, file_name: str) -> Any:
+    """Raises WorldError with line and column."""
+    try:
+        return json.loads(text)
     except json.JSONDecodeError as error:
         raise WorldError(f"{file_name}: not JSON: line {error.lineno}, column {error.colno}: {error.msg}") from error
     except RecursionError:
         raise WorldError(f"{file_name}: not a world: nested too deeply") from None
-    try:
-        world = WorldFile.model_validate(raw).world()
-        check_world(world, SimParams().robot_radius_m if robot_radius_m is None else robot_radius_m)
-    except ValidationError as error:
-        where, message = _first(error)
-        raise WorldError(f"{file_name}: {_path(where) or 'file'}:{message}{_line(text, where)}") from None
-    except Fault as fault:
+
+
+def _schema_complaints(error: ValidationError, text: str, name: str) -> Iterator[str]:
+    """`walls[3].height: got -1; input should be greater than 0 (line 12)`."""
+    for item in error.errors(include_url=False):
+        message = item["msg"][0].lower() + item["msg"][1:]
+        if item["type"] == "extra_forbidden":
+            message = "unknown key; take it out or correct its spelling"
+        got = "" if item["type"] in ("missing", "model_type", "too_long") else f" got {_short(item['input'])};"
+        yield f"{name}: {_path(item['loc']) or 'file'}:{got} {message}{_line(text, item['loc'])}"
+
+
+def _complaints(world: World, text: str, name: str, radius_m: float | None) -> Iterator[str]:
+    radius = SimParams().robot_radius_m if radius_m is None else radius_m
+    for fault in world_faults(world, radius):
         between = " " if fault.message.startswith("(") else ": "
-        raise WorldError(
-            f"{file_name}: {_path(fault.where)}{between}{fault.message}{_line(text, fault.where)}"
-        ) from None
-    return world
+        yield f"{name}: {_path(fault.where)}{between}{fault.message}{_line(text, fault.where)}"
 
 
 def _find(name_or_path: str | Path) -> Path:
@@ -75,16 +114,6 @@ def _find(name_or_path: str | Path) -> Path:
     if path.suffix == ".json" and path.is_file():
         return path
     raise WorldError(f"no world {text!r}; expected one of: {', '.join(known)}; or the path of a .json file")
-
-
-def _first(error: ValidationError) -> tuple[Where, str]:
-    """Path and text of the first complaint: `walls[3].height`, `got -1; input should be greater than 0`."""
-    first = error.errors(include_url=False)[0]
-    message = first["msg"][0].lower() + first["msg"][1:]
-    if first["type"] == "extra_forbidden":
-        message = "unknown key; take it out or correct its spelling"
-    got = "" if first["type"] in ("missing", "model_type", "too_long") else f" got {_short(first['input'])};"
-    return first["loc"], f"{got} {message}"
 
 
 def _short(value: object) -> str:

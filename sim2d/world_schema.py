@@ -145,6 +145,8 @@ class WorldFile(_Item):
     name: _Name
     title: Annotated[str, Field(min_length=1, max_length=80)]
     source: str
+    paper: Annotated[str, Field(max_length=40)] = ""
+    about: Annotated[str, Field(max_length=300)] = ""
     floor_colour: _Colour
     ceiling_colour: _Colour
     walls: Annotated[list[_WallItem], Field(min_length=3, max_length=MOST_WALLS)]
@@ -165,6 +167,8 @@ class WorldFile(_Item):
             name=self.name,
             title=self.title,
             source=self.source,
+            paper=self.paper,
+            about=self.about,
             walls=tuple(map(_wall, self.walls)),
             starts=tuple(Start(s.name, s.x, s.y, math.radians(s.heading_deg)) for s in self.starts),
             places=tuple(Place(p.name, p.x, p.y) for p in self.places),

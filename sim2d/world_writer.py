@@ -13,6 +13,7 @@ from sim2d.world import Wall, World
 def world_to_json(world: World) -> str:
     """Format 1, a line for each item; what is left at its default is left out. Read again it gives an equal world."""
     head = {"format": 1, "name": world.name, "title": world.title, "source": world.source}
+    head |= {key: text for key, text in (("paper", world.paper), ("about", world.about)) if text}
     head |= {"floor_colour": _hex(world.floor_colour), "ceiling_colour": _hex(world.ceiling_colour)}
     lists: dict[str, list[dict[str, Any]]] = {
         "walls": [_wall(wall) for wall in world.walls],

@@ -10,6 +10,7 @@ import pytest
 
 from app import cli, runner
 from app.config import Config, from_toml
+from sim2d.world_file import WORLDS
 from web import server
 from web.stage import stage
 
@@ -29,6 +30,53 @@ def test_worlds_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("office ")
     assert {line.split()[0] for line in lines} >= {"office", "loop", "floor"}
+    assert "10 x 8 m; ACRA 2006: " in lines[0]
+
+
+def test_a_plan_is_checked_imported_and_driven_in(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    picture, world = tmp_path / "plan.pgm", tmp_path / "plan.json"
+    picture.write_bytes(b"P5\n80 60\n255\n" + b"\x00" * 80 + (b"\x00" + b"\xff" * 78 + b"\x00") * 58 + b"\x00" * 80)
+    assert cli.main(["worlds", "check", str(picture)]) == 2
+    assert "plan.pgm: a plain picture needs its scale" in capsys.readouterr().err
+    assert cli.main(["worlds", "check", str(picture), "--scale", "0.1"]) == 0
+    assert cli.main(["worlds", "import", str(picture), "--scale", "0.1", "--seed", "3", "-o", str(world)]) == 0
+    assert "plan, 8 x 6 m, 4 walls, 4 starts" in capsys.readouterr().out
+    for arguments in (["--world", str(world)], ["--world", str(picture), "--scale", "0.1"]):
+        assert cli.main(["headless", "--minutes", "0.05", *arguments]) == 0
+        assert json.loads(capsys.readouterr().out)["world"] == "plan"
+    assert cli.main(["worlds", "import", str(picture), "--scale", "0.1", "-o", str(tmp_path / "no" / "x.json")]) == 2
+    assert cli.main(["worlds", "import", str(picture), "--seed", "-1", "-o", str(world)]) == 2
+    assert cli.main(["headless", "--world", "office", "--scale", "0.1"]) == 2
+
+
+def test_check_says_everything_that_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "x.json"
+    text = (WORLDS / "loop.json").read_text("utf-8")
+    path.write_text(
+        text.replace('"height": 2.6', '"height": -1', 1).replace('"heading_deg": 0.0', '"heading_deg": "east"')
+    )
+    assert cli.main(["worlds", "check", str(path)]) == 2
+    errors = capsys.readouterr().err.splitlines()
+    assert len(errors) == 2
+    assert "x.json: walls[0].height: got -1; input should be greater than 0 (line " in errors[0]
+    assert "x.json: starts[0].heading_deg: got 'east'" in errors[1]
+    path.write_text(
+        text.replace('"places": [', '"places": [{"name": "a", "x": 90, "y": 0}, {"name": "b", "x": 3, "y": 3},')
+    )
+    assert cli.main(["worlds", "check", str(path)]) == 2
+    assert [line.split("(")[0] for line in capsys.readouterr().err.splitlines()] == [
+        "ratslam: x.json: places[0] ", "ratslam: x.json: places[1] ",
+    ]  # fmt: skip
+    path.write_text("{\n,")
+    assert cli.main(["worlds", "check", str(path)]) == 2
+    assert "not JSON: line 2, column 1" in capsys.readouterr().err
+    assert cli.main(["worlds", "check", str(tmp_path / "none.json")]) == 2
+    assert cli.main(["worlds", "check", str(WORLDS / "office.json")]) == 0
+
+
+def test_the_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["worlds", "schema"]) == 0
+    assert capsys.readouterr().out == (WORLDS / "schema.json").read_text("utf-8")
 
 
 def test_headless_prints_its_report(capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sim2d import DEFAULT_WORLD, FreeSpace, World, WorldError, load_world, world_names
-from sim2d.world_file import WORLDS
+from sim2d.world_file import SCHEMA, WORLDS, schema_text
 
 from .rooms import room_file
 
@@ -42,6 +42,11 @@ def test_shipped_worlds(name: str) -> None:
     assert sum(len(w.panels) for w in walls) / sum(w.length for w in walls) >= 0.6  # findings: fewer look alike
     seeds = [p.seed for w in world.walls for p in w.panels]
     assert len(set(seeds)) == len(seeds)
+
+
+def test_schema_is_published() -> None:
+    assert SCHEMA.read_text("utf-8") == schema_text()
+    assert "schema" not in NAMES
 
 
 def test_office_is_the_papers() -> None:

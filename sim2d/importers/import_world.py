@@ -1,0 +1,114 @@
+"""Floor plans that others have made, as worlds: ROS map_server files, pictures, vector maps; and our own world files."""
+
+from __future__ import annotations
+
+from pathlib import Path, PurePath
+
+from sim2d.importers.map_yaml import SCALES_M, MapYaml, read_map_yaml
+from sim2d.importers.picture import PICTURES
+from sim2d.importers.picture_map import picture_world
+from sim2d.importers.vector_map import vector_world
+from sim2d.params import SimParams
+from sim2d.world import World
+from sim2d.world_file import WorldError, load_world, parse_json, world_from_json, world_names
+
+YAMLS = (".yaml", ".yml")
+MOST_BYTES = {".json": 1_000_000, ".yaml": 65_536, ".yml": 65_536}  # of what is uploaded
+MOST_PICTURE_BYTES = 16_000_000
+_OCCUPIED, _FREE = 0.65, 0.196  # map_server's own
+
+
+def import_world(
+    name: str, files: dict[str, bytes], scale_m: float | None = None, seed: int = 0, robot_radius_m: float | None = None
+) -> World:
+    """The world in the file `name`, one of `files` (name -> contents), which hold all that it refers to.
+
+    scale_m: metres a pixel of a plain picture, for nothing else. seed: of the looks that bare walls get; the same seed,
+    the same world. robot_radius_m: of the robot that will start in it. Nothing is read from or written to the disk.
+    Raises WorldError that names file, line or pixel, value and what would be right.
+    """
+    for given, data in files.items():
+        limit = MOST_BYTES.get(PurePath(given).suffix.lower(), MOST_PICTURE_BYTES)
+        if len(data) > limit:
+            raise WorldError(f"{given}: {len(data)} bytes; at most {limit}")
+    return _import(name, files, scale_m, seed, robot_radius_m)
+
+
+def import_file(
+    path: str | Path, scale_m: float | None = None, seed: int = 0, robot_radius_m: float | None = None
+) -> World:
+    """The world in a file on the disk; a map_server file's picture lies beside it. Raises WorldError."""
+    path = Path(path)
+    try:
+        files = {path.name: path.read_bytes()}
+        if path.suffix.lower() in YAMLS:
+            image = read_map_yaml(path.name, _text(path.name, files[path.name])).image
+            files[image] = (path.parent / image).read_bytes()
+    except OSError as error:
+        raise WorldError(f"{error.filename}: cannot be read: {error.strerror}") from None
+    return _import(path.name, files, scale_m, seed, robot_radius_m)
+
+
+def open_world(
+    name_or_path: str | Path, scale_m: float | None = None, seed: int = 0, robot_radius_m: float | None = None
+) -> World:
+    """One of ours by its name, or whatever can be imported from a file. Raises WorldError."""
+    path = Path(name_or_path)
+    if str(name_or_path) in dict(world_names()):
+        if scale_m is not None:
+            raise WorldError(f"{name_or_path}: got a scale of {scale_m:g} m a pixel; only plain pictures take one")
+        return load_world(name_or_path, robot_radius_m)
+    if not path.is_file():
+        return load_world(name_or_path, robot_radius_m)
+    return import_file(path, scale_m, seed, robot_radius_m)
+
+
+def _import(name: str, files: dict[str, bytes], scale_m: float | None, seed: int, radius_m: float | None) -> World:
+    radius = SimParams().robot_radius_m if radius_m is None else radius_m
+    if name not in files:
+        raise WorldError(f"{name}: is not among the files given: {', '.join(sorted(files)) or 'none'}")
+    suffix = PurePath(name).suffix.lower()
+    if scale_m is not None and suffix not in PICTURES:
+        raise WorldError(f"{name}: got a scale of {scale_m:g} m a pixel; only plain pictures take one")
+    if suffix in YAMLS:
+        about = read_map_yaml(name, _text(name, files[name]))
+        if about.image not in files:
+            raise WorldError(f"{name}: image: {about.image!r} was not given with it; put both together")
+        return picture_world(about.image, files[about.image], about, seed, radius)
+    if suffix in PICTURES:
+        return picture_world(name, files[name], _plain(name, scale_m), seed, radius)
+    if suffix == ".json":
+        return _from_json(name, _text(name, files[name]), seed, radius)
+    raise WorldError(
+        f"{name}: cannot be imported; expected .json (a world, or a list of segments), "
+        f"{' or '.join(YAMLS)} (map_server), or a picture: {', '.join(PICTURES)}"
+    )
+
+
+def _from_json(name: str, text: str, seed: int, radius: float) -> World:
+    raw = parse_json(text, name)
+    if isinstance(raw, list):
+        return vector_world(name, text, raw, seed, radius)
+    if isinstance(raw, dict) and "format" not in raw:
+        raise WorldError(
+            f"{name}: an object with keys {', '.join(list(raw)[:6]) or 'none'}; expected a world file, which has "
+            '"format": 1, or a list of wall segments'
+        )
+    return world_from_json(text, name, radius)
+
+
+def _plain(name: str, scale_m: float | None) -> MapYaml:
+    if scale_m is None:
+        raise WorldError(f"{name}: a plain picture needs its scale, metres a pixel")
+    if not SCALES_M[0] <= scale_m <= SCALES_M[1]:
+        raise WorldError(
+            f"{name}: got a scale of {scale_m:g}; must be from {SCALES_M[0]:g} to {SCALES_M[1]:g} m a pixel"
+        )
+    return MapYaml(name, scale_m, (0.0, 0.0, 0.0), False, _OCCUPIED, _FREE, "trinary")
+
+
+def _text(name: str, data: bytes) -> str:
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise WorldError(f"{name}: not text: byte {error.start} is {data[error.start]:#04x}; must be UTF-8") from None

@@ -1,0 +1,46 @@
+"""A picture's bytes as grey levels, within limits that are checked before it is unpacked."""
+
+from __future__ import annotations
+
+import warnings
+from io import BytesIO
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, UnidentifiedImageError
+
+from sim2d.world_file import WorldError
+
+PICTURES = (".pgm", ".png", ".bmp", ".jpg", ".jpeg", ".ppm", ".pbm")
+MOST_PIXELS = 16_000_000
+MOST_SIDE = 12_000
+_FORMATS = ("PPM", "PNG", "BMP", "JPEG")  # PPM reads .pgm and .pbm, too
+
+
+def read_picture(name: str, data: bytes) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+    """Grey levels (rows, columns), the top row first, the mean of the colours; and where it is not fully opaque.
+
+    Raises WorldError when it is none, broken, of more than 8 bits, or too large.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # our own limit is far below Pillow's
+            picture = Image.open(BytesIO(data), formats=_FORMATS)
+        width, height = picture.size
+        if max(width, height) > MOST_SIDE or width * height > MOST_PIXELS:
+            raise WorldError(
+                f"{name}: {width} x {height} pixels; at most {MOST_PIXELS / 1e6:g} million, {MOST_SIDE} a side"
+            )
+        if picture.mode.startswith(("I", "F")):
+            raise WorldError(f"{name}: more than 8 bits a pixel (mode {picture.mode}); save it with 8, 0 to 255")
+        rgba = np.asarray(picture.convert("RGBA"))
+    except UnidentifiedImageError:
+        raise WorldError(f"{name}: not a picture that can be read; expected PGM, PNG, BMP or JPEG") from None
+    except WorldError:
+        raise
+    except Image.DecompressionBombError:
+        raise WorldError(f"{name}: hundreds of millions of pixels; at most {MOST_PIXELS / 1e6:g} million") from None
+    except (OSError, ValueError, SyntaxError) as error:
+        raise WorldError(f"{name}: the picture is broken: {error}") from None
+    grey = rgba[:, :, :3].astype(np.uint16).sum(axis=2) / 3.0
+    return np.rint(grey).astype(np.uint8), rgba[:, :, 3] < 255

@@ -1,0 +1,80 @@
+"""Pictures of floor plans as worlds: what is light is floor, what is dark is wall, and what is between lies outside."""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim2d.importers.dress import dress
+from sim2d.importers.floor import choose_floor
+from sim2d.importers.map_yaml import MapYaml
+from sim2d.importers.picture import read_picture
+from sim2d.importers.plan import plan_world
+from sim2d.importers.trace import ring_area, simplify, trace
+from sim2d.world import World
+from sim2d.world_file import WorldError
+
+SPECK_PX = 9  # smaller obstacles are noise
+_SLIVER_PX = 3  # floor narrower than this is a gap between echoes ...
+_SLIVER_M = 0.3  # ... when that is too narrow for any robot
+
+
+def picture_world(
+    name: str, data: bytes, about: MapYaml, seed: int, radius_m: float, speck_px: int = SPECK_PX
+) -> World:
+    """The world that a picture shows. Raises WorldError."""
+    grey, veiled = read_picture(name, data)
+    free = free_pixels(grey, veiled, about)[::-1]
+    if not free.any():
+        raise WorldError(f"{name}: {_no_floor(grey, about)}")
+    scale = about.resolution
+    floor = choose_floor(name, without_slivers(free, scale), scale, radius_m)
+    rings = sorted((ring for ring in trace(floor.mask)), key=ring_area, reverse=True)
+    rings = [simplify(ring) for ring in rings if ring_area(ring) > 0 or -ring_area(ring) >= speck_px]
+    lines = [_placed(np.concatenate([ring, ring[:1]]) if len(ring) > 2 else ring, about) for ring in rings]
+    sides = ["left" if len(ring) > 2 else "both" for ring in rings]
+    walls = dress(lines, sides, 1, np.random.default_rng(seed))
+    starts = np.column_stack([_placed(floor.starts[:, :2], about), floor.starts[:, 2] + about.origin[2]])
+    return plan_world(name, walls, starts, f"a picture of {free.shape[1]} x {free.shape[0]} pixels", radius_m)
+
+
+def free_pixels(grey: NDArray[np.uint8], veiled: NDArray[np.bool_], about: MapYaml) -> NDArray[np.bool_]:
+    """What is floor, by map_server's rules. veiled: not fully opaque, unknown in the modes that look at it."""
+    if about.mode == "raw":  # the pixel is the occupancy in per cent, above 100 unknown
+        return (grey <= 100) & (grey / 100.0 < about.free)
+    occupied = (grey if about.negate else 255 - grey.astype(np.float64)) / 255.0
+    free = occupied < about.free
+    return free & ~veiled if about.mode == "scale" else free
+
+
+def without_slivers(free: NDArray[np.bool_], scale_m: float) -> NDArray[np.bool_]:
+    """Without floor that is at most two pixels wide: rays that a scanner sent out of a window, gaps in a pitted wall."""
+    if (_SLIVER_PX - 1) * scale_m > _SLIVER_M:
+        return free
+    kernel = np.ones((_SLIVER_PX, _SLIVER_PX), np.uint8)
+    padded = np.pad(free, _SLIVER_PX).astype(np.uint8)
+    opened = cv2.morphologyEx(padded, cv2.MORPH_OPEN, kernel)
+    return opened[_SLIVER_PX:-_SLIVER_PX, _SLIVER_PX:-_SLIVER_PX].astype(np.bool_)
+
+
+def _no_floor(grey: NDArray[np.uint8], about: MapYaml) -> str:
+    clear = grey if about.mode == "raw" or about.negate else 255 - grey
+    row, column = np.unravel_index(np.argmin(clear), clear.shape)
+    rule = "below" if about.mode == "raw" else f"{'dark' if about.negate else 'light'}, with an occupancy below"
+    return (
+        f"no pixel is floor: the nearest to it, in column {column} of row {row}, has grey {grey[row, column]}; floor is "
+        f"{rule} {about.free:g}"
+    )
+
+
+def _placed(pixels: NDArray[np.generic], about: MapYaml) -> NDArray[np.float64]:
+    """Pixels from the lower left corner to metres, to the millimetre."""
+    x, y, yaw = about.origin
+    c, s = math.cos(yaw), math.sin(yaw)
+    metres = pixels.astype(np.float64) * about.resolution
+    return np.round(
+        np.column_stack([x + c * metres[:, 0] - s * metres[:, 1], y + s * metres[:, 0] + c * metres[:, 1]]), 3
+    )

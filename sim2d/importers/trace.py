@@ -1,0 +1,139 @@
+"""From a picture to walls: the borders of its floor, pixel by pixel, then with as few corners as a tolerance allows."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+_DX = np.array([1, 0, -1, 0])
+_DY = np.array([0, 1, 0, -1])
+
+
+def trace(floor: NDArray[np.bool_]) -> list[NDArray[np.int32]]:
+    """The borders of the floor as closed rings of corners (k, 2), in pixels, row 0 at the bottom, pixel (0, 0) from 0 to 1.
+
+    They run along the pixels' edges with the floor on their left: counter-clockwise around it, clockwise around what
+    stands on it. Obstacles that touch at a corner hang together, so a slanting line of single pixels is a closed wall.
+    """
+    padded = np.zeros((floor.shape[0] + 2, floor.shape[1] + 2), np.bool_)
+    padded[1:-1, 1:-1] = floor
+    flat, ends = _follow(padded)
+    return [flat[begin:end] for begin, end in zip([0, *ends[:-1]], ends, strict=True)] if len(ends) else []
+
+
+def simplify(ring: NDArray[np.int32], into_floor: float = 1.0, into_wall: float = 1.5) -> NDArray[np.int32]:
+    """The ring with the fewest corners, all of them its own, that strays from it by at most so many pixels.
+
+    Imai and Iri 1988: the shortest path over all chords that keep the tolerance, begun at its first corner. A thin thing
+    may end as two corners.
+    """
+    start = int(np.lexsort((ring[:, 0], ring[:, 1]))[0])
+    closed = np.concatenate([ring[start:], ring[: start + 1]]).astype(np.float64)
+    return closed[_fewest(closed, into_floor, into_wall)].astype(np.int32)
+
+
+def ring_area(ring: NDArray[np.generic]) -> float:
+    """Area that a ring encloses, positive when it runs counter-clockwise."""
+    x, y = ring[:, 0].astype(np.float64), ring[:, 1].astype(np.float64)
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+@njit(cache=True, nogil=True)
+def _follow(floor: NDArray[np.bool_]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """All rings of a padded picture, one after the other, and where each ends. Every ring has an edge that heads for +x."""
+    rows, columns = floor.shape
+    walked = np.zeros((rows, columns), np.bool_)  # edges below a pixel, heading for +x
+    edges = 0
+    for j in range(1, rows - 1):
+        for i in range(1, columns - 1):
+            if floor[j, i]:
+                edges += 4 - floor[j - 1, i] - floor[j + 1, i] - floor[j, i - 1] - floor[j, i + 1]
+    points = np.empty((edges, 2), np.int32)
+    ends = np.empty(edges // 4 + 1, np.int64)
+    n = rings = 0
+    for row in range(1, rows - 1):
+        for column in range(1, columns - 1):
+            if not floor[row, column] or floor[row - 1, column] or walked[row, column]:
+                continue
+            x, y, d, last = column, row, 0, -1
+            while not (d == 0 and walked[y, x]):
+                if d == 0:
+                    walked[y, x] = True
+                if d != last:
+                    points[n] = x - 1, y - 1
+                    n, last = n + 1, d
+                x, y = x + _DX[d], y + _DY[d]
+                if not _ahead(floor, x, y, d, 1):
+                    d = (d + 1) % 4
+                elif _ahead(floor, x, y, d, 0):
+                    d = (d + 3) % 4
+            if last == 0:  # it began in the middle of an edge
+                first = 0 if rings == 0 else ends[rings - 1]
+                if points[first, 1] == points[n - 1, 1] and n - first > 4:
+                    points[first] = points[n - 1]
+                    n -= 1
+            ends[rings] = n
+            rings += 1
+    return points[:n], ends[:rings]
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _ahead(floor: NDArray[np.bool_], x: int, y: int, d: int, left: int) -> bool:
+    """Whether the pixel ahead of lattice point (x, y), to the left or right of heading d, is floor."""
+    if d == 0:
+        return floor[y - 1 + left, x]
+    if d == 1:
+        return floor[y, x - left]
+    if d == 2:
+        return floor[y - left, x - 1]
+    return floor[y - 1, x - 1 + left]
+
+
+@njit(cache=True, nogil=True)
+def _fewest(points: NDArray[np.float64], into_floor: float, into_wall: float) -> NDArray[np.int64]:
+    """Numbers of the points of the shortest path from the first to the last, without the last.
+
+    A chord may leave i in the directions that pass each point between at most `into_floor` to its right and `into_wall`
+    to its left; the wedge of those shrinks from point to point, and where it is empty no chord reaches.
+    """
+    n = points.shape[0]
+    hops = np.full(n, n, np.int64)
+    before = np.full(n, -1, np.int64)
+    hops[0] = 0
+    for i in range(n - 1):
+        x, y = points[i]
+        low, high, middle, bound, far = -math.pi, math.pi, 0.0, False, 0.0
+        for j in range(i + 1, n):
+            dx, dy = points[j, 0] - x, points[j, 1] - y
+            away = math.hypot(dx, dy)
+            angle = _wrap(math.atan2(dy, dx) - middle) if bound else math.atan2(dy, dx)
+            open_here = not bound or low <= angle <= high
+            if open_here and far <= away + 0.5 * into_floor and away > 0.0 and hops[i] + 1 < hops[j]:
+                hops[j], before[j] = hops[i] + 1, i
+            far = max(far, away)
+            if away <= into_floor:
+                continue
+            left = math.asin(min(into_wall / away, 1.0))
+            right = math.asin(into_floor / away)
+            if not bound:
+                bound, middle = True, angle
+                low, high = -left, right
+            else:
+                low, high = max(low, angle - left), min(high, angle + right)
+            if low > high:
+                break
+    chosen = np.empty(n, np.int64)
+    k, at = n, n - 1
+    while before[at] >= 0:
+        at = before[at]
+        k -= 1
+        chosen[k] = at
+    return chosen[k:]
+
+
+@njit(cache=True, nogil=True)
+def _wrap(angle: float) -> float:
+    return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
