@@ -60,7 +60,7 @@ class Chronicle:
             self._trail.append((truth.x, truth.y))
             self._path.append((packet.x, packet.y, packet.heading_rad))
         if session.estimate.relocalised:
-            start, end = (Packet(p.x, p.y, p.heading_rad, p.mass) for p in (self._before, packet))
+            start, end = (Packet(p.x, p.y, p.heading_rad, p.mass, p.id) for p in (self._before, packet))
             self.last_snap = Snap(session.time_s, start, end)
             view = session.estimate.recognition.view
             self.note(

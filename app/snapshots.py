@@ -161,7 +161,7 @@ def _pose_cells(session: Session, chronicle: Chronicle) -> PoseCellLayer:
     pose_cells = session.brain.pose_cells
     cells, activity = pose_cells.active
     strongest = np.argsort(-activity, kind="stable")[:STRONGEST]
-    packets = tuple(Packet(p.x, p.y, p.heading_rad, p.mass) for p in pose_cells.packets)
+    packets = tuple(Packet(p.x, p.y, p.heading_rad, p.mass, p.id) for p in pose_cells.packets)
     return PoseCellLayer(
         shape=pose_cells.shape,
         cell_m=pose_cells.params.cell_m,

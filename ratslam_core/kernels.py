@@ -11,6 +11,10 @@ import numpy as np
 from numba import njit
 
 X, Y, THETA, FLAT = 0, 1, 2, 3
+MASS, COS, SIN, CARRY = 3, 4, 5, 6  # columns of packet rows after x, y, theta; CARRY is three columns
+ROW = 9
+PATCH = 32
+LEAST_AGREEMENT = 0.25
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -60,70 +64,98 @@ def clear(cells, n, slot):
 
 
 @njit(cache=True, nogil=True)
-def inject(flats, more, cells, values, n, slot, shape):
-    """P <- P + injection. A eq. 4. `slot` indexes P before and after."""
+def first_bad(flats, more, size):
+    """The first row with a cell outside the network or an activity that is none, -1 when all are right."""
+    for i in range(flats.size):
+        if not (0 <= flats[i] < size and 0.0 <= more[i] < np.inf):
+            return i
+    return -1
+
+
+@njit(cache=True, nogil=True)
+def inject(flats, more, cells, values, n, owner, slot, shape):
+    """P <- P + injection. A eq. 4. New cells move with the winner. `slot` indexes P before and after."""
     n_y, n_x = shape[1], shape[2]
+    before = n
     for i in range(flats.size):
         row = flats[i] // n_x
         n = _add(flats[i] - row * n_x, row % n_y, row // n_y, flats[i], more[i], cells, values, n, slot)
+    owner[before:n] = 0
     return n
 
 
 @njit(cache=True, nogil=True)
-def shift(cells, values, n, out_cells, out_values, slot, shape, along, yaw, extra_x, extra_y):
+def shift(
+    cells, values, n, owner, moves, yaws, headings, out_cells, out_values, out_owner, slot, shape, patch
+):  # fmt: skip
     """P'_xyz = sum over a 2x2x2 cube of alpha_abc P. A eqs. 5-9. `slot` indexes the input, afterwards the output.
 
-    along: cells forwards, each layer along its own heading; yaw: layers; extra_x, extra_y: cells, the same for all layers.
+    owner: the packet of each cell; moves, shape (packets, 4): the packet's way forwards and to its left (cells, each layer
+    along its own heading, headings[t] = cos, sin), and what is added to x and y of all its layers; yaws: layers.
+    patch: scratch, PATCH x PATCH zeros. Rows of cells in the same layer are laid out there first, so that each cell of the
+    result is looked up twice rather than eight times.
     """
     n_theta, n_y, n_x = shape
     clear(cells, n, slot)
-    whole = np.empty((n_theta, 2), np.int64)
-    part = np.empty((n_theta, 2))
-    for t in range(n_theta):
-        heading = 2.0 * np.pi * t / n_theta
-        dx = along * np.cos(heading) + extra_x
-        dy = along * np.sin(heading) + extra_y
-        whole[t, 0] = int(np.floor(dx)) % n_x
-        whole[t, 1] = int(np.floor(dy)) % n_y
-        part[t, 0] = dx - np.floor(dx)
-        part[t, 1] = dy - np.floor(dy)
-    part_t = yaw - np.floor(yaw)
-    whole_t = int(np.floor(yaw)) % n_theta
+    middle = PATCH // 2
     m = 0
-    for i in range(n):
-        t = cells[i, THETA]
-        x0 = _wrap(cells[i, X] + whole[t, 0], n_x)
-        y0 = _wrap(cells[i, Y] + whole[t, 1], n_y)
-        x1 = _wrap(x0 + 1, n_x)
-        fx = part[t, 0]
-        fy = part[t, 1]
-        for c in range(2):
-            at = values[i] * (part_t if c else 1.0 - part_t)
-            if at == 0.0:
-                continue
-            to_t = _wrap(_wrap(t + whole_t, n_theta) + c, n_theta)
-            for b in range(2):
-                ab = at * (fy if b else 1.0 - fy)
-                if ab == 0.0:
-                    continue
-                to_y = _wrap(y0 + b, n_y)
-                row = (to_t * n_y + to_y) * n_x
-                m = _add(x0, to_y, to_t, row + x0, np.float32(ab * (1.0 - fx)), out_cells, out_values, m, slot)
-                if fx > 0.0:
-                    m = _add(x1, to_y, to_t, row + x1, np.float32(ab * fx), out_cells, out_values, m, slot)
+    i = 0
+    while i < n:
+        t, p = cells[i, THETA], owner[i]
+        cos, sin = headings[t, 0], headings[t, 1]
+        dx = moves[p, 0] * cos - moves[p, 1] * sin + moves[p, 2]
+        dy = moves[p, 0] * sin + moves[p, 1] * cos + moves[p, 3]
+        whole_x, whole_y, whole_t = np.floor(dx), np.floor(dy), np.floor(yaws[p])
+        fx, fy, ft = np.float32(dx - whole_x), np.float32(dy - whole_y), np.float32(yaws[p] - whole_t)
+        gx, gy, gt = np.float32(1.0) - fx, np.float32(1.0) - fy, np.float32(1.0) - ft
+        first_x, first_y = cells[i, X], cells[i, Y]
+        low_x = low_y = middle
+        high_x = high_y = middle
+        while i < n and cells[i, THETA] == t and owner[i] == p:
+            x = _offset(cells[i, X], first_x, n_x) + middle
+            y = _offset(cells[i, Y], first_y, n_y) + middle
+            if x < 0 or y < 0 or x > PATCH - 2 or y > PATCH - 2:
+                break
+            low_x, high_x, low_y, high_y = min(low_x, x), max(high_x, x), min(low_y, y), max(high_y, y)
+            v0, v1 = values[i] * gx, values[i] * fx
+            patch[y, x] += v0 * gy
+            patch[y, x + 1] += v1 * gy
+            patch[y + 1, x] += v0 * fy
+            patch[y + 1, x + 1] += v1 * fy
+            i += 1
+        t0 = (t + int(whole_t)) % n_theta
+        t1 = _wrap(t0 + 1, n_theta)
+        from_x = (first_x + int(whole_x) + low_x - middle) % n_x
+        to_y = (first_y + int(whole_y) + low_y - middle) % n_y
+        began = m
+        for y in range(low_y, high_y + 2):
+            row0, row1 = (t0 * n_y + to_y) * n_x, (t1 * n_y + to_y) * n_x
+            to_x = from_x
+            for x in range(low_x, high_x + 2):
+                v = patch[y, x]
+                if v > 0.0:
+                    patch[y, x] = 0.0
+                    m = _add(to_x, to_y, t0, row0 + to_x, v * gt, out_cells, out_values, m, slot)
+                    if ft > 0.0:
+                        m = _add(to_x, to_y, t1, row1 + to_x, v * ft, out_cells, out_values, m, slot)
+                to_x = _wrap(to_x + 1, n_x)
+            to_y = _wrap(to_y + 1, n_y)
+        out_owner[began:m] = p
     return m
 
 
 @njit(cache=True, nogil=True)
-def cluster(cells, values, n, shape, window, owner, peaks):
+def cluster(cells, values, n, shape, window, radius, owner, peaks, bounds):
     """Give every active cell to a cluster: the strongest free cell and all free cells within `window` of it, again and again.
 
-    Writes the cluster of each cell to `owner` and the row of each cluster's strongest cell to `peaks`; returns their number.
+    Writes the cluster of each cell to `owner`, the row of each cluster's strongest cell to `peaks`, and how far the cluster
+    reaches from there to `bounds`: lowest x, y, theta, highest x, y, theta. Returns the number of clusters and the cells of
+    all their boxes with `radius` more on each side.
     """
     n_theta, n_y, n_x = shape
     wx, wy, wt = min(window, (n_x - 1) // 2), min(window, (n_y - 1) // 2), min(window, (n_theta - 1) // 2)
     owner[:n] = -1
-    found = 0
+    found = room = 0
     best = 0
     for i in range(n):
         if values[i] > values[best]:
@@ -131,93 +163,115 @@ def cluster(cells, values, n, shape, window, owner, peaks):
     while best >= 0:
         peak = best
         peaks[found] = peak
+        px, py, pt = cells[peak, X], cells[peak, Y], cells[peak, THETA]
+        low_x = low_y = low_t = high_x = high_y = high_t = 0
         best = -1
         for i in range(n):
             if owner[i] < 0:
-                if (
-                    abs(_offset(cells[i, X], cells[peak, X], n_x)) <= wx
-                    and abs(_offset(cells[i, Y], cells[peak, Y], n_y)) <= wy
-                    and abs(_offset(cells[i, THETA], cells[peak, THETA], n_theta)) <= wt
-                ):
+                dx, dy, dt = (
+                    _offset(cells[i, X], px, n_x),
+                    _offset(cells[i, Y], py, n_y),
+                    _offset(cells[i, THETA], pt, n_theta),
+                )
+                if abs(dx) <= wx and abs(dy) <= wy and abs(dt) <= wt:
                     owner[i] = found
+                    low_x, low_y, low_t = min(low_x, dx), min(low_y, dy), min(low_t, dt)
+                    high_x, high_y, high_t = max(high_x, dx), max(high_y, dy), max(high_t, dt)
                 elif best < 0 or values[i] > values[best]:
                     best = i
+        for axis, bound in enumerate((low_x, low_y, low_t, high_x, high_y, high_t)):
+            bounds[found, axis] = bound
+        more = 1 + 2 * radius
+        room += (high_x - low_x + more) * (high_y - low_y + more) * (high_t - low_t + more)
         found += 1
-    return found
+    return found, room
 
 
 @njit(cache=True, nogil=True)
 def convolve(
-    cells, values, n, owner, peaks, clusters, out_cells, out_values, slot, shape, window, weights, box_a, box_b
-):
+    cells, values, n, owner, peaks, bounds, clusters, out_cells, out_values, slot, shape, weights, floor, box_a, box_b
+):  # fmt: skip
     """P <- eps * P: circular convolution with a 3-D Gaussian as three 1-D passes. A eq. 10.
 
-    `owner` and `peaks` split the active cells into clusters that fit a small dense box each; the boxes' results add up,
-    since convolution is linear. `slot` indexes the input, afterwards the output. box_a, box_b: scratch.
+    `owner`, `peaks`, `bounds` split the active cells into clusters that fit a small dense box each; the boxes' results add up,
+    since convolution is linear. Cells up to `floor` are left out where no other box can add to them: inhibition would take
+    them at once. `slot` indexes the input, afterwards the output. box_a, box_b: scratch.
     """
     n_theta, n_y, n_x = shape
     clear(cells, n, slot)
     taps = weights.size
     radius = taps // 2
-    bounds = np.empty((clusters, 6), np.int64)
-    bounds[:, :3] = window + 1
-    bounds[:, 3:] = -window - 1
-    for i in range(n):
-        c = owner[i]
-        peak = peaks[c]
-        for axis in range(3):
-            d = _offset(cells[i, axis], cells[peak, axis], shape[2 - axis])
-            bounds[c, axis] = min(bounds[c, axis], d)
-            bounds[c, 3 + axis] = max(bounds[c, 3 + axis], d)
     m = 0
     for c in range(clusters):
         px, py, pt = cells[peaks[c], X], cells[peaks[c], Y], cells[peaks[c], THETA]
-        low_x, low_y, low_t = bounds[c, 0], bounds[c, 1], bounds[c, 2]
-        sx, sy, st = bounds[c, 3] - low_x + 1, bounds[c, 4] - low_y + 1, bounds[c, 5] - low_t + 1
-        bx, by, bt = sx + 2 * radius, sy + 2 * radius, st + 2 * radius
-        layer = sy * sx
-        box_a[: st * layer] = 0.0
+        low_x, low_y, low_t = int(bounds[c, 0]) - radius, int(bounds[c, 1]) - radius, int(bounds[c, 2]) - radius
+        bx, by, bt = (
+            int(bounds[c, 3]) - low_x + 1 + radius,
+            int(bounds[c, 4]) - low_y + 1 + radius,
+            int(bounds[c, 5]) - low_t + 1 + radius,
+        )
+        layer = by * bx
+        size = bt * layer
+        box_a[:size] = 0.0
         for i in range(n):
             if owner[i] == c:
                 dx = _offset(cells[i, X], px, n_x) - low_x
                 dy = _offset(cells[i, Y], py, n_y) - low_y
                 dt = _offset(cells[i, THETA], pt, n_theta) - low_t
-                box_a[(dt * sy + dy) * sx + dx] = values[i]
-        _pass(box_a, box_b, 1, st, layer, weights)
-        _pass(box_b, box_a, bt, sy, sx, weights)
-        _pass(box_a, box_b, bt * by, sx, 1, weights)
-        first_x, first_y, first_t = (
-            (px + low_x - radius) % n_x,
-            (py + low_y - radius) % n_y,
-            (pt + low_t - radius) % n_theta,
-        )
-        for t in range(bt):
-            to_t = (first_t + t) % n_theta
-            for y in range(by):
-                to_y = (first_y + y) % n_y
+                box_a[(dt * by + dy) * bx + dx] = values[i]
+        # The margin of zeros lets each pass run over the box as one long row.
+        inner = radius * layer, size - radius * layer
+        _pass(box_a, box_b, size, inner, 1, weights)
+        _pass(box_b, box_a, size, inner, bx, weights)
+        _pass(box_a, box_b, size, inner, layer, weights)
+        alone = bx <= n_x and by <= n_y and bt <= n_theta
+        least = np.float32(floor if alone and _apart(c, clusters, cells, peaks, bounds, radius, shape) else 0.0)
+        first_x, to_y, to_t = (px + low_x) % n_x, (py + low_y) % n_y, (pt + low_t) % n_theta
+        at = 0
+        for _t in range(bt):
+            for _y in range(by):
                 row = (to_t * n_y + to_y) * n_x
-                at = (t * by + y) * bx
                 to_x = first_x
-                for x in range(bx):
-                    if box_b[at + x] > 0.0:
-                        m = _add(to_x, to_y, to_t, row + to_x, box_b[at + x], out_cells, out_values, m, slot)
-                    to_x += 1
-                    if to_x == n_x:
-                        to_x = 0
+                for _x in range(bx):
+                    if box_b[at] > least:
+                        m = _add(to_x, to_y, to_t, row + to_x, box_b[at], out_cells, out_values, m, slot)
+                    at += 1
+                    to_x = _wrap(to_x + 1, n_x)
+                to_y = _wrap(to_y + 1, n_y)
+            to_y = (py + low_y) % n_y
+            to_t = _wrap(to_t + 1, n_theta)
     return m
 
 
 @njit(cache=True, nogil=True)
-def _pass(source, target, outer, size, inner, weights):
-    """Full 1-D convolution along the middle axis of (outer, size, inner) into (outer, size + taps - 1, inner)."""
-    taps = weights.size
-    target[: outer * (size + taps - 1) * inner] = 0.0
-    for o in range(outer):
-        for k in range(taps):
-            to = (o * (size + taps - 1) + k) * inner
-            fro = o * size * inner
-            for i in range(size * inner):
-                target[to + i] += weights[k] * source[fro + i]
+def _pass(source, target, size, inner, stride, weights):
+    """1-D convolution of the cells from inner[0] to inner[1] along the axis of this stride."""
+    radius = weights.size // 2
+    target[:size] = 0.0
+    fro = source[inner[0] : inner[1]]
+    for k in range(weights.size):
+        weight = weights[k]
+        to = target[inner[0] + (k - radius) * stride :]
+        for i in range(fro.size):
+            to[i] += weight * fro[i]
+
+
+@njit(cache=True, nogil=True)
+def _apart(c, clusters, cells, peaks, bounds, radius, shape):
+    """No other cluster's box, with its margin, shares a cell with that of cluster c."""
+    for other in range(clusters):
+        touching = other != c
+        for axis in range(3):
+            size = shape[2 - axis]
+            ahead = (
+                cells[peaks[other], axis] + int(bounds[other, axis]) - cells[peaks[c], axis] - int(bounds[c, axis])
+            ) % size
+            width = int(bounds[c, 3 + axis]) - int(bounds[c, axis]) + 2 * radius
+            other_width = int(bounds[other, 3 + axis]) - int(bounds[other, axis]) + 2 * radius
+            touching = touching and (ahead <= width or size - ahead <= other_width)
+        if touching:
+            return False
+    return True
 
 
 @njit(cache=True, nogil=True)
@@ -250,57 +304,150 @@ def inhibit_and_normalise(cells, values, n, slot, phi):
 
 
 @njit(cache=True, nogil=True)
-def packet_rows(cells, values, n, shape, owner, peaks, clusters, out):
-    """The heaviest clusters as packets, heaviest first; returns how many.
+def join_flanks(cells, values, slot, shape, owner, peaks, clusters):
+    """Clusters whose strongest cell has a stronger neighbour are flanks of its cluster: one packet. `slot` indexes P.
 
-    out rows: x, y, theta (cells, fractions), mass, mean resultant length of the headings.
+    peaks[c] becomes the strongest cell of the packet that cluster c belongs to.
     """
     n_theta, n_y, n_x = shape
-    turn = 2.0 * np.pi / n_theta
-    layers = np.empty((n_theta, 2))
-    for t in range(n_theta):
-        layers[t, 0] = np.cos(turn * t)
-        layers[t, 1] = np.sin(turn * t)
-    sums = np.zeros((clusters, 6))
-    for i in range(n):
-        c = owner[i]
+    for c in range(1, clusters):
         peak = peaks[c]
-        v = values[i]
-        sums[c, 0] += v * _offset(cells[i, X], cells[peak, X], n_x)
-        sums[c, 1] += v * _offset(cells[i, Y], cells[peak, Y], n_y)
-        sums[c, 2] += v * _offset(cells[i, THETA], cells[peak, THETA], n_theta)
-        sums[c, 3] += v
-        sums[c, 4] += v * layers[cells[i, THETA], 0]
-        sums[c, 5] += v * layers[cells[i, THETA], 1]
-    rows = min(clusters, out.shape[0])
-    for r in range(rows):
-        c = int(np.argmax(sums[:, 3]))
-        mass = sums[c, 3]
-        out[r, 0] = (cells[peaks[c], X] + sums[c, 0] / mass) % n_x
-        out[r, 1] = (cells[peaks[c], Y] + sums[c, 1] / mass) % n_y
-        out[r, 2] = (cells[peaks[c], THETA] + sums[c, 2] / mass) % n_theta
-        out[r, 3] = mass
-        out[r, 4] = np.sqrt(sums[c, 4] ** 2 + sums[c, 5] ** 2) / mass
-        sums[c, 3] = 0.0
-    return rows
+        best = peak
+        for t in range(cells[peak, THETA] - 1, cells[peak, THETA] + 2):
+            for y in range(cells[peak, Y] - 1, cells[peak, Y] + 2):
+                for x in range(cells[peak, X] - 1, cells[peak, X] + 2):
+                    at = slot[((t % n_theta) * n_y + y % n_y) * n_x + x % n_x] - 1
+                    if at >= 0 and values[at] > values[best]:
+                        best = at
+        if best != peak:
+            peaks[c] = peaks[owner[best]]
 
 
 @njit(cache=True, nogil=True)
-def centre_near(cells, values, n, shape, window, x, y, t):
-    """Centre of the activity within `window` of (x, y, t), as the offset from there (cells, layers), and its mass."""
+def packet_rows(cells, values, n, shape, owner, peaks, clusters, headings, out):
+    """The packets, heaviest first, and how many; clusters with the same peak are one. `owner` names packets afterwards.
+
+    out rows: x, y, theta (cells, fractions), mass, mean cosine and sine of the headings; the carry is cleared.
+    """
     n_theta, n_y, n_x = shape
-    wx, wy, wt = min(window, (n_x - 1) // 2), min(window, (n_y - 1) // 2), min(window, (n_theta - 1) // 2)
-    mass = sx = sy = st = 0.0
+    rank = np.empty(clusters, np.int64)
+    found = 0
+    for c in range(clusters):
+        rank[c] = found
+        for other in range(c):
+            if peaks[other] == peaks[c]:
+                rank[c] = rank[other]
+                break
+        if rank[c] == found:
+            peaks[found] = peaks[c]
+            found += 1
+    sums = np.zeros((found, 6))
     for i in range(n):
-        dx = _offset(cells[i, X], x, n_x)
-        dy = _offset(cells[i, Y], y, n_y)
-        dt = _offset(cells[i, THETA], t, n_theta)
-        if abs(dx) <= wx and abs(dy) <= wy and abs(dt) <= wt:
+        owner[i] = c = rank[owner[i]]
+        peak = peaks[c]
+        v = values[i]
+        sums[c, X] += v * _offset(cells[i, X], cells[peak, X], n_x)
+        sums[c, Y] += v * _offset(cells[i, Y], cells[peak, Y], n_y)
+        sums[c, THETA] += v * _offset(cells[i, THETA], cells[peak, THETA], n_theta)
+        sums[c, MASS] += v
+        sums[c, COS] += v * headings[cells[i, THETA], 0]
+        sums[c, SIN] += v * headings[cells[i, THETA], 1]
+    out[:found] = 0.0
+    for r in range(found):
+        c = 0
+        for other in range(found):
+            if sums[other, MASS] > sums[c, MASS]:
+                c = other
+        rank[c] = r
+        mass = sums[c, MASS]
+        for axis in range(3):
+            out[r, axis] = (cells[peaks[c], axis] + sums[c, axis] / mass) % shape[2 - axis]
+        out[r, MASS] = mass
+        out[r, COS] = sums[c, COS] / mass
+        out[r, SIN] = sums[c, SIN] / mass
+        sums[c, MASS] = -1.0
+    if found > 1:
+        for i in range(n):
+            owner[i] = rank[owner[i]]
+    return found
+
+
+@njit(cache=True, nogil=True)
+def follow(old, old_ids, n_old, new, new_ids, n_new, shape, window, next_id):
+    """Give packets their ids: each old one, heaviest first, goes on as the nearest new one; returns the next free id."""
+    new_ids[:n_new] = 0
+    for p in range(n_old):
+        best, least = -1, np.inf
+        for q in range(n_new):
+            if new_ids[q] == 0:
+                apart = 0.0
+                for axis in range(3):
+                    d = abs(_offset(new[q, axis], old[p, axis], shape[2 - axis]))
+                    apart = apart + d * d if d <= window else np.inf
+                if apart < least:
+                    best, least = q, apart
+        if best >= 0:
+            new_ids[best] = old_ids[p]
+            new[best, CARRY:] = old[p, CARRY:]
+    for q in range(n_new):
+        if new_ids[q] == 0:
+            new_ids[q] = next_id
+            next_id += 1
+    return next_id
+
+
+@njit(cache=True, nogil=True)
+def advance(rows, n, shape, distance, turn, moves, yaws):
+    """Where packets go: rows are moved on, what `shift` needs is written to moves and yaws. cells, rad.
+
+    The way is an arc, so its chord points along the heading in the middle of it. Layers of a packet head differently, which
+    shortens and turns its way by the mean of exp(i theta): the move is divided by that complex number.
+    """
+    unit = 2.0 * np.pi / shape[0]
+    chord = distance * np.sin(turn / 2) / (turn / 2) if turn != 0.0 else distance
+    for p in range(n):
+        row = rows[p]
+        heading = unit * (row[THETA] + row[CARRY + 2]) + turn / 2
+        to_x, to_y = chord * np.cos(heading), chord * np.sin(heading)
+        agreement = max(row[COS] ** 2 + row[SIN] ** 2, LEAST_AGREEMENT**2)
+        moves[p, 0] = (to_x * row[COS] + to_y * row[SIN]) / agreement
+        moves[p, 1] = (to_y * row[COS] - to_x * row[SIN]) / agreement
+        moves[p, 2], moves[p, 3] = row[CARRY], row[CARRY + 1]
+        yaws[p] = turn / unit + row[CARRY + 2]
+        row[X] = (row[X] + to_x + row[CARRY]) % shape[2]
+        row[Y] = (row[Y] + to_y + row[CARRY + 1]) % shape[1]
+        row[THETA] = (row[THETA] + yaws[p]) % shape[0]
+        row[CARRY:] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def weigh(cells, values, n, shape, reach, rows, packets, sign):
+    """Add sign times each packet's centre, as the offset from where its row says, to the row's carry.
+
+    A cell counts for the nearest packet, up to `reach` away along each axis: the same cells of the torus before and after the
+    attractor, however packets grow and shrink.
+    """
+    n_theta, n_y, n_x = shape
+    wx, wy, wt = min(reach, (n_x - 1) // 2), min(reach, (n_y - 1) // 2), min(reach, (n_theta - 1) // 2)
+    sums = np.zeros((packets, 4))
+    for i in range(n):
+        mine, least = -1, np.inf
+        x = y = t = 0.0
+        for p in range(packets):
+            dx = _offset(cells[i, X], rows[p, X], n_x)
+            dy = _offset(cells[i, Y], rows[p, Y], n_y)
+            dt = _offset(cells[i, THETA], rows[p, THETA], n_theta)
+            apart = dx * dx + dy * dy + dt * dt
+            if apart < least and abs(dx) <= wx and abs(dy) <= wy and abs(dt) <= wt:
+                mine, least = p, apart
+                x, y, t = dx, dy, dt
+        if mine >= 0:
             v = values[i]
-            mass += v
-            sx += v * dx
-            sy += v * dy
-            st += v * dt
-    if mass == 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    return sx / mass, sy / mass, st / mass, mass
+            sums[mine, X] += v * x
+            sums[mine, Y] += v * y
+            sums[mine, THETA] += v * t
+            sums[mine, MASS] += v
+    for p in range(packets):
+        for axis in range(3):
+            if sums[p, MASS] > 0.0:
+                rows[p, CARRY + axis] += sign * sums[p, axis] / sums[p, MASS]

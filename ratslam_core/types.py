@@ -62,12 +62,13 @@ IDENTITY = Pose2(0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Packet:
-    """A packet of pose-cell activity: centre in cells (fractions), heading, share of all activity."""
+    """A packet of pose-cell activity: centre in cells (fractions), heading, share of all activity, id (0 = not tracked)."""
 
     x: float
     y: float
     heading_rad: float
     mass: float
+    id: int = 0
 
 
 @dataclass(frozen=True, slots=True)

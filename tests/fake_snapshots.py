@@ -282,9 +282,10 @@ def _cell(truth: Pose, shift: tuple[float, float, float]) -> Packet:
 def _pose_cells(tick: int, truth: Pose, lost: bool) -> PoseCellLayer:
     share = 1 - 0.42 * (1 - (tick % SNAP_EVERY) / 80) if lost else 1.0
     first, second = _cell(truth, (0, 0, 0)), _cell(truth, (22, 14, 1.4))
-    packets = [Packet(first.x, first.y, first.heading_rad, share)]
+    number = 2 * (tick // SNAP_EVERY) + 1
+    packets = [Packet(first.x, first.y, first.heading_rad, share, number)]
     if lost:
-        packets.append(Packet(second.x, second.y, second.heading_rad, 1 - share))
+        packets.append(Packet(second.x, second.y, second.heading_rad, 1 - share, number + 1))
     cells, values = zip(*[_blob(p) for p in packets], strict=True)
     cell, value = np.vstack(cells), np.concatenate(values)
     order = np.argsort(-value, kind="stable")

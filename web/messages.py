@@ -48,12 +48,13 @@ class WorldDrawing:
 
 @dataclass(frozen=True, slots=True)
 class Packet:
-    """One packet of pose-cell activity: its centre in cells (fractions), its heading and its share of the activity."""
+    """One packet of pose-cell activity: its centre in cells (fractions), its heading, its share of the activity, its id."""
 
     x: float
     y: float
     heading_rad: float
     mass: float
+    id: int = 0  # the same for as long as the packet lives
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,10 +95,12 @@ def test_no_place_of_the_torus_is_special(
     here, there = (network(activity, inhibit=0.0, carry=False) for activity in (dense, np.roll(dense, by, (1, 2))))
     for speed, yaw_rate in drives:
         for pose_cells in (here, there):
+            pose_cells._rows[: pose_cells._found, kernels.COS : kernels.CARRY] = (
+                1.0,
+                0.0,
+            )  # equal packets may swap names
             pose_cells.integrate(speed * 0.1, yaw_rate * 0.1)
-            pose_cells._rows[0, 4] = 1.0  # the twins may name another of two equal packets the winner
             pose_cells.attract()
-            pose_cells._rows[0, 4] = 1.0
     assert np.abs(np.roll(here.activity, by, (1, 2)) - there.activity).max() < 1e-5
 
 
@@ -106,19 +108,17 @@ def test_no_place_of_the_torus_is_special(
 @given(activities(), st.integers(-40, 40), st.integers(-40, 40), st.integers(-40, 40))
 def test_a_whole_cell_shift_is_a_roll_and_back_is_the_identity(dense: np.ndarray, x: int, y: int, theta: int) -> None:
     pose_cells = network(dense)
-    cells, values = (a.copy() for a in pose_cells.active)
-    shape, slot = pose_cells.shape, pose_cells.slot.copy()
-    n = len(values)
-    away_cells, away_values = np.zeros((8 * n, 4), np.int32), np.zeros(8 * n, np.float32)
-    m = kernels.shift(cells, values, n, away_cells, away_values, slot, shape, 0.0, theta, x, y)
-    away = np.zeros(dense.size)
-    away[away_cells[:m, kernels.FLAT]] = away_values[:m]
-    assert np.abs(away.reshape(dense.shape) - np.roll(dense, (theta, y, x), (0, 1, 2))).max() < 1e-6
-    back_cells, back_values = np.zeros((8 * n, 4), np.int32), np.zeros(8 * n, np.float32)
-    k = kernels.shift(away_cells, away_values, m, back_cells, back_values, slot, shape, 0.0, -theta, -x, -y)
-    back = np.zeros(dense.size, np.float32)
-    back[back_cells[:k, kernels.FLAT]] = back_values[:k]
-    assert np.array_equal(back.reshape(dense.shape), pose_cells.activity)
+    start = pose_cells.activity
+    shift(pose_cells, x, y, theta)
+    assert np.abs(pose_cells.activity - np.roll(dense, (theta, y, x), (0, 1, 2))).max() < 1e-6
+    shift(pose_cells, -x, -y, -theta)
+    assert np.array_equal(pose_cells.activity, start)
+
+
+def shift(pose_cells: PoseCells, x: float, y: float, theta: float) -> None:
+    """The same shift of all layers, as `carry` makes it."""
+    pose_cells._rows[: pose_cells._found, kernels.CARRY :] = x, y, theta
+    pose_cells.integrate(0.0, 0.0)
 
 
 @EXAMPLES
@@ -128,12 +128,33 @@ def test_every_active_cell_belongs_to_one_cluster_within_the_window(dense: np.nd
     cells, values = pose_cells.active
     n = len(values)
     owner, peaks = np.zeros(n, np.int32), np.zeros(n, np.int32)
-    found = kernels.cluster(cells, values, n, dense.shape, window, owner, peaks)
+    bounds = np.zeros((n, 6), np.int8)
+    found, room = kernels.cluster(cells, values, n, dense.shape, window, 2, owner, peaks, bounds)
+    assert room == sum(math.prod(int(b[3 + k]) - int(b[k]) + 5 for k in range(3)) for b in bounds[:found])
     assert set(owner) == set(range(found))
     for c in range(found):
         peak = cells[peaks[c]]
         assert values[peaks[c]] == values[owner == c].max()
         for axis in range(3):
             size = dense.shape[2 - axis]
-            apart = np.abs((cells[owner == c, axis] - peak[axis] + size // 2) % size - size // 2)
-            assert apart.max() <= min(window, (size - 1) // 2)
+            apart = (cells[owner == c, axis] - peak[axis] + size // 2) % size - size // 2
+            assert np.abs(apart).max() <= min(window, (size - 1) // 2)
+            assert (apart.min(), apart.max()) == (bounds[c, axis], bounds[c, 3 + axis])
+
+
+@EXAMPLES
+@given(activities(), st.floats(-1.0, 1.0), st.floats(-3, 3), st.sampled_from([0.0, 0.3]))
+def test_carry_is_what_the_attractor_took_from_each_packet(
+    dense: np.ndarray, cells: float, layers: float, local: float
+) -> None:
+    pose_cells = network(dense, local_inhibit=local, window=3)
+    pose_cells.attract()
+    pose_cells.integrate(cells * 0.25, layers * 2 * math.pi / dense.shape[0])
+    places = [row[2::-1].copy() for row in pose_cells._rows[: pose_cells._found]]
+    ids = pose_cells._ids[: pose_cells._found].copy()
+    before = literal.centres(pose_cells.activity.astype(np.float64), places, 6)
+    pose_cells.attract()
+    after = literal.centres(pose_cells.activity.astype(np.float64), places, 6)
+    for id_, was, now in zip(ids, before, after, strict=True):
+        for row in pose_cells._rows[: pose_cells._found][pose_cells._ids[: pose_cells._found] == id_]:
+            assert row[: kernels.CARRY - 1 : -1] == pytest.approx(was - now, abs=1e-5)

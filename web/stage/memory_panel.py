@@ -43,9 +43,9 @@ def _counts(snapshot: Snapshot) -> str:
 
 def _packets(layer: PoseCellLayer) -> str:
     rows = []
-    for k, packet in enumerate(layer.packets):
+    for packet in layer.packets:
         x, y, turn = packet.x * layer.cell_m, packet.y * layer.cell_m, math.degrees(packet.heading_rad) % 360
-        rows.append((f"{k + 1}: {packet.mass:.0%} of the activity", f"x′ {x:.1f}  y′ {y:.1f} m  θ′ {turn:.0f}°"))
+        rows.append((f"{packet.id}: {packet.mass:.0%} of the activity", f"x′ {x:.1f}  y′ {y:.1f} m  θ′ {turn:.0f}°"))
     return markup.table("Packets", rows, "no activity yet")
 
 

@@ -85,7 +85,7 @@ class PoseCellPlate(Plate):
         )
 
     def set_cells(self, layer: PoseCellLayer) -> None:
-        """Voxels, path and packets."""
+        """Voxels, path and packets: each with its id, the winner always in the first colour."""
         self._set_shape(layer)
         owners = np.minimum(self._fit.owners(layer), PACKETS - 1)
         self._draw_voxels(layer, owners)
@@ -123,7 +123,7 @@ class PoseCellPlate(Plate):
     def _draw_packets(self, layer: PoseCellLayer) -> None:
         packets = [packet for packet in layer.packets[:PACKETS] if packet.mass >= LEAST_SHARE]
         tops = np.array([self._fit.packet(p) for p in packets]).reshape(-1, 3)
-        words = [f"{k + 1}   {packet.mass:.0%}".replace("%", " %") for k, packet in enumerate(packets)]
+        words = [f"{packet.id}   {packet.mass:.0%}".replace("%", " %") for packet in packets]
         places = pill_places(tops, np.array([pill_width(w, PILL_M) for w in words]))
         for k, pill in enumerate(self._pills):
             self._rings[k].visible = k < len(packets)

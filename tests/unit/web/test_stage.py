@@ -198,6 +198,18 @@ def test_a_theme_is_changed_for_all_and_back(bench: Bench) -> None:
         bench.stage.set_theme("sepia")  # type: ignore[arg-type]
 
 
+def test_packets_bear_their_ids_whatever_their_rank(bench: Bench) -> None:
+    s = fake_snapshot(440)
+    first, second = s.pose_cells.packets
+    swapped = replace(second, mass=first.mass), replace(first, mass=second.mass)
+    for packets in ((first, second), swapped):
+        bench.show(replace(s, pose_cells=replace(s.pose_cells, packets=packets)), 10.0)
+        pills = bench.stage._scenery.cells._pills
+        assert [pill._words.split()[0] for pill in pills[:2]] == [str(p.id) for p in packets]
+        page = bench.stage.panels.memory._page.content
+        assert page.index(f"{packets[0].id}: ") < page.index(f"{packets[1].id}: ")
+
+
 def test_empty_panels_say_why(bench: Bench) -> None:
     s = fake_snapshot(432, goal=False)
     nothing = MapLayer(
