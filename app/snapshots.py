@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import time
-from typing import cast
+from collections.abc import Callable
+from typing import Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +18,10 @@ from ratslam_core import Pose2, TemporalMap
 from sim2d import SONAR_ANGLES_RAD, World, draw_world
 from web.messages import (
     Goal,
+    GoalMemoryLayer,
     MapLayer,
+    OccupancyLayer,
+    OccupancyPicture,
     Packet,
     Parameter,
     Pose,
@@ -29,6 +34,9 @@ from web.messages import (
 
 MAP_EVERY_S = 0.5  # of wall time
 TIMES_EVERY_S = 0.25
+OCCUPANCY_EVERY_S = 2.0
+GOAL_MEMORY_EVERY_S = 0.5
+REST = 30.0  # times what it cost to build a part is waited before it is built again, however large it has grown
 STRONGEST = 500
 
 
@@ -45,10 +53,12 @@ class Snapshots:
         self._goal_timed: int | None = None
         self._map_due = self._times_due = -math.inf
         self._parameters: tuple[object, tuple[Parameter, ...]] | None = None
+        self._occupancy = Slow(OCCUPANCY_EVERY_S, lambda: _occupancy(session))
+        self._goal_memory = Slow(GOAL_MEMORY_EVERY_S, lambda: _goal_memory(session))
 
     def refresh(self) -> None:
         """Build everything anew with the next snapshot: a command has changed something."""
-        self._map_due = self._times_due = -math.inf
+        self._map_due = self._times_due = self._goal_memory.due = -math.inf
 
     def build(self, *, running: bool, speed: float, real_time_factor: float, fault: str | None) -> Snapshot:
         session, chronicle = self._session, self._chronicle
@@ -87,6 +97,8 @@ class Snapshots:
             stage_ms={k: 1e3 * v / max(session.tick_count, 1) for k, v in session.stage_s.items()},
             events=chronicle.events,
             parameters=self._parameter_rows(),
+            occupancy=self._occupancy.part(session.tick_count),
+            goal_memory=self._goal_memory.part(session.tick_count),
         )
 
     def _map_layers(self) -> tuple[MapLayer, TimesLayer]:
@@ -120,6 +132,51 @@ class Snapshots:
             ]
             self._parameters = (config, tuple(rows))
         return self._parameters[1]
+
+
+Part = TypeVar("Part")
+
+
+class Slow(Generic[Part]):
+    """A part that costs much: built anew when the session has moved on and the time has come."""
+
+    def __init__(self, every_s: float, build: Callable[[], Part]) -> None:
+        self.due = -math.inf
+        self._every_s, self._build = every_s, build
+        self._built: tuple[int, Part] | None = None
+
+    def part(self, tick: int) -> Part:
+        began = time.perf_counter()
+        if self._built is None or began >= self.due:
+            if self._built is None or self._built[0] != tick or self.due == -math.inf:
+                self._built = (tick, self._build())
+            now = time.perf_counter()
+            self.due = now + max(self._every_s, REST * (now - began))
+        return self._built[1]
+
+
+def _occupancy(session: Session) -> OccupancyLayer | None:
+    brain = session.brain
+    if brain.occupancy is None or brain.map_grid is None:
+        return None
+    grid, poses = copy.deepcopy(brain.map_grid), brain.experience_map.poses.copy()
+
+    def draw_map() -> OccupancyPicture:
+        drawn = grid.draw(poses)
+        return OccupancyPicture(_frozen(drawn.probability), drawn.origin_xy_m, drawn.cell_m)
+
+    return OccupancyLayer(_frozen(brain.occupancy.probability), draw_map)
+
+
+def _goal_memory(session: Session) -> GoalMemoryLayer:
+    memory, goal = session.brain.goal_memory, session.pilot.goal
+    if goal is None:
+        return GoalMemoryLayer(len(memory), None, None, None)
+    x, y, _, _ = session.brain.experience_map.cell_state(goal)
+    cell = round(x) % memory.shape[2], round(y) % memory.shape[1]
+    times = memory.times_to(*cell)
+    direction = memory.direction(times, session.brain.pose_cells.winner)
+    return GoalMemoryLayer(len(memory), cell, _frozen(times.astype(np.float32)), direction)
 
 
 def world_drawing(world: World, robot_radius_m: float, camera_fov_rad: float) -> WorldDrawing:

@@ -8,6 +8,7 @@ are pose-cell indices [theta, y, x], one layer 10 degrees. SI units and radians.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -112,6 +113,33 @@ class TimesLayer:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class OccupancyPicture:
+    """Where something stands, in the map frame. 0.5 = unknown."""
+
+    probability: NDArray[np.float32]  # (n_y, n_x)
+    origin_xy_m: tuple[float, float]  # the middle of cell [0, 0]
+    cell_m: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OccupancyLayer:
+    """What the sonars met. `draw_map` takes tens of milliseconds: for whoever shows it, in a thread of their own."""
+
+    cells: NDArray[np.float32]  # (n_y, n_x) probability in the pose cells' frame
+    draw_map: Callable[[], OccupancyPicture]  # from copies: the same picture whenever it is called
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GoalMemoryLayer:
+    """The goal memory on the pose cells' plane."""
+
+    links: int
+    goal: tuple[int, int] | None  # the goal's cell x', y'
+    seconds: NDArray[np.float32] | None  # (n_y, n_x) to the goal, inf where no way is known; None without a goal
+    direction_rad: float | None  # in which they decrease fastest at the packet; None there and where no way is known
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Goal:
     experience: int
     x: float  # map frame
@@ -195,6 +223,8 @@ class Snapshot:
     stage_ms: dict[str, float]  # running mean of each stage's time per tick
     events: tuple[Event, ...]
     parameters: tuple[Parameter, ...]
+    occupancy: OccupancyLayer | None = None  # None without sonars
+    goal_memory: GoalMemoryLayer | None = None
 
 
 # ---------------------------------------------------------------- in

@@ -7,10 +7,11 @@ import math
 import numpy as np
 import viser
 
-from web.messages import Goal, MapLayer, Pose, TimesLayer
+from web.messages import Goal, MapLayer, OccupancyPicture, Pose, TimesLayer
 from web.stage import images, ribbons
 from web.stage.goal_flag import GoalFlag
 from web.stage.map_fit import DEPTH, WIDTH, MapFit, refit
+from web.stage.overlays import map_floor
 from web.stage.palette import Palette
 from web.stage.plate import FLOOR_Z, TEXT_Z, Plate
 from web.stage.route import Route
@@ -32,6 +33,18 @@ class MapPlate(Plate):
         self._capacity = self._link_capacity = 0
         floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (WIDTH / 2, DEPTH / 2)
         add_mesh(scene, f"{self.root}/floor", ribbons.flat_polygon(floor, FLOOR_Z), palette.lit(palette.floor))
+        self._picture: OccupancyPicture | None = None
+        self._occupancy = add_picture(
+            scene,
+            f"{self.root}/occupancy",
+            images.sky(palette.floor, palette.floor),
+            WIDTH,
+            DEPTH,
+            position=(0, 0, FLOOR_Z + 0.005),
+            format="jpeg",
+            jpeg_quality=88,
+            visible=False,
+        )
         nowhere = ribbons.padded(np.zeros((0, 2, 3), np.float32), GRID_LINES)
         self._grid = scene.add_line_segments(f"{self.root}/grid", nowhere, palette.drawn(palette.grid), thickness=0.025)
         self._reserve(512, 768)
@@ -93,6 +106,8 @@ class MapPlate(Plate):
             self._empty.show(images.text("no map yet: the robot has not moved", self.palette.text_2, 64), (0, 0, 0))
         if self.fit.scale != before.scale:
             self._draw_grid()
+        if self.fit is not before and self._picture is not None:
+            self.set_occupancy(self._picture)
         return grew or self.fit is not before
 
     def _draw_grid(self) -> None:
@@ -105,6 +120,13 @@ class MapPlate(Plate):
                 ends = [[at, -reach, FLOOR_Z + 0.01], [at, reach, FLOOR_Z + 0.01]]
                 lines.append([[y, x, z] for x, y, z in ends] if flip else ends)
         self._grid.points = ribbons.padded(np.array(lines, np.float32), GRID_LINES)
+
+    def set_occupancy(self, picture: OccupancyPicture | None) -> None:
+        """What the sonars met, below the map; None: nothing is shown of it."""
+        self._picture = picture
+        if picture is not None:
+            self._occupancy.image = images.upright(map_floor(picture, self.fit, self.palette))
+        self._occupancy.visible = picture is not None
 
     def set_times(self, times: TimesLayer) -> None:
         """Colours of the nodes, and the scale with its numbers."""

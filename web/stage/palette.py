@@ -92,6 +92,8 @@ class Palette:
     route: Rgb
     casing: Rgb
     link: Rgb
+    free: Rgb  # floor that the sonars found free
+    occupied: Rgb  # where they met something
     unknown: Rgb  # experiences without a known time
     pole: Rgb
     panel: Rgb  # behind the side panel's images
@@ -175,6 +177,8 @@ DARK = Palette(
     route=rgb("#FFFFFF"),
     casing=rgb("#0B0F15"),
     link=rgb("#5A6B82"),
+    free=rgb("#4C5E76"),
+    occupied=rgb("#05080C"),
     unknown=rgb("#4A5666"),
     pole=rgb("#D7DEE8"),
     panel=rgb("#242424"),
@@ -217,6 +221,8 @@ LIGHT = Palette(
     route=rgb("#111827"),
     casing=rgb("#FFFFFF"),
     link=rgb("#B4BFCC"),
+    free=rgb("#FFFFFF"),
+    occupied=rgb("#55647A"),
     unknown=rgb("#B0BBC8"),
     pole=rgb("#1B2430"),
     panel=rgb("#FFFFFF"),

@@ -12,6 +12,7 @@ from web.stage.memory_panel import MemoryPanel
 from web.stage.palette import Palette
 from web.stage.rates import Layer
 from web.stage.senses_panel import SensesPanel
+from web.stage.switches import Switches
 from web.stage.truth_panel import TruthPanel
 from web.stage.tune_panel import TunePanel
 
@@ -33,6 +34,7 @@ class Panels:
         with tabs.add_tab("Senses"):
             self.senses = SensesPanel(gui, palette)
         with tabs.add_tab("Memory"):
+            self.switches = Switches(gui)
             self.memory = MemoryPanel(gui)
         with tabs.add_tab("Truth"):
             self.truth = TruthPanel(gui, palette)

@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 import viser
 
-from web.messages import PoseCellLayer, Snap
-from web.stage import images, ribbons
+from web.messages import GoalMemoryLayer, OccupancyLayer, PoseCellLayer, Snap
+from web.stage import images, overlays, ribbons
 from web.stage.camera_views import camera_for, seen_by
 from web.stage.cell_fit import SIDE, CellFit, broken_where_it_wraps
 from web.stage.glass_box import GlassBox
@@ -39,6 +39,7 @@ class PoseCellPlate(Plate):
         self._shape = (0, 0, 0)
         self._fit = CellFit((36, 60, 60))
         self._ground = images.gridded_floor((SIDE, SIDE), FLOOR_PX / SIDE, palette.floor, palette.grid, SIDE / 16)
+        self._under = self._ground  # what the glow falls on
         self._floor = add_picture(
             scene,
             f"{self.root}/floor",
@@ -68,6 +69,12 @@ class PoseCellPlate(Plate):
         ]
         self._ends = [Pill(scene, f"{self.root}/snap_{letter}", 0.4, palette.goal, palette) for letter in "SF"]
         self._empty = Sign(scene, f"{self.root}/empty", 0.4, anchor="centre", leaning=True)
+        self._way = scene.add_frame(f"{self.root}/way", show_axes=False, visible=False)
+        add_mesh(scene, f"{self.root}/way/casing", way_arrow(0.05), palette.lit(palette.casing), position=(0, 0, 0.02))
+        add_mesh(scene, f"{self.root}/way/body", way_arrow(0.0), palette.lit(palette.goal), position=(0, 0, 0.03))
+        self._goal = add_mesh(
+            scene, f"{self.root}/goal", ribbons.ring(0.24, 0.08, 0.02), palette.lit(palette.goal), visible=False
+        )
 
     def _add_voxels(self) -> viser.BatchedMeshHandle:
         vertices, faces = ribbons.sharp(ribbons.UNIT_CUBE)
@@ -151,7 +158,37 @@ class PoseCellPlate(Plate):
 
     def set_glow(self, layer: PoseCellLayer) -> None:
         """The floor's image: the activity projected onto x'y', in its packet's colour."""
-        self._floor.image = images.upright(glow(layer, self._ground, self.palette))
+        self._floor.image = images.upright(glow(layer, self._under, self.palette))
+
+    def set_floor(
+        self, shape: tuple[int, int, int], occupancy: OccupancyLayer | None, goal: GoalMemoryLayer | None
+    ) -> None:
+        """What lies on the floor below the glow: each only when it is switched on."""
+        self._under = self._ground
+        if occupancy is not None:
+            self._under = overlays.cells_occupied(self._under, occupancy.cells, self.palette)
+        if goal is not None and goal.seconds is not None:
+            self._under = overlays.cells_timed(self._under, goal.seconds, self.palette)
+        self._goal.visible = goal is not None and goal.goal is not None
+        if goal is not None and goal.goal is not None:
+            x, y, _ = CellFit(shape).path(np.array([[*goal.goal, 0.0]]))[0].tolist()
+            self._goal.position = (x, y, 0.0)
+
+    def set_way(self, layer: PoseCellLayer, goal: GoalMemoryLayer | None) -> None:
+        """An arrow at the packet: where the times to the goal fall fastest."""
+        self._way.visible = goal is not None and goal.direction_rad is not None and bool(layer.packets)
+        if goal is None or goal.direction_rad is None or not layer.packets:
+            return
+        x, y, _ = CellFit(layer.shape).packet(layer.packets[0]).tolist()
+        half = goal.direction_rad / 2
+        self._way.position, self._way.wxyz = (x, y, 0.0), (math.cos(half), 0.0, 0.0, math.sin(half))
+
+
+def way_arrow(rim: float) -> ribbons.Mesh:
+    """From the packet's ring outwards along x; `rim` wider all around."""
+    shaft = np.array([(0.5 - rim, -0.07 - rim), (1.0, -0.07 - rim), (1.0, 0.07 + rim), (0.5 - rim, 0.07 + rim)])
+    head = np.array([(1.0 - rim, -0.26 - 1.6 * rim), (1.5 + 2 * rim, 0.0), (1.0 - rim, 0.26 + 1.6 * rim)])
+    return ribbons.joined(ribbons.flat_polygon(shaft, 0.0), ribbons.flat_polygon(head, 0.0))
 
 
 def pill_places(tops: np.ndarray, widths: np.ndarray) -> np.ndarray:

@@ -12,17 +12,18 @@ import queue
 import threading
 import time
 from collections.abc import Callable, Coroutine
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 import viser
 from viser import _messages
 
 from web.latest import Latest
-from web.messages import Accepted, Command, MapLayer, Refused, Snapshot
+from web.messages import Accepted, Command, MapLayer, OccupancyLayer, OccupancyPicture, Refused, Snapshot
 from web.stage.camera_views import VIEWS
 from web.stage.cameras import Cameras
 from web.stage.hand import Answer, Click, Drag, Hand, ask
+from web.stage.map_plate import MapPlate
 from web.stage.palette import Theme, palette_of
 from web.stage.panels import Panels
 from web.stage.rates import Layer
@@ -52,6 +53,8 @@ class Stage:
         self._hand = Hand(self._send, self._complain)
         self.panels = Panels(self.server.gui, palette_of(theme), self._send, self._complain)
         self._layers: dict[str, Layer] = {}
+        self._artist = ThreadPoolExecutor(1, "artist")  # for what takes longer than a frame
+        self._drawing = False
         self._set_up(theme)
         self._listen()
 
@@ -67,6 +70,7 @@ class Stage:
         if self._thread is not None:
             self._thread.join()
             self._thread = None
+        self._artist.shutdown(cancel_futures=True)
         self.server.stop()
 
     def fly(self, client_id: int | None, view: str) -> None:
@@ -121,6 +125,7 @@ class Stage:
             offer["times"].offer(now_s, snapshot.times)
             offer["estimate"].offer(now_s, snapshot.estimate)
             offer["goal"].offer(now_s, snapshot.goal)
+            self._draw_overlays(snapshot, now_s)
             self._hand.settle(snapshot, self._scenery.map, now_s)
             self.panels.draw(snapshot, now_s)
 
@@ -128,6 +133,35 @@ class Stage:
         if self._scenery.map.set_map(layer, self._turn_rad):
             self._forget("times", "estimate", "goal")
             self._hand.moved(self._scenery.map)
+
+    def _draw_overlays(self, snapshot: Snapshot, now_s: float) -> None:
+        """What is switched on; None takes it away."""
+        offer, is_on, cells = self._layers, self.panels.switches.is_on, snapshot.pose_cells
+        goal = snapshot.goal_memory if is_on("goal_memory") else None
+        beneath = snapshot.occupancy if is_on("cell_occupancy") else None
+        if offer["cell_floor"].offer(now_s, cells.shape, beneath, goal):
+            self._forget("glow")
+        offer["way"].offer(now_s, cells, goal)
+        if not self._drawing:
+            offer["occupancy"].offer(now_s, snapshot.occupancy if is_on("occupancy") else None)
+
+    def _draw_occupancy(self, layer: OccupancyLayer | None) -> None:
+        """In another thread, since it may take longer than a frame; what comes back too late for its switch is dropped."""
+        if layer is None:
+            self._scenery.map.set_occupancy(None)
+            return
+        plate, self._drawing = self._scenery.map, True
+
+        def drawn(future: Future[OccupancyPicture]) -> None:
+            if not future.cancelled():
+                self._inbox.put(lambda: self._lay_occupancy(plate, future))
+
+        self._artist.submit(layer.draw_map).add_done_callback(drawn)
+
+    def _lay_occupancy(self, plate: MapPlate, future: Future[OccupancyPicture]) -> None:
+        self._drawing = False
+        if plate is self._scenery.map and self.panels.switches.is_on("occupancy"):
+            plate.set_occupancy(future.result())
 
     def _forget(self, *layers: str) -> None:
         for name in layers:
@@ -157,6 +191,9 @@ class Stage:
             "times": Layer(5, map_plate.set_times),
             "estimate": Layer(15, map_plate.set_robot),
             "goal": Layer(3, map_plate.set_goal),
+            "cell_floor": Layer(2, cells.set_floor),
+            "way": Layer(5, cells.set_way),
+            "occupancy": Layer(0.6, self._draw_occupancy),
         }
         for part in office.robot.parts:
             part.on_drag("left")(self._dragged(False))
