@@ -228,6 +228,8 @@ def _pose_cells(session: Session, chronicle: Chronicle) -> PoseCellLayer:
         packets=packets,
         path=_frozen(chronicle.path),
         last_snap=chronicle.last_snap,
+        total=float(activity.sum(dtype=np.float64)),
+        least=float(activity.min()),
     )
 
 

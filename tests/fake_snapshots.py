@@ -17,7 +17,10 @@ from scipy.sparse.csgraph import dijkstra
 from web.messages import (
     Event,
     Goal,
+    GoalMemoryLayer,
     MapLayer,
+    OccupancyLayer,
+    OccupancyPicture,
     Packet,
     Parameter,
     Pose,
@@ -90,6 +93,8 @@ def fake_snapshot(tick: int, goal: bool = True, *, nodes: int = NODES, run: int 
         stage_ms={"simulator": 0.4, "local view": 0.3, "pose cells": 1.2, "experience map": 0.6, "temporal map": 0.5},
         events=_events(snap_count, goal),
         parameters=_parameters(),
+        occupancy=_occupancy(tick // 20),
+        goal_memory=_goal_memory(tick // 5, goal),
     )
 
 
@@ -372,6 +377,30 @@ def _camera(pose: Pose) -> NDArray[np.uint8]:
     v = np.arange(48)[:, None]
     inside = (v > 24 - (height - 0.5) / gap * 30) & (v < 24 + 0.5 / gap * 30)
     return np.where(inside[..., None], (base * shade[:, None])[None], image).astype(np.uint8)
+
+
+# ---------------------------------------------------------------- what lies below
+
+
+@lru_cache(maxsize=2)
+def _occupancy(_version: int) -> OccupancyLayer:
+    cells = np.full(SHAPE[1:], 0.5, np.float32)
+    cells[8:40, 40:] = 0.2
+    cells[8, 40:], cells[39, 40:] = 0.95, 0.95
+    picture = np.full((40, 50), 0.2, np.float32)
+    picture[[0, -1]], picture[:, [0, -1]] = 0.95, 0.95
+    drawn = OccupancyPicture(_frozen(picture), (-6.0, -5.0), CELL_M)
+    return OccupancyLayer(_frozen(cells), lambda: drawn)
+
+
+@lru_cache(maxsize=2)
+def _goal_memory(_version: int, goal: bool) -> GoalMemoryLayer:
+    if not goal:
+        return GoalMemoryLayer(9000, None, None, None)
+    y, x = np.mgrid[: SHAPE[1], : SHAPE[2]]
+    seconds = np.hypot(x - 50, y - 20) * 0.8
+    seconds[seconds > 15] = np.inf
+    return GoalMemoryLayer(9000, (50, 20), _frozen(seconds.astype(np.float32)), 0.7)
 
 
 # ---------------------------------------------------------------- the books

@@ -77,6 +77,8 @@ class PoseCellLayer:
     packets: tuple[Packet, ...]  # strongest first
     path: NDArray[np.float32]  # (p, 3): x, y (cells), heading (rad) of the winner over the last two minutes
     last_snap: Snap | None
+    total: float = 1.0  # of all activity
+    least: float = 0.0  # of the active cells
 
 
 @dataclass(frozen=True, slots=True, eq=False)

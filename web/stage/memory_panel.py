@@ -19,7 +19,9 @@ class MemoryPanel:
 
     def draw(self, snapshot: Snapshot) -> None:
         goal, cells = _goal(snapshot.goal), _packets(snapshot.pose_cells)
-        self._page.content = markup.page(_counts(snapshot), cells, goal, _log(snapshot))
+        self._page.content = markup.page(
+            _counts(snapshot), cells, _invariants(snapshot.pose_cells), goal, _log(snapshot)
+        )
 
 
 def clock(seconds: float) -> str:
@@ -36,8 +38,9 @@ def _counts(snapshot: Snapshot) -> str:
         "experiences": snapshot.experiences,
         "links between them": snapshot.links,
         "relocalisations": snapshot.relocalisations,
-        "active pose cells": snapshot.pose_cells.active_cells,
     }
+    if snapshot.goal_memory is not None:
+        counts["links of the goal memory"] = snapshot.goal_memory.links
     return markup.table("Stored", [(name, f"{value:,}".replace(",", " ")) for name, value in counts.items()])
 
 
@@ -47,6 +50,15 @@ def _packets(layer: PoseCellLayer) -> str:
         x, y, turn = packet.x * layer.cell_m, packet.y * layer.cell_m, math.degrees(packet.heading_rad) % 360
         rows.append((f"{packet.id}: {packet.mass:.0%} of the activity", f"x′ {x:.1f}  y′ {y:.1f} m  θ′ {turn:.0f}°"))
     return markup.table("Packets", rows, "no activity yet")
+
+
+def _invariants(layer: PoseCellLayer) -> str:
+    """What excitation, inhibition and normalisation leave as it is, checked here and now. ACRA 2004 eqs. 10-12."""
+    holds = abs(layer.total - 1) < 1e-4 and layer.least >= 0
+    rows = [("sum of all activity", f"{layer.total:.6f}"), ("least activity of an active cell", f"{layer.least:.1e}")]
+    count = f"{layer.active_cells:,} of {math.prod(layer.shape):,}".replace(",", " ")
+    rows += [("active cells", count), ("sum 1, nothing below 0", "holds" if holds else "broken")]
+    return markup.table("Attractor", rows)
 
 
 def _goal(goal: Goal | None) -> str:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from web.messages import OccupancyPicture
 from web.stage.images import Pixels
 from web.stage.map_fit import DEPTH, WIDTH, MapFit
-from web.stage.palette import Palette
+from web.stage.palette import Palette, Rgb
 
 PX_PER_UNIT = 48  # of the map plate
 SURE = 0.45  # from even chances: so far the probability has to go for the full colour
@@ -18,7 +18,7 @@ SURE = 0.45  # from even chances: so far the probability has to go for the full 
 def occupancy_colours(probability: NDArray[np.float32], ground: Pixels, palette: Palette) -> Pixels:
     """`ground` (h, w, 3) brighter where the floor is free, dark where something stands; probability: (h, w)."""
     sure = np.clip((np.asarray(probability, np.float32) - 0.5) / SURE, -1, 1)[..., None]
-    to = np.where(sure < 0, np.float32(palette.free), np.float32(palette.occupied))
+    to = np.where(sure < 0, _colour(palette.free), _colour(palette.occupied))
     return (ground + (to - ground) * np.abs(sure) * 0.9).astype(np.uint8)
 
 
@@ -32,7 +32,7 @@ def map_floor(picture: OccupancyPicture, fit: MapFit, palette: Palette) -> Pixel
     laid = cv2.warpAffine(
         picture.probability, onto, size, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=0.5
     )
-    ground = np.broadcast_to(np.uint8(palette.floor), (size[1], size[0], 3))
+    ground = np.broadcast_to(np.array(palette.floor, np.uint8), (size[1], size[0], 3))
     return occupancy_colours(np.asarray(laid, np.float32), ground, palette)
 
 
@@ -56,7 +56,7 @@ def cells_ringed(
     shape: tuple[int, int, int],
     centre: tuple[float, float],
     radius: float,
-    colour: tuple[int, int, int],
+    colour: Rgb,
 ) -> Pixels:
     """The pose cells' floor with a disc around a place, all in cells, that goes on at the other side where it leaves."""
     _, n_y, n_x = shape
@@ -68,7 +68,11 @@ def cells_ringed(
     line = 1.5 * n_x / width
     weight = np.where(apart <= radius, 0.3, 0.0)
     weight = np.where(np.abs(apart - radius) < line, 0.95, weight)[..., None]
-    return (ground + (np.float32(colour) - ground) * weight).astype(np.uint8)
+    return (ground + (_colour(colour) - ground) * weight).astype(np.uint8)
+
+
+def _colour(colour: Rgb) -> NDArray[np.float32]:
+    return np.array(colour, np.float32)
 
 
 def _enlarged(values: NDArray, ground: Pixels, how: int) -> NDArray[np.float32]:

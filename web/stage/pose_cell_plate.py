@@ -39,7 +39,7 @@ class PoseCellPlate(Plate):
         self._shape = (0, 0, 0)
         self._fit = CellFit((36, 60, 60))
         self._ground = images.gridded_floor((SIDE, SIDE), FLOOR_PX / SIDE, palette.floor, palette.grid, SIDE / 16)
-        self._under = self._ground  # what the glow falls on
+        self.under = self._ground  # what the glow falls on
         self._floor = add_picture(
             scene,
             f"{self.root}/floor",
@@ -156,19 +156,19 @@ class PoseCellPlate(Plate):
         for pill, letter, at in zip(self._ends, "SF", (start, end), strict=True):
             pill.show(letter, self.palette.on_goal, (float(at[0]), float(at[1]), float(at[2])))
 
-    def set_glow(self, layer: PoseCellLayer) -> None:
-        """The floor's image: the activity projected onto x'y', in its packet's colour."""
-        self._floor.image = images.upright(glow(layer, self._under, self.palette))
+    def set_glow(self, layer: PoseCellLayer, under: images.Pixels) -> None:
+        """The floor's image: the activity projected onto x'y', in its packet's colour, on what lies there."""
+        self._floor.image = images.upright(glow(layer, under, self.palette))
 
     def set_floor(
         self, shape: tuple[int, int, int], occupancy: OccupancyLayer | None, goal: GoalMemoryLayer | None
     ) -> None:
         """What lies on the floor below the glow: each only when it is switched on."""
-        self._under = self._ground
+        self.under = self._ground
         if occupancy is not None:
-            self._under = overlays.cells_occupied(self._under, occupancy.cells, self.palette)
+            self.under = overlays.cells_occupied(self.under, occupancy.cells, self.palette)
         if goal is not None and goal.seconds is not None:
-            self._under = overlays.cells_timed(self._under, goal.seconds, self.palette)
+            self.under = overlays.cells_timed(self.under, goal.seconds, self.palette)
         self._goal.visible = goal is not None and goal.goal is not None
         if goal is not None and goal.goal is not None:
             x, y, _ = CellFit(shape).path(np.array([[*goal.goal, 0.0]]))[0].tolist()

@@ -119,13 +119,13 @@ class Stage:
             else:
                 offer["robot"].offer(now_s, snapshot.truth, snapshot.senses)
             offer["trail"].offer(now_s, snapshot.trail)
+            self._draw_overlays(snapshot, now_s)
             offer["cells"].offer(now_s, cells)
-            offer["glow"].offer(now_s, cells)
+            offer["glow"].offer(now_s, cells, self._scenery.cells.under)
             offer["map"].offer(now_s, snapshot.map)
             offer["times"].offer(now_s, snapshot.times)
             offer["estimate"].offer(now_s, snapshot.estimate)
             offer["goal"].offer(now_s, snapshot.goal)
-            self._draw_overlays(snapshot, now_s)
             self._hand.settle(snapshot, self._scenery.map, now_s)
             self.panels.draw(snapshot, now_s)
 
@@ -139,8 +139,7 @@ class Stage:
         offer, is_on, cells = self._layers, self.panels.switches.is_on, snapshot.pose_cells
         goal = snapshot.goal_memory if is_on("goal_memory") else None
         beneath = snapshot.occupancy if is_on("cell_occupancy") else None
-        if offer["cell_floor"].offer(now_s, cells.shape, beneath, goal):
-            self._forget("glow")
+        offer["cell_floor"].offer(now_s, cells.shape, beneath, goal)
         offer["way"].offer(now_s, cells, goal)
         if not self._drawing:
             offer["occupancy"].offer(now_s, snapshot.occupancy if is_on("occupancy") else None)

@@ -9,13 +9,13 @@ import viser
 Overlay = Literal["occupancy", "cell_occupancy", "goal_memory"]
 OVERLAYS: tuple[Overlay, ...] = get_args(Overlay)
 WORDS: dict[Overlay, tuple[str, str]] = {
-    "occupancy": ("Occupancy under the map", "Where the sonars met something, bent with the map: free is bright."),
+    "occupancy": ("occupancy, map", "Where the sonars met something, bent with the map: free is bright."),
     "cell_occupancy": (
-        "Occupancy in the pose cells",
+        "occupancy, cells",
         "The same in the frame of the pose cells, which wraps and jumps.",
     ),
     "goal_memory": (
-        "Goal memory",
+        "goal memory",
         "Seconds from each pose cell to the goal, and where they fall fastest. Needs a goal.",
     ),
 }

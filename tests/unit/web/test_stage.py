@@ -18,7 +18,18 @@ from viser import _messages
 
 from tests.fake_snapshots import fake_snapshot
 from web.latest import Latest
-from web.messages import Accepted, Command, Kidnap, MapLayer, Refused, SetGoal, SetParameter, Snapshot, TimesLayer
+from web.messages import (
+    Accepted,
+    Command,
+    Kidnap,
+    MapLayer,
+    OccupancyPicture,
+    Refused,
+    SetGoal,
+    SetParameter,
+    Snapshot,
+    TimesLayer,
+)
 from web.stage import Stage
 from web.stage.camera_views import Camera, camera_for
 from web.stage.cameras import Cameras
@@ -29,6 +40,7 @@ from web.stage.map_plate import seconds_words
 from web.stage.memory_panel import clock, number
 from web.stage.office_plate import ORIGIN as OFFICE_AT
 from web.stage.rates import Layer
+from web.stage.switches import Overlay
 from web.stage.tune_panel import _step, hint, label
 
 
@@ -165,7 +177,62 @@ def test_handles_and_backlog_stay_the_same_over_two_hundred_snapshots(bench: Ben
         waiting.append(len(backlog))
     assert len(sizes) == 1
     assert max(waiting[100:]) <= max(waiting[:100]) + 5
-    assert bench.nodes < 220
+    assert bench.nodes < 230
+
+
+# ---------------------------------------------------------------- what is laid over the floors
+
+
+def switch(bench: Bench, overlay: Overlay, on: bool) -> None:
+    bench.stage.panels.switches.turn(overlay, on)
+    deadline = time.monotonic() + 5
+    bench.show(None, 3)
+    while bench.stage._drawing and time.monotonic() < deadline:
+        time.sleep(0.01)
+        bench.show(None, 0.05)
+    bench.show(None, 0.5)
+
+
+def test_occupancy_lies_under_the_map_while_it_is_switched_on(bench: Bench) -> None:
+    plate = bench.stage._scenery.map
+    bench.show(fake_snapshot(2000))
+    switch(bench, "occupancy", False)
+    assert not plate._occupancy.visible
+    switch(bench, "occupancy", True)
+    assert plate._occupancy.visible
+    assert len(np.unique(plate._occupancy.image.reshape(-1, 3), axis=0)) > 2
+    assert plate._picture is fake_snapshot(2000).occupancy.draw_map()  # type: ignore[union-attr]
+
+
+def test_a_picture_that_comes_after_its_switch_was_turned_off_is_dropped(bench: Bench) -> None:
+    stage = bench.stage
+    switch(bench, "occupancy", False)
+    late: Future[OccupancyPicture] = Future()
+    late.set_result(fake_snapshot(0).occupancy.draw_map())  # type: ignore[union-attr]
+    stage._lay_occupancy(stage._scenery.map, late)
+    assert not stage._scenery.map._occupancy.visible
+    switch(bench, "occupancy", True)
+
+
+def test_the_pose_cells_floor_shows_what_is_switched_on(bench: Bench) -> None:
+    plate = bench.stage._scenery.cells
+    bench.show(fake_snapshot(2100))
+    switch(bench, "cell_occupancy", False)
+    switch(bench, "goal_memory", False)
+    assert plate.under is plate._ground
+    assert not plate._way.visible
+    assert not plate._goal.visible
+    switch(bench, "goal_memory", True)
+    timed = plate.under
+    assert timed is not plate._ground
+    assert plate._way.visible
+    assert plate._goal.visible
+    switch(bench, "cell_occupancy", True)
+    assert not np.array_equal(plate.under, timed)
+    switch(bench, "cell_occupancy", False)
+    bench.show(fake_snapshot(2100, goal=False), 2)
+    assert plate.under is plate._ground
+    assert not plate._way.visible
 
 
 def test_unwatched_it_draws_nothing(bench: Bench) -> None:

@@ -1,0 +1,109 @@
+"""What a snapshot says of the engine, and that building it changes nothing."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from app import snapshots
+from app.chronicle import Chronicle
+from app.session import Session
+from app.snapshots import Slow, Snapshots
+from sim2d import load_world
+from web import messages as m
+
+OFFICE = load_world("office")
+
+
+@pytest.fixture(scope="module")
+def session() -> Session:
+    """A minute of exploring."""
+    session = Session(OFFICE, 5)
+    for _ in range(600):
+        session.tick()
+    return session
+
+
+def build(session: Session) -> m.Snapshot:
+    made = Snapshots(session, Chronicle(session), 1, ())
+    return made.build(running=True, speed=1.0, real_time_factor=1.0, fault=None)
+
+
+def test_occupancy_is_the_engine_s_of_that_moment(session: Session) -> None:
+    layer = build(session).occupancy
+    assert layer is not None
+    brain = session.brain
+    assert brain.occupancy is not None
+    assert brain.map_grid is not None
+    np.testing.assert_array_equal(layer.cells, brain.occupancy.probability)
+    drawn = brain.map_grid.draw(brain.experience_map.poses)
+    for _ in range(30):
+        session.tick()  # draws what was, not what is
+    picture = layer.draw_map()
+    np.testing.assert_array_equal(picture.probability, drawn.probability)
+    assert (picture.origin_xy_m, picture.cell_m) == (drawn.origin_xy_m, drawn.cell_m)
+    assert not picture.probability.flags.writeable
+
+
+def test_without_sonars_there_is_no_occupancy(session: Session) -> None:
+    kept, session.brain.occupancy = session.brain.occupancy, None
+    assert build(session).occupancy is None
+    session.brain.occupancy = kept
+
+
+def test_goal_memory_has_times_once_there_is_a_goal(session: Session) -> None:
+    before = build(session).goal_memory
+    assert before is not None
+    assert (before.links, before.goal, before.seconds) == (len(session.brain.goal_memory), None, None)
+    session.pilot.set_goal(0)
+    layer = build(session).goal_memory
+    session.pilot.cancel_goal()
+    assert layer is not None
+    assert layer.goal is not None
+    assert layer.seconds is not None
+    x, y = layer.goal
+    assert layer.seconds[y, x] == 0
+    state = session.brain.experience_map.cell_state(0)
+    assert math.hypot(x - state[0], y - state[1]) < 1
+    assert layer.direction_rad is None or -math.pi <= layer.direction_rad <= math.pi
+
+
+def test_watching_changes_nothing(session: Session) -> None:
+    session.pilot.set_goal(0)
+    before = session.state_hash()
+    layer = build(session).occupancy
+    assert layer is not None
+    layer.draw_map()
+    assert session.state_hash() == before
+    session.pilot.cancel_goal()
+
+
+def test_the_attractor_s_invariants_are_shown(session: Session) -> None:
+    cells = build(session).pose_cells
+    assert cells.total == pytest.approx(1, abs=1e-5)
+    assert cells.least > 0
+
+
+def test_a_slow_part_is_built_when_time_has_come_and_something_has_changed(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [100.0]
+    monkeypatch.setattr(snapshots.time, "perf_counter", lambda: now[0])
+    built: list[object] = []
+
+    def make() -> object:
+        built.append(object())
+        now[0] += 0.1  # what it costs
+        return built[-1]
+
+    part = Slow(2.0, make)
+    first = part.part(1)
+    assert part.part(2) is first
+    now[0] += 2.5
+    assert part.part(3) is first  # it cost 0.1 s: rest for 3 s
+    now[0] += 1.0
+    assert part.part(1) is first  # paused: nothing new to see
+    now[0] += 3.1
+    assert part.part(4) is built[1]
+    part.due = -math.inf  # a command has changed something while paused
+    assert part.part(4) is built[2]
