@@ -387,9 +387,9 @@ def _occupancy(_version: int) -> OccupancyLayer:
     cells = np.full(SHAPE[1:], 0.5, np.float32)
     cells[8:40, 40:] = 0.2
     cells[8, 40:], cells[39, 40:] = 0.95, 0.95
-    picture = np.full((40, 50), 0.2, np.float32)
+    picture = np.full((16, 20), 0.2, np.float32)
     picture[[0, -1]], picture[:, [0, -1]] = 0.95, 0.95
-    drawn = OccupancyPicture(_frozen(picture), (-6.0, -5.0), CELL_M)
+    drawn = OccupancyPicture(_frozen(picture), (-2.5, -2.0), CELL_M)
     return OccupancyLayer(_frozen(cells), lambda: drawn)
 
 
