@@ -40,6 +40,7 @@ SEEN = Recognition(0, False, 0, 2.0)
 def rows() -> Iterator[Row]:
     """One row after the other, as soon as it is measured."""
     yield from _pose_cells()
+    yield from _pose_cell_memory()
     yield from _views()
     yield _hebbian()
     yield from _map(50_000, 60_000)
@@ -72,6 +73,14 @@ def _pose_cells() -> Iterator[Row]:
         "pose-cell iteration, ten packets", "150 x 150 x 36", ten_ms, "one packet", one_ms, "10 times one packet",
         ten_ms <= 10 * one_ms,
     )  # fmt: skip
+
+
+def _pose_cell_memory() -> Iterator[Row]:
+    """All arrays of a network that has driven: the bytes stand in the size, since they are no time."""
+    n = 540
+    bytes_a_cell = _settled(n, packets=1).memory_bytes / (n * n * 36)
+    size = f"{n} x {n} x 36: {bytes_a_cell:.2f} B a cell"
+    yield _row("memory, pose cells", size, None, "-", None, "6 B a cell", bytes_a_cell <= 6)
 
 
 def _settled(n: int, packets: int) -> PoseCells:
@@ -234,11 +243,13 @@ def _median(work: Callable[[], object], repetitions: int) -> float:
     return 1e3 * statistics.median(times)
 
 
-def _row(work: str, size: str, ms: float, reference: str, reference_ms: float | None, bar: str, holds: bool) -> Row:
+def _row(
+    work: str, size: str, ms: float | None, reference: str, reference_ms: float | None, bar: str, holds: bool
+) -> Row:
     return {
         "work": work,
         "size": size,
-        "ms": round(ms, 4),
+        "ms": None if ms is None else round(ms, 4),
         "reference": reference,
         "reference_ms": None if reference_ms is None else round(reference_ms, 4),
         "bar": bar,
@@ -250,4 +261,5 @@ def line(row: Row) -> str:
     """One row of the table."""
     beside = "" if row["reference_ms"] is None else f"{row['reference_ms']:10.3f} ms  {row['reference']}"
     verdict = "holds" if row["holds"] else "MISSED"
-    return f"{row['work']:34} {row['size']:28} {row['ms']:10.3f} ms  bar {row['bar']:20} {verdict:7} {beside}"
+    took = " " * 13 if row["ms"] is None else f"{row['ms']:10.3f} ms"
+    return f"{row['work']:34} {row['size']:28} {took}  bar {row['bar']:20} {verdict:7} {beside}"

@@ -166,19 +166,22 @@ def cluster(cells, values, n, shape, window, radius, owner, peaks, bounds):
         px, py, pt = cells[peak, X], cells[peak, Y], cells[peak, THETA]
         low_x = low_y = low_t = high_x = high_y = high_t = 0
         best = -1
+        most = np.float32(-1.0)  # cells may hold nothing
         for i in range(n):
-            if owner[i] < 0:
-                dx, dy, dt = (
-                    _offset(cells[i, X], px, n_x),
-                    _offset(cells[i, Y], py, n_y),
-                    _offset(cells[i, THETA], pt, n_theta),
-                )
-                if abs(dx) <= wx and abs(dy) <= wy and abs(dt) <= wt:
-                    owner[i] = found
-                    low_x, low_y, low_t = min(low_x, dx), min(low_y, dy), min(low_t, dt)
-                    high_x, high_y, high_t = max(high_x, dx), max(high_y, dy), max(high_t, dt)
-                elif best < 0 or values[i] > values[best]:
-                    best = i
+            if owner[i] >= 0:
+                continue
+            dy = _offset(cells[i, Y], py, n_y)
+            if abs(dy) <= wy:
+                dx = _offset(cells[i, X], px, n_x)
+                if abs(dx) <= wx:
+                    dt = _offset(cells[i, THETA], pt, n_theta)
+                    if abs(dt) <= wt:
+                        owner[i] = found
+                        low_x, low_y, low_t = min(low_x, dx), min(low_y, dy), min(low_t, dt)
+                        high_x, high_y, high_t = max(high_x, dx), max(high_y, dy), max(high_t, dt)
+                        continue
+            if values[i] > most:
+                best, most = i, values[i]
         for axis, bound in enumerate((low_x, low_y, low_t, high_x, high_y, high_t)):
             bounds[found, axis] = bound
         more = 1 + 2 * radius
@@ -421,6 +424,19 @@ def advance(rows, n, shape, distance, turn, moves, yaws):
 
 
 @njit(cache=True, nogil=True)
+def _half_way_to_the_next(rows, packets, shape):
+    """Squares of half the distance from each packet to the nearest other: within, no other can be nearer."""
+    own = np.full(packets, np.inf)
+    for p in range(packets):
+        for q in range(p):
+            apart = 0.0
+            for axis in range(3):
+                apart += _offset(rows[p, axis], rows[q, axis], shape[2 - axis]) ** 2
+            own[p], own[q] = min(own[p], apart / 4), min(own[q], apart / 4)
+    return own
+
+
+@njit(cache=True, nogil=True)
 def weigh(cells, values, n, shape, reach, rows, packets, sign):
     """Add sign times each packet's centre, as the offset from where its row says, to the row's carry.
 
@@ -430,10 +446,13 @@ def weigh(cells, values, n, shape, reach, rows, packets, sign):
     n_theta, n_y, n_x = shape
     wx, wy, wt = min(reach, (n_x - 1) // 2), min(reach, (n_y - 1) // 2), min(reach, (n_theta - 1) // 2)
     sums = np.zeros((packets, 4))
+    own = _half_way_to_the_next(rows, packets, shape)
+    mine = -1
     for i in range(n):
-        mine, least = -1, np.inf
+        before, mine, least = mine, -1, np.inf
         x = y = t = 0.0
-        for p in range(packets):
+        for k in range(packets):
+            p = k if before < 0 else (before + k) % packets  # most often the nearest is that of the cell before
             dx = _offset(cells[i, X], rows[p, X], n_x)
             dy = _offset(cells[i, Y], rows[p, Y], n_y)
             dt = _offset(cells[i, THETA], rows[p, THETA], n_theta)
@@ -441,6 +460,8 @@ def weigh(cells, values, n, shape, reach, rows, packets, sign):
             if apart < least and abs(dx) <= wx and abs(dy) <= wy and abs(dt) <= wt:
                 mine, least = p, apart
                 x, y, t = dx, dy, dt
+                if apart < own[p]:
+                    break
         if mine >= 0:
             v = values[i]
             sums[mine, X] += v * x

@@ -501,6 +501,9 @@ def test_a_cell_injected_twice_gets_both_and_nothing_is_no_fault() -> None:
     pose_cells.inject(np.array([7, 7], np.int32), np.array([0.25, 0.5], np.float32))
     pose_cells.inject(np.zeros(0, np.int32), np.zeros(0, np.float32))
     assert pose_cells.activity[0, 0, 7] == 0.75
+    pose_cells.inject(np.arange(90_000, 90_100, dtype=np.int32), np.zeros(100, np.float32))
+    assert pose_cells.attract() == pose_cells.winner
+    assert pose_cells.activity.sum(dtype=np.float64) == pytest.approx(1.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("local_inhibit", [0.0, 0.3])
