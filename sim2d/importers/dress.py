@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim2d.world import Panel, Rgb, Wall
 
+Point = tuple[float, float]
+Side = Literal["left", "right", "both", "each"]  # both: the same on either side; each: two of its own
 HEIGHT_M = 2.6
 _PAINTS: tuple[Rgb, ...] = (
     (207, 198, 178), (169, 185, 192), (196, 204, 190), (214, 186, 160), (150, 160, 176), (222, 220, 212),
@@ -27,47 +32,62 @@ _KINDS = {
     "door": (0.1, (0.8, 1.0), (0.0, 0.0), (2.0, 2.1)),
     "window": (0.12, (0.7, 1.2), (0.3, 0.7), (1.7, 2.1)),
 }
+_NAMES = tuple(_KINDS)
+_CHANCES = np.array([kind[0] for kind in _KINDS.values()])
 _SHORT_M = 0.55  # what is shorter has room for paint alone
 
 
-def dress(
-    rings: list[NDArray[np.float64]], sides: list[str], outer: int, rng: np.random.Generator, height: float = HEIGHT_M
-) -> tuple[Wall, ...]:
-    """Walls along closed rings or open lines of points (k, 2), metres; a ring ends at the point where it began.
+class Dresser:
+    """Gives walls their looks, one line of them after the other; the same seed and lines, the same looks."""
 
-    sides: for each ring the side that is seen, "left", "right" or "both". outer: so many of the rings are the outline.
-    """
-    seeds = iter(range(int(rng.integers(1 << 20)) << 20, 1 << 62))
-    walls: list[Wall] = []
-    for number, (ring, side) in enumerate(zip(rings, sides, strict=True)):
-        paint = _PAINTS[int(rng.integers(len(_PAINTS)))]
+    def __init__(self, seed: int) -> None:
+        self._rng = np.random.default_rng(seed)
+        self._seed = int(self._rng.integers(1 << 20)) << 20  # of the next panel
+
+    def line(
+        self,
+        points: Sequence[Point] | NDArray[np.floating],
+        side: Side,
+        kind: str = "wall",
+        height: float = HEIGHT_M,
+        outer: bool = False,
+    ) -> list[Wall]:
+        """Walls from point to point (k, 2), to the millimetre; a ring ends where it began. `side` is the one that is seen."""
+        rng = self._rng
+        paint = _tone(rng, _PAINTS)
         patch, left = paint, 0.0
-        for (x1, y1), (x2, y2) in zip(ring[:-1].tolist(), ring[1:].tolist(), strict=True):
+        walls: list[Wall] = []
+        for (x1, y1), (x2, y2) in pairwise(np.round(points, 3).tolist()):
             length = math.hypot(x2 - x1, y2 - y1)
             if left <= 0.0:  # along a row of short walls the paint changes now and then
                 patch, left = _tone(rng, _COLOURS if rng.random() < 0.5 else _PAINTS), float(rng.uniform(0.3, 1.0))
             left -= length
-            bare = length >= _SHORT_M
-            panels = tuple(_panels(length, side, height, rng, seeds)) if bare else ()
-            colour = paint if bare else patch
-            walls.append(Wall(x1, y1, x2, y2, "wall", height, colour, number < outer, 0.0, panels))
-    return tuple(walls)
+            long = length >= _SHORT_M
+            panels = tuple(self._panels(length, side, height)) if long else ()
+            walls.append(Wall(x1, y1, x2, y2, kind, height, paint if long else patch, outer, 0.0, panels))
+        return walls
 
+    def next_seed(self) -> int:
+        """Of a panel; never the same twice."""
+        self._seed += 1
+        return self._seed
 
-def _panels(length: float, side: str, height: float, rng: np.random.Generator, seeds):
-    """About one and a tenth a metre, with gaps between them."""
-    names = list(_KINDS)
-    chances = np.array([_KINDS[name][0] for name in names])
-    at = round(float(rng.uniform(0.05, 0.25)), 3)
-    while at + 0.35 < length:
-        name = names[int(rng.choice(len(names), p=chances / chances.sum()))]
-        _, widths, lows, highs = _KINDS[name]
-        width = min(round(float(rng.uniform(*widths)), 2), math.floor((length - at) * 100 + 1e-9) / 100)
-        if width >= min(widths[0], 0.5 * length):
-            low = round(float(rng.uniform(*lows)), 2)
-            high = min(round(float(rng.uniform(*highs)), 2), height)
-            yield Panel(at, width, low, high, name, _tone(rng, _COLOURS), next(seeds), side)
-        at = round(at + width + float(rng.uniform(0.1, 0.45)), 3)
+    def _panels(self, length: float, side: Side, height: float) -> Iterator[Panel]:
+        """About one a metre, with gaps between them."""
+        if side == "each":
+            yield from self._panels(length, "left", height)
+            yield from self._panels(length, "right", height)
+            return
+        rng = self._rng
+        at = round(float(rng.uniform(0.05, 0.25)), 3)
+        while at + 0.35 < length:
+            name = _NAMES[int(rng.choice(len(_NAMES), p=_CHANCES))]
+            _, widths, lows, highs = _KINDS[name]
+            width = min(round(float(rng.uniform(*widths)), 2), math.floor((length - at) * 100 + 1e-9) / 100)
+            low, high = round(float(rng.uniform(*lows)), 2), round(float(rng.uniform(*highs)), 2)
+            if width >= min(widths[0], 0.5 * length) and low < height - 0.3:
+                yield Panel(at, width, low, min(high, height), name, _tone(rng, _COLOURS), self.next_seed(), side)
+            at = round(at + width + float(rng.uniform(0.1, 0.45)), 3)
 
 
 def _tone(rng: np.random.Generator, colours: tuple[Rgb, ...]) -> Rgb:

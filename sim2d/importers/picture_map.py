@@ -8,13 +8,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim2d.importers.dress import dress
+from sim2d.importers.dress import Dresser
 from sim2d.importers.floor import choose_floor
 from sim2d.importers.map_yaml import MapYaml
 from sim2d.importers.picture import read_picture
 from sim2d.importers.plan import plan_world
 from sim2d.importers.trace import ring_area, simplify, trace
-from sim2d.world import World
+from sim2d.world import Wall, World
 from sim2d.world_file import WorldError
 
 SPECK_PX = 9  # smaller obstacles are noise
@@ -34,11 +34,13 @@ def picture_world(
     floor = choose_floor(name, without_slivers(free, scale), scale, radius_m)
     rings = sorted((ring for ring in trace(floor.mask)), key=ring_area, reverse=True)
     rings = [simplify(ring) for ring in rings if ring_area(ring) > 0 or -ring_area(ring) >= speck_px]
-    lines = [_placed(np.concatenate([ring, ring[:1]]) if len(ring) > 2 else ring, about) for ring in rings]
-    sides = ["left" if len(ring) > 2 else "both" for ring in rings]
-    walls = dress(lines, sides, 1, np.random.default_rng(seed))
+    dresser, walls = Dresser(seed), list[Wall]()
+    for ring in rings:
+        thin = len(ring) == 2  # nothing but a line is left of it
+        points = ring if thin else np.concatenate([ring, ring[:1]])
+        walls += dresser.line(_placed(points, about), "both" if thin else "left", outer=ring is rings[0])
     starts = np.column_stack([_placed(floor.starts[:, :2], about), floor.starts[:, 2] + about.origin[2]])
-    return plan_world(name, walls, starts, f"a picture of {free.shape[1]} x {free.shape[0]} pixels", radius_m)
+    return plan_world(name, tuple(walls), starts, f"a picture of {free.shape[1]} x {free.shape[0]} pixels", radius_m)
 
 
 def free_pixels(grey: NDArray[np.uint8], veiled: NDArray[np.bool_], about: MapYaml) -> NDArray[np.bool_]:

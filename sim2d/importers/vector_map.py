@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim2d.importers.dress import dress
+from sim2d.importers.dress import Dresser
 from sim2d.importers.floor import choose_floor
 from sim2d.importers.plan import plan_world
 from sim2d.json_lines import line_of
@@ -39,11 +39,12 @@ def vector_world(name: str, text: str, items: list[Any], seed: int, radius_m: fl
     cell = max(0.05, float(max(high - low)) / 4000)
     floor = choose_floor(name, _free(segments, low, high, cell), cell, radius_m)
     ring = np.array([low, (high[0], low[1]), high, (low[0], high[1]), low])
-    lines = [ring, *(s.reshape(2, 2) for s in segments)]
-    sides = ["left"] + ["both"] * len(segments)
-    walls = dress([np.round(line, 3) for line in lines], sides, 1, np.random.default_rng(seed))
+    dresser = Dresser(seed)
+    walls = dresser.line(ring, "left", outer=True)
+    for segment in segments:
+        walls += dresser.line(segment.reshape(2, 2), "both")
     starts = floor.starts * (cell, cell, 1.0) + (*low, 0.0)
-    return plan_world(name, walls, starts, "a vector map", radius_m)
+    return plan_world(name, tuple(walls), starts, "a vector map", radius_m)
 
 
 def _segment(name: str, text: str, i: int, item: Any) -> tuple[float, ...]:

@@ -1,0 +1,236 @@
+"""Makes the worlds that come with the package, but for the three first (office, floor, loop), whose JSON is the source.
+
+    python -m sim2d.worlds.make
+
+Sizes are the papers'; what they leave open - widths, furniture, looks - is ours. Lengths in metres.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from sim2d.importers.dress import Dresser, Point
+from sim2d.things import SlowZone
+from sim2d.world import Panel, Place, Start, Wall, World
+from sim2d.world_writer import world_to_json
+
+DOOR_M = 1.2
+
+
+class Sketch:
+    """A floor plan in the making."""
+
+    def __init__(self, outline: Sequence[Point], seed: int) -> None:
+        self.dresser = Dresser(seed)
+        self.walls: list[Wall] = self.dresser.line([*outline, outline[0]], "left", outer=True)
+
+    def block(self, points: Sequence[Point], kind: str = "wall", height: float = 2.6) -> None:
+        """Something solid; its corners clockwise."""
+        self.walls += self.dresser.line([*points, points[0]], "left", kind, height)
+
+    def box(self, x: float, y: float, width: float, depth: float, kind: str = "wall", height: float = 2.6) -> None:
+        """A solid rectangle with its lower left corner at (x, y)."""
+        self.block([(x, y), (x, y + depth), (x + width, y + depth), (x + width, y)], kind, height)
+
+    def wall(self, a: Point, b: Point, *doors: float, kind: str = "wall", height: float = 2.6) -> None:
+        """From a to b, open around these distances from a; a different look on each side."""
+        length = math.dist(a, b)
+        ends = [0.0, *(end for door in doors for end in (door - DOOR_M / 2, door + DOOR_M / 2)), length]
+        points = [(a[0] + (b[0] - a[0]) * end / length, a[1] + (b[1] - a[1]) * end / length) for end in ends]
+        for begin, end in zip(points[::2], points[1::2], strict=True):
+            self.walls += self.dresser.line([begin, end], "each", kind, height)
+
+    def desk(self, x: float, y: float, width: float, depth: float) -> None:
+        """With a screen on it."""
+        self.box(x, y, width, depth, "desk", 0.75)
+        half, seed = 0.27, self.dresser.next_seed()
+        dx, dy = (half, 0.0) if width > depth else (0.0, half)
+        cx, cy = x + width / 2, y + depth / 2
+        shine = 40 + seed * 37 % 180, 90, 40 + seed * 53 % 180
+        panel = Panel(0.0, 2 * half, 0.82, 1.2, "screen", shine, seed, "both")
+        x1, y1, x2, y2 = (round(v, 3) for v in (cx - dx, cy - dy, cx + dx, cy + dy))
+        self.walls.append(Wall(x1, y1, x2, y2, "screen", 1.2, (24, 24, 28), False, 0.82, (panel,)))
+
+    def partition(self, a: Point, b: Point) -> None:
+        self.wall(a, b, kind="partition", height=1.4)
+
+    def world(self, name: str, title: str, paper: str, about: str, source: str, start: Start, *places: Place) -> World:
+        return World(
+            name, title, source, tuple(self.walls), (start,), places, (110, 106, 102), (222, 222, 216),
+            paper=paper, about=about,
+        )  # fmt: skip
+
+
+def corridors() -> World:
+    """Environment A: the middle line of the corridor is 70 m long."""
+    sketch = Sketch([(0, 0), (25.8, 0), (25.8, 12.8), (0, 12.8)], seed=2004)
+    sketch.box(1.8, 1.8, 22.2, 9.2)
+    return sketch.world(
+        "corridors", "Corridor loop, 70 m round", "ACRA 2004",
+        "Environment A: three autonomous laps of a corridor loop in ten minutes, closed on the second lap.",
+        "Milford, Wyeth: ACRA 2004, environment A; shape, width and pictures are ours",
+        Start("home", 4.0, 0.9, 0.0),
+        Place("south-east corner", 24.9, 0.9), Place("north-east corner", 24.9, 11.9),
+        Place("north-west corner", 0.9, 11.9), Place("south-west corner", 0.9, 0.9),
+    )  # fmt: skip
+
+
+def campus() -> World:
+    """Environment B: a complete floor of 45 x 13 m."""
+    sketch = Sketch([(0, 0), (45, 0), (45, 13), (0, 13)], seed=2005)
+    sketch.box(3.0, 4.8, 8.0, 2.0)  # lifts and stores between two corridors, with a passage
+    sketch.box(13.0, 4.8, 9.0, 2.0)
+    sketch.wall((0, 8.7), (29, 8.7), 2.5, 8.0, 13.5, 20.5, 27.5)
+    for x in (5.0, 11.0, 17.0, 24.0):
+        sketch.wall((x, 8.7), (x, 13))
+    sketch.wall((0, 3.0), (25, 3.0), 2.5, 8.5, 15.0, 22.5)
+    for x in (5.0, 12.0, 18.0):
+        sketch.wall((x, 0), (x, 3.0))
+    sketch.wall((25, 0), (25, 6.0), 4.2)  # the laboratory
+    sketch.wall((25, 6.0), (31, 6.0), 3.0)
+    sketch.wall((31, 0), (31, 6.0))
+    sketch.wall((29, 8.7), (29, 13))
+    for x, y, w, d in ((1.0, 11.6, 1.6, 0.8), (7.0, 11.4, 1.6, 0.8), (13.2, 11.2, 2.0, 1.0), (19.6, 10.6, 2.0, 1.0),
+                       (26.0, 11.8, 1.6, 0.8), (0.4, 0.4, 1.6, 0.8), (9.6, 0.4, 1.6, 0.8), (14.6, 0.4, 1.6, 0.8),
+                       (19.4, 0.4, 1.6, 0.8), (27.0, 1.8, 2.2, 1.0)):  # fmt: skip
+        sketch.desk(x, y, w, d)
+    for x, y in ((34.0, 2.2), (39.5, 2.2), (34.0, 9.0), (39.5, 9.0)):  # cloisters of the open plan
+        sketch.partition((x, y + 0.8), (x + 3.2, y + 0.8))
+        sketch.partition((x + 1.6, y - 0.3), (x + 1.6, y + 1.9))
+        sketch.desk(x + 0.1, y + 0.85, 1.4, 0.7)
+        sketch.desk(x + 1.7, y + 0.05, 1.4, 0.7)
+    sketch.box(37.6, 5.9, 0.9, 0.9)  # a pillar
+    return sketch.world(
+        "campus", "Campus floor, 45 x 13 m", "ACRA 2004",
+        "Environment B: a whole floor, driven both ways and into rooms, with several ways between most points.",
+        "Milford, Wyeth: ACRA 2004, environment B; rooms, furniture and pictures are ours",
+        Start("home", 1.5, 7.7, 0.0),
+        Place("laboratory", 29.5, 4.4), Place("open plan", 43.0, 6.5), Place("meeting room", 20.5, 12.2),
+        Place("north-east desks", 42.5, 12.2), Place("office", 8.5, 2.0), Place("west end", 1.5, 3.9),
+    )  # fmt: skip
+
+
+def open_plan() -> World:
+    """The 80 m^2 of open plan in which experience mapping was tried on a real robot."""
+    sketch = Sketch([(0, 0), (10, 0), (10, 8), (0, 8)], seed=80)
+    for x, y in ((2.0, 1.9), (6.2, 1.9), (2.0, 5.2), (6.2, 5.2)):
+        sketch.partition((x, y), (x + 1.8, y))
+        sketch.partition((x + 0.9, y - 0.8), (x + 0.9, y + 0.8))
+        sketch.desk(x + 0.1, y + 0.05, 0.75, 0.65)
+        sketch.desk(x + 0.95, y - 0.7, 0.75, 0.65)
+    sketch.box(9.2, 3.4, 0.7, 0.7, "wall", 1.8)  # fridges
+    sketch.box(9.2, 4.2, 0.7, 0.7, "wall", 1.8)
+    sketch.box(4.8, 3.6, 0.5, 0.5, "desk", 0.9)  # a chair
+    sketch.box(0.1, 3.6, 0.5, 0.8, "wall", 2.0)  # a cupboard
+    return sketch.world(
+        "open-plan", "Open-plan office, 80 m²", "ACRA 2005",
+        "Desk cloisters, chairs and fridges: the robot explores for 15 minutes and no jumps are left in its map.",
+        "Milford, Prasser, Wyeth: ACRA 2005, the open-plan experiment; furniture and pictures are ours",
+        Start("home", 1.0, 1.0, 0.0),
+        Place("fridges", 8.6, 4.1), Place("far corner", 9.2, 7.2), Place("window", 5.1, 7.2),
+    )  # fmt: skip
+
+
+def two_goals() -> World:
+    """Two goals with two ways of one length between them; wheels slip on the lower one, so that the upper is quicker."""
+    outline = [(0, 0), (24, 0), (24, 12), (0, 12)]
+    sketch = Sketch(outline, seed=1274)
+    sketch.box(7.0, 4.2, 10.0, 3.6)
+    sketch.box(7.0, 9.8, 10.0, 2.1)
+    sketch.box(7.0, 0.1, 10.0, 2.1)
+    sketch.wall((4.0, 8.5), (4.0, 12.0))
+    sketch.wall((20.0, 0.0), (20.0, 3.5))
+    for x, y in ((1.6, 2.0), (21.0, 9.6), (1.2, 10.2), (21.6, 1.2)):
+        sketch.desk(x, y, 1.4, 0.8)
+    sketch.partition((18.6, 6.0), (20.0, 6.0))
+    world = sketch.world(
+        "two-goals", "Two goals, two ways round", "IROS 2005",
+        "Two ways of one length lead from goal to goal; on the lower one the wheels slip, so the upper one is quicker.",
+        "Milford, Wyeth: IROS 2005, the goal-memory experiment; plan and pictures are ours",
+        Start("home", 17.5, 8.8, math.pi), Place("goal 1", 2.2, 6.0), Place("goal 2", 21.8, 6.0),
+    )  # fmt: skip
+    lower = ((7.0, 2.2), (17.0, 2.2), (17.0, 4.2), (7.0, 4.2))
+    return replace(world, slow_zones=(SlowZone("slippery floor", lower, 0.4),))
+
+
+def twins() -> World:
+    """Two corridors alike to the last poster; only where they lead differs."""
+    sketch = Sketch([(0, 0), (22, 0), (22, 8.6), (0, 8.6)], seed=17)
+    below = Dresser(18)
+    pair = [
+        *below.line([(4.0, 1.0), (18.0, 1.0)], "left"),
+        *below.line([(18.0, 2.8), (4.0, 2.8)], "left"),
+        *below.line([(4.0, 2.8), (4.0, 3.4)], "left"),
+        *below.line([(18.0, 3.4), (18.0, 2.8)], "left"),
+    ]
+    for wall in pair:
+        sketch.walls += [wall, replace(wall, y1=round(wall.y1 + 4.8, 3), y2=round(wall.y2 + 4.8, 3))]
+    sketch.walls += sketch.dresser.line([(18.0, 1.0), (18.0, 0.0)], "left")
+    sketch.walls += sketch.dresser.line([(4.0, 0.0), (4.0, 1.0)], "left")
+    sketch.walls += sketch.dresser.line([(4.0, 3.4), (4.0, 5.8)], "left")
+    sketch.walls += sketch.dresser.line([(18.0, 5.8), (18.0, 3.4)], "left")
+    sketch.walls += sketch.dresser.line([(4.0, 8.2), (4.0, 8.6)], "left")
+    sketch.walls += sketch.dresser.line([(18.0, 8.6), (18.0, 8.2)], "left")
+    sketch.desk(19.6, 3.9, 0.8, 1.6)
+    return sketch.world(
+        "twins", "Twin corridors", "ACRA 2004",
+        "Two corridors that look exactly alike: two packets or more, until the robot has come out of one of them.",
+        "after Milford, Wyeth: ACRA 2004, corridors that look alike; the plan is ours",
+        Start("home", 1.5, 4.3, 0.0),
+        Place("lower corridor", 11.0, 1.9), Place("upper corridor", 11.0, 6.7), Place("east hall", 20.9, 7.4),
+    )  # fmt: skip
+
+
+def suburb() -> World:
+    """Blocks of houses, seven by five, for runs of hours."""
+    rng = np.random.default_rng(66)
+    width, depth, street, across, down = 26.0, 18.0, 4.0, 7, 5
+    size_x, size_y = across * (width + street) + street, down * (depth + street) + street
+    sketch = Sketch([(0, 0), (size_x, 0), (size_x, size_y), (0, size_y)], seed=67)
+    for row in range(down):
+        for column in range(across):
+            x, y = street + column * (width + street), street + row * (depth + street)
+            sketch.block(_houses(x, y, width, depth, rng))
+    middle = (down // 2) * (depth + street) + street / 2
+    return sketch.world(
+        "suburb", "Suburb, 2.2 km of streets", "",
+        "A grid of streets between houses, for runs of hours; after the suburb that RatSLAM mapped in 2008.",
+        "ours",
+        Start("home", street / 2, middle, 0.0),
+        Place("first corner", 2 * street + width - street / 2, middle), Place("park", street / 2, middle + 22.0),
+    )  # fmt: skip
+
+
+def _houses(x: float, y: float, width: float, depth: float, rng: np.random.Generator) -> list[Point]:
+    """A block clockwise from its lower left corner: houses 5 to 8 m wide, each with its own distance from the street."""
+    ring: list[Point] = []
+    sides = (((x, y), (0, 1), (1, 0), depth), ((x, y + depth), (1, 0), (0, -1), width),
+             ((x + width, y + depth), (0, -1), (-1, 0), depth), ((x + width, y), (-1, 0), (0, 1), width))  # fmt: skip
+    for (cx, cy), (ax, ay), (ix, iy), length in sides:
+        at, back = 2.0, 0.0
+        while at < length - 4.0:
+            end = min(at + float(rng.uniform(5.0, 8.0)), length - 2.0)
+            back = round(back + float(rng.uniform(0.2, 1.0)), 2) % 1.4
+            for along in (at, end):
+                ring.append((round(cx + along * ax + back * ix, 3), round(cy + along * ay + back * iy, 3)))
+            at = end
+    return ring
+
+
+MADE: tuple[Callable[[], World], ...] = (corridors, campus, open_plan, two_goals, twins, suburb)
+
+
+def main() -> None:
+    for make in MADE:
+        world = make()
+        (Path(__file__).parent / f"{world.name}.json").write_text(world_to_json(world), encoding="utf-8")
+        print(f"{world.name}: {len(world.walls)} walls, {sum(len(w.panels) for w in world.walls)} panels")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+"""Draws worlds from above, as PNG for the docs.
+
+python -m sim2d.worlds.pictures docs/pictures/worlds
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim2d.drawing import draw_world
+from sim2d.world import World
+from sim2d.world_file import load_world, world_names
+
+_SIDE_PX = 1000  # of the longer side
+_RIM_PX = 16
+_FINE = 4  # coordinates in sixteenths of a pixel
+_KINDS = {"wall": ((60, 60, 64), 3), "partition": ((150, 120, 70), 2), "desk": ((70, 130, 180), 2)}  # colour BGR, width
+_HOME, _PLACE, _SLOW = (40, 40, 220), (30, 140, 30), (200, 225, 255)
+
+
+def picture_of(world: World) -> NDArray[np.uint8]:
+    """(rows, columns, 3) BGR: walls, what hangs on them, slow floor, starts (red) and named places (green)."""
+    x0, y0, x1, y1 = world.bounds
+    scale = (_SIDE_PX - 2 * _RIM_PX) / max(x1 - x0, y1 - y0)
+    rows = round((y1 - y0) * scale) + 2 * _RIM_PX
+    image = np.full((rows, _SIDE_PX, 3), 255, np.uint8)
+
+    def at(points: object) -> NDArray[np.int32]:
+        xy = (np.asarray(points, float).reshape(-1, 2) - (x0, y0)) * scale + _RIM_PX
+        return np.rint(np.column_stack([xy[:, 0], rows - xy[:, 1]]) * (1 << _FINE)).astype(np.int32)
+
+    cv2.fillPoly(image, [at(world.outline)], (238, 240, 242), cv2.LINE_AA, _FINE)
+    for zone in world.slow_zones:
+        cv2.fillPoly(image, [at(zone.corners)], _SLOW, cv2.LINE_AA, _FINE)
+    for wall in world.walls:
+        if wall.stands:
+            colour, width = _KINDS.get(wall.kind, _KINDS["wall"])
+            a, b = at([(wall.x1, wall.y1), (wall.x2, wall.y2)]).tolist()
+            cv2.line(image, a, b, colour, width if scale > 12 else 1, cv2.LINE_AA, _FINE)
+    if scale > 12:  # else they would be specks
+        drawing = draw_world(world)
+        for panel, rgb in zip(drawing.panels, drawing.panel_rgb.tolist(), strict=True):
+            a, b = at(panel[:4]).tolist()
+            cv2.line(image, a, b, rgb[::-1], 2, cv2.LINE_AA, _FINE)
+    for place in world.places:
+        _dot(image, at([(place.x, place.y)])[0].tolist(), _PLACE)
+        _label(image, at([(place.x, place.y)])[0] >> _FINE, place.name)
+    for start in world.starts:
+        tip = (start.x + 16 / scale * math.cos(start.heading_rad), start.y + 16 / scale * math.sin(start.heading_rad))
+        a, b = at([(start.x, start.y), tip]).tolist()
+        _dot(image, a, _HOME)
+        cv2.line(image, a, b, _HOME, 3, cv2.LINE_AA, _FINE)
+    return image
+
+
+def _dot(image: NDArray[np.uint8], at: list[int], colour: tuple[int, int, int]) -> None:
+    cv2.circle(image, at, 6 << _FINE, colour, -1, cv2.LINE_AA, _FINE)
+
+
+def _label(image: NDArray[np.uint8], at: NDArray[np.int32], text: str) -> None:
+    font, size = cv2.FONT_HERSHEY_SIMPLEX, 0.45
+    width = cv2.getTextSize(text, font, size, 1)[0][0]
+    x = min(max(int(at[0]) - width // 2, 2), image.shape[1] - width - 2)
+    y = int(at[1]) - 11 if at[1] > 40 else int(at[1]) + 22
+    cv2.putText(image, text, (x, y), font, size, (255, 255, 255), 4, cv2.LINE_AA)
+    cv2.putText(image, text, (x, y), font, size, (40, 40, 40), 1, cv2.LINE_AA)
+
+
+def main(folder: Path) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, _ in world_names():
+        cv2.imwrite(str(folder / f"{name}.png"), picture_of(load_world(name)), [cv2.IMWRITE_PNG_COMPRESSION, 9])
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
