@@ -185,8 +185,13 @@ def test_handles_and_backlog_stay_the_same_over_two_hundred_snapshots(bench: Ben
 
 def switch(bench: Bench, overlay: Overlay, on: bool) -> None:
     bench.stage.panels.switches.turn(overlay, on)
-    deadline = time.monotonic() + 5
     bench.show(None, 3)
+    settle(bench)
+
+
+def settle(bench: Bench) -> None:
+    """Until what is drawn in another thread is there."""
+    deadline = time.monotonic() + 5
     while bench.stage._drawing and time.monotonic() < deadline:
         time.sleep(0.01)
         bench.show(None, 0.05)
@@ -255,6 +260,7 @@ def test_a_theme_is_changed_for_all_and_back(bench: Bench) -> None:
     bench.stage.set_theme("light")
     bench.show(fake_snapshot(431))
     assert not bench.stage._scenery.office.palette.dark
+    settle(bench)
     bench.stage.set_theme("light")
     assert bench.show(None) == 0
     bench.stage.set_theme("dark")
