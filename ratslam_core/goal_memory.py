@@ -10,16 +10,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import dijkstra
 
 from ratslam_core.kernels import X, Y, _offset
 from ratslam_core.params import GoalMemoryParams
 from ratslam_core.types import Packet, require_finite
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 ROOM = 4096  # links there is room for at first; doubles when half full
 MOST_CELLS = 2**20  # in the plane, so that keys stay below 2^40 and their hash below 2^63
@@ -79,6 +81,9 @@ class GoalMemory:
         for name, value, size in (("x", x, n_x), ("y", y, n_y)):
             if not isinstance(value, int | np.integer) or not 0 <= value < size:
                 raise ValueError(f"{name} must be a whole cell from 0 to {size - 1}, got {value!r}")
+        from scipy.sparse import csr_matrix  # slow to import, and no first step needs it
+        from scipy.sparse.csgraph import dijkstra
+
         if self._graph is None:
             pairs, times = self.links
             size = self._place.size

@@ -7,8 +7,6 @@ import math
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.linalg import splu
 
 from ratslam_core.adjacency import Adjacency
 
@@ -114,6 +112,9 @@ def solve(
     n = len(poses)
     if n < 2 or len(links) == 0:
         return 0.0
+    from scipy.sparse import coo_matrix  # slow to import, and no first step needs it
+    from scipy.sparse.linalg import splu
+
     i, j = links[:, 0], links[:, 1]
     laplacian = coo_matrix(
         (
