@@ -24,7 +24,7 @@ setup: .venv/.ready
 
 .venv/.ready: requirements.lock pyproject.toml | .venv/bin/python
 	@echo "[setup] installing the packages of requirements.lock"
-	@PATH="$$PWD/$(BIN):$$PATH" uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements.lock
+	@PATH="$$PWD/$(BIN):$$PATH" uv pip install --quiet --compile-bytecode --python $(BIN)/python --require-hashes -r requirements.lock
 	@PATH="$$PWD/$(BIN):$$PATH" uv pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
 	@touch $@
 
