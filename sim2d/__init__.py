@@ -2,7 +2,7 @@
 
 from sim2d.drawing import Drawing, draw_world
 from sim2d.free_space import FreeSpace
-from sim2d.params import SimParams
+from sim2d.params import OfficeParams, SimParams
 from sim2d.ranges import SONAR_ANGLES_RAD
 from sim2d.simulator import Drive, SensorFrame, Simulator, Truth
 from sim2d.things import Box, Daylight, Door, Event, Lamp, Person, SlowZone
@@ -22,6 +22,7 @@ __all__ = [
     "Event",
     "FreeSpace",
     "Lamp",
+    "OfficeParams",
     "Panel",
     "Person",
     "Place",

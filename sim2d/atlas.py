@@ -6,15 +6,17 @@ costs two look-ups (Crow 1984, one-dimensional), and with halved rows the mean i
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim2d.texture import paint_strip
-from sim2d.world import World
+from sim2d.texture import TEXEL_M, paint_strip
+from sim2d.world import Wall
 
 LEVELS = 5
+MOST_FINE_M2 = 1500.0  # with more wall than this the texels grow, so that memory does not
 MIDDLE = 128.0  # taken off before summing: the sums stay small and float32 keeps them exact enough
 
 
@@ -32,25 +34,35 @@ class Atlas:
     rows: NDArray[np.int64]
 
 
-def build_atlas(world: World) -> Atlas:
-    """Paint every wall of a world."""
+def build_atlas(walls: tuple[Wall, ...]) -> Atlas:
+    """Paint every wall; those that look alike share their texels."""
+    area = sum(wall.length * (wall.height - wall.bottom) for wall in walls)
+    large = area > MOST_FINE_M2
+    texel_m = TEXEL_M * math.sqrt(area / MOST_FINE_M2) if large else TEXEL_M
     pieces: list[NDArray[np.float32]] = []
-    first = np.zeros((2 * len(world.walls), LEVELS), np.int64)
+    known: dict[object, tuple[NDArray[np.int64], int, int]] = {}
+    first = np.zeros((2 * len(walls), LEVELS), np.int64)
     columns, rows = np.zeros(len(first), np.int64), np.zeros(len(first), np.int64)
     end = 0
-    for i, wall in enumerate(world.walls):
-        left, right = paint_strip(wall, "left"), paint_strip(wall, "right")
-        for strip, texels in ((2 * i, left), (2 * i + 1, right)):
-            columns[strip], rows[strip] = texels.shape[:2]
-            if strip % 2 and np.array_equal(left, right):
-                first[strip] = first[strip - 1]
-                continue
+    for strip in range(len(first)):
+        wall, side = walls[strip // 2], ("left", "right")[strip % 2]
+        panels = tuple(panel for panel in wall.panels if panel.side in (side, "both"))
+        plain = large and not panels  # the same all along: one column will do
+        look = (0.0 if plain else wall.length, wall.kind, wall.height, wall.bottom, wall.colour, panels)
+        if look not in known:
+            texels = paint_strip(wall, side, texel_m)
+            if plain:
+                texels = texels[:1]
+            begins = np.zeros(LEVELS, np.int64)
+            shape = texels.shape[:2]
             for level in range(LEVELS):
-                first[strip, level] = end
+                begins[level] = end
                 pieces.append(_summed(texels).ravel())
                 end += pieces[-1].size
                 if level + 1 < LEVELS:
                     texels = 0.5 * (texels[:, 0::2] + texels[:, 1::2])
+            known[look] = (begins, *shape)
+        first[strip], columns[strip], rows[strip] = known[look]
     return Atlas(np.concatenate(pieces), first, columns, rows)
 
 

@@ -1,65 +1,149 @@
-"""The robot's camera: buffers and textures around the kernels of `column_hits` and `painting`."""
+"""The robot's camera: buffers and textures around the kernels of `sight`, `column_hits`, `mirror` and `painting`."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim2d.atlas import build_atlas
 from sim2d.column_hits import MAX_HITS, column_hits
-from sim2d.painting import FADE_M, expose, paint_columns
+from sim2d.lights import Lights
+from sim2d.living import Living
+from sim2d.mirror import mirrored
+from sim2d.painting import FADE_M, Strips, expose, paint_columns
 from sim2d.params import SimParams
+from sim2d.sight import lens_rays, round_hits, seen_walls
+from sim2d.thing_walls import thing_walls
+from sim2d.wall_index import WallIndex, build_index
 from sim2d.world import World
 
+FEW_WALLS = 60  # as quickly looked at one by one as searched for
+_NOTHING = np.zeros(0, np.int64)
 _NOISE_BANK = 1 << 17
+_MOST_NOISE = 3 * 640 * 480
 
 
 class Camera:
     """Draws what is seen from a pose. Owns buffers; nothing of it depends on earlier images."""
 
-    def __init__(self, world: World, params: SimParams) -> None:
-        walls = world.walls
-        self._segments = world.segments()
-        self._bottoms = np.array([w.bottom for w in walls])
-        self._tops = np.array([w.height for w in walls])
-        self._full = np.array([w.stands and w.height >= self._tops.max() for w in walls])
-        self._shades = _shades(self._segments)
-        self._atlas = build_atlas(world)
+    def __init__(
+        self, world: World, params: SimParams, living: Living | None = None, index: WallIndex | None = None
+    ) -> None:
+        """living: of the same world, anew when left out. index: of all its walls, as `build_index` makes it."""
+        self._noise = np.zeros(_NOISE_BANK + _MOST_NOISE, np.float32)
+        if living is None:
+            living = Living(world, np.random.default_rng(0), params.tick_s)
+        self.set_world(world, living, build_index(world.segments()) if index is None else index)
+        self.set_lens(params)
+
+    def set_world(self, world: World, living: Living, index: WallIndex) -> None:
+        """Paint another world, or the same after an edit."""
+        walls = (*world.walls, *thing_walls(world))
+        self._world, self._living, self._index = world, living, index
+        self._segments = np.concatenate([index.segments, living.segments])
+        self._walls_end = len(index.segments)
+        tops = np.array([w.height for w in walls])
+        highest = max(w.height for w in world.walls)
+        self._full = np.array([w.stands and w.height >= highest and w.kind != "glass" for w in walls])
+        self._full[self._walls_end :] = False  # they move: none is sure to hide what is behind
+        self._glass = np.array([w.kind == "glass" for w in walls])
+        self._has_glass = bool(self._glass.any())
+        atlas = build_atlas(walls)
+        self._strips = Strips(
+            atlas.texels, atlas.first, atlas.columns, atlas.rows, np.array([w.bottom for w in walls]), tops,
+            _shades(self._segments), np.array([w.reflection if w.kind == "glass" else -1.0 for w in walls]),
+        )  # fmt: skip
+        self._lights = Lights(world, index)
+        self._marks = np.zeros(self._walls_end, np.int64)
+        self._mark = 0
+        self._chosen = np.zeros(len(walls), np.int64)
+        self._numbers = np.arange(self._walls_end if self._walls_end <= FEW_WALLS else 0)
+        if hasattr(self, "_width"):
+            self._background = _background(world, self._height, self._focal, self._eye)
+
+    def follow(self, living: Living) -> None:
+        """Look at these living things of the same world from now on."""
+        self._living = living
+
+    def set_lens(self, params: SimParams) -> None:
+        """Another field of view, resolution or place of the camera."""
         self._width, self._height = params.image_width, params.image_height
-        self._focal = 0.5 * self._width / math.tan(0.5 * params.camera_fov_rad)
+        self._lens = params.camera_lens
+        self._rays, self._focal = lens_rays(self._width, params.camera_fov_rad, self._lens)
         self._eye = params.camera_height_m
-        self._background = _background(world, self._height, self._focal, self._eye)
-        self._noise = np.zeros(_NOISE_BANK + 3 * self._width * self._height, np.float32)
+        self._background = _background(self._world, self._height, self._focal, self._eye)
         self._counts = np.zeros(self._width, np.int64)
         self._walls = np.zeros((self._width, MAX_HITS), np.int64)
         self._hits = np.zeros((self._width, MAX_HITS, 3))
+        self._glow = np.ones((self._width, MAX_HITS + 1))
+        self._panes, self._mirror_strips = np.full(self._width, -1), np.full(self._width, -1)
+        self._mirror_hits = np.zeros((self._width, 3))
         self._canvas = np.zeros((self._width, self._height, 3), np.float32)
 
     def new_noise(self, rng: np.random.Generator) -> None:
         """Draw the noise of all images to come: 9216 deviates an image would take longer than the image."""
-        self._noise = rng.standard_normal(self._noise.size, dtype=np.float32)
+        self._noise = rng.standard_normal(_NOISE_BANK + _MOST_NOISE, dtype=np.float32)
 
     def image(
-        self, x: float, y: float, heading_rad: float, light: float, noise: float, rng: np.random.Generator
+        self,
+        x: float,
+        y: float,
+        heading_rad: float,
+        light: float,
+        noise: float,
+        rng: np.random.Generator,
+        reflections: bool = True,
     ) -> NDArray[np.uint8]:
         """(height, width, 3) RGB. One draw from `rng`; `noise` in grey levels; `light` 1 = as painted."""
-        atlas = self._atlas
-        column_hits(self._segments, self._full, x, y, heading_rad, self._focal, self._counts, self._walls, self._hits)
+        things = self._look(x, y, heading_rad)
+        eye = (x, y, heading_rad)
+        living = self._living
+        self._lights.glow(living.lamp_on, living.daylight, eye, self._rays, self._counts, self._hits, self._glow)
+        if self._has_glass:
+            self._panes[:] = -1
+        if self._has_glass and reflections:
+            mirrored(
+                self._index, self._segments, things, self._glass, *eye, self._rays, self._counts, self._walls, self._hits,
+                self._panes, self._mirror_strips, self._mirror_hits,
+            )  # fmt: skip
         paint_columns(
-            atlas.texels, atlas.first, atlas.columns, atlas.rows, self._bottoms, self._tops, self._shades, self._eye,
-            self._focal, self._background, self._counts, self._walls, self._hits, self._canvas,
+            self._strips, self._eye, self._focal, self._background, self._glow, self._counts, self._walls, self._hits,
+            self._panes, self._mirror_strips, self._mirror_hits, self._canvas,
         )  # fmt: skip
         out = np.empty((self._height, self._width, 3), np.uint8)
         expose(self._canvas, light, noise, self._noise, int(rng.integers(_NOISE_BANK)), out)
         return out
 
     def depths(self, x: float, y: float, heading_rad: float) -> NDArray[np.float64]:
-        """(width,): metres along the camera's axis to the nearest wall of each column, inf where there is none."""
-        column_hits(self._segments, self._full, x, y, heading_rad, self._focal, self._counts, self._walls, self._hits)
+        """(width,): metres to the nearest thing of each column, inf where there is none.
+
+        With a flat lens along the camera's axis, with a round one along the ray.
+        """
+        self._look(x, y, heading_rad)
         inverse = np.where(self._counts > 0, self._hits[:, 0, 0], 0.0)
         return np.divide(1.0, inverse, out=np.full(self._width, np.inf), where=inverse > 0)
+
+    def _look(self, x: float, y: float, heading: float) -> NDArray[np.int64]:
+        """Fill counts, walls and hits; returns the numbers of the things that are there."""
+        living, n = self._living, self._walls_end
+        things = _NOTHING
+        if len(living.segments):
+            self._segments[n:] = living.segments
+            things = n + np.flatnonzero(living.present)
+        if n > FEW_WALLS:
+            self._mark += 1
+            n = seen_walls(self._index, self._full, x, y, heading, self._rays, self._marks, self._mark, self._chosen)
+        else:
+            self._chosen[:n] = self._numbers
+        chosen = self._chosen[: n + len(things)]
+        if len(things):
+            chosen[n:] = things
+        found = self._counts, self._walls, self._hits
+        if self._lens == "flat":
+            column_hits(self._segments, self._full, chosen, x, y, heading, self._focal, *found)
+        else:
+            round_hits(self._segments, self._full, chosen, x, y, heading, self._rays, *found)
+        return things
 
 
 def _shades(segments: NDArray[np.float64]) -> NDArray[np.float64]:

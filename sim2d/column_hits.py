@@ -21,6 +21,7 @@ NEAR_M = 0.02  # what is nearer than this is inside the camera
 def column_hits(
     segments: NDArray[np.float64],
     full: NDArray[np.bool_],
+    chosen: NDArray[np.int64],
     x: float,
     y: float,
     heading: float,
@@ -29,7 +30,7 @@ def column_hits(
     walls: NDArray[np.int64],
     hits: NDArray[np.float64],
 ) -> None:
-    """For each column the walls on its middle ray, near to far, none behind the first full one.
+    """For each column those of the chosen walls that are on its middle ray, near to far, none behind the first full one.
 
     counts: (w,) how many. walls: (w, k) their strips (2 i + side). hits: (w, k, 3) inverse depth 1/m, and the stretch
     of the wall that the column covers, from its left to its right edge, as fractions of the wall's length.
@@ -37,7 +38,7 @@ def column_hits(
     width = counts.size
     cos, sin = math.cos(heading), math.sin(heading)
     counts[:] = 0
-    for i in range(segments.shape[0]):
+    for i in chosen:
         ax, ay = segments[i, 0] - x, segments[i, 1] - y
         bx, by = segments[i, 2] - x, segments[i, 3] - y
         za, zb = ax * cos + ay * sin, bx * cos + by * sin  # depth

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -15,67 +16,91 @@ FADE_M = 14.0  # brightness falls as 1 / (1 + depth / FADE_M): far corners are d
 _MAX_ROWS = 1024
 
 
+class Strips(NamedTuple):
+    """How the walls of a camera look: `Atlas` and, of each wall, where it begins and ends, of each side, its shade."""
+
+    texels: NDArray[np.float32]
+    first: NDArray[np.int64]
+    columns: NDArray[np.int64]
+    rows: NDArray[np.int64]
+    bottoms: NDArray[np.float64]
+    tops: NDArray[np.float64]
+    shades: NDArray[np.float64]
+    reflection: NDArray[np.float64]  # -1 where it is no glass
+
+
 @njit(cache=True, nogil=True)
 def paint_columns(
-    texels: NDArray[np.float32],
-    first: NDArray[np.int64],
-    columns: NDArray[np.int64],
-    rows: NDArray[np.int64],
-    bottoms: NDArray[np.float64],
-    tops: NDArray[np.float64],
-    shades: NDArray[np.float64],
+    strips: Strips,
     eye: float,
     focal: float,
     background: NDArray[np.float32],
+    glow: NDArray[np.float64],
     counts: NDArray[np.int64],
     walls: NDArray[np.int64],
     hits: NDArray[np.float64],
+    panes: NDArray[np.int64],
+    mirror_strips: NDArray[np.int64],
+    mirror_hits: NDArray[np.float64],
     canvas: NDArray[np.float32],
 ) -> None:
-    """Fill canvas (w, h, 3) from the hits of `column_hits`, far to near; edges are blended by the share they cover."""
+    """Fill canvas (w, h, 3) from the hits of `column_hits`, far to near; edges are blended by the share they cover.
+
+    glow: (w, k + 1) brightness of each hit, and of floor and ceiling. panes, mirror_...: from `mirror.mirrored`.
+    """
+    texels, first, columns, rows = strips.texels, strips.first, strips.columns, strips.rows
+    bottoms, tops, shades, reflection = strips.bottoms, strips.tops, strips.shades, strips.reflection
     height = canvas.shape[1]
     stretch = np.empty(3 * _MAX_ROWS, np.float32)
     ends = np.empty(MAX_HITS, np.int64)
+    reflected = np.empty((height, 3), np.float32)
     for c in range(canvas.shape[0]):
         image = canvas[c]
+        around = np.float32(glow[c, glow.shape[1] - 1])
         image[:] = background
+        if around != np.float32(1.0):
+            image *= around
         # Of two walls that stand on the floor the nearer one hides all of the other below its own top.
         hidden = height
         for k in range(counts[c]):
             wall = walls[c, k] >> 1
             ends[k] = min(hidden, math.ceil(0.5 * height - (bottoms[wall] - eye) * focal * hits[c, k, 0]))
-            if bottoms[wall] == 0.0:
+            if bottoms[wall] == 0.0 and reflection[wall] < 0.0:
                 hidden = min(hidden, max(0, math.ceil(0.5 * height - (tops[wall] - eye) * focal * hits[c, k, 0])))
         for k in range(counts[c] - 1, -1, -1):
-            strip, inverse = walls[c, k], hits[c, k, 0]
+            strip, inverse, u0, u1, end = walls[c, k], hits[c, k, 0], hits[c, k, 1], hits[c, k, 2], ends[k]
+            share, glass_top, target = reflection[strip >> 1], 0.0, image
+            if share >= 0.0:  # glass: what it mirrors, or its own colour, goes over what is behind
+                target = reflected
+                target[:] = background
+                glass_top = 0.5 * height - (tops[strip >> 1] - eye) * focal * inverse
+                if panes[c] == k and mirror_strips[c] >= 0:
+                    strip, end = mirror_strips[c], height
+                    inverse, u0, u1 = mirror_hits[c, 0], mirror_hits[c, 1], mirror_hits[c, 2]
+                    target *= around
             scale = focal * inverse  # pixels a metre
             top = 0.5 * height - (tops[strip >> 1] - eye) * scale
             bottom = 0.5 * height - (bottoms[strip >> 1] - eye) * scale
-            begin, end = max(0, math.floor(top)), ends[k]
-            if begin >= end:
-                continue
-            per_row = rows[strip] / (bottom - top)  # texels a pixel
-            level = 0
-            while level < LEVELS - 1 and per_row > 1.5:
-                level += 1
-                per_row *= 0.5
-            n_rows = int(rows[strip]) >> level
-            low = max(0, math.floor((begin - top) * per_row - 0.5))
-            high = min(n_rows, math.ceil((end - top) * per_row + 0.5) + 1)
-            shade = shades[strip] / (1.0 + 1.0 / (inverse * FADE_M))
-            start = first[strip, level] + 3 * low
-            _mean_along(
-                texels,
-                start,
-                3 * n_rows,
-                int(columns[strip]),
-                hits[c, k, 1],
-                hits[c, k, 2],
-                3 * (high - low),
-                shade,
-                stretch,
-            )
-            _paint_rows(image, stretch, begin, end, top, bottom, per_row, low, n_rows - 1)
+            begin, end = max(0, math.floor(top)), min(end, math.ceil(bottom))
+            if begin < end:
+                per_row = rows[strip] / (bottom - top)  # texels a pixel
+                level = 0
+                while level < LEVELS - 1 and per_row > 1.5:
+                    level += 1
+                    per_row *= 0.5
+                n_rows = int(rows[strip]) >> level
+                low = max(0, math.floor((begin - top) * per_row - 0.5))
+                high = min(n_rows, math.ceil((end - top) * per_row + 0.5) + 1)
+                shade = shades[strip] / (1.0 + 1.0 / (inverse * FADE_M)) * glow[c, k]
+                start = first[strip, level] + 3 * low
+                count = 3 * (high - low)
+                _mean_along(texels, start, 3 * n_rows, int(columns[strip]), u0, u1, count, shade, stretch)
+                _paint_rows(target, stretch, begin, end, top, bottom, per_row, low, n_rows - 1)
+            if share >= 0.0:
+                part = np.float32(share)
+                for r in range(max(0, math.floor(glass_top)), ends[k]):
+                    for channel in range(3):
+                        image[r, channel] += part * (reflected[r, channel] - image[r, channel])
 
 
 @njit(cache=True, nogil=True)

@@ -17,17 +17,40 @@ def _number(
     source: str = "ours",
     live: bool = False,
 ) -> Any:
-    metadata = {
+    return field(default=default, metadata=_about(symbol, unit, source, low, high, meaning, (), live))
+
+
+def _switch(default: bool, meaning: str, source: str = "ours") -> Any:
+    return field(default=default, metadata=_about("", "", source, None, None, meaning, (), True))
+
+
+def _word(default: str, choices: tuple[str, ...], meaning: str, source: str = "ours") -> Any:
+    return field(default=default, metadata=_about("", "", source, None, None, meaning, choices, True))
+
+
+def _about(
+    symbol: str,
+    unit: str,
+    source: str,
+    low: float | None,
+    high: float | None,
+    meaning: str,
+    choices: tuple[str, ...],
+    live: bool,
+) -> dict[str, Any]:
+    return {
         "symbol": symbol,
         "unit": unit,
         "source": source,
         "low": low,
         "high": high,
         "meaning": meaning,
-        "choices": (),
+        "choices": choices,
         "live": live,
     }
-    return field(default=default, metadata=metadata)
+
+
+MOST_FLAT_RAD = 2.4  # a straight picture cannot be wider
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,17 +74,44 @@ class SimParams:
         6.0, 0.1, 60.0, "alpha_max", "rad/s^2", "the motors' limit on change of yaw rate", live=True
     )
 
-    camera_fov_rad: float = _number(math.radians(50), 0.2, 2.4, "phi", "rad", "horizontal field of view", "ACRA 2006")
-    image_width: int = _number(64, 8, 640, "W", "px", "columns of the camera image")
-    image_height: int = _number(48, 8, 480, "H", "px", "rows of the camera image; pixels are square")
-    camera_height_m: float = _number(0.45, 0.1, 1.5, "h", "m", "height of the camera above the floor")
+    camera_lens: str = _word(
+        "flat", ("flat", "round"), "flat = a straight picture; round = a panorama, each column the same angle"
+    )
+    camera_fov_rad: float = _number(
+        math.radians(50), 0.2, 2 * math.pi, "phi", "rad", "horizontal field of view; flat: at most 2.4", "ACRA 2006",
+        live=True,
+    )  # fmt: skip
+    image_width: int = _number(64, 8, 640, "W", "px", "columns of the camera image", live=True)
+    image_height: int = _number(48, 8, 480, "H", "px", "rows of the camera image; pixels are square", live=True)
+    camera_height_m: float = _number(0.45, 0.1, 1.5, "h", "m", "height of the camera above the floor", live=True)
     image_noise: float = _number(
         1.0, 0.0, 50.0, "sigma_I", "grey levels", "random error of each pixel's channel", live=True
     )
-    light: float = _number(1.0, 0.1, 2.0, "L", "1", "brightness of the lamps", live=True)
+    exposure_gain: float = _number(
+        1.0, 0.1, 8.0, "g", "1", "the camera's amplification, of picture and noise alike", live=True
+    )
+    light: float = _number(1.0, 0.1, 2.0, "L", "1", "brightness of everything", live=True)
 
-    sonar_range_m: float = _number(5.0, 0.5, 20.0, "d_max", "m", "farthest echo; what a sonar says when there is none")
+    sonar_range_m: float = _number(
+        5.0, 0.5, 20.0, "d_max", "m", "farthest echo; what a sonar says when there is none", live=True
+    )
+    sonar_cone_rad: float = _number(
+        math.radians(15), 0.0, 1.0, "beta", "rad", "opening of a sonar's cone: its nearest echo counts", live=True
+    )
     sonar_noise_m: float = _number(0.02, 0.0, 0.5, "sigma_d", "m", "random error of an echo", live=True)
+    sonar_false_echo: float = _number(
+        0.0, 0.0, 1.0, "p_e", "1", "share of echoes that come from nowhere, at any distance", live=True
+    )
+
+    laser_beams: int = _number(
+        0, 0, 1081, "n_l", "1", "beams of the laser scanner, evenly over its field of view; 0 = none", "ACRA 2005",
+        live=True,
+    )  # fmt: skip
+    laser_fov_rad: float = _number(
+        math.pi, 0.1, 2 * math.pi, "phi_l", "rad", "field of view of the laser", "ACRA 2005", live=True
+    )
+    laser_range_m: float = _number(8.0, 0.5, 80.0, "l_max", "m", "farthest that the laser measures", live=True)
+    laser_noise_m: float = _number(0.01, 0.0, 0.5, "sigma_l", "m", "random error of a beam", live=True)
 
     odometry_noise: float = _number(
         0.05, 0.0, 0.5, "sigma_o", "1", "random error of speed and yaw rate, a tick", live=True
@@ -70,19 +120,17 @@ class SimParams:
         0.02, -0.5, 0.5, "k_v", "1", "reported over true distance, less one: a wheel's diameter taken wrong", live=True
     )
     gyro_bias: float = _number(
-        math.radians(0.2),
-        -0.2,
-        0.2,
-        "b_w",
-        "rad/s",
-        "added to the yaw rate while the wheels turn",
-        "ACRA 2005",
-        live=True,
-    )
+        math.radians(0.2), -0.2, 0.2, "b_w", "rad/s", "added to the yaw rate while the wheels turn: 0.0035 = 0.2 deg/s",
+        "ACRA 2005", live=True,
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
-        for item in fields(self):
-            _check(item.name, getattr(self, item.name), item.type, item.metadata["low"], item.metadata["high"])
+        _check(self)
+        if self.camera_lens == "flat" and self.camera_fov_rad > MOST_FLAT_RAD:
+            raise ValueError(
+                f"camera_fov_rad must be at most {MOST_FLAT_RAD:g} with camera_lens 'flat', got {self.camera_fov_rad!r}; "
+                "set camera_lens to 'round' first"
+            )
         if self.physics_rate_hz % self.sensor_rate_hz:
             raise ValueError(
                 f"physics_rate_hz must be a multiple of sensor_rate_hz ({self.sensor_rate_hz}), "
@@ -100,10 +148,39 @@ class SimParams:
         return self.physics_rate_hz // self.sensor_rate_hz
 
 
-def _check(name: str, value: object, kind: object, low: float, high: float) -> None:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OfficeParams:
+    """Which parts of the office live."""
+
+    people: bool = _switch(True, "people walk about; off = nobody is there", "ACRA 2004")
+    doors: bool = _switch(True, "doors with a period open and shut by themselves", "ACRA 2004")
+    daylight: bool = _switch(True, "daylight takes its course; off = as at the start", "ACRA 2004")
+    reflections: bool = _switch(True, "glass mirrors what is before it; off = it is only pale", "ACRA 2004")
+    slow_zones: bool = _switch(True, "slow floors slow the robot down", "IROS 2005")
+    script: bool = _switch(True, "the world's script is carried out")
+
+    def __post_init__(self) -> None:
+        _check(self)
+
+
+def _check(params: Any) -> None:
+    """ValueError with name, value and what would be right for the first that is out of its range or of another type."""
+    for item in fields(params):
+        name, value, about = item.name, getattr(params, item.name), item.metadata
+        if isinstance(item.default, bool):
+            if not isinstance(value, bool):
+                raise ValueError(f"{name} must be true or false, got {value!r}")
+        elif isinstance(item.default, str):
+            if value not in about["choices"]:
+                raise ValueError(f"{name} must be one of {', '.join(map(repr, about['choices']))}, got {value!r}")
+        else:
+            _check_number(name, value, isinstance(item.default, int), about["low"], about["high"])
+
+
+def _check_number(name: str, value: object, whole: bool, low: float, high: float) -> None:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise ValueError(f"{name} must be a number from {low:g} to {high:g}, got {value!r}")
-    if kind == "int" and not isinstance(value, int):
+    if whole and not isinstance(value, int):
         raise ValueError(f"{name} must be a whole number from {low:g} to {high:g}, got {value!r}")
     if not low <= value <= high:
         raise ValueError(f"{name} must be from {low:g} to {high:g}, got {value!r}")

@@ -45,10 +45,15 @@ class Robot:
         self.body.angular_velocity = self._wheels.angular_velocity = 0.0
         self.speed = self.yaw_rate = 0.0
 
-    def drive(self, space: pymunk.Space, speed: float, yaw_rate: float, params: SimParams) -> None:
-        """One tick towards these velocities (m/s, rad/s), as fast as the motors can change them."""
-        speed = min(max(speed, -params.max_speed), params.max_speed)
-        yaw_rate = min(max(yaw_rate, -params.max_yaw_rate), params.max_yaw_rate)
+    def drive(
+        self, space: pymunk.Space, speed: float, yaw_rate: float, params: SimParams, slowness: float = 1.0
+    ) -> None:
+        """One tick towards these velocities (m/s, rad/s), as fast as the motors can change them.
+
+        slowness: the share of them that the floor lets through; of both, so that curves keep their shape.
+        """
+        speed = slowness * min(max(speed, -params.max_speed), params.max_speed)
+        yaw_rate = slowness * min(max(yaw_rate, -params.max_yaw_rate), params.max_yaw_rate)
         dt = 1.0 / params.physics_rate_hz
         period = _STEPS_PER_COMMAND * dt
         change, turn_change = params.max_acceleration * period, params.max_yaw_acceleration * period

@@ -15,16 +15,16 @@ _SKIRTING_M = 0.1
 _Texels = NDArray[np.float32]
 
 
-def strip_shape(wall: Wall) -> tuple[int, int]:
+def strip_shape(wall: Wall, texel_m: float = TEXEL_M) -> tuple[int, int]:
     """Columns along the wall and rows from its top to its bottom."""
-    columns = max(1, round(wall.length / TEXEL_M))
-    rows = ROW_MULTIPLE * max(1, round((wall.height - wall.bottom) / TEXEL_M / ROW_MULTIPLE))
+    columns = max(1, round(wall.length / texel_m))
+    rows = ROW_MULTIPLE * max(1, round((wall.height - wall.bottom) / texel_m / ROW_MULTIPLE))
     return columns, rows
 
 
-def paint_strip(wall: Wall, side: str) -> _Texels:
+def paint_strip(wall: Wall, side: str, texel_m: float = TEXEL_M) -> _Texels:
     """One side of a wall as texels, (columns, rows, 3) of 0-255, the first row at the top."""
-    columns, rows = strip_shape(wall)
+    columns, rows = strip_shape(wall, texel_m)
     height = wall.height - wall.bottom
     up = wall.height - (np.arange(rows) + 0.5) * height / rows  # of each row's middle, metres
     tone = 0.94 + 0.06 * up / wall.height  # lamps hang from the ceiling

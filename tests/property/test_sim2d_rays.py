@@ -6,11 +6,15 @@ import math
 from itertools import pairwise
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from sim2d.column_hits import MAX_HITS, NEAR_M, column_hits
 from sim2d.geometry import nearest_segment, ray_length
+from sim2d.ranges import laser_ranges
+from sim2d.sight import lens_rays, round_hits, seen_walls
+from sim2d.wall_index import build_index, first_wall, nearest_within
 
 FOCAL = 30.0
 WIDTH = 24
@@ -40,7 +44,7 @@ def test_columns_meet_the_walls_that_rays_meet(walls: np.ndarray, angle: float, 
     full = np.array(data.draw(st.lists(st.booleans(), min_size=len(walls), max_size=len(walls))))
     counts, strips = np.zeros(WIDTH, np.int64), np.zeros((WIDTH, MAX_HITS), np.int64)
     hits = np.zeros((WIDTH, MAX_HITS, 3))
-    column_hits(walls, full, 0.0, 0.0, angle, FOCAL, counts, strips, hits)
+    column_hits(walls, full, np.arange(len(walls)), 0.0, 0.0, angle, FOCAL, counts, strips, hits)
     for c in range(WIDTH):
         left = (0.5 * WIDTH - c - 0.5) / FOCAL
         dx, dy = math.cos(angle) - left * math.sin(angle), math.sin(angle) + left * math.cos(angle)
@@ -79,3 +83,58 @@ def test_a_ray_never_passes_a_wall(walls: np.ndarray, x: float, y: float, angle:
 def test_python_and_compiled_agree(walls: np.ndarray, x: float, y: float, angle: float, farthest: float) -> None:
     assert ray_length(walls, x, y, angle, farthest) == ray_length.py_func(walls, x, y, angle, farthest)
     assert nearest_segment(walls, x, y) == nearest_segment.py_func(walls, x, y)
+
+
+@given(segments, coordinate, coordinate, heading, st.floats(0.1, 20))
+@settings(max_examples=150, deadline=None)
+def test_the_index_finds_what_looking_at_all_finds(
+    walls: np.ndarray, x: float, y: float, angle: float, farthest: float
+) -> None:
+    index = build_index(walls)
+    assert first_wall(index, x, y, math.cos(angle), math.sin(angle), farthest)[1] == ray_length(
+        walls, x, y, angle, farthest
+    )
+    assert nearest_within(index, x, y, farthest) == min(nearest_segment(walls, x, y)[1], farthest)
+
+
+@given(segments, heading, st.sampled_from([("flat", 0.8), ("round", 6.2)]), st.data())
+@settings(max_examples=80, deadline=None)
+def test_the_camera_sees_the_same_through_the_index(
+    walls: np.ndarray, angle: float, lens: tuple[str, float], data: st.DataObject
+) -> None:
+    """All walls that columns meet are among those that the index chooses."""
+    assume(nearest_segment(walls, 0.0, 0.0)[1] > 2 * NEAR_M)
+    full = np.array(data.draw(st.lists(st.booleans(), min_size=len(walls), max_size=len(walls))))
+    rays, focal = lens_rays(WIDTH, lens[1], lens[0])
+    index, seen = build_index(walls), np.zeros(len(walls), np.int64)
+    n = seen_walls(index, full, 0.0, 0.0, angle, rays, np.zeros(len(walls), np.int64), 1, seen)
+    assert seen[:n].tolist() == sorted(set(seen[:n].tolist()))
+    results = []
+    for chosen in (np.arange(len(walls)), seen[:n]):
+        counts, strips = np.zeros(WIDTH, np.int64), np.zeros((WIDTH, MAX_HITS), np.int64)
+        hits = np.zeros((WIDTH, MAX_HITS, 3))
+        if lens[0] == "flat":
+            column_hits(walls, full, chosen, 0.0, 0.0, angle, focal, counts, strips, hits)
+        else:
+            round_hits(walls, full, chosen, 0.0, 0.0, angle, rays, counts, strips, hits)
+        results.append([(strips[c, :k].tolist(), hits[c, :k].tolist()) for c, k in enumerate(counts)])
+    assert results[0] == results[1]
+
+
+@given(segments, heading)
+@settings(max_examples=60, deadline=None)
+def test_a_round_lens_sees_what_a_laser_ranges(walls: np.ndarray, angle: float) -> None:
+    assume(nearest_segment(walls, 0.0, 0.0)[1] > 2 * NEAR_M)
+    rays, _ = lens_rays(WIDTH, 2 * math.pi, "round")
+    counts, strips = np.zeros(WIDTH, np.int64), np.zeros((WIDTH, MAX_HITS), np.int64)
+    hits = np.zeros((WIDTH, MAX_HITS, 3))
+    round_hits(walls, np.zeros(len(walls), bool), np.arange(len(walls)), 0.0, 0.0, angle, rays, counts, strips, hits)
+    half = math.pi / WIDTH
+    nothing = np.zeros((0, 4))
+    scan = laser_ranges(build_index(walls), nothing, 0.0, 0.0, angle - half, 2 * math.pi, 50.0, np.zeros(WIDTH))
+    for c in range(WIDTH):
+        if counts[c]:
+            assert 1.0 / hits[c, 0, 0] == pytest.approx(scan[c], rel=1e-5)
+            assert 0.0 <= hits[c, 0, 1] <= hits[c, 0, 2] <= 1.0
+        else:
+            assert scan[c] == 50.0

@@ -197,6 +197,6 @@ def test_images_keep_still_where_the_robot_does_and_change_where_it_moves() -> N
 
 
 def test_equal_sides_share_texels() -> None:
-    atlas = build_atlas(room(Wall(1, 1, 2, 1, "partition", 1.4, GREY)))
+    atlas = build_atlas(room(Wall(1, 1, 2, 1, "partition", 1.4, GREY)).walls)
     assert (atlas.first[8] == atlas.first[9]).all()
     assert atlas.texels.dtype == np.float32

@@ -5,11 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from sim2d import geometry, ranges
+from sim2d import geometry, ranges, wall_index
 from sim2d.geometry import free_cells, inside_ring, nearest_segment, ray_length
+from sim2d.wall_index import build_index
 
 SQUARE = np.array([[0, 0, 4, 0], [4, 0, 4, 4], [4, 4, 0, 4], [0, 4, 0, 0]], float)
 RING = SQUARE[:, :2]
+NONE = np.zeros((0, 4))
 
 
 @pytest.fixture(params=["compiled", "python"])
@@ -20,8 +22,13 @@ def how(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
             monkeypatch.setattr(geometry, name, getattr(geometry, name).py_func)
             if name in globals():
                 monkeypatch.setitem(globals(), name, getattr(geometry, name))
-        monkeypatch.setattr(ranges, "ray_length", geometry.ray_length)
-        monkeypatch.setattr(ranges, "sonar_ranges", ranges.sonar_ranges.py_func)
+        for name in ("_sort_in", "crossing", "enter", "first_wall", "nearest_within", "squared_distance"):
+            plain = getattr(wall_index, name).py_func
+            for module in (wall_index, ranges):
+                if hasattr(module, name):
+                    monkeypatch.setattr(module, name, plain)
+        for name in ("sonar_ranges", "laser_ranges", "_range", "within"):
+            monkeypatch.setattr(ranges, name, getattr(ranges, name).py_func)
     return request.param
 
 
@@ -56,16 +63,38 @@ class TestGeometry:
 
     def test_sonar(self) -> None:
         angles = np.array(ranges.SONAR_ANGLES_RAD)
-        got = ranges.sonar_ranges(SQUARE, 1.0, 2.0, 0.0, angles, 2.5, np.full(8, 0.01))
+        got, touches = sonar(SQUARE, 1.0, 2.0, angles, 2.5, np.full(8, 0.01))
         assert got.dtype == np.float32
         assert got[[0, 7]] == pytest.approx([2.01, 2.01], abs=1e-6)
         assert got[[3, 4]].tolist() == [2.5, 2.5]  # no echo within reach, no error either
-        assert ranges.sonar_ranges(SQUARE, 1.0, 2.0, 0.0, angles, 5.0, np.full(8, -9.0)).tolist() == [0.0] * 8
+        assert not touches
+        assert sonar(SQUARE, 1.0, 2.0, angles, 5.0, np.full(8, -9.0))[0].tolist() == [0.0] * 8
+
+    def test_things_echo_and_touch_as_walls_do(self) -> None:
+        thing = np.array([[1.5, 1.5, 1.5, 2.5], [3.5, 1.5, 3.5, 2.5]])
+        got, touches = sonar(SQUARE, 1.0, 2.0, np.array([0.0]), 5.0, np.zeros(1), thing, touch=0.51)
+        assert got[0] == pytest.approx(0.5)
+        assert touches
+        assert not sonar(SQUARE, 1.0, 2.0, np.array([0.0]), 5.0, np.zeros(1), thing, touch=0.49)[1]
+
+    def test_laser(self) -> None:
+        index = build_index(SQUARE)
+        scan = ranges.laser_ranges(index, NONE, 1.0, 2.0, 0.0, math.pi, 2.5, np.full(5, 0.01))
+        assert scan == pytest.approx([2.01, 2.5, 2.5, 2.5, 2.01], abs=1e-6)
+        around = ranges.laser_ranges(index, NONE, 1.0, 2.0, 0.0, 2 * math.pi, 9.0, np.zeros(4))
+        assert around == pytest.approx([1.0, 2.0, 3.0, 2.0])  # from behind, left first; no direction twice
+
+
+def sonar(
+    walls: np.ndarray, x: float, y: float, angles: np.ndarray, farthest: float, errors: np.ndarray,
+    things: np.ndarray = NONE, touch: float = 0.1,
+) -> tuple[np.ndarray, bool]:  # fmt: skip
+    cone = math.radians(15)
+    return ranges.sonar_ranges(build_index(walls), things, x, y, 0.0, angles, cone, farthest, errors, touch)
 
 
 def test_a_cone_sees_its_nearest_wall() -> None:
     """Towards a wall the middle ray is shortest; past an edge, whichever ray still hits it."""
     post = np.array([[3.0, 0.15, 3.0, 0.3]])
-    angles = np.array([0.0, math.radians(-30)])
-    assert ranges.sonar_ranges(post, 0.0, 0.0, 0.0, angles, 5.0, np.zeros(2))[0] == pytest.approx(3.0, abs=0.03)
-    assert ranges.sonar_ranges(post, 0.0, 0.0, 0.0, angles, 5.0, np.zeros(2))[1] == 5.0
+    got, _ = sonar(post, 0.0, 0.0, np.array([0.0, math.radians(-30)]), 5.0, np.zeros(2))
+    assert got == pytest.approx([3.0, 5.0], abs=0.03)

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 
 import pytest
 
-from sim2d import SimParams
+from sim2d import OfficeParams, SimParams
 
 
 def test_defaults_are_the_ones_asked_for() -> None:
@@ -16,19 +16,26 @@ def test_defaults_are_the_ones_asked_for() -> None:
     assert math.degrees(p.camera_fov_rad) == pytest.approx(50)
 
 
-@pytest.mark.parametrize("item", fields(SimParams), ids=lambda item: item.name)
-def test_every_number_is_declared_in_full_and_checked(item) -> None:
+ITEMS = [(kind, item) for kind in (SimParams, OfficeParams) for item in fields(kind)]
+
+
+@pytest.mark.parametrize(("kind", "item"), ITEMS, ids=lambda value: getattr(value, "name", ""))
+def test_every_parameter_is_declared_in_full_and_checked(kind, item) -> None:
     meta = item.metadata
     assert set(meta) == {"symbol", "unit", "source", "low", "high", "meaning", "choices", "live"}
-    assert meta["low"] <= item.default <= meta["high"]
-    for bad in (meta["low"] - 1, meta["high"] + 1):
-        with pytest.raises(ValueError, match=rf"{item.name} must be from .* to .*, got {bad!r}"):
-            SimParams(**{item.name: bad})
-    with pytest.raises(ValueError, match=f"{item.name} must be"):
-        SimParams(**{item.name: math.nan})
-    for odd in (True, "fast", None):
-        with pytest.raises(ValueError, match=f"{item.name} must be a number from"):
-            SimParams(**{item.name: odd})
+    bad: list[tuple[object, str]] = []
+    if isinstance(item.default, bool):
+        bad = [(value, "must be true or false, got") for value in (1, "on", None)]
+    elif isinstance(item.default, str):
+        assert item.default in meta["choices"]
+        bad = [(value, "must be one of 'flat', 'round', got") for value in ("wide", 1, None)]
+    else:
+        assert meta["low"] <= item.default <= meta["high"]
+        bad = [(value, "must be from .* to .*, got") for value in (meta["low"] - 1, meta["high"] + 1)]
+        bad += [(math.nan, "must be"), *((odd, "must be a number from") for odd in (True, "fast", None))]
+    for value, reason in bad:
+        with pytest.raises(ValueError, match=f"{item.name} {reason}"):
+            kind(**{item.name: value})
 
 
 def test_whole_numbers_stay_whole() -> None:
@@ -39,3 +46,11 @@ def test_whole_numbers_stay_whole() -> None:
 def test_rates_must_divide() -> None:
     with pytest.raises(ValueError, match=r"physics_rate_hz must be a multiple of sensor_rate_hz \(7\), got 240"):
         replace(SimParams(), sensor_rate_hz=7)
+
+
+def test_a_flat_lens_is_not_too_wide() -> None:
+    with pytest.raises(
+        ValueError, match=r"camera_fov_rad must be at most 2.4 with camera_lens 'flat', got 3.0; set camera"
+    ):
+        SimParams(camera_fov_rad=3.0)
+    assert SimParams(camera_fov_rad=3.0, camera_lens="round").camera_fov_rad == 3.0

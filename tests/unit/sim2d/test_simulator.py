@@ -46,7 +46,7 @@ def test_the_first_frame() -> None:
 def test_the_frame_does_not_tell_the_truth() -> None:
     names = {f.name for f in fields(SensorFrame)}
     assert names == {
-        "tick", "time_s", "image", "odometry_speed", "odometry_yaw_rate", "dt", "ranges_m", "bumped",
+        "tick", "time_s", "image", "odometry_speed", "odometry_yaw_rate", "dt", "ranges_m", "bumped", "laser_m",
     }  # fmt: skip
 
 

@@ -1,0 +1,232 @@
+"""What moves and changes in an office: doors, boxes, people, lamps, daylight, script. Steps tick by tick, draws no chance
+but from its own generator, and never moves anything onto the robot.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim2d.geometry import nearest_segment
+from sim2d.params import OfficeParams
+from sim2d.things import Box, Door, Event
+from sim2d.walkers import PERSON_SIDES, Walkers
+from sim2d.world import World
+from sim2d.world_check import distance_to_box
+
+DOOR_TAKES_S = 1.5
+MOST_TIP_M = 0.1  # a leaf's end moves no farther in a tick: it cannot jump over the robot
+CLEARANCE_M = 0.01  # a leaf, a box that appears and a person who comes back stay so far away from the robot
+
+
+class Living:
+    """State of all living things of one world. `segments` are their sides as rays and camera meet them, doors first."""
+
+    def __init__(self, world: World, rng: np.random.Generator, tick_s: float) -> None:
+        self.world, self._tick_s = world, tick_s
+        self.opening = np.array([float(door.open) for door in world.doors])  # 0 = shut, 1 = open
+        self._wanted = self.opening.copy()
+        self._automatic: list[bool | None] = [None] * len(world.doors)
+        self.box_present = np.array([box.present for box in world.boxes], bool)
+        self._box_wanted = self.box_present.copy()
+        self.lamp_on = np.array([lamp.on for lamp in world.lamps], bool)
+        self._level: float | None = None
+        self.daylight = 1.0 if world.daylight is None else world.daylight.at(0.0)
+        self._people_on = True
+        self.walkers = Walkers(world.people, rng, tick_s)
+        self._script = sorted(world.script, key=lambda event: event.at_s)
+        self._next = 0
+        self._anything = bool(world.doors or world.boxes or world.people or world.script or world.daylight)
+        self.first_box = len(world.doors)
+        self.first_person = self.first_box + 4 * len(world.boxes)
+        self.segments = np.zeros((self.first_person + PERSON_SIDES * len(world.people), 4))
+        self.present = np.zeros(len(self.segments), bool)
+        for i, door in enumerate(world.doors):
+            self.segments[i] = leaf(door, self.opening[i])
+        for i, box in enumerate(world.boxes):
+            self.segments[self._rows(i)] = _sides(box)
+        self._show()
+
+    def step(self, tick: int, robot: tuple[float, float], radius: float, comes: float, params: OfficeParams) -> None:
+        """The tick that begins now. robot: its place; radius: its own; comes: how far it may come in a tick, metres."""
+        if not self._anything:
+            return
+        time_s = tick * self._tick_s
+        while self._next < len(self._script) and self._script[self._next].at_s <= time_s + 1e-9:
+            if params.script:
+                self._do(self._script[self._next])
+            self._next += 1
+        day = self.world.daylight
+        if self._level is not None:
+            self.daylight = self._level
+        elif day is not None:
+            self.daylight = day.at(time_s if params.daylight else 0.0)
+        self._step_boxes(robot, radius)
+        self._step_doors(time_s, robot, radius, params)
+        walking = params.people and self._people_on
+        self.walkers.step(
+            robot, radius + comes, walking, self.segments[: self.first_person], self.present[: self.first_person]
+        )
+        self._show()
+
+    def make_way(self, robot: tuple[float, float], radius: float) -> None:
+        """Who would stand where the robot has just been put is away until it leaves."""
+        self.walkers.make_way(robot, radius)
+        self._show()
+
+    # ------------------------------------------------------------ orders; ValueError says why one cannot be
+
+    def set_door(self, name: str, is_open: bool) -> None:
+        """Open or shut a door; it takes its time, and waits for who stands in it."""
+        self._wanted[_find(self.world.doors, name, "door")] = float(is_open)
+
+    def set_lamp(self, name: str, on: bool) -> None:
+        self.lamp_on[_find(self.world.lamps, name, "lamp")] = on
+
+    def set_box(self, name: str, present: bool) -> None:
+        """One of the world's boxes appears, when the robot is off its place, or goes."""
+        self._box_wanted[_find(self.world.boxes, name, "box")] = present
+
+    def refusal(self, x: float, y: float, radius: float) -> str | None:
+        """Why a disc cannot stand at (x, y), or None."""
+        for i, distance in enumerate(self._distances(x, y)):
+            if distance < radius:
+                what, name = self._owner(i)
+                return f"({x:g}, {y:g}) is {distance:.3f} m from {what} {name!r}; the robot needs {radius:g} m"
+        for box, present in zip(self.world.boxes, self.box_present, strict=True):
+            if present and distance_to_box(box, x, y) == 0.0:
+                return f"({x:g}, {y:g}) is in box {box.name!r}"
+        return None
+
+    def adopt(self, old: Living) -> None:
+        """After an edit: all that has kept its name and kind goes on as it was."""
+        doors, boxes = _by_name(old.world.doors), _by_name(old.world.boxes)
+        for i, door in enumerate(self.world.doors):
+            k = doors.get(door.name)
+            if k is not None:
+                self.opening[i], self._wanted[i] = old.opening[k], old._wanted[k]
+                self._automatic[i] = old._automatic[k]
+                self.segments[i] = leaf(door, self.opening[i])
+        for i, box in enumerate(self.world.boxes):
+            k = boxes.get(box.name)
+            if k is not None:
+                self.box_present[i], self._box_wanted[i] = old.box_present[k], old._box_wanted[k]
+        lamps = _by_name(old.world.lamps)
+        for i, lamp in enumerate(self.world.lamps):
+            if lamp.name in lamps:
+                self.lamp_on[i] = old.lamp_on[lamps[lamp.name]]
+        self._level, self._people_on, self.daylight = old._level, old._people_on, old.daylight
+        if self.world.script == old.world.script:
+            self._next = old._next
+        self.walkers.adopt(old.walkers)
+        self._show()
+
+    def state(self) -> bytes:
+        """All that decides the future."""
+        flags = [*self.box_present, *self._box_wanted, *self.lamp_on, self._people_on]
+        level = -1.0 if self._level is None else self._level
+        numbers = [*self.opening, *self._wanted, self.daylight, level, self._next, *map(float, flags)]
+        automatic = repr(self._automatic).encode()
+        return np.array(numbers, np.float64).tobytes() + automatic + self.walkers.state()
+
+    # ------------------------------------------------------------ inside
+
+    def _do(self, event: Event) -> None:
+        match event.do:
+            case "open_door" | "close_door":
+                self.set_door(event.name, event.do == "open_door")
+            case "lamp_on" | "lamp_off":
+                self.set_lamp(event.name, event.do == "lamp_on")
+            case "box_appear" | "box_vanish":
+                self.set_box(event.name, event.do == "box_appear")
+            case "people_on" | "people_off":
+                self._people_on = event.do == "people_on"
+            case "daylight":
+                self._level = event.level
+
+    def _step_boxes(self, robot: tuple[float, float], radius: float) -> None:
+        for i in np.flatnonzero(self.box_present != self._box_wanted):
+            box = self.world.boxes[i]
+            if not self._box_wanted[i] or distance_to_box(box, *robot) > radius + CLEARANCE_M:
+                self.box_present[i] = self._box_wanted[i]
+
+    def _step_doors(self, time_s: float, robot: tuple[float, float], radius: float, params: OfficeParams) -> None:
+        for i, door in enumerate(self.world.doors):
+            if door.period_s > 0 and params.doors:
+                automatic = math.fmod(time_s + door.phase_s, door.period_s) < door.open_s
+                if automatic != self._automatic[i]:
+                    self._automatic[i], self._wanted[i] = automatic, float(automatic)
+            gap = self._wanted[i] - self.opening[i]
+            if gap == 0.0:
+                continue
+            travel = door.width * (1.0 if door.slides else abs(door.swing_rad))
+            step = min(self._tick_s / DOOR_TAKES_S, MOST_TIP_M / max(travel, 1e-9))
+            opening = self.opening[i] + min(max(gap, -step), step)
+            after = leaf(door, opening)
+            if not self._in_the_way(self.segments[i], after, robot, radius):
+                self.opening[i], self.segments[i] = opening, after
+
+    def _in_the_way(
+        self, before: NDArray[np.float64], after: NDArray[np.float64], robot: tuple[float, float], radius: float
+    ) -> bool:
+        """Whether a leaf would come too near to the robot or a person, nearer than it is."""
+        discs = [(*robot, radius + CLEARANCE_M), *self.walkers.discs()]
+        for x, y, r in discs:
+            distance = nearest_segment(after[None], x, y)[1]
+            if distance < r and distance < nearest_segment(before[None], x, y)[1]:
+                return True
+        return False
+
+    def _rows(self, box: int) -> slice:
+        return slice(self.first_box + 4 * box, self.first_box + 4 * box + 4)
+
+    def _show(self) -> None:
+        self.present[: self.first_box] = True
+        self.present[self.first_box : self.first_person] = np.repeat(self.box_present, 4)
+        self.segments[self.first_person :] = self.walkers.sides()
+        self.present[self.first_person :] = np.repeat(self.walkers.present, PERSON_SIDES)
+
+    def _distances(self, x: float, y: float) -> list[float]:
+        return [
+            nearest_segment(self.segments[i : i + 1], x, y)[1] if self.present[i] else math.inf
+            for i in range(len(self.segments))
+        ]
+
+    def _owner(self, row: int) -> tuple[str, str]:
+        if row < self.first_box:
+            return "door", self.world.doors[row].name
+        if row < self.first_person:
+            return "box", self.world.boxes[(row - self.first_box) // 4].name
+        return "person", self.world.people[(row - self.first_person) // PERSON_SIDES].name
+
+
+def leaf(door: Door, opening: float) -> NDArray[np.float64]:
+    """(4,): x1 y1 x2 y2 of a door's leaf."""
+    if door.slides:
+        ux, uy = math.cos(door.angle_rad), math.sin(door.angle_rad)
+        back = door.width * opening
+        x, y = door.x - back * ux, door.y - back * uy
+    else:
+        angle = door.angle_rad + opening * door.swing_rad
+        ux, uy = math.cos(angle), math.sin(angle)
+        x, y = door.x, door.y
+    return np.array([x, y, x + door.width * ux, y + door.width * uy])
+
+
+def _sides(box: Box) -> NDArray[np.float64]:
+    corners = box.corners
+    return np.hstack([corners, np.roll(corners, -1, axis=0)])
+
+
+def _by_name(items: tuple) -> dict[str, int]:
+    return {item.name: i for i, item in enumerate(items)}
+
+
+def _find(items: tuple, name: str, what: str) -> int:
+    names = _by_name(items)
+    if name not in names:
+        known = ", ".join(names) or f"none, since this world has no {what}"
+        raise ValueError(f"no {what} named {name!r}; expected one of: {known}")
+    return names[name]
