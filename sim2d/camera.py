@@ -12,7 +12,7 @@ from sim2d.living import Living
 from sim2d.mirror import mirrored
 from sim2d.painting import FADE_M, Strips, expose, paint_columns
 from sim2d.params import SimParams
-from sim2d.sight import lens_rays, round_hits, seen_walls
+from sim2d.sight import MOST_FLAT_RAD, lens_rays, round_hits, seen_walls
 from sim2d.thing_walls import thing_walls
 from sim2d.wall_index import WallIndex, build_index
 from sim2d.world import World
@@ -68,8 +68,8 @@ class Camera:
     def set_lens(self, params: SimParams) -> None:
         """Another field of view, resolution or place of the camera."""
         self._width, self._height = params.image_width, params.image_height
-        self._lens = params.camera_lens
-        self._rays, self._focal = lens_rays(self._width, params.camera_fov_rad, self._lens)
+        self._flat = params.camera_fov_rad <= MOST_FLAT_RAD
+        self._rays, self._focal = lens_rays(self._width, params.camera_fov_rad)
         self._eye = params.camera_height_m
         self._background = _background(self._world, self._height, self._focal, self._eye)
         self._counts = np.zeros(self._width, np.int64)
@@ -139,7 +139,7 @@ class Camera:
         if len(things):
             chosen[n:] = things
         found = self._counts, self._walls, self._hits
-        if self._lens == "flat":
+        if self._flat:
             column_hits(self._segments, self._full, chosen, x, y, heading, self._focal, *found)
         else:
             round_hits(self._segments, self._full, chosen, x, y, heading, self._rays, *found)

@@ -17,15 +17,11 @@ def _number(
     source: str = "ours",
     live: bool = False,
 ) -> Any:
-    return field(default=default, metadata=_about(symbol, unit, source, low, high, meaning, (), live))
+    return field(default=default, metadata=_about(symbol, unit, source, low, high, meaning, live))
 
 
 def _switch(default: bool, meaning: str, source: str = "ours") -> Any:
-    return field(default=default, metadata=_about("", "", source, None, None, meaning, (), True))
-
-
-def _word(default: str, choices: tuple[str, ...], meaning: str, source: str = "ours") -> Any:
-    return field(default=default, metadata=_about("", "", source, None, None, meaning, choices, True))
+    return field(default=default, metadata=_about("", "", source, None, None, meaning, True))
 
 
 def _about(
@@ -35,7 +31,6 @@ def _about(
     low: float | None,
     high: float | None,
     meaning: str,
-    choices: tuple[str, ...],
     live: bool,
 ) -> dict[str, Any]:
     return {
@@ -45,12 +40,9 @@ def _about(
         "low": low,
         "high": high,
         "meaning": meaning,
-        "choices": choices,
+        "choices": (),
         "live": live,
     }
-
-
-MOST_FLAT_RAD = 2.4  # a straight picture cannot be wider
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,11 +66,9 @@ class SimParams:
         6.0, 0.1, 60.0, "alpha_max", "rad/s^2", "the motors' limit on change of yaw rate", live=True
     )
 
-    camera_lens: str = _word(
-        "flat", ("flat", "round"), "flat = a straight picture; round = a panorama, each column the same angle"
-    )
     camera_fov_rad: float = _number(
-        math.radians(50), 0.2, 2 * math.pi, "phi", "rad", "horizontal field of view; flat: at most 2.4", "ACRA 2006",
+        math.radians(50), 0.2, 2 * math.pi, "phi", "rad", "horizontal field of view; above 2.4 a panorama, columns of equal angle",
+        "ACRA 2006",
         live=True,
     )  # fmt: skip
     image_width: int = _number(64, 8, 640, "W", "px", "columns of the camera image", live=True)
@@ -126,11 +116,6 @@ class SimParams:
 
     def __post_init__(self) -> None:
         _check(self)
-        if self.camera_lens == "flat" and self.camera_fov_rad > MOST_FLAT_RAD:
-            raise ValueError(
-                f"camera_fov_rad must be at most {MOST_FLAT_RAD:g} with camera_lens 'flat', got {self.camera_fov_rad!r}; "
-                "set camera_lens to 'round' first"
-            )
         if self.physics_rate_hz % self.sensor_rate_hz:
             raise ValueError(
                 f"physics_rate_hz must be a multiple of sensor_rate_hz ({self.sensor_rate_hz}), "
@@ -170,9 +155,6 @@ def _check(params: Any) -> None:
         if isinstance(item.default, bool):
             if not isinstance(value, bool):
                 raise ValueError(f"{name} must be true or false, got {value!r}")
-        elif isinstance(item.default, str):
-            if value not in about["choices"]:
-                raise ValueError(f"{name} must be one of {', '.join(map(repr, about['choices']))}, got {value!r}")
         else:
             _check_number(name, value, isinstance(item.default, int), about["low"], about["high"])
 

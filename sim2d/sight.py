@@ -11,16 +11,17 @@ from numpy.typing import NDArray
 from sim2d.column_hits import MAX_HITS, NEAR_M
 from sim2d.wall_index import FAR, WallIndex, crossing, enter
 
+MOST_FLAT_RAD = 2.4  # a straight picture of more would stretch its edges beyond use
 _WITHIN = 1e-9  # only a wall that is met this far from its ends is sure to hide what is behind
 
 
-def lens_rays(width: int, fov_rad: float, lens: str) -> tuple[NDArray[np.float64], float]:
+def lens_rays(width: int, fov_rad: float) -> tuple[NDArray[np.float64], float]:
     """(w + 1, 2, 2): per column its middle and left edge, ahead and to the left; and the focal length in pixels.
 
-    flat: all have length 1 ahead, so that a ray's length counts depth; round: all have length 1.
+    Flat up to MOST_FLAT_RAD: all have length 1 ahead, so that a ray's length counts depth. Wider, a round lens: length 1.
     """
     column = np.arange(width + 1)[:, None] + np.array([0.5, 0.0])
-    if lens == "flat":
+    if fov_rad <= MOST_FLAT_RAD:
         focal = 0.5 * width / math.tan(0.5 * fov_rad)
         left = np.asarray((0.5 * width - column) / focal, np.float64)
         return np.stack([np.ones_like(left), left], axis=2), focal

@@ -173,7 +173,7 @@ class Simulator:
                 raise ValueError(
                     f"{item.name} cannot change while running (from {old!r} to {new!r}); make a new simulator"
                 )
-        lens = ("camera_lens", "camera_fov_rad", "image_width", "image_height", "camera_height_m")
+        lens = ("camera_fov_rad", "image_width", "image_height", "camera_height_m")
         changed = any(getattr(params, name) != getattr(self.params, name) for name in lens)
         self.params = params
         if changed:
