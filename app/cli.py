@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from app.config import Config, from_toml, parse_value, to_markdown, to_toml
+from app.presets import PRESETS, preset
 from app.worlds_command import add_worlds
 from ratslam_core import RatSlam, load_brain
 from sim2d import DEFAULT_WORLD, World, WorldError
@@ -83,6 +84,7 @@ def _add_session(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_config(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--preset", metavar="NAME", help=f"a robot as it was: {', '.join(PRESETS)}")
     parser.add_argument("--config", type=Path, metavar="FILE", help="parameters as written by `ratslam config`")
     parser.add_argument("--set", nargs="*", default=[], metavar="NAME=VALUE", help="change single parameters")
 
@@ -95,6 +97,8 @@ def _port(text: str) -> int:
 
 
 def _config_of(args: argparse.Namespace, config: Config) -> Config:
+    if args.preset is not None:
+        config = preset(args.preset, config)
     if args.config is not None:
         try:
             config = from_toml(args.config.read_text(encoding="utf-8"), config)

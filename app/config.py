@@ -20,7 +20,7 @@ from ratslam_core import (
     RatSlamParams,
 )
 from ratslam_core.local_view import COLUMNS
-from sim2d import SimParams
+from sim2d import OfficeParams, SimParams
 
 Value = float | int | bool | str
 
@@ -35,6 +35,7 @@ class Config:
     goal_memory: GoalMemoryParams = GoalMemoryParams()
     occupancy: OccupancyParams = OccupancyParams()
     robot: SimParams = SimParams()
+    office: OfficeParams = OfficeParams()
     pilot: PilotParams = PilotParams()
 
     def __post_init__(self) -> None:
@@ -58,7 +59,10 @@ class Config:
                     yield f"{section.name}.{item.name}", item, getattr(params, item.name)
 
     def with_value(self, name: str, value: Value) -> Config:
-        """A copy with one parameter changed; ValueError names an unknown one, or the range."""
+        """A copy with one parameter changed; ValueError names an unknown one, or the range.
+
+        The brain is told of another field of view: `local_view.field_of_view` follows `robot.camera_fov_rad`.
+        """
         known = {dotted: old for dotted, _, old in self.items()}
         if name not in known:
             close = difflib.get_close_matches(name, known, n=3) or sorted(known)
@@ -67,11 +71,14 @@ class Config:
         try:
             if isinstance(known[name], float) and type(value) is int:
                 value = float(value)
-            return replace(self, **{section: replace(getattr(self, section), **{key: value})})
+            changed = replace(self, **{section: replace(getattr(self, section), **{key: value})})
         except OverflowError:
             raise ValueError(f"{name} must be within its range; the number given is far too large") from None
         except ValueError as error:
             raise ValueError(f"{section}.{error}") from None
+        if name == "robot.camera_fov_rad":
+            changed = changed.with_value("local_view.field_of_view", value)
+        return changed
 
 
 def to_toml(config: Config) -> str:
@@ -133,7 +140,9 @@ def from_toml(text: str, base: Config | None = None) -> Config:
         raise ValueError(f"not valid TOML: {error}") from None
     config = base or Config()
     sections = [item.name for item in fields(config)]
-    for section, table in tree.items():
+    for section, table in sorted(
+        tree.items(), key=lambda item: item[0] != "robot"
+    ):  # what the brain is told of it stands
         if section not in sections or not isinstance(table, dict):
             raise ValueError(f"unknown section {section!r}; expected one of: {', '.join(sections)}")
         keys = [item.name for item in fields(getattr(config, section))]

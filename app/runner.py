@@ -12,6 +12,7 @@ from concurrent.futures import Future
 
 from app.chronicle import Chronicle
 from app.config import Config
+from app.office_orders import carry_out
 from app.session import Session
 from app.snapshots import Snapshots
 from ratslam_core import RatSlam
@@ -191,6 +192,8 @@ class Runner:
                 return self._reset(name, seed)
             case m.SetParameter(name=name, value=value):
                 return self._set_parameter(name, value)
+            case m.SetDoor() | m.SetLamp() | m.PutBox() | m.RemoveBox() | m.UsePreset():
+                return self._try("name", command.name, lambda: note("office", carry_out(session, command)))
         self._snapshots.refresh()
         return None
 

@@ -29,7 +29,7 @@ class Session:
         """brain: one that knows places already; it wakes up somewhere and has to find out where."""
         self.world, self.seed, self.config = world, seed, config or Config()
         brain_seed, pilot_seed = np.random.SeedSequence([seed, 1]).spawn(2)
-        self.simulator = Simulator(world, self.config.robot, seed)
+        self.simulator = Simulator(world, self.config.robot, seed, self.config.office)
         if brain is None:
             brain = RatSlam(self.config.engine, np.random.default_rng(brain_seed), sonar_angles_rad=SONAR_ANGLES_RAD)
         else:
@@ -96,13 +96,20 @@ class Session:
 
     def set_parameter(self, name: str, value: Value) -> bool:
         """Change one parameter; True when it acts at once, False when it waits for the next reset."""
-        config = self.config.with_value(name, value)
-        section, key = name.split(".")
-        live = next(item.metadata["live"] for dotted, item, _ in config.items() if dotted == name)
-        self.config = config
-        if live:
-            self._take(section, {key: getattr(getattr(config, section), key)})
-        return live
+        before, self.config = self.config, self.config.with_value(name, value)
+        changed = [dotted for (dotted, _, old), (_, _, new) in zip(before.items(), self.config.items(), strict=True)
+                   if old != new]  # fmt: skip
+        live = {dotted: item.metadata["live"] for dotted, item, _ in self.config.items()}
+        for dotted in changed:
+            section, key = dotted.split(".")
+            if live[dotted]:
+                self._take(section, {key: getattr(getattr(self.config, section), key)})
+        return live[name]
+
+    def edit_world(self, world: World) -> None:
+        """Go on in an edited world, and begin in it after a reset. ValueError when it would cover the robot."""
+        self.simulator.set_world(world)
+        self.world = world
 
     def state_hash(self) -> str:
         """Digest of everything that decides the future: equal for equal runs."""
@@ -126,6 +133,8 @@ class Session:
         brain = self.brain
         if section == "robot":
             self.simulator.set_params(replace(self.simulator.params, **change))  # type: ignore[arg-type]
+        elif section == "office":
+            self.simulator.office = replace(self.simulator.office, **change)  # type: ignore[arg-type]
         elif section == "pilot":
             self.pilot.params = replace(self.pilot.params, **change)  # type: ignore[arg-type]
         else:

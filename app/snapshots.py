@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from app.chronicle import Chronicle
 from app.config import Value
+from app.living_layer import LivingView
 from app.session import Session
 from ratslam_core import Pose2, TemporalMap
 from sim2d import SONAR_ANGLES_RAD, World, draw_world
@@ -45,9 +46,9 @@ class Snapshots:
 
     def __init__(self, session: Session, chronicle: Chronicle, run: int, worlds: tuple[tuple[str, str], ...]) -> None:
         self._session, self._chronicle, self._run, self._worlds = session, chronicle, run, worlds
-        self._world = world_drawing(
-            session.world, session.config.robot.robot_radius_m, session.config.robot.camera_fov_rad
-        )
+        self._drawn: tuple[object, object, float] | None = None
+        self._world = self._draw_world()
+        self._living = LivingView()
         self._map: MapLayer | None = None
         self._times: TimesLayer | None = None
         self._goal_timed: int | None = None
@@ -76,7 +77,7 @@ class Snapshots:
             seed=session.seed,
             fault=fault,
             lost=chronicle.lost,
-            world=self._world,
+            world=self._draw_world(),
             worlds=self._worlds,
             truth=Pose(truth.x, truth.y, truth.heading_rad),
             trail=_frozen(chronicle.trail),
@@ -99,7 +100,17 @@ class Snapshots:
             parameters=self._parameter_rows(),
             occupancy=self._occupancy.part(session.tick_count),
             goal_memory=self._goal_memory.part(session.tick_count),
+            living=self._living.look(session.simulator),
         )
+
+    def _draw_world(self) -> WorldDrawing:
+        """Drawn anew only when walls, places or the camera's lens have changed."""
+        simulator, params = self._session.simulator, self._session.simulator.params
+        world, drawn = simulator.world, self._drawn
+        if drawn is None or drawn[0] is not world.walls or drawn[1:] != (world.places, params.camera_fov_rad):
+            self._drawn = (world.walls, world.places, params.camera_fov_rad)
+            self._world = world_drawing(world, params.robot_radius_m, params.camera_fov_rad)
+        return self._world
 
     def _map_layers(self) -> tuple[MapLayer, TimesLayer]:
         """Map and times of one moment; rows of both agree."""

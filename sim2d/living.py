@@ -123,6 +123,11 @@ class Living:
         self.walkers.adopt(old.walkers)
         self._show()
 
+    @property
+    def door_wanted(self) -> NDArray[np.bool_]:
+        """Which doors are open or on their way to be."""
+        return self._wanted > 0.5
+
     def state(self) -> bytes:
         """All that decides the future."""
         flags = [*self.box_present, *self._box_wanted, *self.lamp_on, self._people_on]

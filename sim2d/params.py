@@ -67,10 +67,15 @@ class SimParams:
     )
 
     camera_fov_rad: float = _number(
-        math.radians(50), 0.2, 2 * math.pi, "phi", "rad", "horizontal field of view; above 2.4 a panorama, columns of equal angle",
+        math.radians(50),
+        0.2,
+        2 * math.pi,
+        "phi",
+        "rad",
+        "horizontal field of view; above 2.4 a panorama",
         "ACRA 2006",
         live=True,
-    )  # fmt: skip
+    )
     image_width: int = _number(64, 8, 640, "W", "px", "columns of the camera image", live=True)
     image_height: int = _number(48, 8, 480, "H", "px", "rows of the camera image; pixels are square", live=True)
     camera_height_m: float = _number(0.45, 0.1, 1.5, "h", "m", "height of the camera above the floor", live=True)

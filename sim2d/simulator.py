@@ -191,6 +191,11 @@ class Simulator:
         """Put a new box down; refused where it would cover the robot or outside."""
         if any(other.name == box.name for other in self.world.boxes):
             raise ValueError(f"there is a box named {box.name!r} already; remove it first or use another name")
+        if not inside_ring(self.world.outline, box.x, box.y):
+            x0, y0, x1, y1 = self.world.bounds
+            raise ValueError(
+                f"({box.x:g}, {box.y:g}) is outside of {self.world.name}, which spans {x0:g} to {x1:g} by {y0:g} to {y1:g} m"
+            )
         self.set_world(replace(self.world, boxes=(*self.world.boxes, box)))
 
     def remove_box(self, name: str) -> None:

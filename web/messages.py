@@ -47,6 +47,22 @@ class WorldDrawing:
     sonar_angles_rad: NDArray[np.float32]  # (8,), from the robot's heading
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class LivingLayer:
+    """What moves in the office. Office frame; rows of one kind keep their order."""
+
+    door_names: tuple[str, ...]
+    doors: NDArray[np.float32]  # (d, 4): x1 y1 x2 y2 of each leaf, its hinge first
+    door_wanted: NDArray[np.bool_]  # (d,) open, or on its way to be
+    boxes: NDArray[np.float32]  # (b, 6): x y width depth height angle of those that are there
+    box_rgb: NDArray[np.uint8]  # (b, 3)
+    people: NDArray[np.float32]  # (p, 5): x y heading radius height of those who are there
+    people_rgb: NDArray[np.uint8]  # (p, 3)
+    lamp_names: tuple[str, ...]
+    lamps: NDArray[np.float32]  # (l, 3): x y and 1 when it is on
+    daylight: float  # 1 = as painted
+
+
 @dataclass(frozen=True, slots=True)
 class Packet:
     """One packet of pose-cell activity: its centre in cells (fractions), its heading, its share of the activity, its id."""
@@ -227,6 +243,7 @@ class Snapshot:
     parameters: tuple[Parameter, ...]
     occupancy: OccupancyLayer | None = None  # None without sonars
     goal_memory: GoalMemoryLayer | None = None
+    living: LivingLayer | None = None  # None: nothing lives in this world
 
 
 # ---------------------------------------------------------------- in
@@ -309,8 +326,63 @@ class SetParameter(_Command):
     value: float | int | bool | Annotated[str, Field(max_length=64)]
 
 
+_Name = Annotated[str, Field(min_length=1, max_length=40)]
+_Size = Annotated[float, Field(ge=0.05, le=20.0)]
+
+
+class SetDoor(_Command):
+    """Open or shut a door of the office; it moves from the next tick on, and waits for who stands in it."""
+
+    type: Literal["set_door"]
+    name: _Name
+    open: bool
+
+
+class SetLamp(_Command):
+    type: Literal["set_lamp"]
+    name: _Name
+    on: bool
+
+
+class PutBox(_Command):
+    """Put a box down (office frame, metres); refused where it would cover the robot. A reset takes it away."""
+
+    type: Literal["put_box"]
+    name: _Name
+    x: Finite
+    y: Finite
+    width: _Size = 0.5
+    depth: _Size = 0.5
+    height: _Size = 0.6
+    angle_rad: Finite = 0.0
+
+
+class RemoveBox(_Command):
+    type: Literal["remove_box"]
+    name: _Name
+
+
+class UsePreset(_Command):
+    """Set the robot's sensors and encoders to a preset: "Pioneer 2DXE 2004" or "ideal"."""
+
+    type: Literal["use_preset"]
+    name: _Name
+
+
+OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
 Command = Annotated[
-    SetGoal | CancelGoal | SetMode | Drive | Kidnap | Pause | Resume | Step | SetSpeed | Reset | SetParameter,
+    SetGoal
+    | CancelGoal
+    | SetMode
+    | Drive
+    | Kidnap
+    | Pause
+    | Resume
+    | Step
+    | SetSpeed
+    | Reset
+    | SetParameter
+    | OfficeOrder,
     Field(discriminator="type"),
 ]
 

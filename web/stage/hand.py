@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from web.messages import Accepted, Command, Kidnap, Refused, SetGoal, Snapshot
+from web.messages import Accepted, Command, Kidnap, Refused, SetDoor, SetGoal, Snapshot
 from web.stage.map_plate import NODE_Z, MapPlate
 from web.stage.office_plate import OfficePlate
 from web.stage.plate import point_on_plane
@@ -22,6 +22,7 @@ from web.stage.sight import fits
 Answer = Accepted | Refused
 PATIENCE_S = 3.0  # how long a clicked marker waits for its goal
 GRIP_Z = 0.15
+DOOR_Z = 0.25  # half as high as a leaf
 
 
 @dataclass(frozen=True)
@@ -49,8 +50,10 @@ class Hand:
         self._asked: tuple[tuple[float, float], float, int | None] | None = None  # place, time, tick of acceptance
         self.dragging = False
 
-    def click(self, click: Click, plate: MapPlate, now_s: float) -> None:
-        """On the map: the marker appears at once and the goal is asked for. Elsewhere: nothing."""
+    def click(self, click: Click, plate: MapPlate, now_s: float, office: OfficePlate | None = None) -> None:
+        """On the map: the marker appears at once and the goal is asked for. On a door: it opens or shuts."""
+        if office is not None and self._click_door(click, office):
+            return
         on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
         place = None if on_plate is None else plate.map_place(on_plate)
         if place is None:
@@ -66,6 +69,20 @@ class Hand:
                 self._asked = (place, now_s, answer.tick)
 
         self._send(SetGoal(type="set_goal", x=place[0], y=place[1]), answered)
+
+    def _click_door(self, click: Click, office: OfficePlate) -> bool:
+        origin, direction = np.array(click.origin), np.array(click.direction)
+        at = point_on_plane(origin, direction, office.origin, DOOR_Z * office.fit.relief)
+        door = None if at is None else office.things.door_at(at, office.fit)
+        if door is None:
+            return False
+
+        def answered(answer: Answer) -> None:
+            if isinstance(answer, Refused):
+                self._complain(click.client_id, "The door stays as it is", answer.reason)
+
+        self._send(SetDoor(type="set_door", name=door[0], open=door[1]), answered)
+        return True
 
     def settle(self, snapshot: Snapshot, plate: MapPlate, now_s: float) -> None:
         """Takes the clicked marker away when its goal is there, or when nothing came of it."""

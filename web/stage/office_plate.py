@@ -6,9 +6,10 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from web.messages import Pose, Senses, WorldDrawing
+from web.messages import LivingLayer, Pose, Senses, WorldDrawing
 from web.stage import ribbons
 from web.stage.furniture import add_floor, add_furniture
+from web.stage.living import LivingThings
 from web.stage.office_fit import OfficeFit
 from web.stage.paint import vertex_paint
 from web.stage.palette import Palette, mix
@@ -30,6 +31,7 @@ class OfficePlate(Plate):
         self.world: WorldDrawing | None = None
         self.fit = OfficeFit((0.0, 0.0, 10.0, 8.0))
         self._walls = np.zeros((0, 4))
+        self.things = LivingThings(scene, palette, self.root)
         self.robot = RobotModel(scene, palette, f"{self.root}/robot")
         self._fan = add_mesh(
             scene,
@@ -80,6 +82,10 @@ class OfficePlate(Plate):
         self.robot.resize(self.fit.scale * max(world.robot_radius_m, 0.05))
         add_floor(self.scene, f"{self.root}/floor", self.palette, world, self.fit, FLOOR_Z)
         add_furniture(self.scene, f"{self.root}/furniture", self.palette, world, self.fit)
+
+    def set_living(self, layer: LivingLayer | None) -> None:
+        """Doors, boxes, people and lamps where they are now."""
+        self.things.show(layer, self.fit)
 
     def set_robot(self, truth: Pose, senses: Senses) -> None:
         """The robot at its true pose, with its field of view and the sonar's echoes."""

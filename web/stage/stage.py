@@ -113,7 +113,8 @@ class Stage:
         offer, cells = self._layers, snapshot.pose_cells
         with self.server.atomic():
             if offer["world"].offer(now_s, snapshot.world):
-                self._forget("robot", "trail")
+                self._forget("robot", "trail", "living")
+            offer["living"].offer(now_s, snapshot.living)
             if self._hand.dragging:
                 self._forget("robot")  # it goes back to the truth when it is let go
             else:
@@ -184,6 +185,7 @@ class Stage:
             "world": Layer(5, office.set_world),
             "robot": Layer(15, office.set_robot),
             "trail": Layer(4, office.set_trail),
+            "living": Layer(12, office.set_living),
             "cells": Layer(10, cells.set_cells),
             "glow": Layer(5, cells.set_glow),
             "map": Layer(2, self._draw_map),
@@ -207,7 +209,7 @@ class Stage:
 
     def _clicked(self, event: viser.SceneClickEvent) -> None:
         click = Click(event.client_id, event.ray_origin, event.ray_direction)
-        self._inbox.put(lambda: self._hand.click(click, self._scenery.map, time.monotonic()))
+        self._inbox.put(lambda: self._hand.click(click, self._scenery.map, time.monotonic(), self._scenery.office))
 
     def _dragged(self, turning: bool) -> Callable[[DragEvent], Coroutine[Any, Any, None]]:
         async def dragged(event: DragEvent) -> None:  # async: keeps their order

@@ -1,0 +1,57 @@
+"""What moves in the office, for the stage; the same object as long as nothing has moved."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim2d import Simulator
+from web.messages import LivingLayer
+
+
+class LivingView:
+    """Looks at one simulator."""
+
+    def __init__(self) -> None:
+        self._seen: tuple[object, bytes] | None = None
+        self._layer: LivingLayer | None = None
+
+    def look(self, simulator: Simulator) -> LivingLayer | None:
+        """The layer of this moment, None when the world has no doors, boxes, people or lamps."""
+        world, living = simulator.world, simulator.living
+        if not (world.doors or world.boxes or world.people or world.lamps or world.daylight):
+            return None
+        seen = (world, living.state())
+        if self._seen is None or self._seen[0] is not world or self._seen[1] != seen[1]:
+            self._seen, self._layer = seen, _layer(simulator)
+        return self._layer
+
+
+def _layer(simulator: Simulator) -> LivingLayer:
+    world, living = simulator.world, simulator.living
+    boxes = [box for box, is_there in zip(world.boxes, living.box_present, strict=True) if is_there]
+    walkers = living.walkers
+    there = np.flatnonzero(walkers.present)
+    people = [world.people[i] for i in there]
+    rows = [(*walkers.xy[i], walkers.heading[i], p.radius, p.height) for i, p in zip(there, people, strict=True)]
+    return LivingLayer(
+        door_names=tuple(door.name for door in world.doors),
+        doors=_table(living.segments[: len(world.doors)], 4),
+        door_wanted=_frozen(living.door_wanted),
+        boxes=_table([(b.x, b.y, b.width, b.depth, b.height, b.angle_rad) for b in boxes], 6),
+        box_rgb=_frozen(np.array([b.colour for b in boxes], np.uint8).reshape(-1, 3)),
+        people=_table(rows, 5),
+        people_rgb=_frozen(np.array([p.colour for p in people], np.uint8).reshape(-1, 3)),
+        lamp_names=tuple(lamp.name for lamp in world.lamps),
+        lamps=_table([(k.x, k.y, float(on)) for k, on in zip(world.lamps, living.lamp_on, strict=True)], 3),
+        daylight=living.daylight,
+    )
+
+
+def _table(rows: object, width: int) -> NDArray[np.float32]:
+    return _frozen(np.array(rows, np.float32).reshape(-1, width))
+
+
+def _frozen(array: NDArray) -> NDArray:
+    array.setflags(write=False)
+    return array

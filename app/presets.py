@@ -1,0 +1,55 @@
+"""Named settings of the robot: what a preset leaves out stays as it is."""
+
+from __future__ import annotations
+
+import math
+
+from app.config import Config, Value
+
+PRESETS: dict[str, dict[str, Value]] = {
+    # ACRA 2004, section 5; ACRA 2005, section 4; IROS 2005: Pioneer 2-DXE, 50 degrees, 0.5 m/s, 90 deg/s, 10 Hz
+    "Pioneer 2DXE 2004": {
+        "robot.robot_radius_m": 0.22,
+        "robot.max_speed": 0.5,
+        "robot.max_yaw_rate": math.pi / 2,
+        "robot.camera_fov_rad": math.radians(50),
+        "robot.image_width": 64,
+        "robot.image_height": 48,
+        "robot.image_noise": 2.0,
+        "robot.exposure_gain": 1.0,
+        "robot.sonar_range_m": 5.0,
+        "robot.sonar_cone_rad": math.radians(15),
+        "robot.sonar_noise_m": 0.02,
+        "robot.sonar_false_echo": 0.01,
+        "robot.laser_beams": 181,
+        "robot.laser_fov_rad": math.pi,
+        "robot.laser_range_m": 8.0,
+        "robot.laser_noise_m": 0.01,
+        "robot.odometry_noise": 0.05,
+        "robot.odometry_scale_error": 0.02,
+        "robot.gyro_bias": math.radians(0.5),
+    },
+    "ideal": {
+        "robot.image_noise": 0.0,
+        "robot.sonar_noise_m": 0.0,
+        "robot.sonar_false_echo": 0.0,
+        "robot.laser_noise_m": 0.0,
+        "robot.odometry_noise": 0.0,
+        "robot.odometry_scale_error": 0.0,
+        "robot.gyro_bias": 0.0,
+    },
+}
+
+
+def preset(name: str, base: Config) -> Config:
+    """The config with a preset over it. ValueError lists the presets when there is none of this name."""
+    for parameter, value in values_of(name).items():
+        base = base.with_value(parameter, value)
+    return base
+
+
+def values_of(name: str) -> dict[str, Value]:
+    """What a preset sets."""
+    if name not in PRESETS:
+        raise ValueError(f"unknown preset {name!r}; expected one of: {', '.join(PRESETS)}")
+    return PRESETS[name]

@@ -1,0 +1,141 @@
+"""Orders to the office, presets, and parameters that pull others with them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+from pydantic import TypeAdapter
+
+from app.chronicle import Chronicle
+from app.config import Config, from_toml, to_toml
+from app.office_orders import carry_out
+from app.presets import PRESETS, preset
+from app.session import Session
+from app.snapshots import Snapshots
+from sim2d import Door, Lamp, Person, World
+from web import messages as m
+
+from .worlds import room
+
+READER: TypeAdapter[m.Command] = TypeAdapter(m.Command)
+
+
+def living_room() -> World:
+    door = Door("lab", 3.0, 3.0, 0.0, 0.8, open=False)
+    people = (Person("Ada", ((0.5, 0.5), (0.5, 3.5)), (0.0, 0.0)),)
+    return replace(room(start=(2.0, 2.0, 0.0)), doors=(door,), lamps=(Lamp("sun", 2.0, 2.0, 3.0, 0.5),), people=people)
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session(living_room(), 3)
+
+
+def order(session: Session, **fields: object) -> str:
+    return carry_out(session, READER.validate_python(fields))  # type: ignore[arg-type]
+
+
+def test_orders_do_what_they_say(session: Session) -> None:
+    assert order(session, type="set_door", name="lab", open=True) == "lab opens"
+    assert order(session, type="set_lamp", name="sun", on=False) == "sun off"
+    assert order(session, type="put_box", name="crate", x=3.2, y=1.0) == "crate put down"
+    for _ in range(30):
+        session.tick()
+    living = session.simulator.living
+    assert living.opening[0] == 1.0
+    assert not living.lamp_on[0]
+    assert [box.name for box in session.simulator.world.boxes] == ["crate"]
+    assert order(session, type="remove_box", name="crate") == "crate taken away"
+    assert session.simulator.world.boxes == ()
+    assert session.world == living_room()  # a reset begins with the world as it was
+
+
+@pytest.mark.parametrize(
+    ("fields", "reason"),
+    [
+        ({"type": "set_door", "name": "lap", "open": True}, r"no door named 'lap'; expected one of: lab"),
+        ({"type": "set_lamp", "name": "x", "on": True}, r"no lamp named 'x'; expected one of: sun"),
+        ({"type": "put_box", "name": "b", "x": 2.2, "y": 2.0}, r"box 'b' would cover the robot at \(2.00, 2.00\)"),
+        ({"type": "put_box", "name": "b", "x": 9.0, "y": 2.0}, r"\(9, 2\) is outside of room"),
+        ({"type": "remove_box", "name": "b"}, r"no box named 'b'; expected one of: none"),
+        ({"type": "use_preset", "name": "b"}, r"unknown preset 'b'; expected one of: Pioneer 2DXE 2004, ideal"),
+    ],
+)
+def test_orders_that_cannot_be_change_nothing(session: Session, fields: dict[str, object], reason: str) -> None:
+    before = session.state_hash()
+    with pytest.raises(ValueError, match=reason):
+        order(session, **fields)
+    assert session.state_hash() == before
+
+
+def test_an_ideal_robot_reports_the_truth(session: Session) -> None:
+    assert order(session, type="use_preset", name="ideal") == "preset ideal"
+    for _ in range(20):
+        session.tick()
+    truth = session.simulator.truth
+    assert (session.frame.odometry_speed, session.frame.odometry_yaw_rate) == (truth.speed, truth.yaw_rate)
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_presets_are_configs(name: str) -> None:
+    config = preset(name, Config())
+    assert from_toml(to_toml(config)) == config
+    assert all(dict((n, v) for n, _, v in config.items())[key] == value for key, value in PRESETS[name].items())
+
+
+def test_the_brain_is_told_of_another_field_of_view(session: Session) -> None:
+    assert session.set_parameter("robot.camera_fov_rad", 2 * math.pi)
+    assert session.brain.params.local_view.field_of_view == 2 * math.pi
+    session.set_parameter("local_view.field_of_view", 1.0)  # told something wrong on purpose
+    assert session.config.robot.camera_fov_rad == 2 * math.pi
+    assert from_toml(to_toml(session.config)) == session.config
+    assert from_toml("[local_view]\nfield_of_view = 1.0\n[robot]\ncamera_fov_rad = 2.0").local_view.field_of_view == 1.0
+
+
+def test_office_switches_act_at_once(session: Session) -> None:
+    session.tick()
+    assert session.simulator.living.walkers.present.all()
+    assert session.set_parameter("office.people", False)
+    session.tick()
+    assert not session.simulator.living.walkers.present.any()
+
+
+def test_the_living_layer_is_the_same_object_until_something_moves(session: Session) -> None:
+    made = Snapshots(session, Chronicle(session), 1, ())
+
+    def layer() -> m.LivingLayer:
+        living = made.build(running=True, speed=1.0, real_time_factor=1.0, fault=None).living
+        assert living is not None
+        return living
+
+    session.set_parameter("office.people", False)
+    session.tick()
+    still = layer()
+    assert layer() is still
+    assert still.people.shape == (0, 5)
+    assert still.doors == pytest.approx([[3.0, 3.0, 3.8, 3.0]])
+    order(session, type="set_door", name="lab", open=True)
+    session.tick()
+    assert layer() is not still
+    assert layer().doors[0, 3] > 3.0
+    order(session, type="put_box", name="crate", x=3.2, y=1.0)
+    assert layer().boxes == pytest.approx([[3.2, 1.0, 0.5, 0.5, 0.6, 0.0]])
+    assert not layer().doors.flags.writeable
+
+
+def test_a_plain_world_has_no_living_layer() -> None:
+    session = Session(room(start=(2.0, 2.0, 0.0)), 3)
+    made = Snapshots(session, Chronicle(session), 1, ())
+    assert made.build(running=True, speed=1.0, real_time_factor=1.0, fault=None).living is None
+
+
+def test_an_edited_world_is_drawn_and_outlives_a_reset(session: Session) -> None:
+    made = Snapshots(session, Chronicle(session), 1, ())
+    first = made.build(running=True, speed=1.0, real_time_factor=1.0, fault=None).world
+    edited = room((0.5, 3.0, 1.5, 3.0), start=(2.0, 2.0, 0.0))
+    session.edit_world(edited)
+    drawn = made.build(running=True, speed=1.0, real_time_factor=1.0, fault=None).world
+    assert len(drawn.walls) == len(first.walls) + 1
+    assert session.world is edited

@@ -1,0 +1,142 @@
+"""What moves in the office, on the stage: leaves of doors, boxes, people, lamps. Handles are moved, not made anew."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from web.messages import LivingLayer
+from web.stage import ribbons
+from web.stage.furniture import METRE_HIGH
+from web.stage.office_fit import OfficeFit
+from web.stage.palette import Palette, Rgb, mix
+from web.stage.signs import add_mesh
+
+LEAF_THICK, LEAF_HIGH, LAMP_Z = 0.07, 2.05 * METRE_HIGH, 0.74
+LAMP_RADIUS = 0.09
+HEAD = (0.62, 0.8, 1.0)  # of a person's height: shoulders, chin, top
+DOOR_RGB: Rgb = (150, 104, 62)
+REACH = 0.35  # plate units: a click so near to a leaf means the door
+
+
+class LivingThings:
+    """Handles below `root`, by kind; more are made when there are more things, and those too many are hidden."""
+
+    def __init__(self, scene: viser.SceneApi, palette: Palette, root: str) -> None:
+        self._scene, self._palette, self._root = scene, palette, root
+        self._handles: dict[str, list[viser.MeshHandle]] = {"door": [], "box": [], "person": [], "lamp": []}
+        self._shown: dict[viser.MeshHandle, tuple] = {}
+        self.layer: LivingLayer | None = None
+
+    def show(self, layer: LivingLayer | None, fit: OfficeFit) -> None:
+        self.layer = layer
+        doors, boxes, people, lamps = (
+            _NO_ROWS if layer is None else (layer.doors, layer.boxes, layer.people, layer.lamps)
+        )
+        for i, leaf in enumerate(doors):
+            self._door(self._handle("door", i, DOOR_RGB), leaf, fit)
+        for i, box in enumerate(boxes):
+            self._box(self._handle("box", i, _rgb(layer.box_rgb[i]) if layer else DOOR_RGB), box, fit)
+        for i, person in enumerate(people):
+            self._person(self._handle("person", i, _rgb(layer.people_rgb[i]) if layer else DOOR_RGB), person, fit)
+        for i, (x, y, on) in enumerate(lamps):
+            dark, lit = mix(self._palette.slab, self._palette.text_2, 0.3), (255, 236, 170)
+            handle = self._handle("lamp", i, lit if on else dark)
+            self._move(handle, fit, float(x), float(y), LAMP_Z * fit.relief, 0.0, (LAMP_RADIUS, LAMP_RADIUS, 0.02))
+        for kind, count in zip(self._handles, map(len, (doors, boxes, people, lamps)), strict=True):
+            for handle in self._handles[kind][count:]:
+                self._hide(handle)
+
+    def door_at(self, place: tuple[float, float], fit: OfficeFit) -> tuple[str, bool] | None:
+        """The door on whose leaf a click (plate units) has landed, and whether it is to be open."""
+        if self.layer is None or len(self.layer.doors) == 0:
+            return None
+        starts, ends = fit.to_plate(self.layer.doors[:, :2]), fit.to_plate(self.layer.doors[:, 2:])
+        along = ends - starts
+        share = np.clip(((np.array(place) - starts) * along).sum(1) / (along**2).sum(1), 0.0, 1.0)
+        away = np.hypot(*(starts + share[:, None] * along - place).T)
+        nearest = int(np.argmin(away))
+        if away[nearest] > REACH:
+            return None
+        return self.layer.door_names[nearest], not bool(self.layer.door_wanted[nearest])
+
+    # ------------------------------------------------------------ one thing each
+
+    def _door(self, handle: viser.MeshHandle, leaf: NDArray[np.float32], fit: OfficeFit) -> None:
+        x1, y1, x2, y2 = (float(v) for v in leaf)
+        size = (math.hypot(x2 - x1, y2 - y1) * fit.scale, LEAF_THICK * fit.relief, LEAF_HIGH * fit.relief)
+        self._move(handle, fit, (x1 + x2) / 2, (y1 + y2) / 2, 0.0, math.atan2(y2 - y1, x2 - x1), size)
+
+    def _box(self, handle: viser.MeshHandle, box: NDArray[np.float32], fit: OfficeFit) -> None:
+        x, y, width, depth, height, angle = (float(v) for v in box)
+        size = (width * fit.scale, depth * fit.scale, height * METRE_HIGH * fit.relief)
+        self._move(handle, fit, x, y, 0.0, angle, size)
+
+    def _person(self, handle: viser.MeshHandle, person: NDArray[np.float32], fit: OfficeFit) -> None:
+        x, y, heading, radius, height = (float(v) for v in person)
+        wide = max(radius * fit.scale, 0.07)
+        self._move(handle, fit, x, y, 0.0, heading, (wide, wide, height * METRE_HIGH * max(fit.relief, 0.5)))
+
+    # ------------------------------------------------------------ handles
+
+    def _handle(self, kind: str, i: int, colour: Rgb) -> viser.MeshHandle:
+        handles = self._handles[kind]
+        if i == len(handles):
+            handles.append(add_mesh(self._scene, f"{self._root}/{kind}_{i}", _MESHES[kind], self._palette.lit(colour)))
+            self._shown[handles[i]] = ()
+        if tuple(handles[i].color) != tuple(self._palette.lit(colour)):
+            handles[i].color = self._palette.lit(colour)
+        return handles[i]
+
+    def _move(
+        self, handle: viser.MeshHandle, fit: OfficeFit, x: float, y: float, z: float, angle: float,
+        size: tuple[float, float, float],
+    ) -> None:  # fmt: skip
+        """Only what has changed is sent."""
+        now = (x, y, z, angle, size)
+        if self._shown[handle] == now:
+            return
+        self._shown[handle] = now
+        px, py = (float(v) for v in fit.to_plate(np.array([[x, y]]))[0])
+        handle.position = (px, py, z)
+        handle.wxyz = (math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2))
+        handle.scale = size
+        handle.visible = True
+
+    def _hide(self, handle: viser.MeshHandle) -> None:
+        if self._shown[handle] != ():
+            self._shown[handle] = ()
+            handle.visible = False
+
+
+def _rgb(row: NDArray[np.uint8]) -> Rgb:
+    return int(row[0]), int(row[1]), int(row[2])
+
+
+def _figure() -> ribbons.Mesh:
+    """A person of radius and height 1 who looks along +x."""
+    circle = ribbons.circle(1.0)
+    parts = [
+        ribbons.extruded(circle * (0.7, 1.0), 0.0, HEAD[0]),
+        ribbons.extruded(circle * 0.5, HEAD[0] + 0.02, HEAD[2]),
+        ribbons.extruded(
+            ribbons.rounded_rectangle(0.2, 0.3, 0.08, 4, centre=(0.55, 0.0)), HEAD[1] - 0.06, HEAD[1] + 0.06
+        ),
+    ]
+    vertices = np.concatenate([mesh[0] for mesh in parts])
+    offsets = np.cumsum([0, *(len(mesh[0]) for mesh in parts[:-1])])
+    faces = np.concatenate([mesh[1] + offset for mesh, offset in zip(parts, offsets, strict=True)])
+    return vertices, faces
+
+
+_SQUARE = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
+_MESHES = {
+    "door": ribbons.extruded(_SQUARE, 0.0, 1.0),
+    "box": ribbons.extruded(_SQUARE, 0.0, 1.0),
+    "person": _figure(),
+    "lamp": ribbons.extruded(ribbons.circle(1.0), 0.0, 1.0),
+}
+_NO_ROWS = (np.zeros((0, 4)), np.zeros((0, 6)), np.zeros((0, 5)), np.zeros((0, 3)))
