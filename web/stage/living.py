@@ -65,17 +65,17 @@ class LivingThings:
 
     # ------------------------------------------------------------ one thing each
 
-    def _door(self, handle: viser.MeshHandle, leaf: NDArray[np.float32], fit: OfficeFit) -> None:
+    def _door(self, handle: viser.MeshHandle, leaf: NDArray[np.floating], fit: OfficeFit) -> None:
         x1, y1, x2, y2 = (float(v) for v in leaf)
         size = (math.hypot(x2 - x1, y2 - y1) * fit.scale, LEAF_THICK * fit.relief, LEAF_HIGH * fit.relief)
         self._move(handle, fit, (x1 + x2) / 2, (y1 + y2) / 2, 0.0, math.atan2(y2 - y1, x2 - x1), size)
 
-    def _box(self, handle: viser.MeshHandle, box: NDArray[np.float32], fit: OfficeFit) -> None:
+    def _box(self, handle: viser.MeshHandle, box: NDArray[np.floating], fit: OfficeFit) -> None:
         x, y, width, depth, height, angle = (float(v) for v in box)
         size = (width * fit.scale, depth * fit.scale, height * METRE_HIGH * fit.relief)
         self._move(handle, fit, x, y, 0.0, angle, size)
 
-    def _person(self, handle: viser.MeshHandle, person: NDArray[np.float32], fit: OfficeFit) -> None:
+    def _person(self, handle: viser.MeshHandle, person: NDArray[np.floating], fit: OfficeFit) -> None:
         x, y, heading, radius, height = (float(v) for v in person)
         wide = max(radius * fit.scale, 0.07)
         self._move(handle, fit, x, y, 0.0, heading, (wide, wide, height * METRE_HIGH * max(fit.relief, 0.5)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
@@ -82,7 +83,7 @@ def test_an_ideal_robot_reports_the_truth(session: Session) -> None:
 def test_presets_are_configs(name: str) -> None:
     config = preset(name, Config())
     assert from_toml(to_toml(config)) == config
-    assert all(dict((n, v) for n, _, v in config.items())[key] == value for key, value in PRESETS[name].items())
+    assert all({n: v for n, _, v in config.items()}[key] == value for key, value in PRESETS[name].items())
 
 
 def test_the_brain_is_told_of_another_field_of_view(session: Session) -> None:
@@ -115,13 +116,13 @@ def test_the_living_layer_is_the_same_object_until_something_moves(session: Sess
     still = layer()
     assert layer() is still
     assert still.people.shape == (0, 5)
-    assert still.doors == pytest.approx([[3.0, 3.0, 3.8, 3.0]])
+    assert still.doors == pytest.approx(np.array([[3.0, 3.0, 3.8, 3.0]]))
     order(session, type="set_door", name="lab", open=True)
     session.tick()
     assert layer() is not still
     assert layer().doors[0, 3] > 3.0
     order(session, type="put_box", name="crate", x=3.2, y=1.0)
-    assert layer().boxes == pytest.approx([[3.2, 1.0, 0.5, 0.5, 0.6, 0.0]])
+    assert layer().boxes == pytest.approx(np.array([[3.2, 1.0, 0.5, 0.5, 0.6, 0.0]]))
     assert not layer().doors.flags.writeable
 
 
