@@ -94,8 +94,8 @@ def test_a_whole_number_for_a_float() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("[robott]\n", "unknown section 'robott'; expected one of: pose_cells, local_view, .*, robot, pilot"),
-        ("robot = 3\n", "unknown section 'robot'; expected one of: pose_cells, local_view, .*, robot, pilot"),
+        ("[robott]\n", "unknown section 'robott'; expected one of: pose_cells, local_view, .*, robot, office, pilot"),
+        ("robot = 3\n", "unknown section 'robot'; expected one of: pose_cells, local_view, .*, robot, office, pilot"),
         ("[pilot]\ncruise = 1\n", "unknown parameter 'pilot.cruise'; expected one of: cruise_speed, turn_rate"),
         ("[pilot]\ncruise_speed = 9\n", r"pilot\.cruise_speed must be between 0\.05 and 0\.5 m/s, got 9\.0"),
         ("[pilot]\ncruise_speed = [1]\n", r"pilot\.cruise_speed must be float, got \[1\]"),
