@@ -14,6 +14,7 @@ TRAIL_S = 120.0
 SERIES_POINTS = 600
 MOST_EVENTS = 500
 ERROR_POINTS = 1000
+FALSE_EVERY_S = 5.0  # false positives are marked no more often
 
 
 class Chronicle:
@@ -32,6 +33,7 @@ class Chronicle:
         self.lost = False
         self._goal_state: tuple[int, str] | None = None
         self._recovered = 0
+        self._false_marked, self._false_due_s = 0, 0.0
         self._before = session.brain.pose_cells.winner
         self.error_map_m = self.error_odometry_m = 0.0
         self.series = Series(*(np.zeros(0) for _ in range(5)))
@@ -74,6 +76,7 @@ class Chronicle:
         self.lost = lost
         self._watch_goal()
         self._watch_kidnaps()
+        self._watch_false_positives()
         if session.time_s >= len(self._samples) * self._sample_every_s:
             self._sample()
 
@@ -100,6 +103,16 @@ class Chronicle:
             self._recovered += 1
         if self._recovered < len(kidnaps) - 1:
             self._recovered = len(kidnaps) - 1  # kidnapped again before it recovered
+
+    def _watch_false_positives(self) -> None:
+        """Each is counted, few are marked: the mark tells how many there were since the one before."""
+        seen, count = self._session.estimate.recognition, self._session.brain.local_view.false_positives
+        if not seen.false_positive or self._session.time_s < self._false_due_s:
+            return
+        more = count - self._false_marked - 1
+        words = f"view {seen.view} instead of {seen.best_view}"
+        self.note("false", words + (f", and {more} more since the last mark" if more else ""))
+        self._false_marked, self._false_due_s = count, self._session.time_s + FALSE_EVERY_S
 
     def _sample(self) -> None:
         """One point of the series; when they are too many, every other one goes."""

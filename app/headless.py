@@ -89,6 +89,7 @@ def _report(session: Session, wall: float, visits: list[dict[str, Any]]) -> dict
         "real_time_factor": round(session.time_s / wall, 1),
         "ticks": session.tick_count,
         "views": len(brain.local_view),
+        "false_positives": brain.local_view.false_positives,
         "experiences": len(brain.experience_map),
         "links": brain.experience_map.link_count,
         "relocalisations": brain.relocalisations,

@@ -121,9 +121,16 @@ class Session:
         return Odometry(self.frame.odometry_speed, self.frame.odometry_yaw_rate, self.frame.dt)
 
     def _think(self) -> Estimate:
+        """One step of the brain. The scene number is made from the true pose: it stays out of the brain unless its front end is
+        made of such numbers, which the papers' own simulator gave its robot."""
         odometry = self._odometry()
+        numbers = self.brain.params.local_view.front_end == "scene numbers"
         estimate = self.brain.step(
-            self.frame.image, odometry, behaviour=self.pilot.behaviour, ranges_m=self.frame.ranges_m
+            self.frame.image,
+            odometry,
+            scene=self.frame.scene if numbers else None,
+            behaviour=self.pilot.behaviour,
+            ranges_m=self.frame.ranges_m,
         )
         self.evaluation.record(self.time_s, self.simulator.truth, self.brain.experience_map, estimate.created, odometry)
         return estimate

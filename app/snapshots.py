@@ -210,17 +210,23 @@ def world_drawing(world: World, robot_radius_m: float, camera_fov_rad: float) ->
 
 
 def _senses(session: Session) -> Senses:
-    brain, recognition = session.brain, session.estimate.recognition
-    best = recognition.best_view
+    recognition, local_view = session.estimate.recognition, session.brain.local_view
+    best, front_end = recognition.best_view, local_view.front_end
+    stored = local_view.stored(best) if best >= 0 else None
     return Senses(
         camera=session.frame.image,
-        template=_frozen(brain.local_view.template.copy()),
-        best=_frozen(brain.local_view.stored(best).copy()) if best >= 0 else None,
+        front_end=local_view.params.front_end,
+        seen=_frozen(front_end.picture(local_view.features).copy()),
+        seen_words=front_end.words(local_view.features),
+        best=None if stored is None else _frozen(front_end.picture(stored).copy()),
+        best_words="" if stored is None else front_end.words(stored),
         best_view=best,
         difference=recognition.difference,
-        threshold=brain.params.local_view.match_threshold,
+        threshold=front_end.threshold(local_view.params),
         active_view=recognition.view,
         recruited=recognition.recruited,
+        false_positive=recognition.false_positive,
+        false_positives=local_view.false_positives,
         ranges_m=session.frame.ranges_m,
     )
 

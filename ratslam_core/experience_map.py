@@ -142,7 +142,9 @@ class ExperienceMap(MapReading):
         facing = self.cell_states[experience, 2] * 2 * math.pi / self.shape[0]
         c, s = math.cos(facing), math.sin(facing)
         dx, dy = dx * self.cell_m, dy * self.cell_m
-        turn = seen.facing_rad if seen.view >= 0 else dtheta * 2 * math.pi / self.shape[0]
+        turn = seen.facing_rad if seen.view >= 0 else None
+        if turn is None:  # only the pose cells tell
+            turn = dtheta * 2 * math.pi / self.shape[0]
         return Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(turn))
 
     def _confirmed(self, experience: int, look: Pose2) -> bool:
@@ -174,7 +176,8 @@ class ExperienceMap(MapReading):
         arrival = self._arrival
         assert arrival is not None
         arrival.came = arrival.came.compose(self._travel)
-        self._offset, self._travel = Pose2(0.0, 0.0, seen.facing_rad), IDENTITY
+        turn = self._belief.local.heading_rad if seen.facing_rad is None else seen.facing_rad
+        self._offset, self._travel = Pose2(0.0, 0.0, turn), IDENTITY
         self._sigma = self._deviation(seen)
         self._belief.see(self._offset, self._sigma)
         self._measure(arrival)

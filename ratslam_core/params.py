@@ -84,6 +84,13 @@ class PoseCellParams:
 class LocalViewParams:
     """Recognising scenes (D section 7) and their Hebbian links to pose cells (A 4)."""
 
+    front_end: str = param(
+        "template",
+        choices=("template", "complex cells", "hue and saturation", "scene numbers"),
+        meaning="what a view is made of",
+        source="D 7; A 3.3; B 7; B 5",
+        live=False,
+    )
     match_threshold: float = param(
         6.0,
         unit="grey levels",
@@ -91,6 +98,22 @@ class LocalViewParams:
         high=255.0,
         meaning="mean absolute difference below which a view is recognised",
         source="D 7; value ours",
+    )
+    edge_threshold: float = param(
+        6.0,
+        unit="levels",
+        low=0.0,
+        high=255.0,
+        meaning="the same for complex cells",
+        source="A 3.3; value ours",
+    )
+    colour_threshold: float = param(
+        5.0,
+        unit="levels",
+        low=0.0,
+        high=255.0,
+        meaning="the same for hue and saturation",
+        source="B 7; value ours",
     )
     shift: int = param(
         2, unit="columns", low=0, high=5, meaning="horizontal shifts tried to either side", source="D 7; value ours"
@@ -105,6 +128,12 @@ class LocalViewParams:
     )
     min_contrast: float = param(
         12.0, unit="grey levels", low=0.0, high=255.0, meaning="a view with less contrast shows nothing", source="ours"
+    )
+    min_edges: float = param(
+        16.0, unit="levels", low=0.0, high=255.0, meaning="complex cells that see less edge see nothing", source="ours"
+    )
+    min_colour: float = param(
+        0.6, low=0.0, high=1.0, meaning="a view with a smaller share of colour shows no hue", source="ours"
     )
     learning_rate: float = param(0.15, symbol="η", low=0.0, high=1.0, meaning="Hebbian learning rate", source="C IV.C")
     adaptive: bool = param(
@@ -132,12 +161,26 @@ class LocalViewParams:
         meaning="an image that differs so much from the one before was not driven to",
         source="ours",
     )
+    edge_surprise: float = param(
+        20.0, unit="levels", low=0.0, high=255.0, meaning="the same for complex cells", source="ours"
+    )
+    colour_surprise: float = param(
+        20.0, unit="levels", low=0.0, high=255.0, meaning="the same for hue and saturation", source="ours"
+    )
     lost_injection: float = param(
         0.5,
         low=0.0,
         high=5.0,
         meaning="what a view may inject while the robot knows that it is lost",
         source="ours",
+    )
+    false_positives: float = param(
+        0.0,
+        symbol="N_vis",
+        low=0.0,
+        high=1.0,
+        meaning="share of the recognised views that are taken for another known one",
+        source="D 5.1",
     )
     enabled: bool = param(True, meaning="vision; off = path integration only", source="A figures 9, 10")
 

@@ -33,7 +33,7 @@ class RatSlam:
         """sonar_angles_rad: of each sonar from straight ahead, left is positive; without sonars there is no occupancy."""
         self.params = params or RatSlamParams()
         self.rng = rng or np.random.default_rng(0)
-        self.local_view = LocalView(self.params.local_view)
+        self.local_view = LocalView(self.params.local_view, self.rng.spawn(1)[0])
         self.view_links = ViewLinks(self.params.local_view)
         self.pose_cells = PoseCells(self.params.pose_cells)
         self.experience_map = ExperienceMap(
@@ -56,15 +56,17 @@ class RatSlam:
 
     def step(
         self,
-        image: NDArray[np.uint8],
+        image: NDArray[np.uint8] | None,
         odometry: Odometry,
         *,
+        scene: int | None = None,
         behaviour: int = 0,
         ranges_m: NDArray[np.float32] | None = None,
     ) -> Estimate:
         """One iteration at the end of a movement: `odometry` is what the wheels report of it, `image` what is seen then.
 
-        image: (h, w) or (h, w, 3) uint8; behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: what the
+        image: (h, w) or (h, w, 3) uint8; scene: its number, for the front end "scene numbers", which looks
+        at no image; behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: what the
         sonars say, shape (n_sonars,), for the occupancy only. ValueError when one of them cannot be; then nothing has changed.
 
         The papers' four stages; path integration comes first because the image belongs to the end of the movement [ours].
@@ -72,7 +74,7 @@ class RatSlam:
         require_behaviour(behaviour)
         if ranges_m is not None:
             self._require_sonars(ranges_m)
-        recognition = self.local_view.observe(image)
+        recognition = self.local_view.observe(image, scene)
         self._time_s += odometry.dt
         odometry = self._calibrated(odometry)
         if self.local_view.surprised:
@@ -105,7 +107,10 @@ class RatSlam:
         return bytes.fromhex(take_snapshot(self).digest())
 
     def set_params(self, params: RatSlamParams) -> None:
-        """Take new live parameters while running; ValueError when the size of the pose cells would change."""
+        """Take new live parameters while running; ValueError when the size of the pose cells or the front end would change."""
+        now, then = self.params.local_view.front_end, params.local_view.front_end
+        if now != then:
+            raise ValueError(f"front_end is fixed at {now!r} until a reset, got {then!r}")
         self.pose_cells.set_params(params.pose_cells)
         self.local_view.params = self.view_links.params = params.local_view
         self.experience_map.params = params.experience_map
@@ -162,7 +167,7 @@ class RatSlam:
         p = self.params.local_view
         if not p.adaptive:
             return p.learning_rate
-        strength = 1.0 if seen.recruited or p.match_threshold == 0 else 1 - seen.difference / p.match_threshold
+        strength = self.local_view.strength(seen)
         return 2 * p.learning_rate * strength * (0.0 if self.lost else min(1.0, self.pose_cells.winner.mass))
 
     def _remember_ways(self, odometry: Odometry, relocalised: bool) -> None:

@@ -78,10 +78,9 @@ class Recognition:
     view: int  # the active local view cell, -1 when there is nothing to see
     recruited: bool  # the cell is new
     best_view: int  # the most similar view known before, -1 when there was none
-    difference: float  # mean absolute grey difference to it, inf when there was none
-    facing_rad: float = (
-        0.0  # heading of the robot relative to where the active view was taken from, by the image's shift
-    )
+    difference: float  # mean absolute difference to it in levels of the front end, inf when there was none
+    facing_rad: float | None = 0.0  # heading relative to where the active view was taken from; None = it does not tell
+    false_positive: bool = False  # the active view was put in the place of `best_view`, which was the right one
 
 
 @dataclass(frozen=True, slots=True)

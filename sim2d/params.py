@@ -87,6 +87,19 @@ class SimParams:
     )
     light: float = _number(1.0, 0.1, 2.0, "L", "1", "brightness of everything", live=True)
 
+    scene_cell_m: float = _number(
+        0.5, 0.1, 10.0, "", "m", "squares of the floor that give one scene number", "ACRA 2005, 2006; value ours"
+    )
+    scene_sector_rad: float = _number(
+        math.radians(30),
+        0.05,
+        2 * math.pi,
+        "",
+        "rad",
+        "sectors that give one scene number",
+        "ACRA 2005, 2006; value ours",
+    )
+
     sonar_range_m: float = _number(
         5.0, 0.5, 20.0, "d_max", "m", "farthest echo; what a sonar says when there is none", live=True
     )

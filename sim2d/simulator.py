@@ -18,6 +18,7 @@ from sim2d.odometer import report, true_motion, wrap_angle
 from sim2d.params import OfficeParams, SimParams
 from sim2d.ranges import SONAR_ANGLES_RAD, laser_ranges, sonar_ranges
 from sim2d.robot import Robot
+from sim2d.scenes import scene_number
 from sim2d.solids import Solids
 from sim2d.things import Box
 from sim2d.wall_index import build_index
@@ -64,6 +65,7 @@ class SensorFrame:
     ranges_m: NDArray[np.float32]  # (8,) from the robot's middle, left to right as SONAR_ANGLES_RAD
     bumped: bool  # the bumper touches something
     laser_m: NDArray[np.float32]  # (laser_beams,) from the robot's middle, left to right over laser_fov_rad
+    scene: int  # number of the true pose's square and sector, for brains that see only numbers, as in the papers
 
 
 class Simulator:
@@ -76,6 +78,7 @@ class Simulator:
         self.params, self.office = params or SimParams(), office or OfficeParams()
         self._angles = np.array(SONAR_ANGLES_RAD)
         self._measure()
+        self._bounds = world.bounds  # of the first world: the numbers of its scenes stay when walls are edited
         refusal = self.free_space.refusal(world.starts[0].x, world.starts[0].y)
         if refusal is not None:
             raise ValueError(f"{world.name}: the robot cannot start at {world.starts[0].name}: {refusal}")
@@ -282,9 +285,10 @@ class Simulator:
             scan = laser_ranges(self._opaque, things, *pose, params.laser_fov_rad, params.laser_range_m, errors)
         for array in (image, ranges, scan):
             array.setflags(write=False)
+        scene = scene_number(x, y, heading, self._bounds, params.scene_cell_m, params.scene_sector_rad)
         return SensorFrame(
             self._tick, self._tick / params.sensor_rate_hz, image, speed, yaw_rate, params.tick_s, ranges,
-            bumped, scan,
+            bumped, scan, scene,
         )  # fmt: skip
 
     def _sonar(

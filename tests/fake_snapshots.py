@@ -334,13 +334,18 @@ def _senses(tick: int, truth: Pose) -> Senses:
     difference = float(np.abs(best.astype(float) - template).mean())
     return Senses(
         camera=_frozen(camera),
-        template=_frozen(template.astype(np.uint8)),
+        front_end="template",
+        seen=_frozen(template.astype(np.uint8)),
+        seen_words="12 x 8 grey levels",
         best=_frozen(best),
+        best_words="12 x 8 grey levels",
         best_view=(tick // 7 * 37) % 600,
         difference=difference,
         threshold=8.0,
         active_view=(tick // 7 * 37) % 600,
         recruited=tick % 70 < 3,
+        false_positive=False,
+        false_positives=0,
         ranges_m=_frozen(np.minimum(_cast(truth, truth.heading_rad + SONAR_RAD)[0], 4.0).astype(np.float32)),
     )
 

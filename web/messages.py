@@ -102,13 +102,18 @@ class Senses:
     """What the robot sees now and what it reminds it of."""
 
     camera: NDArray[np.uint8]  # (h, w, 3) RGB
-    template: NDArray[np.uint8]  # (8, 12)
-    best: NDArray[np.uint8] | None  # (8, 12) the best stored view
+    front_end: str  # what views are made of
+    seen: NDArray[np.uint8]  # (h, w) grey or (h, w, 3) RGB: what the front end makes of the image
+    seen_words: str
+    best: NDArray[np.uint8] | None  # the same of the best stored view
+    best_words: str
     best_view: int  # its number, -1 when there is none
-    difference: float  # mean absolute grey difference to it; inf when there is none
+    difference: float  # to it, in levels of the front end; inf when there is none
     threshold: float
     active_view: int  # the view that is active now, -1 when there is nothing to see
     recruited: bool  # the active view is new
+    false_positive: bool  # the active view was put in the place of the best one
+    false_positives: int  # so far
     ranges_m: NDArray[np.float32]  # (8,) sonar
 
 
@@ -175,7 +180,7 @@ class Event:
 
     number: int
     time_s: float
-    kind: str  # "snap", "kidnap", "recovered", "goal", "arrived", "lost", "link", "fault", "parameter"
+    kind: str  # "snap", "kidnap", "recovered", "goal", "arrived", "lost", "link", "fault", "parameter", "false"
     text: str
 
 

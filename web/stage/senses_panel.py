@@ -18,7 +18,6 @@ from web.stage.palette import Palette, mix
 STRIP_HW = (6, 34)  # squares of the strip of local view cells
 SQUARE = 6
 RECENT = 60
-TEMPLATE_ASPECT = 1.5
 
 
 class SensesPanel:
@@ -47,17 +46,25 @@ class SensesPanel:
 
 
 def views_page(senses: Senses, palette: Palette) -> str:
-    """Camera and verdict, template and best match, and the difference against its threshold."""
+    """Camera and verdict, what the front end makes of it and the best match, and the difference against its threshold."""
     height, width = senses.camera.shape[:2]
     camera = markup.caption("camera") + markup.picture(senses.camera, "what the robot's camera sees", width / height)
-    template = markup.caption("template now") + markup.picture(senses.template, "the present template", TEMPLATE_ASPECT)
-    best = markup.caption("best match") + markup.blank("none yet: every view is new", TEMPLATE_ASPECT)
+    seen = markup.caption(f"{senses.front_end} now") + _view(senses.seen, f"the present view: {senses.seen_words}")
+    best = markup.caption("best match") + markup.blank("none yet: every view is new", _aspect(senses.seen))
     if senses.best is not None:
-        words = f"the stored view {senses.best_view}"
-        best = markup.caption(f"best match #{senses.best_view}") + markup.picture(senses.best, words, TEMPLATE_ASPECT)
+        words = f"the stored view {senses.best_view}: {senses.best_words}"
+        best = markup.caption(f"best match #{senses.best_view}") + _view(senses.best, words)
     return markup.page(
-        markup.row(camera, _verdict(senses, palette)), markup.row(template, best), _difference(senses, palette)
+        markup.row(camera, _verdict(senses, palette)), markup.row(seen, best), _difference(senses, palette)
     )
+
+
+def _view(pixels: Pixels, words: str) -> str:
+    return markup.picture(pixels, words, _aspect(pixels))
+
+
+def _aspect(pixels: Pixels) -> float:
+    return pixels.shape[1] / pixels.shape[0]
 
 
 def _verdict(senses: Senses, palette: Palette) -> str:
@@ -68,6 +75,8 @@ def _verdict(senses: Senses, palette: Palette) -> str:
         words, colour = (
             ("new: recruited", palette.robot) if senses.recruited else ("known: recalled", palette.packets[1])
         )
+    if senses.false_positive:
+        words, colour = f"false positive {senses.false_positives}: rightly #{senses.best_view}", palette.robot
     shape = "display:inline-block;width:9px;height:9px;border-radius:2px"
     dot = f'<span style="{shape};background:{markup.css(colour)}"></span>'
     big = f'<div style="font-size:27px;font-weight:700;line-height:1.2">{html.escape(number)}</div>'
@@ -80,7 +89,7 @@ def _difference(senses: Senses, palette: Palette) -> str:
     if math.isfinite(senses.difference):
         words = f"difference to the best view {senses.difference:.1f}   (threshold {senses.threshold:.1f})"
         share = senses.difference / max(2 * senses.threshold, 1e-9)
-    colour = palette.packets[1] if senses.difference < senses.threshold else palette.robot
+    colour = palette.packets[1] if senses.difference <= senses.threshold else palette.robot
     return markup.caption(words) + markup.bar(share, colour, palette.text_2, 0.5)
 
 

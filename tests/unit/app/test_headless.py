@@ -12,8 +12,8 @@ from sim2d import load_world
 
 OFFICE = load_world("office")
 KEYS = [
-    "world", "seed", "simulated_s", "wall_s", "real_time_factor", "ticks", "views", "experiences", "links",
-    "relocalisations", "error_m", "revisit_consistency", "goals", "kidnaps", "state_hash",
+    "world", "seed", "simulated_s", "wall_s", "real_time_factor", "ticks", "views", "false_positives", "experiences",
+    "links", "relocalisations", "error_m", "revisit_consistency", "goals", "kidnaps", "state_hash",
 ]  # fmt: skip
 
 
@@ -50,6 +50,7 @@ def test_headless_is_the_session_and_nothing_else() -> None:
     assert report["experiences"] == len(session.brain.experience_map)
     assert report["links"] == session.brain.experience_map.link_count
     assert report["views"] == len(session.brain.local_view)
+    assert report["false_positives"] == 0
 
 
 def test_nothing_simulated_is_a_report_too() -> None:

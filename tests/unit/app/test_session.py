@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 import re
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -73,6 +74,35 @@ def test_equal_runs_have_equal_hashes_and_others_not() -> None:
     assert one.state_hash() != two.state_hash()
     other_config = a_session(151, config=Config().with_value("pose_cells.inhibit", 4e-4))
     assert one.state_hash() != other_config.state_hash()
+
+
+@pytest.mark.parametrize("front_end", ["complex cells", "hue and saturation", "scene numbers"])
+def test_each_front_end_maps_the_office(front_end: str) -> None:
+    """Known places are known again and nothing is far off; what is pictured is what the front end sees."""
+    session = a_session(1200, config=Config().with_value("local_view.front_end", front_end))
+    map_error, _ = session.evaluation.errors(session.brain.experience_map)
+    assert map_error < 1.5
+    assert len(session.brain.experience_map) > 100
+    assert session.brain.experience_map.closures > 0
+    senses = build(snapshots(session)).senses
+    assert senses.front_end == front_end
+    assert senses.best is not None
+    assert senses.seen.shape[2:] == senses.best.shape[2:] == ((3,) if front_end == "hue and saturation" else ())
+    assert senses.threshold == session.brain.local_view.front_end.threshold(session.config.local_view)
+    if front_end == "scene numbers":
+        assert senses.seen_words == f"scene {session.frame.scene}"
+
+
+def test_the_true_pose_stays_out_of_a_brain_that_sees_images(monkeypatch: pytest.MonkeyPatch) -> None:
+    for front_end in ("template", "scene numbers"):
+        session = a_session(5, config=Config().with_value("local_view.front_end", front_end))
+        told = []
+        step = session.brain.step
+        monkeypatch.setattr(
+            session.brain, "step", lambda *a, f=step, t=told, **k: (t.append(k["scene"]), f(*a, **k))[1]
+        )
+        session.tick()
+        assert told == [session.frame.scene if front_end == "scene numbers" else None]
 
 
 @pytest.mark.parametrize("order", ["kidnap", "goal", "mode", "parameter"])
@@ -287,6 +317,25 @@ def test_a_long_series_is_thinned_evenly() -> None:
     assert chronicle.series.time_s[-1] > 2 * SERIES_POINTS + 290
 
 
+def test_false_positives_are_all_counted_and_marked_now_and_then() -> None:
+    session = a_session(config=Config().with_value("local_view.front_end", "scene numbers"))
+    chronicle = observed(session, 100)
+    assert "false" not in kinds(chronicle)
+    session.set_parameter("local_view.false_positives", 0.5)
+    began_s, marked, wrong = session.time_s, [], 0
+    for _ in range(200):
+        session.tick()
+        chronicle.watch()
+        wrong += session.estimate.recognition.false_positive
+        if session.estimate.recognition.false_positive and len(kinds(chronicle)) > len(marked):
+            marked = [e for e in chronicle.events if e.kind == "false"]
+    assert session.brain.local_view.false_positives == wrong > 50
+    assert 3 <= len(marked) <= 5
+    assert min(b.time_s - a.time_s for a, b in pairwise(marked)) >= 5.0 > marked[0].time_s - began_s
+    assert re.fullmatch(r"view \d+ instead of \d+", marked[0].text)
+    assert re.fullmatch(r"view \d+ instead of \d+, and \d+ more since the last mark", marked[1].text)
+
+
 def test_events_are_numbered_and_the_last_five_hundred_kept() -> None:
     chronicle = Chronicle(a_session())
     first = chronicle.events
@@ -467,5 +516,5 @@ def test_the_first_snapshot_has_no_best_view() -> None:
     assert (senses.best, senses.best_view, senses.difference) == (None, -1, math.inf)
     later = build(snapshots(a_session(20))).senses
     assert later.best is not None
-    assert later.best.shape == later.template.shape == (8, 12)
+    assert later.best.shape == later.seen.shape == (8, 12)
     assert later.camera.dtype == np.uint8

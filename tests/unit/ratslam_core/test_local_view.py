@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ratslam_core import LocalView, LocalViewParams, Recognition
-from ratslam_core.local_view import grey_template
+from ratslam_core.front_ends.template import grey_template
 
 Image = NDArray[np.uint8]
 FOV = math.radians(50)
@@ -80,8 +80,8 @@ def test_a_new_scene_recruits_a_cell_and_is_known_from_then_on() -> None:
     again = local_view.observe(image(1))
     assert again == Recognition(view=0, recruited=False, best_view=0, difference=0.0, facing_rad=0.0)
     assert len(local_view) == 2
-    assert np.array_equal(local_view.stored(0), image(1))
-    assert np.array_equal(local_view.stored(1), image(2))
+    for view in (0, 1):
+        assert np.array_equal(local_view.front_end.picture(local_view.stored(view)), image(view + 1))
 
 
 def test_the_threshold_decides() -> None:

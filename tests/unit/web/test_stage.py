@@ -283,6 +283,29 @@ def test_packets_bear_their_ids_whatever_their_rank(bench: Bench) -> None:
         assert page.index(f"{packets[0].id}: ") < page.index(f"{packets[1].id}: ")
 
 
+@pytest.mark.parametrize("front_end", ["template", "complex cells", "hue and saturation", "scene numbers"])
+def test_the_senses_show_what_the_front_end_sees(bench: Bench, front_end: str) -> None:
+    """Grey or coloured, of any size; and which view a false positive took the place of."""
+    s = fake_snapshot(432)
+    shape = (8, 12, 3) if front_end == "hue and saturation" else (18, 108)
+    seen, best = (np.full(shape, grey, np.uint8) for grey in (60, 200))
+    senses = replace(
+        s.senses, front_end=front_end, seen=seen, best=best, seen_words="what is seen", best_words="what was seen"
+    )
+    senses = replace(senses, best_view=12, active_view=311, false_positive=True, false_positives=7)
+    bench.show(replace(s, senses=senses))
+    page = bench.stage.panels.senses._views.content
+    for words in (
+        f"{front_end} now",
+        "what is seen",
+        "stored view 12: what was seen",
+        "false positive 7: rightly #12",
+        "#311",
+    ):
+        assert words in page
+    assert f"aspect-ratio:{shape[1] / shape[0]:.4g}" in page
+
+
 def test_empty_panels_say_why(bench: Bench) -> None:
     s = fake_snapshot(432, goal=False)
     nothing = MapLayer(

@@ -1,0 +1,88 @@
+"""The nearest stored view: sums of absolute differences under horizontal shifts, one pass through memory. ACRA 2006 section 7.
+
+Features are 12 columns of 8 bytes, column after column, so that turning the robot moves them by whole columns.
+"""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+COLUMNS, ROWS = 12, 8
+SIZE = COLUMNS * ROWS
+BLOCK = 128  # stored views that stay in the nearest cache while all shifts look at them
+
+Features = NDArray[np.uint8]  # (96,)
+
+
+class Matcher:
+    """Finds the nearest of the stored views. Owns its small buffers, so that a look allocates nothing."""
+
+    def __init__(self) -> None:
+        self._shifted = np.zeros((2 * COLUMNS - 1, SIZE), np.uint8)  # the new view, shift by shift
+        self._masks = np.zeros_like(self._shifted)  # 255 where a stored view overlaps it, else 0
+        self._least = np.zeros(len(self._masks), np.int32)
+        self._at = np.zeros(len(self._masks), np.int64)
+        for shift in range(1 - COLUMNS, COLUMNS):
+            _, there, width = overlap(shift)
+            self._masks[shift + COLUMNS - 1, there : there + width] = 255
+
+    def nearest(self, known: NDArray[np.uint8], new: Features, most: int) -> tuple[int, float, int]:
+        """The nearest view, its mean absolute difference over the columns that overlap, and the shift.
+
+        known: (n, 96); with none known (-1, inf, 0). Shifts from -most to most columns are tried; of equals the first shift
+        and then the first view wins.
+        """
+        best, least, at = -1, math.inf, 0
+        if len(known) == 0:
+            return best, least, at
+        shifts = range(-most, most + 1)
+        for shift in shifts:
+            here, there, width = overlap(shift)
+            self._shifted[shift + COLUMNS - 1, there : there + width] = new[here : here + width]
+        rows = slice(COLUMNS - 1 - most, COLUMNS + most)
+        _nearest(known, self._shifted[rows], self._masks[rows], self._least, self._at)
+        for row, shift in enumerate(shifts):
+            mean = int(self._least[row]) / overlap(shift)[2]
+            if mean < least:
+                best, least, at = int(self._at[row]), mean, shift
+        return best, least, at
+
+
+def overlap(shift: int) -> tuple[int, int, int]:
+    """Where the columns that overlap begin in the new and in the stored view, and how many bytes they hold."""
+    return max(shift, 0) * ROWS, max(-shift, 0) * ROWS, (COLUMNS - abs(shift)) * ROWS
+
+
+def difference(new: Features, stored: Features, shift: int) -> float:
+    """Mean absolute difference of two views over the columns that overlap."""
+    here, there, width = overlap(shift)
+    return float(cv2.norm(new[here : here + width], stored[there : there + width], cv2.NORM_L1)) / width
+
+
+@njit(cache=True, nogil=True)
+def _nearest(known, shifted, masks, least, at):
+    """Per shift the least sum of absolute differences and the first view that has it.
+
+    int32 arithmetic (np.add, np.subtract keep it) over a fixed number of bytes is what LLVM turns into one instruction for
+    16 differences; hence every shift looks at all 96 bytes, masked where nothing overlaps.
+    """
+    least[:] = 1 << 30
+    at[:] = -1
+    for first in range(0, len(known), BLOCK):
+        block = known[first : first + BLOCK]
+        for s in range(len(shifted)):
+            new, mask = shifted[s], masks[s]
+            best, which = least[s], at[s]
+            for i in range(len(block)):
+                total = np.int32(0)
+                for k in range(SIZE):
+                    apart = np.subtract(np.int32(block[i, k] & mask[k]), np.int32(new[k]))
+                    total = np.add(total, np.abs(apart))
+                if total < best:
+                    best, which = total, first + i
+            least[s], at[s] = best, which

@@ -1,0 +1,21 @@
+"""Scene numbers by true pose, as the papers' own simulator gave them to its robot. ACRA 2005 section 5, ACRA 2006 section 5.1."""
+
+from __future__ import annotations
+
+import math
+
+
+def scene_number(
+    x: float, y: float, heading_rad: float, bounds: tuple[float, float, float, float], cell_m: float, angle_rad: float
+) -> int:
+    """A number from 0 on: equal for poses in the same square of the floor that face the same sector, else different.
+
+    x, y (m) inside `bounds` (least x, y, most x, y); sectors are `angle_rad` wide or a little less, so that whole ones fit.
+    """
+    x_from, y_from, x_to, y_to = bounds
+    columns, rows = (max(1, math.ceil((to - start) / cell_m)) for start, to in ((x_from, x_to), (y_from, y_to)))
+    sectors = math.ceil(2 * math.pi / angle_rad - 1e-9)
+    column = min(max(int((x - x_from) // cell_m), 0), columns - 1)
+    row = min(max(int((y - y_from) // cell_m), 0), rows - 1)
+    sector = int(heading_rad % (2 * math.pi) / (2 * math.pi) * sectors) % sectors
+    return (sector * rows + row) * columns + column
