@@ -15,7 +15,7 @@ from app.chronicle import Chronicle
 from app.config import Value
 from app.living_layer import LivingView
 from app.session import Session
-from ratslam_core import Pose2, TemporalMap
+from ratslam_core import Pose2
 from sim2d import SONAR_ANGLES_RAD, World, draw_world
 from web.messages import (
     Goal,
@@ -129,7 +129,7 @@ class Snapshots:
         if self._times is None or now >= self._times_due or goal != self._goal_timed:
             shown = len(self._map.ids)
             source = experiences.active if goal is None else goal
-            seconds = TemporalMap(experiences).times_to(source)[:shown].astype(np.float32)
+            seconds = experiences.temporal_map.times_to(source)[:shown].astype(np.float32)
             self._times = TimesLayer(goal is not None, _frozen(seconds))
             self._times_due, self._goal_timed = now + TIMES_EVERY_S, goal
         return self._map, self._times

@@ -24,12 +24,14 @@ class Adjacency:
         self.other = np.zeros(4096, np.uint32)
         self._room = np.zeros(1024, np.uint32)
         self._nodes = self._end = 0
+        self.changes = 0  # counts nodes and links that came or went
 
     def add_node(self) -> None:
         if self._nodes == len(self.start):
             self.start, self.used, self._room = _double(self.start), _double(self.used), _double(self._room)
         self.start[self._nodes], self._room[self._nodes] = self._reserve(ROOM), ROOM
         self._nodes += 1
+        self.changes += 1
 
     def add_link(self, i: int, j: int, row: int) -> None:
         """Row `row` links node i to node j."""
@@ -38,6 +40,7 @@ class Adjacency:
                 raise ValueError(f"a link must join nodes from 0 to {self._nodes - 1}, got {node!r}")
         self._append(i, 2 * row, j)
         self._append(j, 2 * row + 1, i)
+        self.changes += 1
 
     def remove_link(self, i: int, j: int, row: int) -> None:
         """Take a link out again; the others keep their order. O(links at i and j)."""
@@ -46,6 +49,7 @@ class Adjacency:
             raise ValueError(f"row {row!r} must link {i!r} to {j!r} to be removed, but it does not")
         self._take(i, at[0])
         self._take(j, self._find(j, 2 * row + 1))
+        self.changes += 1
 
     def degree(self, node: int) -> int:
         """How many half-edges there are at a node."""

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ratslam_core.belief import Belief
 from ratslam_core.experiences import Experiences
 from ratslam_core.params import ExperienceMapParams
+from ratslam_core.temporal_map import TemporalMap
 from ratslam_core.transitions import Link, Transitions
 from ratslam_core.types import Packet, Pose2
 
@@ -23,6 +24,7 @@ class MapReading:
         self.active = -1
         self._belief = Belief()
         self._driven_m = self._driving_s = 0.0
+        self._temporal_map = TemporalMap(self)
 
     def __len__(self) -> int:
         return self._experiences.count
@@ -111,10 +113,17 @@ class MapReading:
         it is only a step, and a route over many such would promise to be there in half the time.
         test_experience_map.py::test_no_link_is_quicker_than_the_robot.
         """
-        t, rows = self.transitions, self._travelled
-        apart = self.poses[t.ends[rows, 1], :2] - self.poses[t.ends[rows, 0], :2]
-        pace = self._driving_s / self._driven_m if self._driven_m > 0 else 0.0
-        return np.maximum(t.time_s[rows], pace * np.hypot(apart[:, 0], apart[:, 1]))
+        return self.transitions.seconds(self.poses, self.pace)[self._travelled]
+
+    @property
+    def pace(self) -> float:
+        """Seconds a metre of all driving so far, 0 before the first."""
+        return self._driving_s / self._driven_m if self._driven_m > 0 else 0.0
+
+    @property
+    def temporal_map(self) -> TemporalMap:
+        """Times and routes over the links as they are; one for as long as the map lives."""
+        return self._temporal_map
 
     def link(self, i: int, j: int) -> Link:
         """The link from experience i to j, read out; ValueError when there is none."""

@@ -287,6 +287,15 @@ class ExperienceMapParams:
         source="ours",
     )
 
+    shortcut_m: float = param(
+        0.0,
+        unit="m",
+        low=0.0,
+        high=5.0,
+        meaning="routes may cross between experiences closer than this in the map; 0 = only along links",
+        source="C VI; value ours",
+    )
+
     def __post_init__(self) -> None:
         check_ranges(self)
 

@@ -6,15 +6,15 @@ The papers' relaxation t_j <- min(t_j, t_i + t_ij) ends at the shortest times; D
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import dijkstra
 
-from ratslam_core.experience_map import ExperienceMap
+from ratslam_core import dijkstra
 
-LEAST_S = 1e-3  # a link of no time would vanish from a sparse matrix
+if TYPE_CHECKING:
+    from ratslam_core.map_reading import MapReading
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,45 +26,75 @@ class Route:
 
 
 class TemporalMap:
-    """Times over the links of an experience map, both ways along each link."""
+    """Times over the links of an experience map, both ways along each link; of parallel links the quickest counts.
 
-    def __init__(self, experiences: ExperienceMap) -> None:
-        n, links = len(experiences), experiences.links
-        self._size = n
-        self._answer: tuple[int, NDArray[np.float64], NDArray[np.int32]] | None = None
-        time = np.maximum(experiences.link_times, LEAST_S)
-        i = np.concatenate([links[:, 0], links[:, 1]])
-        j = np.concatenate([links[:, 1], links[:, 0]])
-        both = np.concatenate([time, time])
-        order = np.lexsort((both, j, i))  # of parallel links the quickest comes first and is kept
-        i, j, both = i[order], j[order], both[order]
-        keep = np.ones(len(i), bool)
-        keep[1:] = (i[1:] != i[:-1]) | (j[1:] != j[:-1])
-        self._graph = csr_matrix((both[keep], (i[keep], j[keep])), (n, n))
+    It lives as long as its map and reads the map's own links; nothing is rebuilt when links come and go. Every answer is exact
+    for the links, their times and the places of the moment of asking. For the goal that was asked for last the tree is kept: if
+    nothing has changed the answer is there; else the tree is mended, which costs a pass over the links and what has become
+    quicker. A mended answer has the bits of a fresh one, so who else asks in between changes nothing.
+
+    [ours] With `experience_map.shortcut_m` experiences that are closer than this in the map and not linked count as linked, by
+    the time that the robot takes so far at its own pace (named as future work in IROS 2005).
+    test_temporal_map.py::test_a_shortcut_saves_the_way_round.
+    """
+
+    def __init__(self, experiences: MapReading) -> None:
+        self._map = experiences
+        self._goal = -1
+        self._asked: _Asked | None = None  # what the answer was for
+        self._times = np.zeros(0)
+        self._parent = np.zeros(0, np.int32)
 
     def times_to(self, experience: int) -> NDArray[np.float64]:
         """Seconds from every experience to this one (and back), shape (n,); inf where no way is known."""
-        return self._tree(experience)[0]
+        self._answer(experience)
+        return self._times.copy()
 
     def route(self, start: int, goal: int) -> Route | None:
-        """The quickest way, None when there is none."""
+        """The quickest way, None when there is none; where ways are equal, the one over experiences with lower numbers."""
         self._require(start)
-        times, following = self._tree(goal)
-        if not np.isfinite(times[start]):
+        asked = self._answer(goal)
+        if not np.isfinite(self._times[start]):
             return None
-        path = [start]
-        while path[-1] != goal:
-            path.append(int(following[path[-1]]))
-        nodes = np.array(path)
-        return Route(nodes, times[start] - times[nodes])
+        nodes = dijkstra.trace(start, goal, self._times, asked.links, asked.near)
+        return Route(nodes, self._times[start] - self._times[nodes])
 
-    def _tree(self, goal: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-        """Times to the goal and the next experience on the way there; the last answer is kept."""
+    def _answer(self, goal: int) -> _Asked:
+        """See to it that times and tree are those of the moment."""
         self._require(goal)
-        if self._answer is None or self._answer[0] != goal:
-            self._answer = (goal, *dijkstra(self._graph, indices=goal, return_predecessors=True))
-        return self._answer[1:]
+        asked, before, n = _Asked(self._map), self._asked, len(self._map)
+        if goal != self._goal or before is None:
+            self._times, self._parent = np.empty(n), np.empty(n, np.int32)
+            dijkstra.fresh(goal, self._times, self._parent, asked.links, asked.near)
+        elif not asked.same_as(before):
+            new = np.full(n - len(self._parent), -1, np.int32)
+            self._times, self._parent = np.empty(n), np.concatenate([self._parent, new])
+            dijkstra.mend(goal, self._times, self._parent, asked.links, asked.near)
+        self._goal, self._asked = goal, asked
+        return asked
 
     def _require(self, experience: int) -> None:
-        if not 0 <= experience < self._size:
-            raise ValueError(f"experience must be from 0 to {self._size - 1}, got {experience!r}")
+        if not 0 <= experience < len(self._map):
+            raise ValueError(f"experience must be from 0 to {len(self._map) - 1}, got {experience!r}")
+
+
+class _Asked:
+    """Links, their times, and for shortcuts the places, as they are now."""
+
+    def __init__(self, map_: MapReading) -> None:
+        graph, reach = map_.transitions.graph, float(map_.params.shortcut_m)
+        self.seconds = np.maximum(map_.transitions.seconds(map_.poses, map_.pace), dijkstra.LEAST_S)
+        self.changes, self.reach, self.pace = graph.changes, reach, map_.pace
+        self.poses = map_.poses.copy() if reach > 0 else map_.poses
+        grid = dijkstra.buckets(self.poses, reach) if reach > 0 else (np.zeros(0, np.int32),) * 2
+        self.links = graph.start, graph.used, graph.half, graph.other, self.seconds
+        self.near = self.poses, reach, self.pace, *grid
+
+    def same_as(self, other: _Asked) -> bool:
+        if (
+            self.changes != other.changes
+            or self.reach != other.reach
+            or not np.array_equal(self.seconds, other.seconds)
+        ):
+            return False
+        return self.reach == 0 or (self.pace == other.pace and np.array_equal(self.poses, other.poses))

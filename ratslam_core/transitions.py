@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from ratslam_core.adjacency import Adjacency
@@ -95,6 +96,11 @@ class Transitions:
         self.turning_s[row] += (turning_s - self.turning_s[row]) / (n + 1)
         self.passages[row] = n + 1
 
+    def seconds(self, poses: NDArray[np.float64], pace: float) -> NDArray[np.float64]:
+        """What each row takes, shape (count,): its time, or its length in the map at this pace (s/m); inf for no way."""
+        rows = slice(self.count)
+        return _seconds(self.ends[rows], self.time_s[rows], self.travelled[rows], poses, pace)
+
     def departures(self, i: int, behaviour: int) -> NDArray[np.int64]:
         """Rows of the ways from i that were learnt under this behaviour."""
         rows = slice(self.count)
@@ -132,6 +138,17 @@ class Transitions:
             int(self.behaviour[row]), int(self.passages[row]), int(self.trials[row]), float(self.confidence[row]),
             float(self.weight[row]), float(self.believed[row]),
         )  # fmt: skip
+
+
+@njit(cache=True, nogil=True)
+def _seconds(ends, time_s, travelled, poses, pace):
+    seconds = np.full(len(ends), np.inf)
+    for row in range(len(ends)):
+        if travelled[row]:
+            i, j = ends[row, 0], ends[row, 1]
+            dx, dy = poses[j, 0] - poses[i, 0], poses[j, 1] - poses[i, 1]
+            seconds[row] = max(time_s[row], pace * math.sqrt(dx * dx + dy * dy))
+    return seconds
 
 
 _COLUMNS = (

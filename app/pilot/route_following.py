@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.pilot.params import PilotParams
-from ratslam_core import ExperienceMap, Route, TemporalMap
+from ratslam_core import ExperienceMap, Route
 
 REPLAN_S = 1.0
 NEAR_M = 0.6  # [ours] links that are only thought of, from the robot to experiences so near
@@ -107,7 +107,7 @@ class RouteFollower:
 
     def _plan(self, experiences: ExperienceMap) -> None:
         """The quickest route, started at the active experience or, by links only thought of, at one close by."""
-        ways = TemporalMap(experiences)
+        ways = experiences.temporal_map
         times = ways.times_to(self.goal)
         robot = experiences.robot
         poses = experiences.poses

@@ -7,7 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from ratslam_core import Pose2
+from ratslam_core import ExperienceMapParams, Pose2, TemporalMap
+from ratslam_core.transitions import Transitions
 from sim2d import Drive, SimParams, Simulator, Start, Wall, World
 
 GREY = (160, 160, 160)
@@ -32,9 +33,24 @@ class HandMadeMap:
         lengths = [math.dist(places[i], places[j]) for i, j in links]
         self.link_times = np.array(lengths) / speed
         self.robot = Pose2(*places[0], 0.0)
+        self.params = ExperienceMapParams()
+        self.pace = 0.0  # links take what `link_times` says, however long they are
 
     def __len__(self) -> int:
         return len(self.poses)
+
+    @property
+    def transitions(self) -> Transitions:
+        made = Transitions()
+        for _ in self.poses:
+            made.graph.add_node()
+        for (i, j), time_s in zip(self.links.tolist(), self.link_times, strict=True):
+            made.take_time(made.add(i, j, travelled=True), time_s, 0.0)
+        return made
+
+    @property
+    def temporal_map(self) -> TemporalMap:
+        return TemporalMap(self)  # type: ignore[arg-type]
 
     @property
     def active(self) -> int:
