@@ -38,9 +38,11 @@ class TemporalMap:
     test_temporal_map.py::test_a_shortcut_saves_the_way_round.
     """
 
+    CACHES = ("_goal", "_asked", "_times", "_parent")  # snapshots of the brain leave them out
+
     def __init__(self, experiences: MapReading) -> None:
         self._map = experiences
-        self._goal = -1
+        self._goal: int | None = None
         self._asked: _Asked | None = None  # what the answer was for
         self._times = np.zeros(0)
         self._parent = np.zeros(0, np.int32)

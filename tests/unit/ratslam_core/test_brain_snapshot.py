@@ -62,6 +62,15 @@ def test_a_restored_brain_goes_on_as_if_it_had_never_stopped(tmp_path: Path, tic
         assert copy.params == brain.params
 
 
+def test_who_asked_for_times_is_not_part_of_the_brain() -> None:
+    _, brain = driven(50)
+    before = take_snapshot(brain).digest()
+    times = brain.experience_map.temporal_map.times_to(3)
+    assert take_snapshot(brain).digest() == before
+    copy = restore_snapshot(take_snapshot(brain))
+    assert np.array_equal(copy.experience_map.temporal_map.times_to(3), times)
+
+
 def test_a_snapshot_is_a_copy() -> None:
     circle, brain = driven(50)
     snapshot = take_snapshot(brain)
