@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.session import Session, is_lost
+from app.visits import Visits
 from web.messages import Event, Packet, Series, Snap
 
 TRAIL_S = 120.0
@@ -35,6 +36,8 @@ class Chronicle:
         self._recovered = 0
         self._false_marked, self._false_due_s = 0, 0.0
         self._before = session.brain.pose_cells.winner
+        self.experiences, self.views = Visits(), Visits()
+        self._visit()
         self.error_map_m = self.error_odometry_m = 0.0
         self.series = Series(*(np.zeros(0) for _ in range(5)))
         self._sample()
@@ -69,6 +72,7 @@ class Chronicle:
                 "snap", f"relocalised by view {view}: ({start.x:.0f}, {start.y:.0f}) to ({end.x:.0f}, {end.y:.0f})"
             )
         self._before = packet
+        self._visit()
         lost = is_lost(session)
         if lost and not self.lost:
             packets = len(session.brain.pose_cells.packets)
@@ -79,6 +83,11 @@ class Chronicle:
         self._watch_false_positives()
         if session.time_s >= len(self._samples) * self._sample_every_s:
             self._sample()
+
+    def _visit(self) -> None:
+        session = self._session
+        self.experiences.note(session.brain.experience_map.active, session.time_s)
+        self.views.note(session.estimate.recognition.view, session.time_s)
 
     def _watch_goal(self) -> None:
         follower_state = self._session.pilot.goal_state

@@ -12,6 +12,7 @@ from concurrent.futures import Future
 
 from app.chronicle import Chronicle
 from app.config import Config
+from app.inspection import experience_report, inspect
 from app.office_orders import carry_out
 from app.session import Session
 from app.snapshots import Snapshots
@@ -64,7 +65,7 @@ class Runner:
         self._requests.put(None)
         self._thread.join()
 
-    def submit(self, command: m.Command) -> Future[m.Accepted | m.Refused]:
+    def submit(self, command: m.Command | m.Question) -> Future[m.Accepted | m.Refused]:
         """Hand a command to the engine; the answer comes when it has taken effect or was refused."""
         answer: Future[m.Accepted | m.Refused] = Future()
         self._requests.put(m.Request(command, answer))
@@ -131,8 +132,10 @@ class Runner:
             else:
                 request.answer.set_result(answer)
 
-    def _answer(self, command: m.Command) -> m.Accepted | m.Refused | Exception:
+    def _answer(self, command: m.Command | m.Question) -> m.Accepted | m.Refused | Exception:
         try:
+            if isinstance(command, m.Question):
+                return self._read(command)
             return self._carry_out(command) or m.Accepted(self.session.tick_count)
         except Exception as error:
             traceback.print_exc()
@@ -151,6 +154,14 @@ class Runner:
         self.latest.put(
             self._snapshots.build(running=self._running, speed=speed, real_time_factor=self._factor, fault=self._fault)
         )
+
+    def _read(self, question: m.Question) -> m.Accepted | m.Refused:
+        """Answer a question between two ticks; it changes nothing."""
+        try:
+            report = experience_report(self.session, self._chronicle, question.experience)
+            return m.Accepted(self.session.tick_count, report)
+        except ValueError as error:
+            return m.Refused("experience", question.experience, str(error))
 
     # ------------------------------------------------------------ commands
 
@@ -194,8 +205,15 @@ class Runner:
                 return self._set_parameter(name, value)
             case m.SetDoor() | m.SetLamp() | m.PutBox() | m.RemoveBox() | m.UsePreset():
                 return self._try("name", command.name, lambda: note("office", carry_out(session, command)))
+            case m.Inspect():
+                chosen = command.model_dump(exclude={"type"}, exclude_none=True)
+                return self._try(", ".join(chosen) or "type", list(chosen.values()), lambda: self._choose(command))
         self._snapshots.refresh()
         return None
+
+    def _choose(self, wish: m.Inspect) -> None:
+        inspect(self.session, self._chronicle, wish)
+        self._snapshots.inspected = wish
 
     def _try(self, field: str, value: object, order: object) -> m.Refused | None:
         try:

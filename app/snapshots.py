@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from app.chronicle import Chronicle
 from app.config import Value
+from app.inspection import inspect
 from app.living_layer import LivingView
 from app.session import Session
 from ratslam_core import Pose2
@@ -20,6 +21,7 @@ from sim2d import SONAR_ANGLES_RAD, World, draw_world
 from web.messages import (
     Goal,
     GoalMemoryLayer,
+    Inspect,
     MapLayer,
     OccupancyLayer,
     OccupancyPicture,
@@ -27,6 +29,7 @@ from web.messages import (
     Parameter,
     Pose,
     PoseCellLayer,
+    Report,
     Senses,
     Snapshot,
     TimesLayer,
@@ -37,6 +40,7 @@ MAP_EVERY_S = 0.5  # of wall time
 TIMES_EVERY_S = 0.25
 OCCUPANCY_EVERY_S = 2.0
 GOAL_MEMORY_EVERY_S = 0.5
+INSPECT_EVERY_S = 0.25
 REST = 30.0  # times what it cost to build a part is waited before it is built again, however large it has grown
 STRONGEST = 500
 
@@ -55,11 +59,13 @@ class Snapshots:
         self._map_due = self._times_due = -math.inf
         self._parameters: tuple[object, tuple[Parameter, ...]] | None = None
         self._occupancy = Slow(OCCUPANCY_EVERY_S, lambda: _occupancy(session))
+        self.inspected = Inspect(type="inspect")  # what is looked at: nothing
+        self._inspection = Slow(INSPECT_EVERY_S, self._inspect)
         self._goal_memory = Slow(GOAL_MEMORY_EVERY_S, lambda: _goal_memory(session))
 
     def refresh(self) -> None:
         """Build everything anew with the next snapshot: a command has changed something."""
-        self._map_due = self._times_due = self._goal_memory.due = -math.inf
+        self._map_due = self._times_due = self._goal_memory.due = self._inspection.due = -math.inf
 
     def build(self, *, running: bool, speed: float, real_time_factor: float, fault: str | None) -> Snapshot:
         session, chronicle = self._session, self._chronicle
@@ -101,6 +107,8 @@ class Snapshots:
             occupancy=self._occupancy.part(session.tick_count),
             goal_memory=self._goal_memory.part(session.tick_count),
             living=self._living.look(session.simulator),
+            inspected=self._inspection.part(session.tick_count),
+            active_experience=brain.experience_map.active,
         )
 
     def _draw_world(self) -> WorldDrawing:
@@ -133,6 +141,9 @@ class Snapshots:
             self._times = TimesLayer(goal is not None, _frozen(seconds))
             self._times_due, self._goal_timed = now + TIMES_EVERY_S, goal
         return self._map, self._times
+
+    def _inspect(self) -> Report | None:
+        return inspect(self._session, self._chronicle, self.inspected)
 
     def _parameter_rows(self) -> tuple[Parameter, ...]:
         config = self._session.config

@@ -55,6 +55,13 @@ class LocalView:
             raise ValueError(f"view must be from 0 to {self._count - 1}, got {view!r}")
         return self._templates[view]
 
+    def difference_to(self, view: int) -> float:
+        """How far one known view is from what was seen last, as `Recognition.difference` counts it."""
+        most = self.params.shift if self.front_end.shifts else 0
+        stored = self.stored(view)
+        apart = min(difference(self.features, stored, shift) for shift in range(-most, most + 1))
+        return max(apart * self.front_end.scale, self.front_end.vague)
+
     def strength(self, seen: Recognition) -> float:
         """How sure a recognition is: 1 for a new or an equal view, 0 for one that is only just recognised."""
         vague, limit = self.front_end.vague, self.front_end.threshold(self.params)

@@ -30,6 +30,14 @@ class ViewLinks:
         start, used, _ = self._blocks[view] if view < len(self._blocks) else (0, 0, 0)
         return self._cells[start : start + used], self._strength[start : start + used]
 
+    def views_at(self, column: int, columns: int, views: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+        """The views below `views` that are linked to pose cells of one x', y' = flat index modulo `columns`, in order, and
+        the sums of those links. For looking: it goes through all links."""
+        strength = np.zeros(max(views, 1), np.float32)
+        _sum_at(self._blocks, min(views, len(self._blocks)), self._cells, self._strength, column, columns, strength)
+        linked = np.flatnonzero(strength).astype(np.int32)
+        return linked, strength[linked]
+
     def learn(
         self,
         view: int,
@@ -82,6 +90,15 @@ class ViewLinks:
         self._strength[self._end : self._end + used] = self._strength[start : start + used]
         self._blocks[view] = self._end, used, wanted
         self._end += wanted
+
+
+@njit(cache=True, nogil=True)
+def _sum_at(blocks, views, cells, strength, column, columns, out):
+    for view in range(views):
+        start, used = blocks[view, 0], blocks[view, 1]
+        for k in range(start, start + used):
+            if cells[k] % columns == column:
+                out[view] += strength[k]
 
 
 @njit(cache=True, nogil=True)

@@ -15,9 +15,13 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
 from web.messages import (
+    CellReport,
     Event,
+    ExperienceReport,
     Goal,
     GoalMemoryLayer,
+    HebbianReport,
+    LinkReport,
     MapLayer,
     OccupancyLayer,
     OccupancyPicture,
@@ -25,11 +29,14 @@ from web.messages import (
     Parameter,
     Pose,
     PoseCellLayer,
+    Report,
     Senses,
     Series,
     Snap,
     Snapshot,
+    Times,
     TimesLayer,
+    ViewReport,
     WorldDrawing,
 )
 
@@ -447,6 +454,31 @@ def _parameters() -> tuple[Parameter, ...]:
         Parameter("pilot.wander", True, True, "", "", None, None, "explore when there is no goal", "ours", True),
         Parameter("views.kind", "sad", "sad", "", "", None, None, "how views are compared", "ours", False),
     )
+
+
+def fake_reports() -> dict[str, Report]:
+    """One of each kind that can be inspected."""
+    picture = _frozen(np.arange(96, dtype=np.uint8).reshape(8, 12) * 2)
+    cells = _frozen(np.array([[3, 22, 31], [4, 22, 31], [4, 23, 32]], np.int32))
+    hebbian = HebbianReport(140, cells, _frozen(np.array([0.05, 0.04, 0.01], np.float32)), 0.1)
+    links = (
+        LinkReport(12, 13, 1.5, math.pi / 4, -0.2, 5.25, "following the wall", 3, 5, 0.8),
+        LinkReport(11, 12, 0.4, -0.0001, 0.1, 1.5, "crossing the room", 1, 0, 1.0),
+    )
+    times = Times(65.0, 130.0, 4)
+    layer = _map(43, NODES)
+    pose = Pose(float(layer.xy[12, 0]), float(layer.xy[12, 1]), 0.5)
+    by_heading = np.zeros(SHAPE[0], np.float32)
+    by_heading[3:5] = 0.2
+    return {
+        "experience": ExperienceReport(
+            12, (31.2, 22.1, 3.4), 7, picture, pose, 2.5, 2.0, 1.25, True, links, hebbian, times
+        ),
+        "view": ViewReport(
+            7, picture, _frozen(255 - picture), 12.5, 8.0, False, (12, 40), hebbian, Times(None, None, 0)
+        ),
+        "cell": CellReport(31, 22, _frozen(by_heading), Packet(31.2, 22.4, 0.6, 0.62, 3), ((7, 0.05),), 1, (12, 40)),
+    }
 
 
 def _frozen(array: NDArray) -> NDArray:  # type: ignore[type-arg]

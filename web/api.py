@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import pathlib
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from pathlib import Path
 from typing import Any
 
-from fastapi import FastAPI, Query, Request, WebSocket
+from fastapi import FastAPI, Path, Query, Request, WebSocket
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import FileResponse, RedirectResponse, Response
 from fastapi.staticfiles import StaticFiles
@@ -17,13 +17,13 @@ from starlette.types import ASGIApp
 
 from web.commands import READER, CommandAccepted, Malformed, Problem, check, problem, problem_of, read_object
 from web.latest import Latest
-from web.messages import Refused, Snapshot
+from web.messages import ExperienceReport, ReadExperience, Refused, Snapshot
 from web.proxy import PAGE_ID, Cameras, StageLike, ViserProxy
 from web.security import MAX_BODY_BYTES, Guard, Limits
-from web.state import to_json
+from web.state import experience_fields, to_json
 from web.stream import NoAnswer, Stream, Submit, ask
 
-STATIC = Path(__file__).parent / "static"
+STATIC = pathlib.Path(__file__).parent / "static"
 _REF = "#/components/schemas/{model}"
 _ERRORS: dict[int | str, dict[str, Any]] = {
     403: {"model": Problem, "description": "Not our Host or Origin"},
@@ -57,6 +57,7 @@ def create_app(latest: Latest[Snapshot], submit: Submit, stage: StageLike, port:
         redirect_slashes=False,
     )
     _add_state(app, latest, stream)
+    _add_experience(app, submit)
     _add_commands(app, submit)
     _add_stream(app, stream)
     _add_viser(app, ViserProxy(stage, cameras))
@@ -81,6 +82,26 @@ def _add_state(app: FastAPI, latest: Latest[Snapshot], stream: Stream) -> None:
         if snapshot is None:
             return _json(problem("the engine has not finished its first tick yet; try again in a moment"), 503)
         return _json(stream.text.full(snapshot) if full else stream.text.light(snapshot))
+
+
+def _add_experience(app: FastAPI, submit: Submit) -> None:
+    limits = Limits()
+    route: dict[str, Any] = {"responses": {status: _ERRORS[status] for status in (422, 429, 503)}}
+
+    @app.get("/api/experience/{number}", tags=["state"], **route)
+    async def experience(number: int = Path(ge=0, description="its number in the map")) -> Response:
+        """One experience: pose-cell state, place in the map, stored view, energy now, links, Hebbian links of its view."""
+        refusal = limits.refusal("experience")
+        if refusal is not None:
+            return _json(problem(refusal), 429)
+        try:
+            answer = await ask(submit, ReadExperience(number))
+        except NoAnswer as error:
+            return _json(problem(str(error)), error.status)
+        if isinstance(answer, Refused):
+            return _json(to_json({"detail": problem_of(answer)}), 422)
+        assert isinstance(answer.result, ExperienceReport)
+        return _json(to_json(experience_fields(answer.result)))
 
 
 def _add_commands(app: FastAPI, submit: Submit) -> None:

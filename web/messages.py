@@ -135,6 +135,90 @@ class TimesLayer:
     seconds: NDArray[np.float32]  # (n,), rows as in the MapLayer of the same snapshot
 
 
+@dataclass(frozen=True, slots=True)
+class LinkReport:
+    """One transition of the experience map. ACRA 2005 4.2, ACRA 2006 3.2."""
+
+    start: int  # experience where it begins
+    end: int
+    distance_m: float
+    bearing_rad: float  # to the end, relative to the start's facing
+    facing_rad: float  # change of facing
+    time_s: float  # mean over the passages
+    behaviour: str  # under which it was learnt
+    passages: int
+    trials: int
+    confidence: float  # share of the trials in which the robot arrived
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """When something was there, seconds since the reset; None: not in this run."""
+
+    first_s: float | None
+    last_s: float | None
+    visits: int  # how often it became active
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HebbianReport:
+    """What a view is linked to. ACRA 2004 eqs. 2-4."""
+
+    count: int  # links to pose cells
+    cells: NDArray[np.int32]  # (k, 3) theta, y, x of the strongest, strongest first, k <= 300
+    strength: NDArray[np.float32]  # (k,)
+    saturation: float  # a link injects no more than this
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ExperienceReport:
+    """One experience and all that hangs on it."""
+
+    id: int
+    cell: tuple[float, float, float]  # x', y' (cells), theta' (layers)
+    view: int  # -1: made where there was nothing to see
+    picture: NDArray[np.uint8] | None  # (h, w) or (h, w, 3) its stored view
+    pose: Pose  # map frame
+    zone_xy: float  # radius of its zone of influence, cells
+    zone_theta: float  # layers
+    energy: float  # how well the present state fits it, at most 2
+    active: bool
+    links: tuple[LinkReport, ...]  # that begin here, then that end here
+    hebbian: HebbianReport  # of its view
+    times: Times
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ViewReport:
+    """One local view cell: what it stands for, beside what is seen now."""
+
+    id: int
+    picture: NDArray[np.uint8]  # (h, w) or (h, w, 3) as it is stored
+    now: NDArray[np.uint8]  # the same of what is seen now
+    difference: float  # between the two at the best shift, as in Senses
+    threshold: float
+    active: bool
+    experiences: tuple[int, ...]  # that were made with it
+    hebbian: HebbianReport
+    times: Times
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CellReport:
+    """All pose cells above one x', y'."""
+
+    x: int
+    y: int
+    by_heading: NDArray[np.float32]  # (n_theta,) activity
+    packet: Packet | None  # to which most of it belongs; None: nothing is active here
+    views: tuple[tuple[int, float], ...]  # linked here, with the sum of their links, strongest first, at most 24
+    view_count: int  # how many are linked here
+    experiences: tuple[int, ...]  # whose zone of influence this is in
+
+
+Report = ExperienceReport | ViewReport | CellReport
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class OccupancyPicture:
     """Where something stands, in the map frame. 0.5 = unknown."""
@@ -249,6 +333,8 @@ class Snapshot:
     occupancy: OccupancyLayer | None = None  # None without sonars
     goal_memory: GoalMemoryLayer | None = None
     living: LivingLayer | None = None  # None: nothing lives in this world
+    inspected: Report | None = None
+    active_experience: int = -1
 
 
 # ---------------------------------------------------------------- in
@@ -374,7 +460,21 @@ class UsePreset(_Command):
     name: _Name
 
 
+class Inspect(_Command):
+    """Choose what everybody looks at: an experience, a view, or the pose cells at x', y'; nothing of it: nothing.
+
+    Changes nothing in the robot.
+    """
+
+    type: Literal["inspect"]
+    experience: Annotated[int, Field(ge=0)] | None = None
+    view: Annotated[int, Field(ge=0)] | None = None
+    x: Annotated[int, Field(ge=0)] | None = None
+    y: Annotated[int, Field(ge=0)] | None = None
+
+
 OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
+LookOrder = Inspect
 Command = Annotated[
     SetGoal
     | CancelGoal
@@ -387,14 +487,26 @@ Command = Annotated[
     | SetSpeed
     | Reset
     | SetParameter
-    | OfficeOrder,
+    | OfficeOrder
+    | LookOrder,
     Field(discriminator="type"),
 ]
 
 
 @dataclass(frozen=True, slots=True)
+class ReadExperience:
+    """A question, no command: the answer's `result` is an ExperienceReport."""
+
+    experience: int
+
+
+Question = ReadExperience
+
+
+@dataclass(frozen=True, slots=True)
 class Accepted:
     tick: int  # the tick before which the command took effect
+    result: object = None  # what a question asked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -408,7 +520,7 @@ class Refused:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Request:
-    """A command on its way to the engine, with the place where its answer will appear."""
+    """A command or a question on its way to the engine, with the place where its answer will appear."""
 
-    command: Command
+    command: Command | Question
     answer: Future[Accepted | Refused]

@@ -11,7 +11,7 @@ from typing import Any
 
 import orjson
 
-from web.messages import Event, Goal, MapLayer, Pose, Snapshot
+from web.messages import Event, ExperienceReport, Goal, MapLayer, Pose, Snapshot
 
 _OPTIONS = orjson.OPT_SERIALIZE_NUMPY
 
@@ -65,6 +65,44 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
 
 def event_fields(event: Event) -> dict[str, Any]:
     return {"number": event.number, "time_s": event.time_s, "kind": event.kind, "text": event.text}
+
+
+def experience_fields(report: ExperienceReport) -> dict[str, Any]:
+    """`/api/experience/{id}`. Its view's strongest links to pose cells as rows theta', y', x' with their strengths."""
+    x, y, theta = report.cell
+    return {
+        "id": report.id,
+        "active": report.active,
+        "energy": report.energy,
+        "pose_cells": {"x": x, "y": y, "theta": theta},
+        "zone": {"xy": report.zone_xy, "theta": report.zone_theta},
+        "map": _pose(report.pose),
+        "view": report.view,
+        "picture": report.picture,
+        "links": [
+            {
+                "from": link.start,
+                "to": link.end,
+                "distance_m": link.distance_m,
+                "bearing_rad": link.bearing_rad,
+                "facing_rad": link.facing_rad,
+                "time_s": link.time_s,
+                "behaviour": link.behaviour,
+                "passages": link.passages,
+                "trials": link.trials,
+                "confidence": link.confidence,
+            }
+            for link in report.links
+        ],
+        "view_links": {
+            "count": report.hebbian.count,
+            "cells": report.hebbian.cells,
+            "strength": report.hebbian.strength,
+        },
+        "first_s": report.times.first_s,
+        "last_s": report.times.last_s,
+        "visits": report.times.visits,
+    }
 
 
 def to_json(document: object) -> bytes:

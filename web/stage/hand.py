@@ -84,6 +84,12 @@ class Hand:
         self._send(SetDoor(type="set_door", name=door[0], open=door[1]), answered)
         return True
 
+    def experience_at(self, click: Click, plate: MapPlate) -> int | None:
+        """The experience that a click on the map means, None for none."""
+        on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
+        place = None if on_plate is None else plate.map_place(on_plate)
+        return None if place is None else plate.nearest(place)
+
     def settle(self, snapshot: Snapshot, plate: MapPlate, now_s: float) -> None:
         """Takes the clicked marker away when its goal is there, or when nothing came of it."""
         if self._asked is None:

@@ -7,9 +7,10 @@ import math
 import numpy as np
 import viser
 
-from web.messages import Goal, MapLayer, OccupancyPicture, Pose, TimesLayer
+from web.messages import Goal, MapLayer, OccupancyPicture, Pose, Report, TimesLayer
 from web.stage import images, ribbons
 from web.stage.goal_flag import GoalFlag
+from web.stage.inspected import MapMark
 from web.stage.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.stage.overlays import map_floor
 from web.stage.palette import Palette
@@ -24,12 +25,14 @@ ARROW = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)])
 BAR = (2.7, 0.26)
 BAR_X = 3.65
 GRID_LINES = 48
+NEAR = 0.5
 
 
 class MapPlate(Plate):
     def __init__(self, scene: viser.SceneApi, palette: Palette) -> None:
         super().__init__(scene, palette, "map", ORIGIN, SHEET)
         self.fit = MapFit()
+        self._layer: MapLayer | None = None
         self._capacity = self._link_capacity = 0
         floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (WIDTH / 2, DEPTH / 2)
         add_mesh(scene, f"{self.root}/floor", ribbons.flat_polygon(floor, FLOOR_Z), palette.lit(palette.floor))
@@ -66,6 +69,7 @@ class MapPlate(Plate):
             position=(BAR_X, self.front + 1.08, TEXT_Z),
         )
         self._bar_ends = [Sign(scene, f"{self.root}/bar_{k}", 0.34, anchor=a) for k, a in enumerate(("left", "right"))]
+        self.mark = MapMark(scene, palette, self.root)
         self._empty = Sign(scene, f"{self.root}/empty", 0.42, anchor="centre")
         self._draw_grid()
         self.set_heading("Experience map", "what it built")
@@ -90,6 +94,7 @@ class MapPlate(Plate):
 
     def set_map(self, layer: MapLayer, turn_rad: float) -> bool:
         """Nodes and links; True when the whole map moved on the plate, so that all else on it must follow."""
+        self._layer = layer
         before, self.fit = self.fit, refit(self.fit, layer.xy, turn_rad)
         grew = len(layer.xy) > self._capacity or len(layer.links) > self._link_capacity
         if grew:
@@ -165,6 +170,16 @@ class MapPlate(Plate):
         if place is not None:
             x, y = self.fit.to_plate(np.array([place]))[0]
             self._clicked.position = (float(x), float(y), 0.0)
+
+    def set_inspected(self, report: Report | None) -> None:
+        self.mark.show(report, self._layer, self.fit)
+
+    def nearest(self, place: tuple[float, float]) -> int | None:
+        """The experience nearest to a place of the map, None when none is within half a unit of it on the plate."""
+        if self._layer is None or not len(self._layer.xy):
+            return None
+        away = np.hypot(*(self._layer.xy - place).T) * self.fit.scale
+        return int(self._layer.ids[away.argmin()]) if away.min() < NEAR else None
 
     def map_place(self, plate_xy: tuple[float, float]) -> tuple[float, float] | None:
         """The map-frame place under a point of the plate; None beside the floor."""

@@ -1,4 +1,4 @@
-"""The side panel: four tabs docked right - Senses, Memory, Truth, Tune."""
+"""The side panel: five tabs docked right - Senses, Memory, Inspect, Truth, Tune."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import viser
 
 from web.messages import Command, Snapshot
 from web.stage.hand import Answer
+from web.stage.inspect_panel import InspectPanel
 from web.stage.memory_panel import MemoryPanel
 from web.stage.palette import Palette
 from web.stage.rates import Layer
@@ -36,6 +37,8 @@ class Panels:
         with tabs.add_tab("Memory"):
             self.switches = Switches(gui)
             self.memory = MemoryPanel(gui)
+        with tabs.add_tab("Inspect"):
+            self.inspect = InspectPanel(gui, send, complain)
         with tabs.add_tab("Truth"):
             self.truth = TruthPanel(gui, palette)
         self.tune = TunePanel(gui, tabs.add_tab("Tune"), send, complain)
@@ -43,6 +46,7 @@ class Panels:
             "views": Layer(8, self.senses.draw_views),
             "cells": Layer(5, self.senses.draw_cells),
             "memory": Layer(2, self.memory.draw),
+            "inspected": Layer(4, self.inspect.draw),
             "numbers": Layer(2, self.truth.draw_numbers),
             "series": Layer(1, self.truth.draw_series),
             "tune": Layer(5, self.tune.follow),
@@ -51,9 +55,11 @@ class Panels:
     def draw(self, snapshot: Snapshot, now_s: float) -> None:
         offer = self._layers
         self.senses.remember(snapshot.senses)
+        self.inspect.remember(snapshot)
         offer["views"].offer(now_s, snapshot.senses)
         offer["cells"].offer(now_s, snapshot.pose_cells, snapshot)
         offer["memory"].offer(now_s, snapshot)
+        offer["inspected"].offer(now_s, snapshot.inspected)
         offer["numbers"].offer(now_s, snapshot)
         offer["series"].offer(now_s, snapshot.series)
         offer["tune"].offer(now_s, snapshot.parameters)

@@ -8,15 +8,16 @@ import cv2
 import numpy as np
 import viser
 
-from web.messages import GoalMemoryLayer, OccupancyLayer, PoseCellLayer, Snap
+from web.messages import ExperienceReport, GoalMemoryLayer, OccupancyLayer, PoseCellLayer, Report, Snap
 from web.stage import images, overlays, ribbons
 from web.stage.camera_views import camera_for, seen_by
 from web.stage.cell_fit import SIDE, CellFit, broken_where_it_wraps
 from web.stage.glass_box import GlassBox
+from web.stage.inspected import CellMark
 from web.stage.paint import vertex_paint
 from web.stage.palette import Palette
 from web.stage.pill_layout import spread
-from web.stage.plate import FLOOR_Z, Plate
+from web.stage.plate import FLOOR_Z, Plate, point_on_plane
 from web.stage.signs import LEAN_RAD, Pill, Sign, add_mesh, add_picture, pill_width
 
 ORIGIN = (0.0, 8.5, 0.0)
@@ -37,6 +38,8 @@ class PoseCellPlate(Plate):
         self.set_heading("Pose cells", "where the network believes the robot is")
         self._box = GlassBox(scene, palette, self.root)
         self._shape = (0, 0, 0)
+        self._layer: PoseCellLayer | None = None
+        self._shown = 0  # voxels
         self._fit = CellFit((36, 60, 60))
         self._ground = images.gridded_floor((SIDE, SIDE), FLOOR_PX / SIDE, palette.floor, palette.grid, SIDE / 16)
         self.under = self._ground  # what the glow falls on
@@ -69,6 +72,7 @@ class PoseCellPlate(Plate):
         ]
         self._ends = [Pill(scene, f"{self.root}/snap_{letter}", 0.4, palette.goal, palette) for letter in "SF"]
         self._empty = Sign(scene, f"{self.root}/empty", 0.4, anchor="centre", leaning=True)
+        self.mark = CellMark(scene, palette, self.root)
         self._way = scene.add_frame(f"{self.root}/way", show_axes=False, visible=False)
         add_mesh(scene, f"{self.root}/way/casing", way_arrow(0.05), palette.lit(palette.casing), position=(0, 0, 0.02))
         add_mesh(scene, f"{self.root}/way/body", way_arrow(0.0), palette.lit(palette.goal), position=(0, 0, 0.03))
@@ -94,6 +98,7 @@ class PoseCellPlate(Plate):
     def set_cells(self, layer: PoseCellLayer) -> None:
         """Voxels, path and packets: each with its id, the winner always in the first colour."""
         self._set_shape(layer)
+        self._layer = layer
         owners = np.minimum(self._fit.owners(layer), PACKETS - 1)
         self._draw_voxels(layer, owners)
         points = self._fit.path(np.asarray(layer.path, np.float64).reshape(-1, 3))
@@ -116,6 +121,7 @@ class PoseCellPlate(Plate):
     def _draw_voxels(self, layer: PoseCellLayer, owners: np.ndarray) -> None:
         strength = layer.activity / max(float(layer.activity.max(initial=0.0)), 1e-9)
         rows = np.flatnonzero(strength > WEAKEST)[:VOXELS]
+        self._shown = len(rows)  # they are the first: strongest first
         positions = np.full((VOXELS, 3), -50.0, np.float32)
         positions[: len(rows)] = self._fit.cells(layer.cells[rows])
         scales = np.full(VOXELS, 1e-3, np.float32)
@@ -161,7 +167,11 @@ class PoseCellPlate(Plate):
         self._floor.image = images.upright(glow(layer, under, self.palette))
 
     def set_floor(
-        self, shape: tuple[int, int, int], occupancy: OccupancyLayer | None, goal: GoalMemoryLayer | None
+        self,
+        shape: tuple[int, int, int],
+        occupancy: OccupancyLayer | None,
+        goal: GoalMemoryLayer | None,
+        report: Report | None,
     ) -> None:
         """What lies on the floor below the glow: each only when it is switched on."""
         self.under = self._ground
@@ -169,10 +179,35 @@ class PoseCellPlate(Plate):
             self.under = overlays.cells_occupied(self.under, occupancy.cells, self.palette)
         if goal is not None and goal.seconds is not None:
             self.under = overlays.cells_timed(self.under, goal.seconds, self.palette)
+        if isinstance(report, ExperienceReport):
+            zone = report.cell[:2], report.zone_xy
+            self.under = overlays.cells_ringed(self.under, shape, *zone, self.palette.text)
         self._goal.visible = goal is not None and goal.goal is not None
         if goal is not None and goal.goal is not None:
             x, y, _ = CellFit(shape).path(np.array([[*goal.goal, 0.0]]))[0].tolist()
             self._goal.position = (x, y, 0.0)
+
+    def set_inspected(self, report: Report | None, shape: tuple[int, int, int]) -> None:
+        self.mark.show(report, shape)
+
+    def column_at(self, origin: np.ndarray, direction: np.ndarray) -> tuple[int, int] | None:
+        """The x', y' that a ray of the stage means: the strongest voxel on it, else the floor; None beside the box."""
+        if self._layer is None:
+            return None
+        _, n_y, n_x = self._fit.shape
+        start, ahead = origin - np.array(self.origin), direction / np.linalg.norm(direction)
+        shown = self._layer.cells[: self._shown]
+        offset = self._fit.cells(shown) - start
+        along = offset @ ahead
+        beside = np.linalg.norm(offset - along[:, None] * ahead, axis=1)
+        hit = np.flatnonzero((beside < max(self._fit.voxel)) & (along > 0))
+        if len(hit):
+            _, y, x = shown[hit[0]].tolist()
+            return x, y
+        floor = point_on_plane(origin, direction, self.origin)
+        if floor is None or max(abs(floor[0]), abs(floor[1])) >= SIDE / 2:
+            return None
+        return int((floor[0] / SIDE + 0.5) * n_x), int((floor[1] / SIDE + 0.5) * n_y)
 
     def set_way(self, layer: PoseCellLayer, goal: GoalMemoryLayer | None) -> None:
         """An arrow at the packet: where the times to the goal fall fastest."""

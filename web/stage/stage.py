@@ -15,6 +15,7 @@ from collections.abc import Callable, Coroutine
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
+import numpy as np
 import viser
 from viser import _messages
 
@@ -132,7 +133,7 @@ class Stage:
 
     def _draw_map(self, layer: MapLayer) -> None:
         if self._scenery.map.set_map(layer, self._turn_rad):
-            self._forget("times", "estimate", "goal")
+            self._forget("times", "estimate", "goal", "inspected")
             self._hand.moved(self._scenery.map)
 
     def _draw_overlays(self, snapshot: Snapshot, now_s: float) -> None:
@@ -140,7 +141,9 @@ class Stage:
         offer, is_on, cells = self._layers, self.panels.switches.is_on, snapshot.pose_cells
         goal = snapshot.goal_memory if is_on("goal_memory") else None
         beneath = snapshot.occupancy if is_on("cell_occupancy") else None
-        offer["cell_floor"].offer(now_s, cells.shape, beneath, goal)
+        offer["cell_floor"].offer(now_s, cells.shape, beneath, goal, snapshot.inspected)
+        offer["zone"].offer(now_s, snapshot.inspected, cells.shape)
+        offer["inspected"].offer(now_s, snapshot.inspected)
         offer["way"].offer(now_s, cells, goal)
         if not self._drawing:
             offer["occupancy"].offer(now_s, snapshot.occupancy if is_on("occupancy") else None)
@@ -193,6 +196,8 @@ class Stage:
             "estimate": Layer(15, map_plate.set_robot),
             "goal": Layer(3, map_plate.set_goal),
             "cell_floor": Layer(2, cells.set_floor),
+            "zone": Layer(4, cells.set_inspected),
+            "inspected": Layer(4, map_plate.set_inspected),
             "way": Layer(5, cells.set_way),
             "occupancy": Layer(0.6, self._draw_occupancy),
         }
@@ -204,12 +209,14 @@ class Stage:
         self.server.on_client_connect(self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self.server.scene.on_click()(self._clicked)
+        self.server.scene.on_click(modifier="shift")(self._clicked)
 
     # ------------------------------------------------------------ callbacks of viser: post, never draw
 
     def _clicked(self, event: viser.SceneClickEvent) -> None:
         click = Click(event.client_id, event.ray_origin, event.ray_direction)
-        self._inbox.put(lambda: self._hand.click(click, self._scenery.map, time.monotonic(), self._scenery.office))
+        inspecting = event.modifier == "shift"
+        self._inbox.put(lambda: self._click(click, inspecting))
 
     def _dragged(self, turning: bool) -> Callable[[DragEvent], Coroutine[Any, Any, None]]:
         async def dragged(event: DragEvent) -> None:  # async: keeps their order
@@ -226,6 +233,15 @@ class Stage:
         self._inbox.put(lambda: self._cameras.farewell(client.client_id))
 
     # ------------------------------------------------------------ in the thread
+
+    def _click(self, click: Click, inspecting: bool) -> None:
+        column = self._scenery.cells.column_at(np.array(click.origin), np.array(click.direction))
+        if column is not None:
+            self.panels.inspect.choose(click.client_id, x=column[0], y=column[1])
+        elif inspecting or self.panels.inspect.click_inspects:
+            self.panels.inspect.choose(click.client_id, experience=self._hand.experience_at(click, self._scenery.map))
+        else:
+            self._hand.click(click, self._scenery.map, time.monotonic(), self._scenery.office)
 
     def _drag(self, drag: Drag) -> None:
         if self._snapshot is not None:

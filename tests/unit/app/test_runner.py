@@ -360,3 +360,32 @@ def test_snapshots_of_a_run_only_go_forwards(start: Callable[..., Runner]) -> No
     assert seen == sorted(seen)
     assert seen[-1][1] > seen[0][1]
     assert np.isfinite(list(now.stage_ms.values())).all()
+
+
+def test_what_is_inspected_is_the_same_for_all_and_ends_with_the_run(start: Callable[..., Runner]) -> None:
+    runner = start()
+    accept(runner, step(20))
+    now = accept(runner, m.Inspect(type="inspect", experience=0))
+    assert isinstance(now.inspected, m.ExperienceReport)
+    assert now.inspected.id == 0
+    later = accept(runner, step())
+    assert isinstance(later.inspected, m.ExperienceReport)
+    assert isinstance(accept(runner, m.Inspect(type="inspect", view=0)).inspected, m.ViewReport)
+    assert isinstance(accept(runner, m.Inspect(type="inspect", x=1, y=2)).inspected, m.CellReport)
+    refused = refuse(runner, m.Inspect(type="inspect", experience=10**6))
+    assert (refused.field, refused.value) == ("experience", [10**6])
+    assert isinstance(snapshot(runner).inspected, m.CellReport)  # as it was
+    assert accept(runner, m.Inspect(type="inspect")).inspected is None
+    accept(runner, m.Inspect(type="inspect", view=0))
+    assert accept(runner, m.Reset(type="reset")).inspected is None
+
+
+def test_a_question_is_answered_and_changes_nothing(start: Callable[..., Runner]) -> None:
+    runner = start()
+    accept(runner, step(5))
+    before = runner.session.state_hash()
+    answer = do(runner, m.ReadExperience(0))
+    assert isinstance(answer, m.Accepted)
+    assert isinstance(answer.result, m.ExperienceReport)
+    assert isinstance(do(runner, m.ReadExperience(10**6)), m.Refused)
+    assert runner.session.state_hash() == before

@@ -214,3 +214,16 @@ def test_only_known_views_are_stored(view: int) -> None:
     local_view.observe(image(1))
     with pytest.raises(ValueError, match=f"view must be from 0 to 0, got {view}"):
         local_view.stored(view)
+
+
+@pytest.mark.parametrize("shift", [0, 2])
+def test_the_difference_to_a_view_is_that_of_the_recognition(shift: int) -> None:
+    local_view = LocalView(LocalViewParams(shift=shift))
+    rng = np.random.default_rng(3)
+    for _ in range(12):
+        seen = local_view.observe(rng.integers(0, 256, (8, 12), np.uint8))
+        if seen.best_view >= 0:
+            assert local_view.difference_to(seen.best_view) == pytest.approx(seen.difference)
+    assert local_view.difference_to(len(local_view) - 1) == 0
+    with pytest.raises(ValueError, match="view must be from 0 to"):
+        local_view.difference_to(len(local_view))

@@ -103,3 +103,21 @@ def test_recalling_changes_nothing() -> None:
     links.recall(0)
     links.recall(0, lost=True)
     assert np.array_equal(links.of(0)[1], before)
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_the_views_at_a_column_are_those_linked_there(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if interpreted:
+        literal.interpret(view_links, monkeypatch)
+    links, pose_cells = ViewLinks(), PoseCells()
+    _, n_y, n_x = pose_cells.shape
+    for view in range(3):
+        for _ in range(4):
+            learn(links, view, pose_cells)
+            pose_cells.step(speed=2.0, yaw_rate=0.3, dt=0.1)
+    for x, y in ((n_x // 2, n_y // 2), (n_x // 2 + 3, n_y // 2), (0, 0)):
+        expected = [dense(links, v, pose_cells.slot.size).reshape(-1, n_y, n_x)[:, y, x].sum() for v in range(3)]
+        views, strength = links.views_at(y * n_x + x, n_y * n_x, 3)
+        assert views.tolist() == np.flatnonzero(expected).tolist()
+        assert strength == pytest.approx(np.array(expected)[views], rel=1e-5)
+        assert len(links.views_at(y * n_x + x, n_y * n_x, 0)[0]) == 0

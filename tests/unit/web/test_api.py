@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.fake_snapshots import fake_reports
 from tests.unit.web.doubles import house
 from web import stream
 from web.commands import MODELS, Malformed, check, read_object
-from web.messages import Drive, Kidnap, Refused, Reset, SetGoal
+from web.messages import Accepted, Drive, Kidnap, ReadExperience, Refused, Reset, SetGoal
 
 
 @pytest.fixture
@@ -213,3 +214,25 @@ def test_openapi_knows_every_command(server):
     assert set(mapping) == set(MODELS)
     assert all(reference.split("/")[-1] in schemas for reference in mapping.values())
     assert "Problem" in schemas
+
+
+def test_an_experience_is_told(server):
+    report = fake_reports()["experience"]
+    server.engine.answer = Accepted(5, report)
+    answer = server.client.get("/api/experience/12")
+    assert answer.status_code == 200
+    told = answer.json()
+    assert server.engine.commands == [ReadExperience(12)]
+    assert (told["id"], told["view"], told["visits"]) == (12, 7, 4)
+    assert told["links"][0] | {"distance_m": 1.5, "behaviour": "following the wall"} == told["links"][0]
+    assert len(told["view_links"]["cells"]) == len(told["view_links"]["strength"]) == 3
+
+
+def test_an_experience_that_is_not_there_is_refused(server):
+    server.engine.answer = Refused("experience", 12, "experience must be from 0 to 3, got 12")
+    answer = server.client.get("/api/experience/12")
+    assert answer.status_code == 422
+    assert answer.json()["detail"] == [
+        {"field": "experience", "value": 12, "reason": "experience must be from 0 to 3, got 12"}
+    ]
+    assert server.client.get("/api/experience/-1").status_code == 422

@@ -16,11 +16,12 @@ import numpy as np
 import pytest
 from viser import _messages
 
-from tests.fake_snapshots import fake_snapshot
+from tests.fake_snapshots import fake_reports, fake_snapshot
 from web.latest import Latest
 from web.messages import (
     Accepted,
     Command,
+    Inspect,
     Kidnap,
     MapLayer,
     OccupancyPicture,
@@ -400,9 +401,13 @@ def click_at(x: float, y: float) -> Click:
     return Click(7, tuple(eye), tuple(aim - eye))
 
 
-def press(bench: Bench, x: float, y: float) -> None:
-    click = click_at(x, y)
-    bench.stage._clicked(SimpleNamespace(client_id=7, ray_origin=click.origin, ray_direction=click.direction))  # type: ignore[arg-type]
+def press(bench: Bench, x: float, y: float, modifier: str | None = None) -> None:
+    send_click(bench, click_at(x, y), modifier)
+
+
+def send_click(bench: Bench, click: Click, modifier: str | None = None) -> None:
+    event = SimpleNamespace(client_id=7, ray_origin=click.origin, ray_direction=click.direction, modifier=modifier)
+    bench.stage._clicked(event)  # type: ignore[arg-type]
 
 
 def test_a_click_on_the_map_sets_the_goal_there(bench: Bench) -> None:
@@ -707,3 +712,104 @@ def test_words_for_numbers() -> None:
     assert number(None, "m") == number(float("nan"), "m") == "-"
     assert number(1.234, "m", 2) == "1.23 m"
     assert seconds_words(119.0) == "119 s"
+
+
+# ---------------------------------------------------------------- inspectors
+
+
+def test_a_click_with_shift_inspects_the_experience_there(bench: Bench) -> None:
+    snapshot = fake_snapshot(430)
+    plate = bench.stage._scenery.map
+    x, y = plate.fit.to_plate(snapshot.map.xy[20:21])[0]
+    press(bench, x, y, "shift")
+    bench.show(None, 0.05)
+    (command,) = bench.engine.commands
+    assert isinstance(command, Inspect)
+    assert command.experience is not None
+    assert np.hypot(*(snapshot.map.xy[command.experience] - snapshot.map.xy[20])) < 0.05
+    assert not plate._clicked.visible
+
+
+def test_with_the_switch_a_plain_click_inspects_and_beside_all_experiences_it_chooses_nothing(bench: Bench) -> None:
+    panel = bench.stage.panels.inspect
+    panel._switch.value = True
+    press(bench, 0.0, 4.3)
+    bench.show(None, 0.05)
+    panel._switch.value = False
+    (command,) = bench.engine.commands
+    assert command == Inspect(type="inspect")
+
+
+def test_a_click_into_the_pose_cells_inspects_the_strongest_voxel_it_hits_or_the_floor(bench: Bench) -> None:
+    snapshot = fake_snapshot(430)
+    plate = bench.stage._scenery.cells
+    _, y, x = snapshot.pose_cells.cells[0].tolist()
+    eye = np.array([2.0, -20.0, 25.0])
+    for aim, wanted in (
+        (plate._fit.cells(snapshot.pose_cells.cells[:1])[0], (x, y)),
+        (np.array([-3.4, -3.4, 0.0]), (0, 0)),
+    ):
+        bench.engine.commands.clear()
+        send_click(bench, Click(7, tuple(eye), tuple(aim + plate.origin - eye)))
+        bench.show(None, 0.05)
+        (command,) = bench.engine.commands
+        assert isinstance(command, Inspect)
+        assert (command.x, command.y) == wanted
+
+
+def test_what_cannot_be_inspected_is_a_complaint(bench: Bench) -> None:
+    bench.stage.panels.inspect._complain = lambda *words: bench.complaints.append(words)
+    bench.stage.panels.inspect.choose(7, experience=99)
+    bench.engine.answers[0].set_result(Refused("experience", 99, "experience must be from 0 to 5, got 99"))
+    bench.show(None, 0.05)
+    assert bench.complaints == [(7, "Nothing to inspect", "experience must be from 0 to 5, got 99")]
+
+
+@pytest.mark.parametrize("kind", ["experience", "view", "cell"])
+def test_what_is_inspected_is_told_and_marked(bench: Bench, kind: str) -> None:
+    reports = fake_reports()
+    stage, plates = bench.stage, bench.stage._scenery
+    bench.show(replace(fake_snapshot(430), inspected=reports[kind]), 5)
+    words = {
+        "experience": ("#12", "its view #7", "Links to other experiences: 2", "1.50 m at 45°", "following the wall",
+                       "confidence 80 %", "first", "1:05", "gone 3 times"),
+        "view": ("#7", "12.5", "another view", "#12, #40", "pose cells linked"),
+        "cell": ("31, 22", "40 % of all activity", "3, with 62 %", "#7", "0.0500", "Experiences whose zone"),
+    }[kind]  # fmt: skip
+    page = stage.panels.inspect._page.content
+    for word in words:
+        assert word in page, word
+    assert plates.map.mark.frame.visible == (kind == "experience")
+    assert plates.map.mark.pill.frame.visible == (kind == "experience")
+    assert (plates.map.mark.links.points > -40).any()
+    assert (plates.cells.mark.zone.points > -40).any() == (kind != "view")
+    cells = plates.cells.mark.cells
+    assert cells is not None
+    assert (cells.batched_positions > -40).any() == (kind != "cell")
+    assert (plates.cells.under is plates.cells._ground) == (kind != "experience") or stage.panels.switches.is_on(
+        "goal_memory"
+    )
+    bench.show(replace(fake_snapshot(430), inspected=None), 5)
+    assert "Nothing is chosen" in stage.panels.inspect._page.content
+    assert not plates.map.mark.frame.visible
+    assert not (plates.map.mark.links.points > -40).any()
+
+
+def test_buttons_choose_what_is_active_now(bench: Bench) -> None:
+    panel, snapshot = bench.stage.panels.inspect, fake_snapshot(430)
+    bench.show(replace(snapshot, active_experience=17), 5)
+
+    def pressed(value: str) -> Command:
+        bench.engine.commands.clear()
+        panel._pressed(SimpleNamespace(client_id=7, target=SimpleNamespace(value=value)))  # type: ignore[arg-type]
+        (command,) = bench.engine.commands
+        return command
+
+    assert pressed("experience") == Inspect(type="inspect", experience=17)
+    assert pressed("view") == Inspect(type="inspect", view=snapshot.senses.active_view)
+    assert pressed("nothing") == Inspect(type="inspect")
+    bench.engine.commands.clear()
+    panel._typed(SimpleNamespace(client_id=7, target=SimpleNamespace(value=4)), "view")  # type: ignore[arg-type]
+    assert bench.engine.commands == [Inspect(type="inspect", view=4)]
+    panel._typed(SimpleNamespace(client_id=None, target=SimpleNamespace(value=5)), "view")  # type: ignore[arg-type]
+    assert len(bench.engine.commands) == 1  # not a person

@@ -1,0 +1,34 @@
+"""When each of many numbered things was active first and last, and how often it became so."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from web.messages import Times
+
+
+class Visits:
+    """Of experiences, or of views. Things that a brain brought with it have no times before they are met."""
+
+    def __init__(self) -> None:
+        self._first_s, self._last_s = np.full(1024, np.nan), np.full(1024, np.nan)
+        self._count = np.zeros(1024, np.int64)
+        self._active = -1
+
+    def note(self, number: int, time_s: float) -> None:
+        """This one is active now; -1: none is."""
+        if number >= len(self._count):
+            more = max(number + 1, 2 * len(self._count)) - len(self._count)
+            self._first_s, self._last_s = (np.append(a, np.full(more, np.nan)) for a in (self._first_s, self._last_s))
+            self._count = np.append(self._count, np.zeros(more, np.int64))
+        if number >= 0:
+            if self._count[number] == 0:
+                self._first_s[number] = time_s
+            self._last_s[number] = time_s
+            self._count[number] += number != self._active
+        self._active = number
+
+    def of(self, number: int) -> Times:
+        if number >= len(self._count) or self._count[number] == 0:
+            return Times(None, None, 0)
+        return Times(float(self._first_s[number]), float(self._last_s[number]), int(self._count[number]))

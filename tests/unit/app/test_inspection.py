@@ -1,0 +1,133 @@
+"""What the inspectors say is what the engine holds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.chronicle import Chronicle
+from app.inspection import inspect, present_picture, stored_picture
+from app.session import Session
+from app.visits import Visits
+from sim2d import load_world
+from web.messages import CellReport, ExperienceReport, Inspect, Report, ViewReport
+
+
+@pytest.fixture(scope="module")
+def watched() -> tuple[Session, Chronicle]:
+    """A minute of exploring, watched."""
+    session = Session(load_world("office"), 5)
+    chronicle = Chronicle(session)
+    for _ in range(600):
+        session.tick()
+        chronicle.watch()
+    return session, chronicle
+
+
+def look(watched: tuple[Session, Chronicle], **wish: int) -> Report | None:
+    return inspect(*watched, Inspect(type="inspect", **wish))
+
+
+def test_an_experience_is_told_with_its_links_and_times(watched: tuple[Session, Chronicle]) -> None:
+    session, _ = watched
+    map_ = session.brain.experience_map
+    active = map_.active
+    report = look(watched, experience=active)
+    assert isinstance(report, ExperienceReport)
+    assert report.active
+    assert (*report.cell, report.view) == map_.cell_state(active)
+    assert (report.pose.x, report.pose.y) == tuple(map_.poses[active, :2])
+    assert {(link.start, link.end) for link in report.links} == {
+        (i, j) for i, j in map_.links.tolist() if active in (i, j)
+    }
+    assert all(link.behaviour and 0 <= link.confidence <= 1 for link in report.links)
+    assert report.times.last_s == session.time_s
+    assert report.times.first_s is not None
+    assert report.times.first_s <= session.time_s
+    first = look(watched, experience=0)
+    assert isinstance(first, ExperienceReport)
+    assert first.times.first_s == 0
+    assert not first.active
+
+
+def test_a_view_is_told_with_what_is_seen_now(watched: tuple[Session, Chronicle]) -> None:
+    session, _ = watched
+    seen = session.estimate.recognition
+    report = look(watched, view=seen.best_view)
+    assert isinstance(report, ViewReport)
+    np.testing.assert_array_equal(report.picture, stored_picture(session.brain, seen.best_view))
+    np.testing.assert_array_equal(report.now, present_picture(session.brain))
+    assert report.difference == pytest.approx(seen.difference)  # as the engine itself measured it
+    assert all(session.brain.experience_map.views[k] == report.id for k in report.experiences)
+    cells, strength = session.brain.view_links.of(report.id)
+    assert report.hebbian.count == len(cells)
+    assert report.hebbian.strength[0] == strength.max()
+
+
+def test_a_column_of_pose_cells_is_told_with_the_views_that_lead_there(watched: tuple[Session, Chronicle]) -> None:
+    session, _ = watched
+    brain, winner = session.brain, session.brain.pose_cells.winner
+    _, n_y, n_x = brain.pose_cells.shape
+    x, y = round(winner.x) % n_x, round(winner.y) % n_y
+    report = look(watched, x=x, y=y)
+    assert isinstance(report, CellReport)
+    np.testing.assert_allclose(report.by_heading, brain.pose_cells.activity[:, y, x], rtol=1e-6)
+    assert report.packet is not None
+    assert report.packet.id == winner.id
+    sums = {}
+    for view in range(len(brain.local_view)):
+        cells, strength = brain.view_links.of(view)
+        here = cells % (n_y * n_x) == y * n_x + x
+        if here.any():
+            sums[view] = float(strength[here].sum())
+    assert report.view_count == len(sums)
+    assert [view for view, _ in report.views] == sorted(sums, key=lambda v: (-np.float32(sums[v]), v))[:24]
+    assert dict(report.views) == pytest.approx({view: sums[view] for view, _ in report.views}, rel=1e-5)
+    map_ = brain.experience_map
+    for k in range(len(map_)):
+        at = map_.cell_state(k)
+        assert (k in report.experiences) == (brain.pose_cells.cells_apart(at[0], at[1], x, y) <= map_.params.zone_xy)
+
+
+def test_where_nothing_is_active_there_is_no_packet(watched: tuple[Session, Chronicle]) -> None:
+    session, _ = watched
+    cells, _ = session.brain.pose_cells.active
+    taken = {(x, y) for x, y in cells[:, :2].tolist()}
+    x, y = next((x, y) for x in range(64) for y in range(64) if (x, y) not in taken)
+    report = look(watched, x=x, y=y)
+    assert isinstance(report, CellReport)
+    assert report.packet is None
+    assert not report.by_heading.any()
+
+
+@pytest.mark.parametrize(
+    ("wish", "words"),
+    [
+        ({"experience": 10**6}, "experience must be from 0 to"),
+        ({"view": 10**6}, "view must be from 0 to"),
+        ({"x": 3}, "needs x from 0 to 63 and y from 0 to 63, got 3 and None"),
+        ({"x": 64, "y": 0}, "got 64 and 0"),
+        ({"experience": 0, "view": 0}, "one of them"),
+    ],
+)
+def test_what_is_not_there_is_refused(watched: tuple[Session, Chronicle], wish: dict[str, int], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        look(watched, **wish)
+
+
+def test_nothing_asked_nothing_shown_and_looking_changes_nothing(watched: tuple[Session, Chronicle]) -> None:
+    session, _ = watched
+    before = session.state_hash()
+    assert look(watched) is None
+    for wish in ({"experience": 0}, {"view": 0}, {"x": 5, "y": 5}):
+        assert look(watched, **wish) is not None
+    assert session.state_hash() == before
+
+
+def test_visits_are_counted_when_something_becomes_active() -> None:
+    visits = Visits()
+    for time_s, number in enumerate((2000, 2000, -1, 2000, 3, 2000)):
+        visits.note(number, float(time_s))
+    assert (visits.of(2000).first_s, visits.of(2000).last_s, visits.of(2000).visits) == (0.0, 5.0, 3)
+    assert visits.of(4).first_s is None
+    assert visits.of(10**6).visits == 0
