@@ -13,6 +13,7 @@ from ratslam_core.params import (
     PoseCellParams,
     RatSlamParams,
 )
+from ratslam_core.places import HashCollision, MultipleRepresentation, Places, find_places
 from ratslam_core.pose_cells import PoseCells
 from ratslam_core.slam import RatSlam
 from ratslam_core.temporal_map import Route, TemporalMap
@@ -27,15 +28,18 @@ __all__ = [
     "ExperienceMapParams",
     "GoalMemory",
     "GoalMemoryParams",
+    "HashCollision",
     "Link",
     "LocalView",
     "LocalViewParams",
     "MapGrid",
     "MetricPicture",
+    "MultipleRepresentation",
     "OccupancyGrid",
     "OccupancyParams",
     "Odometry",
     "Packet",
+    "Places",
     "Pose2",
     "PoseCellParams",
     "PoseCells",
@@ -45,6 +49,7 @@ __all__ = [
     "Route",
     "TemporalMap",
     "ViewLinks",
+    "find_places",
     "load_brain",
     "restore_snapshot",
     "save_brain",

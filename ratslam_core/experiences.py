@@ -146,6 +146,7 @@ def _best_in_buckets(newest, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy
 @njit(cache=True, nogil=True, inline="always")
 def _buckets(middle, reach, n, buckets):
     """First bucket and how many from there on, round the ring, hold [middle - reach, middle + reach]."""
+    reach += 1e-9  # so that rounding leaves nobody out
     if 2 * reach + BUCKET >= n:
         return 0, buckets
     first = int((middle - reach) % n) % n // BUCKET
