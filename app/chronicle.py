@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from app.session import Session, is_lost
 from app.visits import Visits
+from ratslam_core import find_places
 from web.messages import Event, Packet, Series, Snap
 
 TRAIL_S = 120.0
@@ -16,6 +17,7 @@ SERIES_POINTS = 600
 MOST_EVENTS = 500
 ERROR_POINTS = 1000
 FALSE_EVERY_S = 5.0  # false positives are marked no more often
+PLACES_EVERY_S = 10.0
 
 
 class Chronicle:
@@ -33,8 +35,10 @@ class Chronicle:
         self.last_snap: Snap | None = None
         self.lost = False
         self._goal_state: tuple[int, str] | None = None
-        self._recovered = 0
         self._false_marked, self._false_due_s = 0, 0.0
+        self._recovered = self._multiple = self._collisions = 0
+        self._dropped = len(session.brain.experience_map.dropped_links)
+        self._places_due_s = session.time_s + PLACES_EVERY_S
         self._before = session.brain.pose_cells.winner
         self.experiences, self.views = Visits(), Visits()
         self._visit()
@@ -81,6 +85,7 @@ class Chronicle:
         self._watch_goal()
         self._watch_kidnaps()
         self._watch_false_positives()
+        self._watch_map()
         if session.time_s >= len(self._samples) * self._sample_every_s:
             self._sample()
 
@@ -122,6 +127,26 @@ class Chronicle:
         words = f"view {seen.view} instead of {seen.best_view}"
         self.note("false", words + (f", and {more} more since the last mark" if more else ""))
         self._false_marked, self._false_due_s = count, self._session.time_s + FALSE_EVERY_S
+
+    def _watch_map(self) -> None:
+        """Links that went, in each tick; places that pose cells hold twice or in common, now and then."""
+        map_ = self._session.brain.experience_map
+        dropped = map_.dropped_links[self._dropped :]
+        if dropped:
+            i, j = dropped[0]
+            more = f" and {len(dropped) - 1} more" if len(dropped) > 1 else ""
+            self.note("link", f"deleted: from experience {i} to {j}{more}, tried too often in vain")
+            self._dropped += len(dropped)
+        if self._session.time_s < self._places_due_s:
+            return
+        self._places_due_s = self._session.time_s + PLACES_EVERY_S
+        found = find_places(map_)
+        multiple, collisions = len(found.multiple_representations), len(found.hash_collisions)
+        if multiple > self._multiple:
+            self.note("place", f"places with several representations in the pose cells: {multiple}")
+        if collisions > self._collisions:
+            self.note("place", f"states of the pose cells that stand for several places: {collisions}")
+        self._multiple, self._collisions = max(multiple, self._multiple), max(collisions, self._collisions)
 
     def _sample(self) -> None:
         """One point of the series; when they are too many, every other one goes."""

@@ -259,7 +259,7 @@ class ExperienceMapParams:
     )
     link_trials: int = param(5, symbol="n_min", low=1, high=1000, meaning="not before so many trials", source="ours")
     link_recency: float = param(
-        0.0,
+        0.3,
         low=0.0,
         high=1.0,
         meaning="least that the newest trial of a link counts; 0 = all count the same",

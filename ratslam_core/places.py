@@ -84,11 +84,12 @@ def _collision(state: NDArray[np.float64], group: list[int]) -> HashCollision:
 
 
 def _groups(owner: NDArray[np.int64], chosen: NDArray[np.bool_]) -> list[list[int]]:
-    """The chosen experiences of each owner that has two or more."""
-    groups: dict[int, list[int]] = {}
-    for i in np.flatnonzero(chosen):
-        groups.setdefault(int(owner[i]), []).append(int(i))
-    return [group for _, group in sorted(groups.items()) if len(group) > 1]
+    """The chosen experiences of each owner that has two or more, by owner."""
+    several = np.bincount(owner[chosen], minlength=len(owner)) > 1
+    members = np.flatnonzero(chosen & several[owner])
+    members = members[np.argsort(owner[members], kind="stable")]
+    cuts = np.flatnonzero(np.diff(owner[members])) + 1
+    return [group.tolist() for group in np.split(members, cuts) if len(group)]
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -112,15 +113,16 @@ def _first_near(at, ring_x, ring_y, ring_t, reach, reach_t):
     newest = np.full(mask + 1, -1, np.int64)
     before = np.full(n, -1, np.int64)
     leader = np.empty(n, np.int64)
+    around = np.empty((3, 3), np.int64)  # of each coordinate: what its own bucket and those beside it add to the hash
     for i in range(n):
-        x, width_x, first_x, count_x = _bucket(at[i, 0], ring_x, reach)
-        y, width_y, first_y, count_y = _bucket(at[i, 1], ring_y, reach)
-        t, width_t, first_t, count_t = _bucket(at[i, 2], ring_t, reach_t)
+        count_x = _buckets(around[0], at[i, 0], ring_x, reach, 73856093)
+        count_y = _buckets(around[1], at[i, 1], ring_y, reach, 19349663)
+        count_t = _buckets(around[2], at[i, 2], ring_t, reach_t, 83492791)
         best = i
         for a in range(count_x):
             for b in range(count_y):
                 for c in range(count_t):
-                    j = newest[_key(x + first_x + a, y + first_y + b, t + first_t + c, width_x, width_y, width_t, mask)]
+                    j = newest[(around[0, a] ^ around[1, b] ^ around[2, c]) & mask]
                     while j >= 0:
                         if j < best and _between(at[i, 2], at[j, 2], ring_t) <= reach_t:
                             dx, dy = _between(at[i, 0], at[j, 0], ring_x), _between(at[i, 1], at[j, 1], ring_y)
@@ -129,28 +131,25 @@ def _first_near(at, ring_x, ring_y, ring_t, reach, reach_t):
                         j = before[j]
         leader[i] = best
         if best == i:
-            key = _key(x, y, t, width_x, width_y, width_t, mask)
+            key = (around[0, 0] ^ around[1, 0] ^ around[2, 0]) & mask
             before[i] = newest[key]
             newest[key] = i
     return leader
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _bucket(value, ring, reach):
-    """Number of the bucket, how many there are round the ring (0 = no ring), first neighbour, neighbours with itself."""
-    width = reach * (1.0 + 1e-9)  # so that rounding parts nobody who is within reach
+def _buckets(around, value, ring, reach, prime):
+    """The own bucket, then its neighbours, each once, times a prime; returns how many. They are a little wider than the
+    reach, so that rounding parts nobody who is within it."""
+    width = reach * (1.0 + 1e-9)
     if ring == 0.0:
-        return math.floor(value / width), 0, -1, 3
+        own = math.floor(value / width)
+        around[0], around[1], around[2] = own * prime, (own - 1) * prime, (own + 1) * prime
+        return 3
     count = max(1, int(ring / width))
-    return min(int(value / ring * count), count - 1), count, -1 if count > 2 else 0, min(count, 3)
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _key(x, y, t, width_x, width_y, width_t, mask):
-    x = x % width_x if width_x > 0 else x
-    y = y % width_y if width_y > 0 else y
-    t = t % width_t if width_t > 0 else t
-    return (x * 73856093 ^ y * 19349663 ^ t * 83492791) & mask
+    own = min(int(value / ring * count), count - 1)
+    around[0], around[1], around[2] = own * prime, (own + 1) % count * prime, (own - 1) % count * prime
+    return min(count, 3)
 
 
 @njit(cache=True, nogil=True)

@@ -264,7 +264,7 @@ class Event:
 
     number: int
     time_s: float
-    kind: str  # "snap", "kidnap", "recovered", "goal", "arrived", "lost", "link", "fault", "parameter", "false"
+    kind: str  # a key of NAMES in timeline.js
     text: str
 
 

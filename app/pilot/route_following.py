@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.pilot.params import PilotParams
-from ratslam_core import ExperienceMap, Route
+from ratslam_core import ExperienceMap, Pose2, Route
 
 REPLAN_S = 1.0
 NEAR_M = 0.6  # [ours] links that are only thought of, from the robot to experiences so near
@@ -17,6 +18,9 @@ LOST_S = 25.0
 CLOSE_ENOUGH_S = 5.0
 NO_HEADWAY_S = 25.0  # [ours] a robot that does not get along its route for so long looks around instead ...
 LOOK_AROUND_S = 15.0  # ... for so long: what the map takes for a way may be a wall
+TRIAL_S = 3.0  # [ours] no headway for so long is a failed trial of the ways that lead across a bar ...
+BAR_AHEAD_M = 0.4  # ... so far ahead
+BAR_M = 1.4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,6 +49,8 @@ class RouteFollower:
         self._since_nearer_s = 0.0
         self._least_left_s = math.inf  # of the way to the goal
         self._since_headway_s = self._look_around_s = 0.0
+        self._failed_trials = 0  # since it last got along
+        self._bars: list[NDArray[np.float64]] = []  # where it did not get through, (2, 2) each, map frame
 
     def step(self, experiences: ExperienceMap, dt: float, p: PilotParams) -> tuple[float, float] | None:
         """The next point to head for, metres in the robot's frame; None when there, or when no route is known."""
@@ -57,6 +63,7 @@ class RouteFollower:
         if self._there(math.hypot(goal.x - robot.x, goal.y - robot.y), dt, p):
             self.state = "arrived"
             return None
+        self._watch_headway(experiences, dt, p)
         if self._plan_in_s <= 0:
             self._plan_in_s = REPLAN_S
             self._plan(experiences)
@@ -65,7 +72,7 @@ class RouteFollower:
             self.state = "unreachable" if self._no_route_s > LOST_S else "exploring"
             return None
         self._no_route_s = 0.0
-        if self._without_headway(dt):
+        if self._look_around_s > 0:
             self.state = "exploring"
             return None
         self.state = "tracking" if self._age_s <= REPLAN_S + dt else "coasting"
@@ -86,18 +93,48 @@ class RouteFollower:
         remaining = first + float(np.hypot(*np.diff(xy, axis=0).T).sum())
         return Progress(self.goal, self.state, float(arrival[-1]), remaining, nodes, arrival)
 
-    def _without_headway(self, dt: float) -> bool:
-        """Whether to look around because following the route leads nowhere. test_pilot.py::test_a_blocked_way_is_left."""
+    def _watch_headway(self, experiences: ExperienceMap, dt: float, p: PilotParams) -> None:
+        """Getting nowhere on the route is a failed trial of the ways ahead, and later a reason to look around.
+
+        test_pilot.py::{test_a_blocked_way_is_left, test_a_door_that_was_shut_is_given_up}.
+        """
         if self._look_around_s > 0:
             self._look_around_s -= dt
-            return True
-        left_s = math.inf if self._route is None else float(self._route.arrival_s[-1])
+            return
+        if self._route is None:
+            return
+        left_s = float(self._route.arrival_s[-1])
         self._since_headway_s += dt
         if left_s < self._least_left_s - 0.5:
-            self._least_left_s, self._since_headway_s = left_s, 0.0
+            self._least_left_s, self._since_headway_s, self._failed_trials = left_s, 0.0, 0
+        if self._since_headway_s > TRIAL_S * (self._failed_trials + 1):
+            self._failed_trials += 1
+            self._fail(experiences, p)
         if self._since_headway_s > NO_HEADWAY_S:
-            self._least_left_s, self._since_headway_s, self._look_around_s = math.inf, 0.0, LOOK_AROUND_S
-        return self._look_around_s > 0
+            self._begin_anew()
+            self._look_around_s = LOOK_AROUND_S
+
+    def _begin_anew(self) -> None:
+        self._least_left_s, self._since_headway_s, self._failed_trials = math.inf, 0.0, 0
+
+    def _fail(self, experiences: ExperienceMap, p: PilotParams) -> None:
+        """The robot did not get across a bar ahead of it: a failed trial of every way that does. ACRA 2006 3.4.
+
+        [ours] All of them, not only the route's own: a place has many experiences, and the robot would try one by one.
+        """
+        x, y = self._aim(experiences, p.lookahead_m)
+        robot = experiences.robot
+        ahead = robot.compose(Pose2(0.0, 0.0, math.atan2(y, x))).compose(Pose2(BAR_AHEAD_M, 0.0, 0.0))
+        left, right = (ahead.compose(Pose2(0.0, side * BAR_M / 2, 0.0)) for side in (1, -1))
+        bar = np.array([(left.x, left.y), (right.x, right.y)])
+        self._bars.append(bar)
+        links, xy = experiences.links, experiences.poses[:, :2]
+        across = links[crosses(bar, xy[links[:, 0]], xy[links[:, 1]])]
+        pairs = np.unique(np.sort(across, axis=1), axis=0)
+        deleted = [experiences.tried(int(i), int(j), False) for i, j in pairs]
+        if any(deleted):
+            self._route, self._plan_in_s = None, 0.0
+            self._begin_anew()
 
     def _there(self, away: float, dt: float, p: PilotParams) -> bool:
         """Near enough; or close by and not getting nearer, as at a goal in a corner where the robot just does not fit."""
@@ -107,12 +144,15 @@ class RouteFollower:
 
     def _plan(self, experiences: ExperienceMap) -> None:
         """The quickest route, started at the active experience or, by links only thought of, at one close by."""
+        self._succeed(experiences)
         ways = experiences.temporal_map
         times = ways.times_to(self.goal)
         robot = experiences.robot
         poses = experiences.poses
         away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
         near = np.flatnonzero(away < NEAR_M)
+        for bar in self._bars:
+            near = near[~crosses(bar, np.array([[robot.x, robot.y]]), poses[near, :2])]
         if experiences.active not in near:
             near = np.append(near, experiences.active)
         turn = np.abs(np.remainder(poses[near, 2] - robot.heading_rad + np.pi, 2 * np.pi) - np.pi)
@@ -122,6 +162,13 @@ class RouteFollower:
             return
         self._route = ways.route(start, self.goal)
         self._age_s = 0.0
+
+    def _succeed(self, experiences: ExperienceMap) -> None:
+        """What of the route was driven since the last plan was a trial, too."""
+        if self._route is None or self._age_s > 2 * REPLAN_S:
+            return
+        for i, j in pairwise(self._route.experiences[: self._nearest(experiences) + 1]):
+            experiences.tried(int(i), int(j), True)
 
     def _nearest(self, experiences: ExperienceMap) -> int:
         """The place on the route that is nearest to the robot; the later one of equals."""
@@ -145,3 +192,14 @@ class RouteFollower:
         c, s = math.cos(robot.heading_rad), math.sin(robot.heading_rad)
         dx, dy = float(target[0]) - robot.x, float(target[1]) - robot.y
         return c * dx + s * dy, -s * dx + c * dy
+
+
+def crosses(bar: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which of the lines from a to b, (n, 2) each, cross the bar, (2, 2)."""
+
+    def side(start, end, point):
+        along, to = end - start, point - start
+        return along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0]
+
+    apart = side(bar[0], bar[1], a) * side(bar[0], bar[1], b) < 0
+    return apart & (side(a, b, bar[0]) * side(a, b, bar[1]) < 0)

@@ -6,12 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from app.pilot import Pilot, PilotParams, local_movement
 from app.pilot.local_movement import LocalMovement
-from app.pilot.route_following import LOOK_AROUND_S, LOST_S, NO_HEADWAY_S, REPLAN_S, RouteFollower
+from app.pilot.route_following import LOOK_AROUND_S, LOST_S, NO_HEADWAY_S, REPLAN_S, RouteFollower, crosses
 from ratslam_core import Odometry, Pose2
-from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, load_world
+from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, World, load_world
 from tests.unit.ratslam_core import literal
 
 from .worlds import EXACT, HandMadeMap, chain, room
@@ -452,11 +454,76 @@ def test_a_blocked_way_is_left(seed: int) -> None:
     assert len(run.track) > 10 * NO_HEADWAY_S
     assert run.pilot.goal_state == (goal, "exploring")
     before = Counter(run.doing)
-    run.run(LOOK_AROUND_S - 2)
+    while run.pilot.goal_state == (goal, "exploring"):
+        run.tick()
+        assert len(run.track) < 10 * (6 * NO_HEADWAY_S + 60)  # it may have to free itself from the corner first
     looked = run.doing - before
-    assert sum(looked[doing] for doing in EXPLORING) > 60
-    run.run(20)
+    assert sum(looked[doing] for doing in EXPLORING) > 10 * (LOOK_AROUND_S - 2)
     assert run.pilot.goal_state in ((goal, "tracking"), (goal, "arrived"))  # and tries again
+
+
+def two_ways() -> tuple[World, list[tuple[float, float]], list[tuple[int, int]]]:
+    """A wall between the robot and its goal with a door that is shut, which three rows of links pass, and a way round."""
+    world = room((2.0, 0.0, 2.0, 3.0), start=(1.0, 0.6, 0.0))
+    places, links = chain((1.0, 0.6), (3.0, 0.6))
+    goal = len(places) - 1
+    for y in (0.3, 0.95):
+        more, joined = chain((1.2, y), (2.8, y))
+        links += [(i + len(places), j + len(places)) for i, j in joined]
+        links += [(1, len(places)), (len(places) + len(more) - 1, goal - 1)]
+        places += more
+    more, joined = chain((0.8, 0.8), (0.8, 3.5), (3.2, 3.5), (3.2, 0.7))
+    links += [(i + len(places), j + len(places)) for i, j in joined]
+    links += [(0, len(places)), (len(places) + len(more) - 1, goal)]
+    return world, places + more, links
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_door_that_was_shut_is_given_up(seed: int) -> None:
+    """Every way through it fails with it, not one after the other, and the robot goes round."""
+    world, places, links = two_ways()
+    map_ = HandMadeMap(places, links)
+    map_.patience = 4
+    goal = round(2.0 / 0.25)
+    run = Run(Simulator(world, EXACT, seed), a_pilot(seed), map_)
+    run.pilot.set_goal(goal)
+    while run.pilot.goal_state != (goal, "arrived"):
+        run.tick()
+        assert len(run.track) < 10 * 120
+    truth = run.simulator.truth
+    assert math.hypot(truth.x - places[goal][0], truth.y - places[goal][1]) < 0.4
+    gone = {tuple(link) for link in links} - {(int(i), int(j)) for i, j in map_.links}
+    assert gone
+    for i, j in gone:
+        assert max(places[i][1], places[j][1]) < 1.5  # nothing of the way round
+    assert {(i, j) for i, j, well in map_.trials if well} - gone  # and what was driven has been a trial, too
+
+
+def test_what_was_driven_of_a_route_was_a_trial() -> None:
+    map_ = HandMadeMap(*chain((0.0, 0.0), (6.0, 0.0)))
+    follower = RouteFollower(len(map_) - 1)
+    for tick in range(150):
+        map_.robot = Pose2(0.03 * tick, 0.0, 0.0)
+        follower.step(map_, DT, PilotParams())  # type: ignore[arg-type]
+    tried = {(i, j) for i, j, _ in map_.trials}
+    assert all(well for _, _, well in map_.trials)
+    assert len(tried) >= 8  # of the 18 that were driven; a plan may begin beyond the end of the one before
+    assert tried <= {(k, k + 1) for k in range(18)}
+
+
+@settings(max_examples=200)
+@given(st.lists(st.tuples(*[st.floats(-2, 2)] * 4), max_size=8), st.tuples(*[st.floats(-2, 2)] * 4))
+def test_crossing_a_bar_is_what_points_on_both_lines_are(lines, bar) -> None:
+    """By solving for where the two lines meet."""
+    ends = np.array(lines).reshape(-1, 4)
+    found = crosses(np.array(bar).reshape(2, 2), ends[:, :2], ends[:, 2:])
+    for (ax, ay, bx, by), answer in zip(ends, found, strict=True):
+        along = np.array([[bx - ax, bar[0] - bar[2]], [by - ay, bar[1] - bar[3]]])
+        if abs(np.linalg.det(along)) < 1e-6:
+            continue  # parallel, or no length
+        t, u = np.linalg.solve(along, np.array([bar[0] - ax, bar[1] - ay]))
+        if min(abs(t), abs(t - 1), abs(u), abs(u - 1)) > 1e-6:  # not just touching
+            assert bool(answer) is bool(0 < t < 1 and 0 < u < 1)
 
 
 def test_headway_is_no_reason_to_look_around() -> None:

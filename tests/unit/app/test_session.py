@@ -7,11 +7,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.chronicle import SERIES_POINTS, Chronicle
+from app.chronicle import PLACES_EVERY_S, SERIES_POINTS, Chronicle
 from app.config import Config
 from app.pilot.pilot import BEHAVIOURS
 from app.session import Session, is_lost, spread_goals
 from app.snapshots import STRONGEST, Snapshots
+from ratslam_core import Packet, Pose2
 from sim2d import World, load_world
 from web.messages import Snapshot
 
@@ -370,6 +371,52 @@ def test_arrival_and_unreachable_goals_are_noted_once() -> None:
     chronicle._watch_goal()
     chronicle._watch_goal()
     assert kinds(chronicle).count("unreachable") == 1
+
+
+def test_deleted_links_are_noted_once_a_tick() -> None:
+    session = a_session(60)
+    chronicle = Chronicle(session)
+    map_ = session.brain.experience_map
+    links = map_.links[:3].tolist()
+    for i, j in links:
+        for _ in range(20):
+            map_.tried(i, j, False)
+    assert [list(ends) for ends in map_.dropped_links] == links
+    for _ in range(3):
+        session.tick()
+        chronicle.watch()
+    texts = [event.text for event in chronicle.events if event.kind == "link"]
+    assert texts == [f"deleted: from experience {links[0][0]} to {links[0][1]} and 2 more, tried too often in vain"]
+    i, j = map_.links[0]
+    for _ in range(20):
+        map_.tried(int(i), int(j), False)
+    session.tick()
+    chronicle.watch()
+    assert chronicle.events[-1].text == f"deleted: from experience {i} to {j}, tried too often in vain"
+    assert Chronicle(session)._dropped == 4  # a watcher that comes later does not tell old tales
+
+
+def test_places_that_pose_cells_hold_twice_or_in_common_are_noted() -> None:
+    """Once, when there are more of them than before; looked for every ten seconds."""
+    session = a_session(5)
+    chronicle = Chronicle(session)
+    known = session.brain.experience_map._experiences
+    here = Packet(*known.at[0, :2], 0.0, 1.0)
+    known.add(Packet((here.x + 30) % 64, here.y, 0.0, 1.0), 500, session.brain.experience_map.pose(0))
+    known.add(here, 501, Pose2(30.0, 0.0, 0.0))
+    for _ in range(3):
+        session.brain.experience_map.transitions.graph.add_node()
+    chronicle._watch_map()
+    assert chronicle.events == ()
+    for _ in range(2):
+        chronicle._places_due_s = session.time_s
+        chronicle._watch_map()
+    assert [(event.kind, event.text) for event in chronicle.events] == [
+        ("place", "places with several representations in the pose cells: 1"),
+        ("place", "states of the pose cells that stand for several places: 1"),
+    ]
+    chronicle._watch_map()
+    assert chronicle._places_due_s == session.time_s + PLACES_EVERY_S
 
 
 def test_a_kidnap_recovery_is_noted() -> None:

@@ -27,6 +27,8 @@ class HandMadeMap:
     """As much of an experience map as the pilot reads: nodes at places, links with times, and a robot that knows where
     it is. Map frame = office frame."""
 
+    patience = 10**9  # failures of a link until it is deleted
+
     def __init__(self, places: list[tuple[float, float]], links: list[tuple[int, int]], speed: float = 0.3) -> None:
         self.poses = np.array([(x, y, 0.0) for x, y in places])
         self.links = np.array(links, np.int64).reshape(-1, 2)
@@ -35,6 +37,15 @@ class HandMadeMap:
         self.robot = Pose2(*places[0], 0.0)
         self.params = ExperienceMapParams()
         self.pace = 0.0  # links take what `link_times` says, however long they are
+        self.trials: list[tuple[int, int, bool]] = []
+
+    def tried(self, i: int, j: int, reached: bool) -> bool:
+        self.trials.append((i, j, reached))
+        keep = [{i, j} != {int(a), int(b)} for a, b in self.links]
+        if reached or all(keep) or sum({i, j} == {a, b} and not well for a, b, well in self.trials) < self.patience:
+            return False
+        self.links, self.link_times = self.links[keep], self.link_times[keep]
+        return True
 
     def __len__(self) -> int:
         return len(self.poses)
