@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 
 import numpy as np
@@ -30,7 +31,7 @@ class Chronicle:
         ticks = int(TRAIL_S / session.frame.dt)
         self._trail: deque[tuple[float, float]] = deque(maxlen=ticks // 2)
         self._path: deque[tuple[float, float, float]] = deque(maxlen=ticks // 2)
-        self._samples: list[tuple[float, float, float, float, float]] = []
+        self._samples: list[tuple[float, ...]] = []
         self._sample_every_s = 1.0
         self.last_snap: Snap | None = None
         self.lost = False
@@ -43,7 +44,7 @@ class Chronicle:
         self.experiences, self.views = Visits(), Visits()
         self._visit()
         self.error_map_m = self.error_odometry_m = 0.0
-        self.series = Series(*(np.zeros(0) for _ in range(5)))
+        self.series = Series(*(np.zeros(0) for _ in range(7)))
         self._sample()
 
     @property
@@ -154,7 +155,9 @@ class Chronicle:
         every = max(1, session.tick_count // ERROR_POINTS)
         self.error_map_m, self.error_odometry_m = session.evaluation.errors(session.brain.experience_map, every)
         views, experiences = len(session.brain.local_view), len(session.brain.experience_map)
-        self._samples.append((session.time_s, self.error_map_m, self.error_odometry_m, views, experiences))
+        metres, radians = session.brain.experience_map.residual
+        residual = 1000 * metres, math.degrees(radians)
+        self._samples.append((session.time_s, self.error_map_m, self.error_odometry_m, views, experiences, *residual))
         if len(self._samples) > SERIES_POINTS:
             self._samples = self._samples[::2]
             self._sample_every_s *= 2

@@ -16,6 +16,7 @@ from app.inspection import experience_report, inspect
 from app.office_orders import carry_out
 from app.session import Session
 from app.snapshots import Snapshots
+from app.tick_stages import TickRecorder
 from ratslam_core import RatSlam
 from sim2d import World, load_world, world_names
 from web import messages as m
@@ -100,10 +101,11 @@ class Runner:
         self._due = time.perf_counter()
         self._publish()
 
-    def _tick(self) -> None:
+    def _tick(self, recorder: TickRecorder | None = None) -> None:
         """One tick; whatever it throws pauses the session and says why."""
+        self._snapshots.walk = None
         try:
-            self.session.tick()
+            self.session.tick(recorder)
             self._chronicle.watch()
         except Exception as error:
             self._running = False
@@ -197,6 +199,8 @@ class Runner:
                     self._tick()
                     if self._fault is not None or self._stopping:
                         break
+            case m.StepStage(back=back):
+                return self._step_stage(back)
             case m.SetSpeed(factor=factor):
                 self._speed, self._due = factor, time.perf_counter()
             case m.Reset(world=name, seed=seed):
@@ -209,6 +213,24 @@ class Runner:
                 chosen = command.model_dump(exclude={"type"}, exclude_none=True)
                 return self._try(", ".join(chosen) or "type", list(chosen.values()), lambda: self._choose(command))
         self._snapshots.refresh()
+        return None
+
+    def _step_stage(self, back: bool) -> m.Refused | None:
+        """The next stage of the tick that is shown, or the first of another tick; or the one before."""
+        if self._fault is not None:
+            return m.Refused("type", "step_stage", f"the session stopped at a fault ({self._fault}); reset it")
+        shown = self._snapshots.walk
+        following = None if shown is None else shown.moved(-1 if back else 1)
+        if back and following is None:
+            return m.Refused("back", True, "there is no stage before this one; go forwards")
+        self._running = False
+        self._snapshots.refresh()
+        if following is None:
+            recorder = TickRecorder(self.session, self._snapshots.parts())
+            self._tick(recorder)
+            self._snapshots.refresh()
+            following = None if self._fault is not None else recorder.walk(self._snapshots.parts())
+        self._snapshots.walk = following
         return None
 
     def _choose(self, wish: m.Inspect) -> None:

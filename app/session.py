@@ -6,7 +6,7 @@ No thread, no clock, no page: the same seed and the same calls give the same run
 from __future__ import annotations
 
 import hashlib
-import time
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,11 +15,13 @@ import scipy.sparse.linalg  # noqa: F401 - the engine imports it when a loop clo
 from app.config import Config, Value
 from app.evaluation import Evaluation
 from app.pilot import Mode, Pilot
+from app.stopwatch import Stopwatch
 from ratslam_core import Estimate, Odometry, RatSlam
+from ratslam_core.slam import STAGES
 from sim2d import SONAR_ANGLES_RAD, Drive, SensorFrame, Simulator, World
 
 OFF_THE_MAP_M = 1.5  # a goal farther than this from every experience is refused
-STAGES = ("office and senses", "RatSLAM", "pilot")
+PARTS = ("pilot", "office and senses", *STAGES, "judging")  # of a tick; the judges compare with the truth
 
 
 class Session:
@@ -38,9 +40,10 @@ class Session:
         self.brain = brain
         self.pilot = Pilot(self.config.pilot, np.array(SONAR_ANGLES_RAD), np.random.default_rng(pilot_seed))
         self.evaluation = Evaluation(len(brain.experience_map))
-        self.stage_s = dict.fromkeys(STAGES, 0.0)
+        self.stopwatch = Stopwatch(PARTS)
         self.frame: SensorFrame = self.simulator.observe()
-        self.estimate: Estimate = self._think()
+        self.odometry = self._odometry()  # what the brain was told in its last step
+        self.estimate: Estimate = self._think(self.stopwatch.lap)
 
     @property
     def tick_count(self) -> int:
@@ -50,19 +53,26 @@ class Session:
     def time_s(self) -> float:
         return self.frame.time_s
 
-    def tick(self) -> None:
-        """One tenth of a second."""
-        t0 = time.perf_counter()
+    def tick(self, watch: Callable[[str], None] | None = None) -> None:
+        """One tenth of a second. watch: called after each stage of the engine, to look and not to touch."""
+        clock = self.stopwatch
+        clock.start()
+
+        def staged(stage: str) -> None:
+            clock.lap(stage)
+            if watch is not None:
+                watch(stage)
+                clock.start()  # watching is no part of it
+
         speed, yaw_rate = self.pilot.step(
             self.frame.ranges_m, self.frame.bumped, self._odometry(), self.brain.experience_map
         )
-        t1 = time.perf_counter()
+        clock.lap("pilot")
         self.frame = self.simulator.step(Drive(speed, yaw_rate))
-        t2 = time.perf_counter()
-        self.estimate = self._think()
-        t3 = time.perf_counter()
-        for stage, spent in zip(STAGES, (t2 - t1, t3 - t2, t1 - t0), strict=True):
-            self.stage_s[stage] += spent
+        clock.lap("office and senses")
+        self.estimate = self._think(staged)
+        clock.lap("judging")
+        clock.finish()
 
     # ------------------------------------------------------------ orders; ValueError says why one cannot be
 
@@ -120,10 +130,10 @@ class Session:
     def _odometry(self) -> Odometry:
         return Odometry(self.frame.odometry_speed, self.frame.odometry_yaw_rate, self.frame.dt)
 
-    def _think(self) -> Estimate:
+    def _think(self, watch: Callable[[str], None]) -> Estimate:
         """One step of the brain. The scene number is made from the true pose: it stays out of the brain unless its front end is
         made of such numbers, which the papers' own simulator gave its robot."""
-        odometry = self._odometry()
+        self.odometry = odometry = self._odometry()
         numbers = self.brain.params.local_view.front_end == "scene numbers"
         estimate = self.brain.step(
             self.frame.image,
@@ -131,6 +141,7 @@ class Session:
             scene=self.frame.scene if numbers else None,
             behaviour=self.pilot.behaviour,
             ranges_m=self.frame.ranges_m,
+            watch=watch,
         )
         self.evaluation.record(self.time_s, self.simulator.truth, self.brain.experience_map, estimate.created, odometry)
         return estimate

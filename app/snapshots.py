@@ -6,7 +6,7 @@ import copy
 import math
 import time
 from collections.abc import Callable
-from typing import Generic, TypeVar, cast
+from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from app.config import Value
 from app.inspection import inspect
 from app.living_layer import LivingView
 from app.session import Session
+from app.tick_stages import Walk
 from ratslam_core import Pose2
 from sim2d import SONAR_ANGLES_RAD, World, draw_world
 from web.messages import (
@@ -33,6 +34,7 @@ from web.messages import (
     Senses,
     Snapshot,
     TimesLayer,
+    Timing,
     WorldDrawing,
 )
 
@@ -60,6 +62,7 @@ class Snapshots:
         self._parameters: tuple[object, tuple[Parameter, ...]] | None = None
         self._occupancy = Slow(OCCUPANCY_EVERY_S, lambda: _occupancy(session))
         self.inspected = Inspect(type="inspect")  # what is looked at: nothing
+        self.walk: Walk | None = None  # through the last tick
         self._inspection = Slow(INSPECT_EVERY_S, self._inspect)
         self._goal_memory = Slow(GOAL_MEMORY_EVERY_S, lambda: _goal_memory(session))
 
@@ -70,7 +73,7 @@ class Snapshots:
     def build(self, *, running: bool, speed: float, real_time_factor: float, fault: str | None) -> Snapshot:
         session, chronicle = self._session, self._chronicle
         brain, truth = session.brain, session.simulator.truth
-        layer, times = self._map_layers()
+        parts = self.parts() | (self.walk.parts if self.walk is not None else {})
         return Snapshot(
             run=self._run,
             tick=session.tick_count,
@@ -87,11 +90,11 @@ class Snapshots:
             worlds=self._worlds,
             truth=Pose(truth.x, truth.y, truth.heading_rad),
             trail=_frozen(chronicle.trail),
-            estimate=_pose(brain.experience_map.robot),
+            estimate=parts["estimate"],
             senses=_senses(session),
-            pose_cells=_pose_cells(session, chronicle),
-            map=layer,
-            times=times,
+            pose_cells=parts["pose_cells"],
+            map=parts["map"],
+            times=parts["times"],
             goal=_goal(session),
             views=len(brain.local_view),
             experiences=len(brain.experience_map),
@@ -101,7 +104,7 @@ class Snapshots:
             error_odometry_m=chronicle.error_odometry_m,
             revisit_consistency=session.evaluation.revisit_consistency,
             series=chronicle.series,
-            stage_ms={k: 1e3 * v / max(session.tick_count, 1) for k, v in session.stage_s.items()},
+            timings=tuple(Timing(part, *ms) for part, ms in session.stopwatch.mean_and_worst_ms.items()),
             events=chronicle.events,
             parameters=self._parameter_rows(),
             occupancy=self._occupancy.part(session.tick_count),
@@ -109,6 +112,7 @@ class Snapshots:
             living=self._living.look(session.simulator),
             inspected=self._inspection.part(session.tick_count),
             active_experience=brain.experience_map.active,
+            walk=None if self.walk is None else self.walk.told,
         )
 
     def _draw_world(self) -> WorldDrawing:
@@ -119,6 +123,17 @@ class Snapshots:
             self._drawn = (world.walls, world.places, params.camera_fov_rad)
             self._world = world_drawing(world, params.robot_radius_m, params.camera_fov_rad)
         return self._world
+
+    def parts(self) -> dict[str, Any]:
+        """What a walk through a tick shows as it was at each stage: fields of the snapshot, as they are now."""
+        layer, times = self._map_layers()
+        estimate = _pose(self._session.brain.experience_map.robot)
+        return {
+            "pose_cells": _pose_cells(self._session, self._chronicle),
+            "map": layer,
+            "times": times,
+            "estimate": estimate,
+        }
 
     def _map_layers(self) -> tuple[MapLayer, TimesLayer]:
         """Map and times of one moment; rows of both agree."""

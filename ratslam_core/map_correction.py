@@ -146,6 +146,19 @@ def solve(
     return bias
 
 
+def disagreement(
+    poses: NDArray[np.float64], links: NDArray[np.int64], moves: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Where each link says its end is, less where the map has it: dx, dy (m) in the map's frame and angle (rad), shape (m, 3)."""
+    i, j = links[:, 0], links[:, 1]
+    c, s = np.cos(poses[i, 2]), np.sin(poses[i, 2])
+    ex = poses[i, 0] + c * moves[:, 0] - s * moves[:, 1] - poses[j, 0]
+    ey = poses[i, 1] + s * moves[:, 0] + c * moves[:, 1] - poses[j, 1]
+    turn = poses[i, 2] + moves[:, 2] - poses[j, 2]
+    turn -= 2 * math.pi * np.round(turn / (2 * math.pi))
+    return np.stack([ex, ey, turn], axis=1)
+
+
 def trust(
     poses: NDArray[np.float64],
     links: NDArray[np.int64],
@@ -160,12 +173,7 @@ def trust(
     lets go (Cauchy): many looks that agree tear the one link over which the robot was carried, and no single look does.
     test_map_correction.py::test_many_looks_tear_the_link_of_a_kidnap.
     """
-    i, j = links[:, 0], links[:, 1]
-    c, s = np.cos(poses[i, 2]), np.sin(poses[i, 2])
-    ex = poses[i, 0] + c * moves[:, 0] - s * moves[:, 1] - poses[j, 0]
-    ey = poses[i, 1] + s * moves[:, 0] + c * moves[:, 1] - poses[j, 1]
-    turn = poses[i, 2] + moves[:, 2] - poses[j, 2]
-    turn -= 2 * math.pi * np.round(turn / (2 * math.pi))
+    ex, ey, turn = disagreement(poses, links, moves).T
     chi = np.sqrt(weights * (ex**2 + ey**2 + (turn / RAD_PER_M) ** 2)) / sigma
     return np.where(chain, 1 / (1 + (chi / CHAIN_GIVES) ** 2), np.minimum(1, LOOK_GIVES / np.maximum(chi, LOOK_GIVES)))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ratslam_core import map_correction
 from ratslam_core.belief import Belief
 from ratslam_core.experiences import Experiences
 from ratslam_core.params import ExperienceMapParams
@@ -131,6 +132,18 @@ class MapReading:
         if row is None:
             raise ValueError(f"there is no link from experience {i!r} to {j!r}")
         return self.transitions.link(row)
+
+    @property
+    def residual(self) -> tuple[float, float]:
+        """By how much links and map disagree: root mean square over the links, each as far as it is believed, of the distance
+        (m) and of the angle (rad) between where it says its end is and where the map has it. 0 without links."""
+        t, rows = self.transitions, self._travelled
+        weight = t.believed[rows]
+        if weight.sum() <= 0:
+            return 0.0, 0.0
+        apart = map_correction.disagreement(self.poses, t.ends[rows], t.move[rows]) ** 2 * weight[:, None]
+        total = weight.sum()
+        return float(np.sqrt(apart[:, :2].sum() / total)), float(np.sqrt(apart[:, 2].sum() / total))
 
     @property
     def dropped_links(self) -> tuple[tuple[int, int], ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,8 @@ from ratslam_core.types import Estimate, Odometry, Recognition
 from ratslam_core.view_links import ViewLinks
 
 FOUND_AGAIN = 8  # steps
+# In the order in which `RatSlam.step` does them.
+STAGES = ("view match", "path integration", "injection", "attractor", "experience", "correction", "memories")
 
 
 class RatSlam:
@@ -62,40 +64,50 @@ class RatSlam:
         scene: int | None = None,
         behaviour: int = 0,
         ranges_m: NDArray[np.float32] | None = None,
+        watch: Callable[[str], None] | None = None,
     ) -> Estimate:
         """One iteration at the end of a movement: `odometry` is what the wheels report of it, `image` what is seen then.
 
         image: (h, w) or (h, w, 3) uint8; scene: its number, for the front end "scene numbers", which looks
         at no image; behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: what the
-        sonars say, shape (n_sonars,), for the occupancy only. ValueError when one of them cannot be; then nothing has changed.
+        sonars say, shape (n_sonars,), for the occupancy only; watch: called after each of STAGES with its name, to look
+        and not to touch. ValueError when one of them cannot be; then nothing has changed.
 
         The papers' four stages; path integration comes first because the image belongs to the end of the movement [ours].
         """
         require_behaviour(behaviour)
         if ranges_m is not None:
             self._require_sonars(ranges_m)
+        watch = watch or _nobody
         recognition = self.local_view.observe(image, scene)
+        watch("view match")
         self._time_s += odometry.dt
         odometry = self._calibrated(odometry)
         if self.local_view.surprised:
             self.lose_track()
         self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
+        watch("path integration")
         expected = self.pose_cells.winner
         if recognition.recruited:
             self._learnt_s.append(self._time_s)
         if recognition.view != NOTHING:
             self._associate(recognition)
+        watch("injection")
         packet = self.pose_cells.attract()
+        watch("attractor")
         jump = self.pose_cells.cells_apart(expected.x, expected.y, packet.x, packet.y)
         relocalised = jump > self.params.pose_cells.snap_cells
         self.relocalisations += relocalised
         created = self.experience_map.step(packet, recognition, odometry, behaviour)
         self._find_again(created, recognition.view)
+        watch("experience")
         self.experience_map.correct()
+        watch("correction")
         self._remember_ways(odometry, relocalised)
         if ranges_m is not None and self.occupancy is not None and self.map_grid is not None:
             self.occupancy.update(packet, ranges_m)
             self.map_grid.add(self.experience_map.active, self.experience_map.local_pose, ranges_m)
+        watch("memories")
         return Estimate(
             self.experience_map.active, created, self.experience_map.robot, packet, recognition, relocalised
         )
@@ -185,3 +197,7 @@ class RatSlam:
         if self.occupancy is None:
             raise ValueError("ranges_m needs a RatSlam that was made with sonar_angles_rad")
         self.occupancy.require(ranges_m)
+
+
+def _nobody(_stage: str) -> None:
+    """Watches."""

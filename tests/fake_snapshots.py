@@ -34,8 +34,11 @@ from web.messages import (
     Series,
     Snap,
     Snapshot,
+    TickStage,
+    TickWalk,
     Times,
     TimesLayer,
+    Timing,
     ViewReport,
     WorldDrawing,
 )
@@ -47,6 +50,7 @@ SHAPE = (36, 64, 64)
 CELL_M = 0.25
 SNAP_EVERY = 400  # ticks
 SONAR_RAD = np.radians([-90, -50, -30, -10, 10, 30, 50, 90]).astype(np.float32)
+PARTS = ("pilot", "office and senses", "view match", "attractor", "correction", "judging")
 FOV_RAD = math.radians(90)
 _DESKS = [(2.0, 5.4, 3.6, 6.0), (1.6, 2.1, 2.8, 2.7), (2.8, 2.1, 4.0, 2.7), (6.4, 5.0, 8.1, 5.7), (6.35, 2.6, 7.0, 3.3)]
 _DESKS += [(6.35, 1.8, 7.0, 2.5)]
@@ -97,7 +101,7 @@ def fake_snapshot(tick: int, goal: bool = True, *, nodes: int = NODES, run: int 
         error_odometry_m=0.2 + time_s * 0.005,
         revisit_consistency=0.97 if tick > 50 else None,
         series=_series(tick // 10),
-        stage_ms={"simulator": 0.4, "local view": 0.3, "pose cells": 1.2, "experience map": 0.6, "temporal map": 0.5},
+        timings=tuple(Timing(part, 0.1 * k + 0.05, 0.3 * k + 0.1) for k, part in enumerate(PARTS)),
         events=_events(snap_count, goal),
         parameters=_parameters(),
         occupancy=_occupancy(tick // 20),
@@ -427,6 +431,8 @@ def _series(second: int) -> Series:
         odometry_error_m=_frozen(0.2 + 0.005 * time_s),
         views=_frozen(600 * (1 - np.exp(-time_s / 90))),
         experiences=_frozen(NODES * (1 - np.exp(-time_s / 120))),
+        residual_mm=_frozen(3 + np.sin(time_s / 7)),
+        residual_deg=_frozen(0.4 + 0.1 * np.sin(time_s / 5)),
     )
 
 
@@ -479,6 +485,12 @@ def fake_reports() -> dict[str, Report]:
         ),
         "cell": CellReport(31, 22, _frozen(by_heading), Packet(31.2, 22.4, 0.6, 0.62, 3), ((7, 0.05),), 1, (12, 40)),
     }
+
+
+def fake_walk(at: int) -> TickWalk:
+    """Of three stages."""
+    names = ("image", "injection", "correction")
+    return TickWalk(tuple(TickStage(n, n.capitalize(), f"This is what the {n} did.") for n in names), at)
 
 
 def _frozen(array: NDArray) -> NDArray:  # type: ignore[type-arg]

@@ -219,6 +219,32 @@ class CellReport:
 Report = ExperienceReport | ViewReport | CellReport
 
 
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """What a part of a tick costs: over the last hundred ticks, milliseconds."""
+
+    part: str
+    mean_ms: float
+    worst_ms: float
+
+
+@dataclass(frozen=True, slots=True)
+class TickStage:
+    """One stage of a tick that is walked through."""
+
+    name: str  # "image", "view match", "path integration", "injection", ...
+    title: str
+    words: str  # what it did, in a sentence
+
+
+@dataclass(frozen=True, slots=True)
+class TickWalk:
+    """A tick that is shown stage by stage: the snapshot's pose cells, map and estimate are those of stage `at`."""
+
+    stages: tuple[TickStage, ...]
+    at: int
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class OccupancyPicture:
     """Where something stands, in the map frame. 0.5 = unknown."""
@@ -285,13 +311,15 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Series:
-    """Errors against time since the reset, at most 600 points, evenly thinned."""
+    """Errors and counts against time since the reset, at most 600 points, evenly thinned."""
 
     time_s: NDArray[np.float64]
     map_error_m: NDArray[np.float64]
     odometry_error_m: NDArray[np.float64]
     views: NDArray[np.float64]
     experiences: NDArray[np.float64]
+    residual_mm: NDArray[np.float64]  # by how much links and map disagree, root mean square
+    residual_deg: NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -327,7 +355,7 @@ class Snapshot:
     error_odometry_m: float
     revisit_consistency: float | None  # share of revisits within half a metre
     series: Series
-    stage_ms: dict[str, float]  # running mean of each stage's time per tick
+    timings: tuple[Timing, ...]  # the parts of a tick, in their order
     events: tuple[Event, ...]
     parameters: tuple[Parameter, ...]
     occupancy: OccupancyLayer | None = None  # None without sonars
@@ -335,6 +363,7 @@ class Snapshot:
     living: LivingLayer | None = None  # None: nothing lives in this world
     inspected: Report | None = None
     active_experience: int = -1
+    walk: TickWalk | None = None  # None: nothing is shown stage by stage
 
 
 # ---------------------------------------------------------------- in
@@ -460,6 +489,13 @@ class UsePreset(_Command):
     name: _Name
 
 
+class StepStage(_Command):
+    """Pause and show the next stage of a tick, or the one before; after the last stage the next tick begins."""
+
+    type: Literal["step_stage"]
+    back: bool = False
+
+
 class Inspect(_Command):
     """Choose what everybody looks at: an experience, a view, or the pose cells at x', y'; nothing of it: nothing.
 
@@ -474,7 +510,7 @@ class Inspect(_Command):
 
 
 OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
-LookOrder = Inspect
+LookOrder = Inspect | StepStage
 Command = Annotated[
     SetGoal
     | CancelGoal

@@ -11,7 +11,18 @@ from typing import Any
 
 import orjson
 
-from web.messages import Event, ExperienceReport, Goal, MapLayer, Pose, Snapshot
+from web.messages import (
+    CellReport,
+    Event,
+    ExperienceReport,
+    Goal,
+    MapLayer,
+    Pose,
+    Report,
+    Snapshot,
+    TickWalk,
+    ViewReport,
+)
 
 _OPTIONS = orjson.OPT_SERIALIZE_NUMPY
 
@@ -60,7 +71,24 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
         "title": snapshot.world.title,
         "worlds": snapshot.worlds,
         "places": snapshot.world.places,
+        "inspected": None if snapshot.inspected is None else _inspected(snapshot.inspected),
+        "walk": None if snapshot.walk is None else _walk(snapshot.walk),
     }
+
+
+def _inspected(report: Report) -> str:
+    match report:
+        case ExperienceReport():
+            return f"experience #{report.id}"
+        case ViewReport():
+            return f"view #{report.id}"
+        case CellReport():
+            return f"pose cells at {report.x}, {report.y}"
+
+
+def _walk(walk: TickWalk) -> dict[str, Any]:
+    stage = walk.stages[walk.at]
+    return {"at": walk.at + 1, "of": len(walk.stages), "title": stage.title, "words": stage.words}
 
 
 def event_fields(event: Event) -> dict[str, Any]:

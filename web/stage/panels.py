@@ -1,4 +1,4 @@
-"""The side panel: five tabs docked right - Senses, Memory, Inspect, Truth, Tune."""
+"""The side panel: six tabs docked right - Senses, Memory, Inspect, Tick, Truth, Tune."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from web.stage.palette import Palette
 from web.stage.rates import Layer
 from web.stage.senses_panel import SensesPanel
 from web.stage.switches import Switches
+from web.stage.tick_panel import TickPanel
 from web.stage.truth_panel import TruthPanel
 from web.stage.tune_panel import TunePanel
 
@@ -39,6 +40,8 @@ class Panels:
             self.memory = MemoryPanel(gui)
         with tabs.add_tab("Inspect"):
             self.inspect = InspectPanel(gui, send, complain)
+        with tabs.add_tab("Tick"):
+            self.tick = TickPanel(gui, palette, send, complain)
         with tabs.add_tab("Truth"):
             self.truth = TruthPanel(gui, palette)
         self.tune = TunePanel(gui, tabs.add_tab("Tune"), send, complain)
@@ -47,6 +50,8 @@ class Panels:
             "cells": Layer(5, self.senses.draw_cells),
             "memory": Layer(2, self.memory.draw),
             "inspected": Layer(4, self.inspect.draw),
+            "walk": Layer(10, self.tick.draw_walk),
+            "timings": Layer(1, self.tick.draw_timings),
             "numbers": Layer(2, self.truth.draw_numbers),
             "series": Layer(1, self.truth.draw_series),
             "tune": Layer(5, self.tune.follow),
@@ -60,6 +65,8 @@ class Panels:
         offer["cells"].offer(now_s, snapshot.pose_cells, snapshot)
         offer["memory"].offer(now_s, snapshot)
         offer["inspected"].offer(now_s, snapshot.inspected)
+        offer["walk"].offer(now_s, snapshot.walk)
+        offer["timings"].offer(now_s, snapshot.timings)
         offer["numbers"].offer(now_s, snapshot)
         offer["series"].offer(now_s, snapshot.series)
         offer["tune"].offer(now_s, snapshot.parameters)
@@ -69,6 +76,7 @@ class Panels:
         """Draws all of it again in other colours."""
         self.senses.palette = palette
         self.truth.set_palette(palette)
+        self.tick.palette = palette
         for layer in self._layers.values():
             layer.forget()
 

@@ -1,4 +1,4 @@
-"""Truth: how far map and odometry are from where the robot really is, and what each stage of a tick costs."""
+"""Truth: how far map and odometry are from where the robot really is, and how far the map is from its own links."""
 
 from __future__ import annotations
 
@@ -24,13 +24,21 @@ class TruthPanel:
         self._counts = gui.add_uplot(
             (nothing, nothing * 0, nothing * 0), _count_series(palette), axes=_axes(palette), scales=_PLAIN, height=170
         )
-        self._timings = gui.add_html("")
+        self._residual_words = gui.add_html("")
+        self._residual = gui.add_uplot(
+            (nothing, nothing * 0, nothing * 0),
+            _residual_series(palette),
+            axes=_axes(palette),
+            scales=_PLAIN,
+            height=170,
+        )
         self._palette = palette
 
     def set_palette(self, palette: Palette) -> None:
         self._palette = palette
         self._errors.series, self._errors.axes = _error_series(palette), _axes(palette)
         self._counts.series, self._counts.axes = _count_series(palette), _axes(palette)
+        self._residual.series, self._residual.axes = _residual_series(palette), _axes(palette)
 
     def draw_numbers(self, snapshot: Snapshot) -> None:
         again = snapshot.revisit_consistency
@@ -41,23 +49,29 @@ class TruthPanel:
         rows += [("revisits within half a metre", "no revisits yet" if again is None else f"{again:.0%}")]
         errors = markup.table("Error against the true world", rows)
         self._page.content = markup.page(markup.note("The robot knows none of this."), errors)
-        self._timings.content = markup.page(_timings(snapshot.stage_ms, self._palette))
 
     def draw_series(self, series: Series) -> None:
         if len(series.time_s) < 2:
             return
         self._errors.data = (series.time_s, series.map_error_m, series.odometry_error_m)
         self._counts.data = (series.time_s, series.views, series.experiences)
+        self._residual.data = (series.time_s, series.residual_mm, series.residual_deg)
+        self._residual_words.content = markup.page(*residual_words(series))
 
 
-def _timings(stage_ms: dict[str, float], palette: Palette) -> str:
-    """Milliseconds of each stage, as bars against the whole tick."""
-    total = sum(stage_ms.values())
-    parts = [markup.heading(f"A tick takes {total:.1f} of 100 ms")]
-    for name, ms in stage_ms.items():
-        parts.append(markup.caption(f"{name}: {ms:.2f} ms"))
-        parts.append(markup.bar(ms / max(total, 1e-9), palette.packets[1], palette.text_2, height_px=5))
-    return "".join(parts)
+def residual_words(series: Series) -> list[str]:
+    now = f"{series.residual_mm[-1]:.1f} mm and {series.residual_deg[-1]:.2f}°"
+    why = "A closed loop makes links and map disagree; correction spreads the difference over the map."
+    return [markup.heading(f"Map correction: a residual of {now}"), markup.note(why)]
+
+
+def _residual_series(palette: Palette) -> tuple[uplot.Series, ...]:
+    angle = uplot.Series(label="angle (°)", stroke=markup.css(palette.robot), width=2, dash=(6, 4))
+    return (
+        uplot.Series(label="s"),
+        uplot.Series(label="distance (mm)", stroke=markup.css(palette.packets[1]), width=2),
+        angle,
+    )
 
 
 def _axes(palette: Palette) -> tuple[uplot.Axis, ...]:

@@ -30,6 +30,7 @@ export class Header {
     this.showWorlds(state.world, page.worlds);
     this.showStatus(state, page);
     this.showGoal(state.goal);
+    this.showWalk(page.walk);
   }
 
   showWorlds(world, worlds) {
@@ -49,6 +50,20 @@ export class Header {
     chip.title = page.doing;
     const words = chip.querySelector("span");
     if (words.textContent !== text) words.textContent = text; // a changed text is read aloud: only then
+  }
+
+  // One tick, stage by stage.
+  showWalk(walk) {
+    const box = $("walk");
+    box.hidden = !walk;
+    if (!walk) return;
+    box.querySelector(".which").textContent = `${walk.at} of ${walk.of}`;
+    $("walk-back").disabled = walk.at === 1;
+    $("walk-next").textContent = walk.at === walk.of ? "Next tick" : "Next stage";
+    const title = box.querySelector(".title");
+    if (title.textContent === walk.title && box.querySelector(".words").textContent === walk.words) return;
+    title.textContent = walk.title; // a changed text is read aloud: only then
+    box.querySelector(".words").textContent = walk.words;
   }
 
   showGoal(goal) {

@@ -27,6 +27,7 @@ link.addEventListener("state", ({ detail }) => {
   if (detail.theme === null) link.tell({ type: "theme", name: preferredTheme() });
   else showTheme(detail.theme);
   header.show(state, detail.page);
+  stage.inspected(detail.page.inspected);
   timeline.at(state.time_s);
   document.body.dataset.alive = "true";
 });
@@ -57,6 +58,7 @@ async function command(wish, done) {
 
 const playOrPause = () => state && command({ type: state.running ? "pause" : "resume" });
 const oneTick = () => command({ type: "step", ticks: 1 });
+const oneStage = (back = false) => command({ type: "step_stage", back });
 const explore = () => command({ type: "set_mode", mode: "explore" }, "Exploring by itself.");
 const kidnap = () => command({ type: "kidnap" }, "Moved to a random place. The robot was not told.");
 const cancelGoal = () => command({ type: "cancel_goal" });
@@ -67,6 +69,10 @@ const restart = (seed) => {
 
 on("play", playOrPause);
 on("step", oneTick);
+on("stage-step", () => oneStage());
+on("walk-next", () => oneStage());
+on("walk-back", () => oneStage(true));
+on("walk-end", () => command({ type: "resume" }));
 on("explore", explore);
 on("kidnap", kidnap);
 on("kidnap-phone", kidnap);
@@ -98,6 +104,7 @@ function act(name) {
   if (view) stage.show(view);
   else if (name === " ") playOrPause();
   else if (name === ".") oneTick();
+  else if (name === ",") oneStage();
   else if (name === "e") explore();
   else if (name === "k") kidnap();
   else if (name === "x" && state?.goal) cancelGoal();

@@ -67,6 +67,15 @@ export class Stage {
     const timer = setInterval(() => (dismissSlowNotice(paper) || --looks === 0) && clearInterval(timer), 250);
   }
 
+  // Whoever chooses something sees what is told of it; a page that has just come shows what it showed.
+  inspected(name) {
+    const before = this.looked;
+    this.looked = name;
+    if (name === null || before === undefined || name === before) return;
+    const tabs = this.frame.contentDocument?.querySelectorAll("[role=tab]") ?? [];
+    for (const tab of tabs) if (tab.textContent.trim() === "Inspect") tab.click();
+  }
+
   // On a phone viser's panel would cover the stage; a button brings it.
   showPanels(on) {
     this.panels = on;

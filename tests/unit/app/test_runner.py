@@ -9,7 +9,7 @@ import pytest
 from app import runner as runner_module
 from app.config import Config
 from app.runner import Runner
-from app.session import Session
+from app.session import PARTS, Session
 from sim2d import load_world
 from web import messages as m
 
@@ -291,7 +291,7 @@ def test_a_reset_that_cannot_be_is_refused_and_the_old_run_goes_on(start: Callab
     assert (now.run, now.tick) == (1, 6)
 
 
-def fail() -> None:
+def fail(*_: object) -> None:
     raise RuntimeError("a wheel came off")
 
 
@@ -356,10 +356,10 @@ def test_snapshots_of_a_run_only_go_forwards(start: Callable[..., Runner]) -> No
         assert now is not None
         seen.append((now.run, now.tick))
         assert len(now.map.ids) == len(now.times.seconds)
-        assert now.stage_ms.keys() == {"office and senses", "RatSLAM", "pilot"}
+        assert [timing.part for timing in now.timings] == list(PARTS)
     assert seen == sorted(seen)
     assert seen[-1][1] > seen[0][1]
-    assert np.isfinite(list(now.stage_ms.values())).all()
+    assert np.isfinite([timing.mean_ms for timing in now.timings]).all()
 
 
 def test_what_is_inspected_is_the_same_for_all_and_ends_with_the_run(start: Callable[..., Runner]) -> None:
@@ -389,3 +389,50 @@ def test_a_question_is_answered_and_changes_nothing(start: Callable[..., Runner]
     assert isinstance(answer.result, m.ExperienceReport)
     assert isinstance(do(runner, m.ReadExperience(10**6)), m.Refused)
     assert runner.session.state_hash() == before
+
+
+def stage(*, back: bool = False) -> m.StepStage:
+    return m.StepStage(type="step_stage", back=back)
+
+
+def test_a_tick_is_walked_through_stage_by_stage(start: Callable[..., Runner]) -> None:
+    runner, plain = start(running=True, speed=1.0), start()
+    now = accept(runner, stage())
+    assert not now.running
+    tick = now.tick
+    assert now.walk is not None
+    names = [shown.name for shown in now.walk.stages]
+    seen = [now.walk.at]
+    for _ in names[1:]:
+        now = accept(runner, stage())
+        assert now.walk is not None
+        assert now.tick == tick
+        seen.append(now.walk.at)
+    assert seen == list(range(len(names)))
+    assert now.pose_cells.packets == snapshot(runner).pose_cells.packets
+    back = accept(runner, stage(back=True)).walk
+    assert back is not None
+    assert back.at == len(names) - 2
+    accept(runner, stage())
+    following = accept(runner, stage())
+    assert following.tick == tick + 1
+    assert following.walk is not None
+    assert following.walk.at == 0
+    assert refuse(runner, stage(back=True)).field == "back"
+    accept(plain, step(tick + 1))
+    assert runner.session.state_hash() == plain.session.state_hash()
+    assert accept(runner, step()).walk is None
+    assert refuse(runner, stage(back=True)).reason == "there is no stage before this one; go forwards"
+
+
+def test_a_fault_ends_the_walk(start: Callable[..., Runner], monkeypatch: pytest.MonkeyPatch) -> None:
+    runner = start()
+
+    def breaks(*_: object, **__: object) -> None:
+        raise RuntimeError("broken")
+
+    monkeypatch.setattr(runner.session.brain.experience_map, "correct", breaks)
+    now = accept(runner, stage())
+    assert now.walk is None
+    assert now.fault == "RuntimeError: broken"
+    assert refuse(runner, stage()).field == "type"

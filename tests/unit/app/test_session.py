@@ -10,7 +10,7 @@ import pytest
 from app.chronicle import PLACES_EVERY_S, SERIES_POINTS, Chronicle
 from app.config import Config
 from app.pilot.pilot import BEHAVIOURS
-from app.session import Session, is_lost, spread_goals
+from app.session import PARTS, Session, is_lost, spread_goals
 from app.snapshots import STRONGEST, Snapshots
 from ratslam_core import Packet, Pose2
 from sim2d import World, load_world
@@ -38,8 +38,9 @@ def test_a_tick_is_a_tenth_of_a_second() -> None:
         assert session.tick_count == tick
         assert session.time_s == pytest.approx(tick / 10)
     assert session.evaluation.path_m > 0.5
-    assert all(spent > 0 for spent in session.stage_s.values())
-    assert list(session.stage_s) == ["office and senses", "RatSLAM", "pilot"]
+    timings = session.stopwatch.mean_and_worst_ms
+    assert list(timings) == list(PARTS)
+    assert all(0 < mean <= worst for mean, worst in timings.values())
 
 
 def test_links_remember_what_the_pilot_was_doing() -> None:
@@ -297,6 +298,7 @@ def test_trail_path_and_series_grow() -> None:
     assert chronicle.series.experiences[-1] <= len(session.brain.experience_map)
     assert np.all(np.diff(chronicle.series.views) >= 0)
     assert not chronicle.series.map_error_m.flags.writeable
+    assert chronicle.series.residual_mm[-1] == pytest.approx(1000 * session.brain.experience_map.residual[0], abs=5)
     for _ in range(1300):
         session.tick()
         chronicle.watch()

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from ratslam_core import ExperienceMap, Pose2
+from ratslam_core.types import wrap_angle
 
 from .drives import CELL_M, SHAPE, Robot
 
@@ -35,3 +38,27 @@ def test_a_map_without_experiences_says_so() -> None:
     assert (len(empty), empty.link_count, empty.active) == (0, 0, -1)
     with pytest.raises(ValueError, match="there is no experience yet"):
         empty.robot  # noqa: B018
+
+
+def test_the_residual_is_how_far_links_and_map_disagree() -> None:
+    robot = Robot(start=Pose2(1.0, 0.0, 0.3))
+    robot.see(4, new=True)
+    assert robot.map.residual == (0.0, 0.0)
+    for view, turn in ((9, 0.2), (11, -0.4), (12, 1.0)):
+        robot.go(1.0, turn, view, new=True)
+    map_ = robot.map
+    assert map_.residual == pytest.approx((0.0, 0.0), abs=1e-9)
+    map_.poses[2] += (0.3, -0.4, 0.1)
+    t = map_.transitions
+    squares = angles = weights = 0.0
+    for row in range(t.count):
+        if not t.travelled[row]:
+            continue
+        i, j = t.ends[row].tolist()
+        said = map_.pose(i).compose(Pose2(*t.move[row].tolist()))
+        has, weight = map_.pose(j), float(t.believed[row])
+        squares += weight * ((said.x - has.x) ** 2 + (said.y - has.y) ** 2)
+        angles += weight * wrap_angle(said.heading_rad - has.heading_rad) ** 2
+        weights += weight
+    assert map_.residual == pytest.approx((math.sqrt(squares / weights), math.sqrt(angles / weights)))
+    assert map_.residual[0] > 0.1

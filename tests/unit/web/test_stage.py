@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from viser import _messages
 
-from tests.fake_snapshots import fake_reports, fake_snapshot
+from tests.fake_snapshots import fake_reports, fake_snapshot, fake_walk
 from web.latest import Latest
 from web.messages import (
     Accepted,
@@ -26,9 +26,12 @@ from web.messages import (
     MapLayer,
     OccupancyPicture,
     Refused,
+    Resume,
     SetGoal,
     SetParameter,
     Snapshot,
+    Step,
+    StepStage,
     TimesLayer,
 )
 from web.stage import Stage
@@ -813,3 +816,54 @@ def test_buttons_choose_what_is_active_now(bench: Bench) -> None:
     assert bench.engine.commands == [Inspect(type="inspect", view=4)]
     panel._typed(SimpleNamespace(client_id=None, target=SimpleNamespace(value=5)), "view")  # type: ignore[arg-type]
     assert len(bench.engine.commands) == 1  # not a person
+
+
+# ---------------------------------------------------------------- one tick
+
+
+def test_a_walk_is_told_stage_by_stage(bench: Bench) -> None:
+    panel = bench.stage.panels.tick
+    bench.show(fake_snapshot(430), 5)
+    assert "Press next stage" in panel._walk.content
+    bench.show(replace(fake_snapshot(430), walk=fake_walk(1)), 5)
+    page = panel._walk.content
+    assert "Stage 2 of 3" in page
+    assert "This is what the image did." in page
+    assert "This is what the injection did." in page
+    assert "This is what the correction did." not in page  # it comes later
+    assert "Correction" in page
+
+
+def test_timings_are_bars_and_milliseconds(bench: Bench) -> None:
+    bench.show(fake_snapshot(430), 5)
+    page = bench.stage.panels.tick._timings.content
+    assert "A tick takes 1.80 of its 100 ms" in page
+    assert "view match" in page
+    assert "0.25, worst 0.7 ms" in page
+
+
+@pytest.mark.parametrize(
+    ("button", "command"),
+    [
+        ("back", StepStage(type="step_stage", back=True)),
+        ("next stage", StepStage(type="step_stage")),
+        ("tick", Step(type="step")),
+        ("play", Resume(type="resume")),
+    ],
+)
+def test_the_tick_s_buttons(bench: Bench, button: str, command: Command) -> None:
+    panel = bench.stage.panels.tick
+    panel._complain = lambda *words: bench.complaints.append(words)
+    panel._pressed(SimpleNamespace(client_id=7, target=SimpleNamespace(value=button)))  # type: ignore[arg-type]
+    assert bench.engine.commands == [command]
+    bench.engine.answers[0].set_result(Refused("back", True, "there is no stage before this one"))
+    bench.show(None, 0.05)
+    assert bench.complaints == [(7, "Not done", "there is no stage before this one")]
+
+
+def test_the_residual_of_map_correction_is_told_and_drawn(bench: Bench) -> None:
+    snapshot = fake_snapshot(930)
+    bench.show(snapshot, 5)
+    truth = bench.stage.panels.truth
+    assert f"a residual of {snapshot.series.residual_mm[-1]:.1f} mm" in truth._residual_words.content
+    assert np.array_equal(truth._residual.data[1], snapshot.series.residual_mm)

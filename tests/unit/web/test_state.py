@@ -9,8 +9,8 @@ import numpy as np
 import orjson
 import pytest
 
-from tests.fake_snapshots import fake_snapshot
-from web.state import StateText, state, to_json
+from tests.fake_snapshots import fake_reports, fake_snapshot, fake_walk
+from web.state import StateText, page_fields, state, to_json
 
 
 @pytest.fixture
@@ -70,3 +70,15 @@ def test_each_text_is_made_once_per_snapshot(snapshot):
     before = text.light(snapshot)
     assert text.light(replace(snapshot, tick=501)) != before
     assert text.full(snapshot) == text.full(snapshot)
+
+
+def test_the_page_is_told_of_the_walk_and_of_what_is_inspected(snapshot):
+    plain = page_fields(snapshot)
+    assert plain["walk"] is None
+    assert plain["inspected"] is None
+    walking = page_fields(replace(snapshot, walk=fake_walk(2)))["walk"]
+    assert walking == {"at": 3, "of": 3, "title": "Correction", "words": "This is what the correction did."}
+    names = {
+        kind: page_fields(replace(snapshot, inspected=report))["inspected"] for kind, report in fake_reports().items()
+    }
+    assert names == {"experience": "experience #12", "view": "view #7", "cell": "pose cells at 31, 22"}

@@ -1,0 +1,45 @@
+"""What the parts of a tick cost. Reads the clock; nothing that the session does depends on what it says."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+KEPT = 100  # ticks
+
+
+class Stopwatch:
+    """`start`, then `lap(part)` after each part, and `finish`; a part that comes twice counts together."""
+
+    def __init__(self, parts: tuple[str, ...]) -> None:
+        self.parts = parts
+        self._row = {part: k for k, part in enumerate(parts)}
+        self._kept_s = np.zeros((KEPT, len(parts)))
+        self._now_s = np.zeros(len(parts))
+        self._ticks = 0
+        self._then = time.perf_counter()
+
+    def start(self) -> None:
+        """A tick begins; or it goes on after something that does not belong to it."""
+        self._then = time.perf_counter()
+
+    def lap(self, part: str) -> None:
+        now = time.perf_counter()
+        self._now_s[self._row[part]] += now - self._then
+        self._then = now
+
+    def finish(self) -> None:
+        """The tick ends."""
+        self._kept_s[self._ticks % KEPT] = self._now_s
+        self._now_s[:] = 0.0
+        self._ticks += 1
+
+    @property
+    def mean_and_worst_ms(self) -> dict[str, tuple[float, float]]:
+        """Of each part over the last hundred ticks, milliseconds."""
+        kept = 1e3 * self._kept_s[: min(self._ticks, KEPT)]
+        if len(kept) == 0:
+            return dict.fromkeys(self.parts, (0.0, 0.0))
+        means, worsts = kept.mean(0).tolist(), kept.max(0).tolist()
+        return dict(zip(self.parts, zip(means, worsts, strict=True), strict=True))

@@ -1,0 +1,169 @@
+"""A tick stage by stage: what is told of it is what the engine did, and telling it changes nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.attractor_stages import Activity, excited, inhibited, iterations, normalised
+from app.chronicle import Chronicle
+from app.config import Config
+from app.session import PARTS, Session
+from app.snapshots import Snapshots
+from app.stopwatch import KEPT, Stopwatch
+from app.tick_stages import TITLES, TickRecorder, Walk
+from ratslam_core import PoseCellParams, PoseCells
+from ratslam_core.slam import STAGES
+from sim2d import load_world
+
+OFFICE = load_world("office")
+
+
+def recorded(session: Session) -> tuple[Walk, dict]:
+    """A walk through the next tick, and the parts before it."""
+    snapshots = Snapshots(session, Chronicle(session), 1, ())
+    before = snapshots.parts()
+    recorder = TickRecorder(session, before)
+    session.tick(recorder)
+    snapshots.refresh()
+    return recorder.walk(snapshots.parts()), before
+
+
+def explored(seconds: int, config: Config | None = None) -> Session:
+    session = Session(OFFICE, 5, config)
+    for _ in range(10 * seconds):
+        session.tick()
+    return session
+
+
+def activity_of(pose_cells: PoseCells) -> Activity:
+    cells, values = pose_cells.active
+    order = np.argsort(cells[:, 3])
+    return Activity(cells[order, 3].astype(np.int64), values[order].astype(np.float64))
+
+
+@pytest.mark.parametrize("local_inhibit", [0.0, 0.3])
+@pytest.mark.parametrize("size", [(8, 8, 36), (64, 64, 36)])
+@pytest.mark.parametrize("way", [0.0, 0.9, 3.1])
+def test_the_stages_lead_where_the_engine_went(local_inhibit: float, size: tuple[int, int, int], way: float) -> None:
+    params = PoseCellParams(n_x=size[0], n_y=size[1], n_theta=size[2], local_inhibit=local_inhibit)
+    pose_cells = PoseCells(params)
+    rng = np.random.default_rng(4)
+    for _ in range(6):
+        pose_cells.integrate(way * params.cell_m, 0.1)
+        pose_cells.inject(
+            rng.choice(len(pose_cells.slot), 40, replace=False).astype(np.int32), np.full(40, 0.004, np.float32)
+        )
+        now = activity_of(pose_cells)
+        for _ in range(iterations(way * params.cell_m, params)):
+            now = normalised(inhibited(excited(now, params), params))
+        pose_cells.attract()
+        engine = activity_of(pose_cells)
+        mine, its = np.zeros(len(pose_cells.slot)), np.zeros(len(pose_cells.slot))
+        mine[now.flat], its[engine.flat] = now.values, engine.values
+        assert np.abs(mine - its).max() < 2e-6
+
+
+def test_every_stage_is_told_in_the_order_of_the_engine() -> None:
+    seen: list[str] = []
+    session = explored(1)
+    session.tick(seen.append)
+    assert tuple(seen) == STAGES
+    walk, before = recorded(session)
+    assert [stage.name for stage in walk.told.stages] == list(TITLES)
+    assert all(stage.words.endswith(".") and len(stage.words) < 160 for stage in walk.told.stages)
+    assert walk.parts is before
+    assert walk.moved(-1) is None
+
+
+def test_recording_changes_nothing() -> None:
+    plain, watched = explored(20), explored(20)
+    for _ in range(5):
+        plain.tick()
+        recorded(watched)
+    assert plain.state_hash() == watched.state_hash()
+
+
+def test_each_stage_shows_pose_cells_and_map_as_they_were() -> None:
+    session = explored(20)
+    params = session.brain.params.pose_cells
+    walk: Walk | None
+    walk, before = recorded(session)
+    parts = {}
+    while walk is not None:
+        parts[walk.told.stages[walk.told.at].name] = walk.parts
+        walk = walk.moved(1)
+    cells = {name: part["pose_cells"] for name, part in parts.items() if "pose_cells" in part}
+    assert cells["image"] is cells["view match"] is before["pose_cells"]
+    assert cells["path integration"].total == pytest.approx(1, abs=1e-5)
+    assert cells["injection"].total >= cells["path integration"].total - 1e-9
+    assert cells["excitation"].total == pytest.approx(cells["injection"].total, rel=1e-5)
+    assert cells["excitation"].active_cells > cells["injection"].active_cells
+    assert cells["inhibition"].active_cells < cells["excitation"].active_cells
+    assert cells["inhibition"].total < cells["excitation"].total
+    assert cells["normalisation"].total == pytest.approx(1, abs=1e-5)
+    assert cells["normalisation"].active_cells == cells["inhibition"].active_cells
+    assert cells["inhibition"].least > 0
+    assert params.inhibit > 0
+    assert parts["normalisation"]["map"] is before["map"]
+    assert len(parts["experience"]["map"].ids) == len(session.brain.experience_map)
+    assert len(parts["experience"]["times"].seconds) == len(session.brain.experience_map)
+    assert parts["correction"] == {}  # the end of the tick
+
+
+def test_what_is_new_recognised_or_silent_is_said() -> None:
+    words: dict[str, set[str]] = {name: set() for name in TITLES}
+    session = explored(3)
+    for k in range(150):
+        for _ in range(600 if k == 30 else 0):
+            session.tick()
+        walk, _ = recorded(session)
+        for stage in walk.told.stages:
+            words[stage.name].add(stage.words)
+    said = {name: " ".join(sorted(w)) for name, w in words.items()}
+    for phrase in ("a new one is stored as #", "it is recognised"):
+        assert phrase in said["view match"]
+    for phrase in ("Nothing is injected: the view is new", "of the activity, over its links to"):
+        assert phrase in said["injection"]
+    for phrase in ("is made, linked from #", "it stays active"):
+        assert phrase in said["experience"]
+    assert "the farthest experience moved" in said["correction"]
+
+
+def test_blind_and_standing_there_is_nothing_to_tell() -> None:
+    session = explored(1, replace(Config(), local_view=replace(Config().local_view, enabled=False)))
+    session.set_mode("manual")
+    for _ in range(30):
+        session.tick()
+    walk, _ = recorded(session)
+    words = {stage.name: stage.words for stage in walk.told.stages}
+    assert words["view match"].endswith("no view is active.")
+    assert words["injection"] == "Nothing is injected: there is no view."
+
+
+def test_the_stopwatch_keeps_a_hundred_ticks(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [0.0]
+    monkeypatch.setattr("app.stopwatch.time.perf_counter", lambda: now[0])
+    watch = Stopwatch(("a", "b"))
+    assert watch.mean_and_worst_ms == {"a": (0.0, 0.0), "b": (0.0, 0.0)}
+    for tick in range(KEPT + 50):
+        watch.start()
+        now[0] += 0.5 if tick == 20 else 0.002  # so long ago that it is forgotten
+        watch.lap("a")
+        now[0] += 0.001
+        watch.lap("b")
+        now[0] += 0.003
+        watch.lap("a")
+        watch.finish()
+    told = watch.mean_and_worst_ms
+    assert told["a"] == pytest.approx((5.0, 5.0))
+    assert told["b"] == pytest.approx((1.0, 1.0))
+
+
+def test_the_parts_of_a_tick_are_timed_apart() -> None:
+    session = explored(5)
+    told = session.stopwatch.mean_and_worst_ms
+    assert tuple(told) == PARTS
+    assert all(0 < mean <= worst for mean, worst in told.values())
