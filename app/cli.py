@@ -119,6 +119,8 @@ def _session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None
         raise ValueError(f"--seed must be from 0 to {2**32 - 1}, got {args.seed}")
     brain = None if args.brain is None else load_brain(args.brain)
     config = _config_of(args, Config() if brain is None else Config().with_engine(brain.params))
+    for words in config.warnings:
+        print(f"ratslam: note: {words}", file=sys.stderr)
     return open_world(args.world, args.scale, robot_radius_m=config.robot.robot_radius_m), config, brain
 
 

@@ -43,6 +43,17 @@ class Config:
             raise ValueError(f"image_width must be at least {COLUMNS}, a pixel for each column of a view")
 
     @property
+    def warnings(self) -> tuple[str, ...]:
+        """What can be set so and is likely not meant so."""
+        told, true = self.local_view.field_of_view, self.robot.camera_fov_rad
+        if abs(told - true) <= 1e-6:
+            return ()
+        return (
+            f"local_view.field_of_view is {told:g} rad but robot.camera_fov_rad {true:g}: the brain takes turns for "
+            f"{told / true:.2f} times what they are when it looks; set both alike",
+        )
+
+    @property
     def engine(self) -> RatSlamParams:
         return RatSlamParams(self.pose_cells, self.local_view, self.experience_map, self.goal_memory, self.occupancy)
 

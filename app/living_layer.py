@@ -38,12 +38,14 @@ def _layer(simulator: Simulator) -> LivingLayer:
         door_names=tuple(door.name for door in world.doors),
         doors=_table(living.segments[: len(world.doors)], 4),
         door_wanted=_frozen(living.door_wanted),
+        door_opening=_frozen(living.opening.astype(np.float32)),
         boxes=_table([(b.x, b.y, b.width, b.depth, b.height, b.angle_rad) for b in boxes], 6),
         box_rgb=_frozen(np.array([b.colour for b in boxes], np.uint8).reshape(-1, 3)),
         people=_table(rows, 5),
         people_rgb=_frozen(np.array([p.colour for p in people], np.uint8).reshape(-1, 3)),
         lamp_names=tuple(lamp.name for lamp in world.lamps),
-        lamps=_table([(k.x, k.y, float(on)) for k, on in zip(world.lamps, living.lamp_on, strict=True)], 3),
+        lamps=_table([(k.x, k.y, k.reach, float(on)) for k, on in zip(world.lamps, living.lit, strict=True)], 4),
+        lamp_on=_frozen(living.lamp_on.copy()),
         daylight=living.daylight,
     )
 

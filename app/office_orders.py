@@ -26,5 +26,6 @@ def carry_out(session: Session, order: m.OfficeOrder) -> str:
             simulator.remove_box(name)
             return f"{name} taken away"
         case m.UsePreset(name=name):
-            later = [key for key, value in values_of(name).items() if not session.set_parameter(key, value)]
-            return f"preset {name}" + (f"; from the next reset on: {', '.join(later)}" if later else "")
+            before = {key: value for key, _, value in session.config.items()}
+            waiting = [k for k, v in values_of(name).items() if not session.set_parameter(k, v) and before[k] != v]
+            return f"preset {name}" + (f"; from the next reset on: {', '.join(waiting)}" if waiting else "")

@@ -49,7 +49,18 @@ def preset(name: str, base: Config) -> Config:
 
 
 def values_of(name: str) -> dict[str, Value]:
-    """What a preset sets."""
-    if name not in PRESETS:
+    """What a preset sets. Its name may be written in small letters with hyphens, as one does on a command line."""
+    found = [values for known, values in PRESETS.items() if _plain(known) == _plain(name)]
+    if not found:
         raise ValueError(f"unknown preset {name!r}; expected one of: {', '.join(PRESETS)}")
-    return PRESETS[name]
+    return found[0]
+
+
+def preset_of(config: Config) -> str:
+    """The preset whose values these all are; the first if several, "" if none."""
+    values = {name: value for name, _, value in config.items()}
+    return next((n for n, wanted in PRESETS.items() if all(values[k] == v for k, v in wanted.items())), "")
+
+
+def _plain(name: str) -> str:
+    return name.strip().lower().replace(" ", "-")

@@ -97,6 +97,8 @@ class Runner:
         self._run += 1
         self._snapshots = Snapshots(self.session, self._chronicle, self._run, self._worlds)
         self._fault = None
+        for words in config.warnings:
+            self._chronicle.note("warning", words)
         self._hand_expires = math.inf
         self._due = time.perf_counter()
         self._publish()
@@ -169,6 +171,14 @@ class Runner:
 
     def _carry_out(self, command: m.Command) -> m.Refused | None:
         """Do what the command says; the field, its value and the reason when it cannot be."""
+        before = self.session.config.warnings
+        refused = self._obey(command)
+        for words in self.session.config.warnings:
+            if words not in before:
+                self._chronicle.note("warning", words)
+        return refused
+
+    def _obey(self, command: m.Command) -> m.Refused | None:
         session, note = self.session, self._chronicle.note
         match command:
             case m.SetGoal(x=x, y=y):

@@ -15,6 +15,7 @@ from app.chronicle import Chronicle
 from app.config import Value
 from app.inspection import inspect
 from app.living_layer import LivingView
+from app.presets import PRESETS, preset_of
 from app.session import Session
 from app.tick_stages import Walk
 from ratslam_core import Pose2
@@ -45,6 +46,7 @@ GOAL_MEMORY_EVERY_S = 0.5
 INSPECT_EVERY_S = 0.25
 REST = 30.0  # times what it cost to build a part is waited before it is built again, however large it has grown
 STRONGEST = 500
+_PRESETS = tuple(PRESETS)
 
 
 class Snapshots:
@@ -52,14 +54,14 @@ class Snapshots:
 
     def __init__(self, session: Session, chronicle: Chronicle, run: int, worlds: tuple[tuple[str, str], ...]) -> None:
         self._session, self._chronicle, self._run, self._worlds = session, chronicle, run, worlds
-        self._drawn: tuple[object, object, float] | None = None
+        self._drawn: tuple[object, object] | None = None
         self._world = self._draw_world()
         self._living = LivingView()
         self._map: MapLayer | None = None
         self._times: TimesLayer | None = None
         self._goal_timed: int | None = None
         self._map_due = self._times_due = -math.inf
-        self._parameters: tuple[object, tuple[Parameter, ...]] | None = None
+        self._parameters: tuple[object, tuple[Parameter, ...], str] | None = None
         self._occupancy = Slow(OCCUPANCY_EVERY_S, lambda: _occupancy(session))
         self.inspected = Inspect(type="inspect")  # what is looked at: nothing
         self.walk: Walk | None = None  # through the last tick
@@ -106,21 +108,24 @@ class Snapshots:
             series=chronicle.series,
             timings=tuple(Timing(part, *ms) for part, ms in session.stopwatch.mean_and_worst_ms.items()),
             events=chronicle.events,
-            parameters=self._parameter_rows(),
+            parameters=self._parameter_rows()[0],
             occupancy=self._occupancy.part(session.tick_count),
             goal_memory=self._goal_memory.part(session.tick_count),
             living=self._living.look(session.simulator),
             inspected=self._inspection.part(session.tick_count),
             active_experience=brain.experience_map.active,
             walk=None if self.walk is None else self.walk.told,
+            presets=_PRESETS,
+            preset=self._parameter_rows()[1],
         )
 
     def _draw_world(self) -> WorldDrawing:
         """Drawn anew only when walls, places or the camera's lens have changed."""
         simulator, params = self._session.simulator, self._session.simulator.params
         world, drawn = simulator.world, self._drawn
-        if drawn is None or drawn[0] is not world.walls or drawn[1:] != (world.places, params.camera_fov_rad):
-            self._drawn = (world.walls, world.places, params.camera_fov_rad)
+        now = (world.slow_zones, world.places, params.camera_fov_rad)
+        if drawn is None or drawn[0] is not world.walls or drawn[1] != now:
+            self._drawn = (world.walls, now)
             self._world = world_drawing(world, params.robot_radius_m, params.camera_fov_rad)
         return self._world
 
@@ -160,15 +165,16 @@ class Snapshots:
     def _inspect(self) -> Report | None:
         return inspect(self._session, self._chronicle, self.inspected)
 
-    def _parameter_rows(self) -> tuple[Parameter, ...]:
+    def _parameter_rows(self) -> tuple[tuple[Parameter, ...], str]:
+        """All parameters, and the preset that they are."""
         config = self._session.config
         if self._parameters is None or self._parameters[0] is not config:
             rows = [
                 Parameter(name=name, value=value, default=cast(Value, item.default), **item.metadata)
                 for name, item, value in config.items()
             ]
-            self._parameters = (config, tuple(rows))
-        return self._parameters[1]
+            self._parameters = (config, tuple(rows), preset_of(config))
+        return self._parameters[1:]
 
 
 Part = TypeVar("Part")
@@ -232,6 +238,7 @@ def world_drawing(world: World, robot_radius_m: float, camera_fov_rad: float) ->
         robot_radius_m=robot_radius_m,
         camera_fov_rad=camera_fov_rad,
         sonar_angles_rad=_frozen(np.array(SONAR_ANGLES_RAD, np.float32)),
+        slow_zones=tuple(_frozen(np.array(zone.corners, np.float32)) for zone in world.slow_zones),
     )
 
 

@@ -98,7 +98,7 @@ class Camera:
         things = self._look(x, y, heading_rad)
         eye = (x, y, heading_rad)
         living = self._living
-        self._lights.glow(living.lamp_on, living.daylight, eye, self._rays, self._counts, self._hits, self._glow)
+        self._lights.glow(living.lit, living.daylight, eye, self._rays, self._counts, self._hits, self._glow)
         if self._has_glass:
             self._panes[:] = -1
         if self._has_glass and reflections:

@@ -34,7 +34,7 @@ class Living:
         self.lamp_on = np.array([lamp.on for lamp in world.lamps], bool)
         self._level: float | None = None
         self.daylight = 1.0 if world.daylight is None else world.daylight.at(0.0)
-        self._people_on = True
+        self._people_on = self._lamps_on = True
         self.walkers = Walkers(world.people, rng, tick_s)
         self._script = sorted(world.script, key=lambda event: event.at_s)
         self._next = 0
@@ -49,8 +49,16 @@ class Living:
             self.segments[self._rows(i)] = _sides(box)
         self._show()
 
+    def begin(self, params: OfficeParams) -> None:
+        """What is switched off is away from the first moment on, not from the first step."""
+        self._lamps_on = params.lamps
+        self.box_present &= params.boxes
+        self.walkers.present &= params.people
+        self._show()
+
     def step(self, tick: int, robot: tuple[float, float], radius: float, comes: float, params: OfficeParams) -> None:
         """The tick that begins now. robot: its place; radius: its own; comes: how far it may come in a tick, metres."""
+        self._lamps_on = params.lamps
         if not self._anything:
             return
         time_s = tick * self._tick_s
@@ -63,7 +71,7 @@ class Living:
             self.daylight = self._level
         elif day is not None:
             self.daylight = day.at(time_s if params.daylight else 0.0)
-        self._step_boxes(robot, radius)
+        self._step_boxes(robot, radius, params.boxes)
         self._step_doors(time_s, robot, radius, params)
         walking = params.people and self._people_on
         self.walkers.step(
@@ -124,13 +132,18 @@ class Living:
         self._show()
 
     @property
+    def lit(self) -> NDArray[np.bool_]:
+        """Which lamps shine."""
+        return self.lamp_on & self._lamps_on
+
+    @property
     def door_wanted(self) -> NDArray[np.bool_]:
         """Which doors are open or on their way to be."""
         return self._wanted > 0.5
 
     def state(self) -> bytes:
         """All that decides the future."""
-        flags = [*self.box_present, *self._box_wanted, *self.lamp_on, self._people_on]
+        flags = [*self.box_present, *self._box_wanted, *self.lamp_on, self._people_on, self._lamps_on]
         level = -1.0 if self._level is None else self._level
         numbers = [*self.opening, *self._wanted, self.daylight, level, self._next, *map(float, flags)]
         automatic = repr(self._automatic).encode()
@@ -151,11 +164,12 @@ class Living:
             case "daylight":
                 self._level = event.level
 
-    def _step_boxes(self, robot: tuple[float, float], radius: float) -> None:
-        for i in np.flatnonzero(self.box_present != self._box_wanted):
+    def _step_boxes(self, robot: tuple[float, float], radius: float, switched_on: bool) -> None:
+        wanted = self._box_wanted & switched_on
+        for i in np.flatnonzero(self.box_present != wanted):
             box = self.world.boxes[i]
-            if not self._box_wanted[i] or distance_to_box(box, *robot) > radius + CLEARANCE_M:
-                self.box_present[i] = self._box_wanted[i]
+            if not wanted[i] or distance_to_box(box, *robot) > radius + CLEARANCE_M:
+                self.box_present[i] = wanted[i]
 
     def _step_doors(self, time_s: float, robot: tuple[float, float], radius: float, params: OfficeParams) -> None:
         for i, door in enumerate(self.world.doors):

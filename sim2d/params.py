@@ -157,10 +157,13 @@ class OfficeParams:
 
     people: bool = _switch(True, "people walk about; off = nobody is there", "ACRA 2004")
     doors: bool = _switch(True, "doors with a period open and shut by themselves", "ACRA 2004")
+    lamps: bool = _switch(True, "lamps shine that are on; off = none does", "ACRA 2004")
     daylight: bool = _switch(True, "daylight takes its course; off = as at the start", "ACRA 2004")
     reflections: bool = _switch(True, "glass mirrors what is before it; off = it is only pale", "ACRA 2004")
     slow_zones: bool = _switch(True, "slow floors slow the robot down", "IROS 2005")
+    boxes: bool = _switch(True, "boxes stand in the way; off = none is there")
     script: bool = _switch(True, "the world's script is carried out")
+    seed: int = _number(0, 0, 2**32 - 1, "", "", "seed of what people do; 0 = from the run's own")
 
     def __post_init__(self) -> None:
         _check(self)

@@ -107,6 +107,8 @@ class Simulator:
         if self.world is not self._first_world:
             self.world = self._first_world
             self._measure()
+        if self.office.seed:
+            living_rng = np.random.default_rng(self.office.seed)
         self.living = Living(self.world, living_rng, self.params.tick_s)
         if self._painted is self.world:
             self._camera.follow(self.living)
@@ -260,6 +262,7 @@ class Simulator:
 
     def _begin_here(self) -> None:
         x, y, _ = self._pose()
+        self.living.begin(self.office)
         self.living.make_way((x, y), self.params.robot_radius_m)
         self._solids.follow((x, y))
 

@@ -45,6 +45,7 @@ class WorldDrawing:
     robot_radius_m: float
     camera_fov_rad: float
     sonar_angles_rad: NDArray[np.float32]  # (8,), from the robot's heading
+    slow_zones: tuple[NDArray[np.float32], ...] = ()  # (k, 2) corners of each
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,12 +55,14 @@ class LivingLayer:
     door_names: tuple[str, ...]
     doors: NDArray[np.float32]  # (d, 4): x1 y1 x2 y2 of each leaf, its hinge first
     door_wanted: NDArray[np.bool_]  # (d,) open, or on its way to be
+    door_opening: NDArray[np.float32]  # (d,) 0 = shut, 1 = open
     boxes: NDArray[np.float32]  # (b, 6): x y width depth height angle of those that are there
     box_rgb: NDArray[np.uint8]  # (b, 3)
     people: NDArray[np.float32]  # (p, 5): x y heading radius height of those who are there
     people_rgb: NDArray[np.uint8]  # (p, 3)
     lamp_names: tuple[str, ...]
-    lamps: NDArray[np.float32]  # (l, 3): x y and 1 when it is on
+    lamps: NDArray[np.float32]  # (l, 4): x y reach and 1 when it shines
+    lamp_on: NDArray[np.bool_]  # (l,) its own switch; it shines when office.lamps is on, too
     daylight: float  # 1 = as painted
 
 
@@ -364,6 +367,8 @@ class Snapshot:
     inspected: Report | None = None
     active_experience: int = -1
     walk: TickWalk | None = None  # None: nothing is shown stage by stage
+    presets: tuple[str, ...] = ()
+    preset: str = ""  # the one whose values are all set
 
 
 # ---------------------------------------------------------------- in

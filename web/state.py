@@ -16,6 +16,7 @@ from web.messages import (
     Event,
     ExperienceReport,
     Goal,
+    LivingLayer,
     MapLayer,
     Pose,
     Report,
@@ -52,6 +53,7 @@ def state(snapshot: Snapshot) -> dict[str, Any]:
         "relocalisations": snapshot.relocalisations,
         "goal": None if snapshot.goal is None else _goal(snapshot.goal),
         "error_m": {"map": snapshot.error_map_m, "odometry": snapshot.error_odometry_m},
+        "living": None if snapshot.living is None else _living(snapshot.living),
     }
 
 
@@ -172,6 +174,17 @@ class StateText:
 
 def _pose(pose: Pose) -> dict[str, float]:
     return {"x": pose.x, "y": pose.y, "heading_rad": pose.heading_rad}
+
+
+def _living(layer: LivingLayer) -> dict[str, Any]:
+    """Doors from 0 (shut) to 1, lamps that shine, how many people and boxes are there, daylight (1 = as painted)."""
+    return {
+        "doors": dict(zip(layer.door_names, layer.door_opening.tolist(), strict=True)),
+        "lamps": dict(zip(layer.lamp_names, (layer.lamps[:, 3] > 0).tolist(), strict=True)),
+        "people": len(layer.people),
+        "boxes": len(layer.boxes),
+        "daylight": layer.daylight,
+    }
 
 
 def _goal(goal: Goal) -> dict[str, Any]:

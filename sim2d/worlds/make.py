@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from sim2d.importers.dress import Dresser, Point
-from sim2d.things import SlowZone
+from sim2d.things import Box, Daylight, Door, Event, Lamp, Person, SlowZone
 from sim2d.world import Panel, Place, Start, Wall, World
 from sim2d.world_writer import world_to_json
 
@@ -186,6 +186,55 @@ def twins() -> World:
     )  # fmt: skip
 
 
+def living() -> World:
+    """Rooms behind doors, with everything that can live in an office."""
+    sketch = Sketch([(0, 0), (14, 0), (14, 9), (0, 9)], seed=1906)
+    sketch.wall((0, 5.4), (4.6, 5.4), 2.5)
+    sketch.wall((9.2, 5.4), (14, 5.4), 2.3)
+    for x1, x2 in ((4.6, 6.4), (7.6, 9.2)):
+        sketch.walls.append(Wall(x1, 5.4, x2, 5.4, "glass", 2.6, (150, 185, 200), reflection=0.2))
+    for x in (4.6, 9.2):
+        sketch.wall((x, 5.4), (x, 9))
+    for x, y, w, d in ((0.5, 7.6, 1.6, 0.8), (6.0, 7.2, 1.8, 0.9), (11.8, 7.8, 1.6, 0.8), (3.0, 1.8, 1.6, 0.8),
+                       (9.4, 1.8, 1.6, 0.8)):  # fmt: skip
+        sketch.desk(x, y, w, d)
+    sketch.partition((6.2, 2.2), (8.0, 2.2))
+    world = sketch.world(
+        "living", "Living office, 14 x 9 m", "ACRA 2004",
+        "People walk, doors open and shut, lamps and daylight change, a box is put in the way: each with its switch.",
+        "after what Milford, Wyeth: ACRA 2004 had to cope with; plan and pictures are ours",
+        Start("home", 1.2, 1.0, 0.0),
+        Place("meeting room", 8.4, 6.4), Place("laboratory", 10.4, 7.0), Place("office", 3.6, 7.6),
+    )  # fmt: skip
+    return replace(
+        world,
+        doors=(
+            Door("office door", 1.9, 5.4, 0.0, DOOR_M, period_s=80.0, open_s=60.0),
+            Door("meeting room door", 6.4, 5.4, 0.0, DOOR_M, slides=True),
+            Door("laboratory door", 10.9, 5.4, 0.0, DOOR_M, swing_rad=math.pi / 2),
+        ),
+        lamps=(
+            Lamp("hall west", 3.0, 3.2, 4.5, 0.4), Lamp("hall east", 10.5, 3.2, 4.5, 0.4),
+            Lamp("office lamp", 2.3, 7.2, 3.0, 0.4), Lamp("meeting room lamp", 6.9, 7.2, 3.0, 0.4),
+            Lamp("laboratory lamp", 11.5, 7.2, 3.0, 0.4),
+        ),
+        daylight=Daylight((0.0, 300.0, 600.0), (0.75, 0.5, 0.75), 600.0),
+        boxes=(Box("parcel", 7.0, 3.3, 0.6, 0.5), Box("trolley", 12.9, 4.0, 0.5, 0.8, 0.9, present=False)),
+        people=(
+            Person("Ada", ((2.0, 4.4), (12.0, 4.4), (12.0, 1.2), (2.0, 1.2)), (2.0, 0.0, 3.0, 0.0), 0.7),
+            Person("Alan", ((2.5, 3.6), (2.5, 6.6), (3.8, 6.6)), (4.0, 0.0, 15.0), 0.6, loop=False, colour=(150, 60, 50)),
+            Person("Grace", ((11.5, 6.5), (11.5, 3.2), (8.8, 3.2)), (20.0, 0.0, 5.0), 0.8, loop=False,
+                   colour=(70, 120, 70)),
+        ),
+        slow_zones=(SlowZone("carpet", ((4.8, 5.6), (9.0, 5.6), (9.0, 8.8), (4.8, 8.8)), 0.6),),
+        script=(
+            Event(90.0, "close_door", "meeting room door"), Event(150.0, "open_door", "meeting room door"),
+            Event(200.0, "lamp_off", "hall east"), Event(260.0, "lamp_on", "hall east"),
+            Event(300.0, "box_appear", "trolley"), Event(420.0, "box_vanish", "trolley"),
+        ),
+    )  # fmt: skip
+
+
 def suburb() -> World:
     """Blocks of houses, seven by five, for runs of hours."""
     rng = np.random.default_rng(66)
@@ -222,7 +271,7 @@ def _houses(x: float, y: float, width: float, depth: float, rng: np.random.Gener
     return ring
 
 
-MADE: tuple[Callable[[], World], ...] = (corridors, campus, open_plan, two_goals, twins, suburb)
+MADE: tuple[Callable[[], World], ...] = (corridors, campus, open_plan, two_goals, twins, living, suburb)
 
 
 def main() -> None:

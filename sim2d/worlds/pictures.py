@@ -14,18 +14,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim2d.drawing import draw_world
+from sim2d.living import leaf
+from sim2d.things import Rgb
 from sim2d.world import World
 from sim2d.world_file import load_world, world_names
 
 _SIDE_PX = 1000  # of the longer side
 _RIM_PX = 16
 _FINE = 4  # coordinates in sixteenths of a pixel
-_KINDS = {"wall": ((60, 60, 64), 3), "partition": ((150, 120, 70), 2), "desk": ((70, 130, 180), 2)}  # colour BGR, width
+_KINDS = {
+    "wall": ((60, 60, 64), 3),
+    "partition": ((150, 120, 70), 2),
+    "desk": ((70, 130, 180), 2),
+    "glass": ((230, 190, 120), 3),
+}  # colour BGR, width
+_DOOR, _LAMP = (62, 104, 150), (90, 210, 250)
 _HOME, _PLACE, _SLOW = (40, 40, 220), (30, 140, 30), (200, 225, 255)
 
 
 def picture_of(world: World) -> NDArray[np.uint8]:
-    """(rows, columns, 3) BGR: walls, what hangs on them, slow floor, starts (red) and named places (green)."""
+    """(rows, columns, 3) BGR: walls, what hangs on them, slow floor, what lives, starts (red) and named places (green)."""
     x0, y0, x1, y1 = world.bounds
     scale = (_SIDE_PX - 2 * _RIM_PX) / max(x1 - x0, y1 - y0)
     rows = round((y1 - y0) * scale) + 2 * _RIM_PX
@@ -48,6 +56,16 @@ def picture_of(world: World) -> NDArray[np.uint8]:
         for panel, rgb in zip(drawing.panels, drawing.panel_rgb.tolist(), strict=True):
             a, b = at(panel[:4]).tolist()
             cv2.line(image, a, b, rgb[::-1], 2, cv2.LINE_AA, _FINE)
+    for door in world.doors:
+        a, b = at(leaf(door, 0.0)).tolist()
+        cv2.line(image, a, b, _DOOR, 3, cv2.LINE_AA, _FINE)
+    for lamp in world.lamps:
+        cv2.circle(image, at([(lamp.x, lamp.y)])[0].tolist(), 9 << _FINE, _LAMP, -1, cv2.LINE_AA, _FINE)
+    for box in world.boxes:
+        cv2.polylines(image, [at(box.corners)], True, _bgr(box.colour), 2, cv2.LINE_AA, _FINE)
+    for person in world.people:
+        cv2.polylines(image, [at(person.path)], person.loop, _bgr(person.colour), 1, cv2.LINE_AA, _FINE)
+        _dot(image, at([person.path[0]])[0].tolist(), _bgr(person.colour))
     for place in world.places:
         _dot(image, at([(place.x, place.y)])[0].tolist(), _PLACE)
         _label(image, at([(place.x, place.y)])[0] >> _FINE, place.name)
@@ -57,6 +75,10 @@ def picture_of(world: World) -> NDArray[np.uint8]:
         _dot(image, a, _HOME)
         cv2.line(image, a, b, _HOME, 3, cv2.LINE_AA, _FINE)
     return image
+
+
+def _bgr(colour: Rgb) -> Rgb:
+    return colour[2], colour[1], colour[0]
 
 
 def _dot(image: NDArray[np.uint8], at: list[int], colour: tuple[int, int, int]) -> None:

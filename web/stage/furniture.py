@@ -21,7 +21,8 @@ HEIGHTS = {"wall": 0.62, "partition": 0.42, "desk": 0.24}
 FRONT = 0.18
 METRE_HIGH = 0.62 / 2.5  # plate units of height for a metre of any other thing, or of a panel
 PANEL_THICK = 0.11  # stands out from a wall on its own side
-THICK = {"wall": 0.1, "partition": 0.07}
+THICK = {"wall": 0.1, "partition": 0.07, "glass": 0.03}
+GLASS_RGB: Rgb = (150, 200, 225)
 
 
 def add_floor(
@@ -36,6 +37,8 @@ def add_floor(
         return np.column_stack([(xy[:, 0] - fit.low[0]) * px, height - (xy[:, 1] - fit.low[1]) * px])
 
     walls = np.asarray(world.walls, np.float64)
+    for corners in world.slow_zones:
+        images.tint(floor, pixels(np.asarray(corners, np.float64)), palette.packets[0], 0.22)
     lines = np.hstack([pixels(walls[:, :2]), pixels(walls[:, 2:])]) if len(walls) else walls
     solids = [pixels(outline) for _, outline in solid_runs(world)]
     floor = images.contact_shadow(floor, lines, solids, 0.16 * FLOOR_PX_PER_UNIT * fit.relief, palette.shadow)
@@ -60,6 +63,9 @@ def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: Wor
     """One batch of boxes for walls and panels, one mesh for the closed outlines."""
     runs = solid_runs(world)
     closed = {row for rows, _ in runs for row in rows}
+    panes = [row for row in range(len(world.walls)) if world.wall_kind[row] == "glass"]
+    _add_glass(scene, f"{name}_glass", [_wall_box(world, fit, row, palette) for row in panes])
+    closed.update(panes)
     boxes = [_wall_box(world, fit, row, palette) for row in range(len(world.walls)) if row not in closed]
     boxes += [_panel_box(world, fit, row) for row in range(len(world.panels))]
     middles = (world.panels[:, :2] + world.panels[:, 2:4]) / 2
@@ -85,10 +91,16 @@ def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: Wor
         chosen = [
             ribbons.extruded(fit.to_plate(outline), 0.0, _height(world, rows[0]) * fit.relief)
             for rows, outline in runs
-            if (world.wall_kind[rows[0]] == "desk") == (kind == "desk")
+            if (world.wall_kind[rows[0]] == "desk") == (kind == "desk") and world.wall_kind[rows[0]] != "glass"
         ]
         colour = palette.lit(palette.desk if kind == "desk" else palette.partition)
         add_mesh(scene, f"{name}_{kind}", ribbons.joined(*chosen) if chosen else ribbons.NOTHING, colour)
+
+
+def _add_glass(scene: viser.SceneApi, name: str, panes: list[Box]) -> None:
+    """What one sees through: light blue, in one mesh."""
+    solid = [ribbons.turned_box(*pane[:3]) for pane in panes]
+    add_mesh(scene, name, ribbons.joined(*solid) if solid else ribbons.NOTHING, GLASS_RGB, opacity=0.35)
 
 
 Box = tuple[tuple[float, float, float], tuple[float, float, float], float, Rgb]  # centre, size, turn, colour

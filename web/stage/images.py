@@ -83,6 +83,14 @@ def colour_bar(ramp: NDArray[np.uint8], height_px: int = 22) -> Pixels:
     return np.repeat(ramp[None], height_px, 0)
 
 
+def tint(canvas: Pixels, corners: NDArray[np.float64], colour: Rgb, share: float) -> None:
+    """Lay a colour over a polygon (n, 2) of pixels, in place."""
+    mask = Image.new("L", canvas.shape[1::-1], 0)
+    ImageDraw.Draw(mask).polygon([(float(x), float(y)) for x, y in corners], fill=255)
+    inside = np.asarray(mask) > 0
+    canvas[inside] = (canvas[inside] * (1.0 - share) + np.array(colour) * share).astype(np.uint8)
+
+
 def paste(canvas: Pixels, image: Pixels, left: int, top: int) -> None:
     """Lays RGB or RGBA onto an RGB canvas, in place, cut off at its edges."""
     height, width = min(image.shape[0], canvas.shape[0] - top), min(image.shape[1], canvas.shape[1] - left)

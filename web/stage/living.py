@@ -1,4 +1,7 @@
-"""What moves in the office, on the stage: leaves of doors, boxes, people, lamps. Handles are moved, not made anew."""
+"""What lives in the office, on the stage: leaves of doors, boxes, people, lamps and their light, the dark of daylight.
+
+Handles are moved, not made anew.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +20,11 @@ from web.stage.signs import add_mesh
 
 LEAF_THICK, LEAF_HIGH, LAMP_Z = 0.07, 2.05 * METRE_HIGH, 0.74
 LAMP_RADIUS = 0.09
+LIT: Rgb = (255, 236, 170)
+POOL_Z, DARK_Z = 0.026, 0.022  # just above the floor
+LATE = np.array(
+    (0.0, -20.0, 16.0), np.float32
+)  # see-through meshes are drawn by their origin: near the viewer comes last
 HEAD = (0.62, 0.8, 1.0)  # of a person's height: shoulders, chin, top
 DOOR_RGB: Rgb = (150, 104, 62)
 REACH = 0.35  # plate units: a click so near to a leaf means the door
@@ -29,6 +37,20 @@ class LivingThings:
         self._scene, self._palette, self._root = scene, palette, root
         self._handles: dict[str, list[viser.MeshHandle]] = {"door": [], "box": [], "person": [], "lamp": []}
         self._shown: dict[viser.MeshHandle, tuple] = {}
+        self._pools = add_mesh(
+            scene, f"{root}/pools", ribbons.NOTHING, LIT, opacity=0.16, position=tuple(LATE.tolist()), visible=False
+        )
+        self._dark = add_mesh(
+            scene,
+            f"{root}/dark",
+            ribbons.NOTHING,
+            (4, 8, 20),
+            opacity=0.5,
+            position=tuple(LATE.tolist()),
+            visible=False,
+        )
+        self._lit: tuple = ()
+        self._dimmed: tuple = ()
         self.layer: LivingLayer | None = None
 
     def show(self, layer: LivingLayer | None, fit: OfficeFit) -> None:
@@ -42,13 +64,44 @@ class LivingThings:
             self._box(self._handle("box", i, _rgb(layer.box_rgb[i]) if layer else DOOR_RGB), box, fit)
         for i, person in enumerate(people):
             self._person(self._handle("person", i, _rgb(layer.people_rgb[i]) if layer else DOOR_RGB), person, fit)
-        for i, (x, y, on) in enumerate(lamps):
-            dark, lit = mix(self._palette.slab, self._palette.text_2, 0.3), (255, 236, 170)
-            handle = self._handle("lamp", i, lit if on else dark)
+        for i, (x, y, _, on) in enumerate(lamps):
+            handle = self._handle("lamp", i, LIT if on else mix(self._palette.slab, self._palette.text_2, 0.3))
             self._move(handle, fit, float(x), float(y), LAMP_Z * fit.relief, 0.0, (LAMP_RADIUS, LAMP_RADIUS, 0.02))
         for kind, count in zip(self._handles, map(len, (doors, boxes, people, lamps)), strict=True):
             for handle in self._handles[kind][count:]:
                 self._hide(handle)
+        self._shine(np.asarray(lamps, np.float64), fit)
+        self._dim(1.0 if layer is None else layer.daylight, fit)
+
+    def _shine(self, lamps: NDArray[np.float64], fit: OfficeFit) -> None:
+        """Light on the floor below each lamp that shines."""
+        shining = lamps[lamps[:, 3] > 0]
+        now = (shining.tobytes(), fit.scale)
+        if now == self._lit:
+            return
+        self._lit = now
+        self._pools.visible = bool(len(shining))
+        if len(shining):
+            middles = fit.to_plate(shining[:, :2])
+            discs = [
+                ribbons.disc((float(x), float(y)), 0.6 * float(reach) * fit.scale, POOL_Z, 36)
+                for (x, y), reach in zip(middles, shining[:, 2], strict=True)
+            ]
+            vertices, self._pools.faces = ribbons.joined(*discs)
+            self._pools.vertices = vertices - LATE
+
+    def _dim(self, daylight: float, fit: OfficeFit) -> None:
+        """The floor is the darker the less daylight there is."""
+        now = (round(min(max(daylight, 0.0), 1.0), 2), fit.size_m)
+        if now == self._dimmed:
+            return
+        self._dimmed = now
+        self._dark.visible = now[0] < 1.0
+        if now[0] < 1.0:
+            half_x, half_y = (0.5 * side * fit.scale for side in fit.size_m)
+            vertices, self._dark.faces = ribbons.flat_polygon(2 * _SQUARE * (half_x, half_y), DARK_Z)
+            self._dark.vertices = vertices - LATE
+            self._dark.opacity = 0.75 * (1.0 - now[0])
 
     def door_at(self, place: tuple[float, float], fit: OfficeFit) -> tuple[str, bool] | None:
         """The door on whose leaf a click (plate units) has landed, and whether it is to be open."""
@@ -139,4 +192,4 @@ _MESHES = {
     "person": _figure(),
     "lamp": ribbons.extruded(ribbons.circle(1.0), 0.0, 1.0),
 }
-_NO_ROWS = (np.zeros((0, 4)), np.zeros((0, 6)), np.zeros((0, 5)), np.zeros((0, 3)))
+_NO_ROWS = (np.zeros((0, 4)), np.zeros((0, 6)), np.zeros((0, 5)), np.zeros((0, 4)))

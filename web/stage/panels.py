@@ -1,4 +1,4 @@
-"""The side panel: six tabs docked right - Senses, Memory, Inspect, Tick, Truth, Tune."""
+"""The side panel: seven tabs docked right - Senses, Memory, Inspect, Tick, Truth, Office, Tune."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from web.messages import Command, Snapshot
 from web.stage.hand import Answer
 from web.stage.inspect_panel import InspectPanel
 from web.stage.memory_panel import MemoryPanel
+from web.stage.office_panel import OfficePanel
 from web.stage.palette import Palette
 from web.stage.rates import Layer
 from web.stage.senses_panel import SensesPanel
@@ -44,6 +45,7 @@ class Panels:
             self.tick = TickPanel(gui, palette, send, complain)
         with tabs.add_tab("Truth"):
             self.truth = TruthPanel(gui, palette)
+        self.office = OfficePanel(gui, tabs.add_tab("Office"), send, complain)
         self.tune = TunePanel(gui, tabs.add_tab("Tune"), send, complain)
         self._layers = {
             "views": Layer(8, self.senses.draw_views),
@@ -54,6 +56,7 @@ class Panels:
             "timings": Layer(1, self.tick.draw_timings),
             "numbers": Layer(2, self.truth.draw_numbers),
             "series": Layer(1, self.truth.draw_series),
+            "office": Layer(5, self.office.follow),
             "tune": Layer(5, self.tune.follow),
         }
 
@@ -69,6 +72,8 @@ class Panels:
         offer["timings"].offer(now_s, snapshot.timings)
         offer["numbers"].offer(now_s, snapshot)
         offer["series"].offer(now_s, snapshot.series)
+        offer["office"].offer(now_s, snapshot.living, snapshot.parameters, snapshot.presets, snapshot.preset)
+        self.office.send_pending()
         offer["tune"].offer(now_s, snapshot.parameters)
         self.tune.send_pending(now_s)
 

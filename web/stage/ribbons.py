@@ -23,6 +23,14 @@ UNIT_CUBE: Mesh = (
 )
 
 
+def turned_box(centre: tuple[float, float, float], size: tuple[float, float, float], turn_rad: float) -> Mesh:
+    """A box turned about the upright through its middle."""
+    vertices, faces = UNIT_CUBE
+    c, s = math.cos(turn_rad), math.sin(turn_rad)
+    x, y, z = (vertices * np.array(size, np.float32)).T
+    return np.column_stack([x * c - y * s, x * s + y * c, z]).astype(np.float32) + np.array(centre, np.float32), faces
+
+
 def sharp(mesh: Mesh) -> Mesh:
     """The same mesh with its own corners for each face, so that edges stay sharp under smooth shading."""
     vertices, faces = mesh

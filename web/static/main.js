@@ -31,7 +31,10 @@ link.addEventListener("state", ({ detail }) => {
   timeline.at(state.time_s);
   document.body.dataset.alive = "true";
 });
-link.addEventListener("events", ({ detail }) => timeline.add(detail));
+link.addEventListener("events", ({ detail }) => {
+  timeline.add(detail);
+  for (const event of detail.events.slice(-20)) if (event.kind === "warning") toast(sentence(event.text), { bad: true });
+});
 link.addEventListener("refused", ({ detail }) => {
   for (const wrong of detail.detail) toast(sentence(wrong.reason), { bad: true });
 });

@@ -5,9 +5,11 @@ import { svg } from "./icons.js";
 const NAMES = {
   snap: "snap", kidnap: "kidnap", recovered: "recovered", goal: "goal set", arrived: "arrived", lost: "lost",
   link: "link lost", place: "places", fault: "fault", parameter: "setting", false: "false positive",
+  office: "office", warning: "note",
 };
 const WEIGHT = {
-  fault: 6, kidnap: 5, arrived: 4, goal: 4, recovered: 3, lost: 3, link: 2, place: 1, parameter: 1, false: 1,
+  fault: 6, kidnap: 5, arrived: 4, goal: 4, recovered: 3, lost: 3, link: 2, warning: 2, place: 1, parameter: 1, false: 1,
+  office: 1,
 };
 const STEPS_S = [10, 30, 60, 120, 180, 300, 600, 900, 1800, 3600, 7200, 14400];
 const REDRAW_MS = 500;
@@ -122,6 +124,8 @@ function shape(kind, x, y) {
     case "link": return `M${x - 4} ${y - 4}l8 8M${x + 4} ${y - 4}l-8 8`;
     case "recovered": return circle(5);
     case "fault": return `M${x} ${y - 8}l8 14h-16z`;
+    case "warning": return `M${x} ${y - 8}l8 14h-16z`;
+    case "office":
     case "parameter": return `M${x} ${y - 6}v12`;
     default: return circle(5);
   }

@@ -12,7 +12,8 @@ from pydantic import TypeAdapter
 from app.chronicle import Chronicle
 from app.config import Config, from_toml, to_toml
 from app.office_orders import carry_out
-from app.presets import PRESETS, preset
+from app.presets import PRESETS, preset, preset_of
+from app.runner import Runner
 from app.session import Session
 from app.snapshots import Snapshots
 from sim2d import Door, Lamp, Person, World
@@ -86,6 +87,40 @@ def test_presets_are_configs(name: str) -> None:
     assert all({n: v for n, _, v in config.items()}[key] == value for key, value in PRESETS[name].items())
 
 
+def test_a_preset_by_its_name_on_a_command_line() -> None:
+    assert preset("pioneer-2dxe-2004", Config()) == preset("Pioneer 2DXE 2004", Config())
+    assert preset_of(preset("Pioneer 2DXE 2004", Config())) == "Pioneer 2DXE 2004"
+    assert preset_of(preset("ideal", Config())) == "ideal"
+    assert preset_of(Config()) == ""
+
+
+def test_a_preset_names_what_waits_for_a_reset_only_where_it_differs(session: Session) -> None:
+    assert order(session, type="use_preset", name="Pioneer 2DXE 2004") == "preset Pioneer 2DXE 2004"
+    session.set_parameter("robot.robot_radius_m", 0.3)
+    words = order(session, type="use_preset", name="Pioneer 2DXE 2004")
+    assert words == "preset Pioneer 2DXE 2004; from the next reset on: robot.robot_radius_m"
+
+
+def test_who_tells_the_brain_another_field_of_view_hears_of_it() -> None:
+    runner = Runner(living_room(), 1, Config(), running=False)
+    runner.start()
+    try:
+        change = m.SetParameter(type="set_parameter", name="local_view.field_of_view", value=1.0)
+        for _ in range(2):  # the second time it is no news
+            assert isinstance(runner.submit(change).result(20), m.Accepted)
+        snapshot = runner.latest.get()[1]
+        assert snapshot is not None
+        (words,) = [event.text for event in snapshot.events if event.kind == "warning"]
+        assert "local_view.field_of_view is 1 rad but robot.camera_fov_rad 0.872665" in words
+        runner.submit(m.Reset(type="reset")).result(20)
+        snapshot = runner.latest.get()[1]
+        assert snapshot is not None
+        assert [event.kind for event in snapshot.events] == ["warning"]
+    finally:
+        runner.stop()
+    assert Config().warnings == preset("ideal", Config()).warnings == ()
+
+
 def test_the_brain_is_told_of_another_field_of_view(session: Session) -> None:
     assert session.set_parameter("robot.camera_fov_rad", 2 * math.pi)
     assert session.brain.params.local_view.field_of_view == 2 * math.pi
@@ -101,6 +136,10 @@ def test_office_switches_act_at_once(session: Session) -> None:
     assert session.set_parameter("office.people", False)
     session.tick()
     assert not session.simulator.living.walkers.present.any()
+    lit = session.frame.image.mean()
+    assert session.set_parameter("office.lamps", False)
+    session.tick()
+    assert session.frame.image.mean() < 0.9 * lit
 
 
 def test_the_living_layer_is_the_same_object_until_something_moves(session: Session) -> None:

@@ -347,6 +347,36 @@ def test_lens_and_resolution_change_while_it_runs() -> None:
     assert np.array_equal(run(simulator, STAY, 1).image, Simulator(room(), wide).observe().image)
 
 
+def test_what_is_switched_off_is_away_from_the_first_moment_on() -> None:
+    things: dict[str, Any] = {
+        "boxes": (Box("crate", 2.6, 2.0, 0.4, 0.4),),
+        "people": (Person("Ada", ((2.7, 2.6), (0.6, 2.6)), (0.0, 0.0)),),
+        "lamps": (Lamp("sun", 2.0, 2.0, 3.0, 0.5),),
+    }
+    off = OfficeParams(people=False, boxes=False, lamps=False)
+    simulator, bare = Simulator(living(**things), EXACT, 3, off), Simulator(living(), EXACT, 3)
+    assert np.array_equal(simulator.observe().image, bare.observe().image)
+    assert np.array_equal(simulator.observe().laser_m, bare.observe().laser_m)
+    assert np.array_equal(run(simulator, STAY, 5).image, run(bare, STAY, 5).image)
+    simulator.office = OfficeParams()
+    frame = run(simulator, STAY, 1)
+    assert frame.laser_m[90] == pytest.approx(0.4)
+    assert simulator.living.walkers.present.all()
+
+
+def test_people_have_a_seed_of_their_own() -> None:
+    people = (Person("Ada", ((0.6, 0.6), (0.6, 3.4)), (2.0, 2.0)),)
+
+    def path(seed: int, own: int) -> np.ndarray:
+        simulator = Simulator(living(people=people), EXACT, seed, OfficeParams(seed=own))
+        run(simulator, STAY, 200)
+        return simulator.living.walkers.xy.copy()
+
+    assert np.array_equal(path(1, 7), path(2, 7))
+    assert not np.array_equal(path(1, 7), path(1, 8))
+    assert not np.array_equal(path(1, 0), path(2, 0))
+
+
 def test_same_seed_same_office() -> None:
     people = tuple(Person(f"p{i}", ((0.5, 0.5 + i), (2.5, 0.6 + i)), (1.0, 0.5)) for i in range(3))
     world = living(doors=(replace(DOOR, period_s=7.0, open_s=3.0),), people=people)
