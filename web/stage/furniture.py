@@ -38,7 +38,7 @@ def add_floor(
 
     walls = np.asarray(world.walls, np.float64)
     for corners in world.slow_zones:
-        images.tint(floor, pixels(np.asarray(corners, np.float64)), palette.packets[0], 0.22)
+        floor = images.tint(floor, pixels(np.asarray(corners, np.float64)), palette.packets[0], 0.22)
     lines = np.hstack([pixels(walls[:, :2]), pixels(walls[:, 2:])]) if len(walls) else walls
     solids = [pixels(outline) for _, outline in solid_runs(world)]
     floor = images.contact_shadow(floor, lines, solids, 0.16 * FLOOR_PX_PER_UNIT * fit.relief, palette.shadow)

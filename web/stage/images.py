@@ -83,12 +83,12 @@ def colour_bar(ramp: NDArray[np.uint8], height_px: int = 22) -> Pixels:
     return np.repeat(ramp[None], height_px, 0)
 
 
-def tint(canvas: Pixels, corners: NDArray[np.float64], colour: Rgb, share: float) -> None:
-    """Lay a colour over a polygon (n, 2) of pixels, in place."""
+def tint(canvas: Pixels, corners: NDArray[np.float64], colour: Rgb, share: float) -> Pixels:
+    """A colour laid over a polygon (n, 2) of pixels."""
     mask = Image.new("L", canvas.shape[1::-1], 0)
     ImageDraw.Draw(mask).polygon([(float(x), float(y)) for x, y in corners], fill=255)
-    inside = np.asarray(mask) > 0
-    canvas[inside] = (canvas[inside] * (1.0 - share) + np.array(colour) * share).astype(np.uint8)
+    weight = np.asarray(mask, np.float64)[..., None] / 255 * share
+    return (canvas * (1 - weight) + np.array(colour) * weight).astype(np.uint8)
 
 
 def paste(canvas: Pixels, image: Pixels, left: int, top: int) -> None:

@@ -6,6 +6,7 @@ Handles are moved, not made anew.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import viser
@@ -35,8 +36,7 @@ class LivingThings:
 
     def __init__(self, scene: viser.SceneApi, palette: Palette, root: str) -> None:
         self._scene, self._palette, self._root = scene, palette, root
-        self._handles: dict[str, list[viser.MeshHandle]] = {"door": [], "box": [], "person": [], "lamp": []}
-        self._shown: dict[viser.MeshHandle, tuple] = {}
+        self._handles: dict[str, list[_Thing]] = {"door": [], "box": [], "person": [], "lamp": []}
         self._pools = add_mesh(
             scene, f"{root}/pools", ribbons.NOTHING, LIT, opacity=0.16, position=tuple(LATE.tolist()), visible=False
         )
@@ -68,8 +68,8 @@ class LivingThings:
             handle = self._handle("lamp", i, LIT if on else mix(self._palette.slab, self._palette.text_2, 0.3))
             self._move(handle, fit, float(x), float(y), LAMP_Z * fit.relief, 0.0, (LAMP_RADIUS, LAMP_RADIUS, 0.02))
         for kind, count in zip(self._handles, map(len, (doors, boxes, people, lamps)), strict=True):
-            for handle in self._handles[kind][count:]:
-                self._hide(handle)
+            for thing in self._handles[kind][count:]:
+                self._hide(thing)
         self._shine(np.asarray(lamps, np.float64), fit)
         self._dim(1.0 if layer is None else layer.daylight, fit)
 
@@ -118,51 +118,57 @@ class LivingThings:
 
     # ------------------------------------------------------------ one thing each
 
-    def _door(self, handle: viser.MeshHandle, leaf: NDArray[np.floating], fit: OfficeFit) -> None:
+    def _door(self, thing: _Thing, leaf: NDArray[np.floating], fit: OfficeFit) -> None:
         x1, y1, x2, y2 = (float(v) for v in leaf)
         size = (math.hypot(x2 - x1, y2 - y1) * fit.scale, LEAF_THICK * fit.relief, LEAF_HIGH * fit.relief)
-        self._move(handle, fit, (x1 + x2) / 2, (y1 + y2) / 2, 0.0, math.atan2(y2 - y1, x2 - x1), size)
+        self._move(thing, fit, (x1 + x2) / 2, (y1 + y2) / 2, 0.0, math.atan2(y2 - y1, x2 - x1), size)
 
-    def _box(self, handle: viser.MeshHandle, box: NDArray[np.floating], fit: OfficeFit) -> None:
+    def _box(self, thing: _Thing, box: NDArray[np.floating], fit: OfficeFit) -> None:
         x, y, width, depth, height, angle = (float(v) for v in box)
         size = (width * fit.scale, depth * fit.scale, height * METRE_HIGH * fit.relief)
-        self._move(handle, fit, x, y, 0.0, angle, size)
+        self._move(thing, fit, x, y, 0.0, angle, size)
 
-    def _person(self, handle: viser.MeshHandle, person: NDArray[np.floating], fit: OfficeFit) -> None:
+    def _person(self, thing: _Thing, person: NDArray[np.floating], fit: OfficeFit) -> None:
         x, y, heading, radius, height = (float(v) for v in person)
         wide = max(radius * fit.scale, 0.07)
-        self._move(handle, fit, x, y, 0.0, heading, (wide, wide, height * METRE_HIGH * max(fit.relief, 0.5)))
+        self._move(thing, fit, x, y, 0.0, heading, (wide, wide, height * METRE_HIGH * max(fit.relief, 0.5)))
 
     # ------------------------------------------------------------ handles
 
-    def _handle(self, kind: str, i: int, colour: Rgb) -> viser.MeshHandle:
-        handles = self._handles[kind]
-        if i == len(handles):
-            handles.append(add_mesh(self._scene, f"{self._root}/{kind}_{i}", _MESHES[kind], self._palette.lit(colour)))
-            self._shown[handles[i]] = ()
-        if tuple(handles[i].color) != tuple(self._palette.lit(colour)):
-            handles[i].color = self._palette.lit(colour)
-        return handles[i]
+    def _handle(self, kind: str, i: int, colour: Rgb) -> _Thing:
+        things, paint = self._handles[kind], self._palette.lit(colour)
+        if i == len(things):
+            things.append(_Thing(add_mesh(self._scene, f"{self._root}/{kind}_{i}", _MESHES[kind], paint), paint))
+        if things[i].paint != paint:
+            things[i].paint = things[i].handle.color = paint
+        return things[i]
 
     def _move(
-        self, handle: viser.MeshHandle, fit: OfficeFit, x: float, y: float, z: float, angle: float,
+        self, thing: _Thing, fit: OfficeFit, x: float, y: float, z: float, angle: float,
         size: tuple[float, float, float],
     ) -> None:  # fmt: skip
         """Only what has changed is sent."""
-        now = (x, y, z, angle, size)
-        if self._shown[handle] == now:
-            return
-        self._shown[handle] = now
         px, py = (float(v) for v in fit.to_plate(np.array([[x, y]]))[0])
+        now = (px, py, z, angle, size)
+        if thing.shown == now:
+            return
+        thing.shown, handle = now, thing.handle
         handle.position = (px, py, z)
         handle.wxyz = (math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2))
         handle.scale = size
         handle.visible = True
 
-    def _hide(self, handle: viser.MeshHandle) -> None:
-        if self._shown[handle] != ():
-            self._shown[handle] = ()
-            handle.visible = False
+    def _hide(self, thing: _Thing) -> None:
+        if thing.shown is not None:
+            thing.shown = None
+            thing.handle.visible = False
+
+
+@dataclass
+class _Thing:
+    handle: viser.MeshHandle
+    paint: Rgb
+    shown: tuple | None = None  # where it stands now; None: hidden
 
 
 def _rgb(row: NDArray[np.uint8]) -> Rgb:
