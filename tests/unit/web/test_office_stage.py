@@ -151,7 +151,8 @@ def click(office: Office, x: float, y: float) -> None:
     plate = office.stage._scenery.office
     at = plate.fit.to_plate(np.array([[x, y]]))[0]
     aim, eye = np.array([ORIGIN[0] + at[0], ORIGIN[1] + at[1], 0.25]), np.array([0.0, -25.0, 30.0])
-    office.stage._clicked(SimpleNamespace(client_id=7, ray_origin=tuple(eye), ray_direction=tuple(aim - eye)))  # type: ignore[arg-type]
+    ray = {"ray_origin": tuple(eye), "ray_direction": tuple(aim - eye)}
+    office.stage._clicked(SimpleNamespace(client_id=7, modifier=None, **ray))  # type: ignore[arg-type]
     office.show(office.things.layer)
 
 
