@@ -49,7 +49,18 @@ def test_greets_then_tells_the_state_and_the_events(server):
         state = until(socket, "state")
         assert state["state"] == server.client.get("/api/state").json()
         assert state["theme"] is None
-        assert set(state["page"]) == {"run", "doing", "lost", "fault", "real_time_factor", "title", "worlds", "places"}
+        assert set(state["page"]) == {
+            "run",
+            "doing",
+            "lost",
+            "fault",
+            "real_time_factor",
+            "title",
+            "worlds",
+            "places",
+            "inspected",
+            "walk",
+        }
         assert until(socket, "events")["fresh"]
 
 
