@@ -14,10 +14,12 @@ from app.chronicle import Chronicle
 from app.config import Config
 from app.inspection import experience_report, inspect
 from app.office_orders import carry_out
+from app.packets import inject_packet
 from app.session import Session
 from app.snapshots import Snapshots
 from app.tick_stages import TickRecorder
 from ratslam_core import RatSlam
+from ratslam_core.brain_snapshot import take_snapshot
 from sim2d import World, load_world, world_names
 from web import messages as m
 from web.latest import Latest
@@ -66,7 +68,7 @@ class Runner:
         self._requests.put(None)
         self._thread.join()
 
-    def submit(self, command: m.Command | m.Question) -> Future[m.Accepted | m.Refused]:
+    def submit(self, command: m.Command | m.Errand) -> Future[m.Accepted | m.Refused]:
         """Hand a command to the engine; the answer comes when it has taken effect or was refused."""
         answer: Future[m.Accepted | m.Refused] = Future()
         self._requests.put(m.Request(command, answer))
@@ -92,10 +94,14 @@ class Runner:
                 self._publish()
 
     def _begin(self, world: World, seed: int, config: Config, brain: RatSlam | None = None) -> None:
-        self.session = Session(world, seed, config, brain)
-        self._chronicle = Chronicle(self.session)
+        """Another run, or none of it: what fails leaves the old one as it is."""
+        session = Session(world, seed, config, brain)
+        chronicle = Chronicle(session)
+        snapshots = Snapshots(session, chronicle, self._run + 1, self._worlds)
+        if brain is not None:  # a foreign one has to be such that it can be shown
+            snapshots.build(running=False, speed=1.0, real_time_factor=0.0, fault=None)
+        self.session, self._chronicle, self._snapshots = session, chronicle, snapshots
         self._run += 1
-        self._snapshots = Snapshots(self.session, self._chronicle, self._run, self._worlds)
         self._fault = None
         for words in config.warnings:
             self._chronicle.note("warning", words)
@@ -136,10 +142,10 @@ class Runner:
             else:
                 request.answer.set_result(answer)
 
-    def _answer(self, command: m.Command | m.Question) -> m.Accepted | m.Refused | Exception:
+    def _answer(self, command: m.Command | m.Errand) -> m.Accepted | m.Refused | Exception:
         try:
-            if isinstance(command, m.Question):
-                return self._read(command)
+            if isinstance(command, m.Errand):
+                return self._run_errand(command)
             return self._carry_out(command) or m.Accepted(self.session.tick_count)
         except Exception as error:
             traceback.print_exc()
@@ -159,13 +165,31 @@ class Runner:
             self._snapshots.build(running=self._running, speed=speed, real_time_factor=self._factor, fault=self._fault)
         )
 
-    def _read(self, question: m.Question) -> m.Accepted | m.Refused:
-        """Answer a question between two ticks; it changes nothing."""
+    def _run_errand(self, errand: m.Errand) -> m.Accepted | m.Refused:
+        match errand:
+            case m.ReadExperience(experience=experience):
+                try:
+                    report = experience_report(self.session, self._chronicle, experience)
+                except ValueError as error:
+                    return m.Refused("experience", experience, str(error))
+                return m.Accepted(self.session.tick_count, report)
+            case m.ReadBrain():
+                return m.Accepted(self.session.tick_count, take_snapshot(self.session.brain))
+            case m.UseBrain(brain=brain):
+                return self._use(brain)
+
+    def _use(self, brain: object) -> m.Accepted | m.Refused:
+        """A new run with a foreign brain in the same world; the old run goes on when that cannot be."""
+        session = self.session
         try:
-            report = experience_report(self.session, self._chronicle, question.experience)
-            return m.Accepted(self.session.tick_count, report)
-        except ValueError as error:
-            return m.Refused("experience", question.experience, str(error))
+            if not isinstance(brain, RatSlam):
+                raise TypeError(f"it is a {type(brain).__name__}")
+            self._begin(session.world, session.seed, session.config.with_engine(brain.params), brain)
+        except Exception as error:
+            return m.Refused("brain", None, f"this brain cannot be used here: {error}")
+        self._chronicle.note("brain", f"woke up with {len(brain.experience_map)} experiences")
+        self._publish()
+        return m.Accepted(0)
 
     # ------------------------------------------------------------ commands
 
@@ -219,6 +243,10 @@ class Runner:
                 return self._set_parameter(name, value)
             case m.SetDoor() | m.SetLamp() | m.PutBox() | m.RemoveBox() | m.UsePreset():
                 return self._try("name", command.name, lambda: note("office", carry_out(session, command)))
+            case m.InjectPacket():
+                return self._try(
+                    "x, y", (command.x, command.y), lambda: note("packet", inject_packet(session, command))
+                )
             case m.Inspect():
                 chosen = command.model_dump(exclude={"type"}, exclude_none=True)
                 return self._try(", ".join(chosen) or "type", list(chosen.values()), lambda: self._choose(command))

@@ -115,7 +115,7 @@ class TickRecorder:
     def _image(self) -> str:
         odometry = self._odometry()
         way, turn = 100 * odometry.speed * odometry.dt, math.degrees(odometry.yaw_rate * odometry.dt)
-        return f"The wheels report {way:.1f} cm ahead and a turn of {turn:.1f}°; then the camera takes a picture."
+        return f"The wheels report {_plain(way, 1)} cm ahead and a turn of {_plain(turn, 1)}°; then the camera takes a picture."
 
     def _view_match(self) -> str:
         seen = self._session.estimate.recognition
@@ -138,7 +138,9 @@ class TickRecorder:
             return "The wheels stand: the activity stays where it is."
         ahead = odometry.speed * odometry.dt / params.cell_m
         turn = odometry.yaw_rate * odometry.dt / math.tau * params.n_theta
-        return f"All activity moves {ahead:.2f} cells along its own heading and turns by {turn:.2f} layers."
+        return (
+            f"All activity moves {_plain(ahead, 2)} cells along its own heading and turns by {_plain(turn, 2)} layers."
+        )
 
     def _injection(self, before: Activity, after: Activity) -> str:
         seen = self._session.estimate.recognition
@@ -183,6 +185,11 @@ class TickRecorder:
         cells, values = self._session.brain.pose_cells.active
         order = np.argsort(cells[:, 3], kind="stable")
         return Activity(cells[order, 3].astype(np.int64), values[order].astype(np.float64))
+
+
+def _plain(value: float, digits: int) -> str:
+    """Without the sign of a zero."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"
 
 
 def _grown(before: Activity, after: Activity) -> str:

@@ -13,7 +13,7 @@ import json
 import math
 import zipfile
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,14 +63,11 @@ def restore_snapshot(snapshot: BrainSnapshot) -> RatSlam:
 
 def save_brain(brain: RatSlam, path: Path | str) -> None:
     """Write a brain to one file (.npz: arrays, and JSON as bytes). What was there is replaced only once all is written."""
-    snapshot = take_snapshot(brain)
-    head = {"digest": snapshot.digest(), **snapshot.tree}
     path = Path(path)
     part = path.with_name(path.name + ".part")
-    named: dict[str, Any] = {f"a{k}": array for k, array in enumerate(snapshot.arrays)}
     try:
         with part.open("wb") as file:
-            np.savez_compressed(file, json=np.frombuffer(json.dumps(head).encode(), np.uint8), **named)
+            write_snapshot(take_snapshot(brain), file)
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
@@ -79,18 +76,34 @@ def save_brain(brain: RatSlam, path: Path | str) -> None:
 def load_brain(path: Path | str) -> RatSlam:
     """The brain that `save_brain` wrote. ValueError names the file and what is wrong with it."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            tree = json.loads(file["json"].tobytes())
-            arrays = [file[f"a{k}"] for k in range(len(file.files) - 1)]
+        with Path(path).open("rb") as file:
+            return read_brain(file)
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror or error}") from None
+    except ValueError as error:
+        raise ValueError(f"{path} is {error}") from None
+
+
+def write_snapshot(snapshot: BrainSnapshot, file: IO[bytes]) -> None:
+    """What `save_brain` writes, into an open file."""
+    head = {"digest": snapshot.digest(), **snapshot.tree}
+    named: dict[str, Any] = {f"a{k}": array for k, array in enumerate(snapshot.arrays)}
+    np.savez_compressed(file, json=np.frombuffer(json.dumps(head).encode(), np.uint8), **named)
+
+
+def read_brain(file: IO[bytes]) -> RatSlam:
+    """The brain in an open file. ValueError says what is wrong with it."""
+    try:
+        with np.load(file, allow_pickle=False) as npz:
+            tree = json.loads(npz["json"].tobytes())
+            arrays = [npz[f"a{k}"] for k in range(len(npz.files) - 1)]
         found = tree.pop("digest")
         snapshot = BrainSnapshot(tree, arrays)
         if found != snapshot.digest():
             raise ValueError("its digest does not fit what it holds: it was changed or damaged")
         return restore_snapshot(snapshot)
-    except OSError as error:
-        raise ValueError(f"{path}: {error.strerror or error}") from None
     except (ValueError, KeyError, TypeError, AttributeError, IndexError, EOFError, zipfile.BadZipFile) as error:
-        raise ValueError(f"{path} is no brain that can be taken back: {error}") from None
+        raise ValueError(f"no brain that can be taken back: {error}") from None
 
 
 class _Writer:

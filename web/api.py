@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import pathlib
+import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
@@ -15,11 +16,13 @@ from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp
 
-from web.commands import READER, CommandAccepted, Malformed, Problem, check, problem, problem_of, read_object
+from ratslam_core.brain_snapshot import BrainSnapshot
+from web.brain_files import packed, unpacked
+from web.commands import READER, CommandAccepted, Malformed, Problem, check, problem, problem_of, read_object, wrong
 from web.latest import Latest
-from web.messages import ExperienceReport, ReadExperience, Refused, Snapshot
+from web.messages import Accepted, ExperienceReport, ReadBrain, ReadExperience, Refused, Snapshot, UseBrain
 from web.proxy import PAGE_ID, Cameras, StageLike, ViserProxy
-from web.security import MAX_BODY_BYTES, Guard, Limits
+from web.security import MAX_BODY_BYTES, MAX_BRAIN_BYTES, Guard, Limits
 from web.state import experience_fields, to_json
 from web.stream import NoAnswer, Stream, Submit, ask
 
@@ -58,6 +61,7 @@ def create_app(latest: Latest[Snapshot], submit: Submit, stage: StageLike, port:
     )
     _add_state(app, latest, stream)
     _add_experience(app, submit)
+    _add_brain(app, latest, submit)
     _add_commands(app, submit)
     _add_stream(app, stream)
     _add_viser(app, ViserProxy(stage, cameras))
@@ -102,6 +106,53 @@ def _add_experience(app: FastAPI, submit: Submit) -> None:
             return _json(to_json({"detail": problem_of(answer)}), 422)
         assert isinstance(answer.result, ExperienceReport)
         return _json(to_json(experience_fields(answer.result)))
+
+
+def _add_brain(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
+    limits = Limits()
+    binary: dict[str, Any] = {
+        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}
+    }
+
+    @app.get("/api/brain", tags=["brain"], responses={200: binary, 429: _ERRORS[429], 503: _ERRORS[503]})
+    async def save() -> Response:
+        """The whole brain as one file, as `--save-brain` writes it."""
+        refusal = limits.refusal("brain")
+        if refusal is not None:
+            return _json(problem(refusal), 429)
+        try:
+            answer = await ask(submit, ReadBrain())
+        except NoAnswer as error:
+            return _json(problem(str(error)), error.status)
+        assert isinstance(answer, Accepted)
+        assert isinstance(answer.result, BrainSnapshot)
+        data = await asyncio.to_thread(packed, answer.result)
+        _, snapshot = latest.get()
+        world = "" if snapshot is None else f"-{re.sub(r'[^A-Za-z0-9]+', '-', snapshot.world.name)}-seed{snapshot.seed}"
+        headers = {"Cache-Control": "no-store", "Content-Disposition": f'attachment; filename="brain{world}.npz"'}
+        return Response(data, 200, headers, "application/octet-stream")
+
+    body = {"required": True} | binary
+
+    @app.post("/api/brain", tags=["brain"], openapi_extra={"requestBody": body}, responses=_ERRORS)
+    async def use(request: Request) -> Response:
+        """Start anew in the same world with a saved brain. What is no brain is refused, and the session goes on."""
+        refusal = limits.refusal("brain")
+        if refusal is not None:
+            return _json(problem(refusal), 429)
+        raw = await _body(request, MAX_BRAIN_BYTES)
+        if raw is None:
+            return _json(problem(f"a brain may have at most {MAX_BRAIN_BYTES} bytes"), 413)
+        try:
+            brain = await asyncio.to_thread(unpacked, raw)
+            answer = await ask(submit, UseBrain(brain))
+        except ValueError as error:
+            return _json(to_json({"detail": [wrong("brain", None, f"this file is {error}")]}), 422)
+        except NoAnswer as error:
+            return _json(problem(str(error)), error.status)
+        if isinstance(answer, Refused):
+            return _json(to_json({"detail": problem_of(answer)}), 422)
+        return _json(to_json({"accepted": True, "tick": answer.tick}))
 
 
 def _add_commands(app: FastAPI, submit: Submit) -> None:
@@ -195,12 +246,12 @@ def _add_errors(app: FastAPI) -> None:
         return _json(to_json({"detail": wrongs}), 422)
 
 
-async def _body(request: Request) -> bytes | None:
+async def _body(request: Request, most: int = MAX_BODY_BYTES) -> bytes | None:
     """The body, or None when it is too long; never more than the limit is kept."""
     parts = bytearray()
     async for part in request.stream():
         parts += part
-        if len(parts) > MAX_BODY_BYTES:
+        if len(parts) > most:
             return None
     return bytes(parts)
 

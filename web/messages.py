@@ -501,6 +501,19 @@ class StepStage(_Command):
     back: bool = False
 
 
+class InjectPacket(_Command):
+    """Add a packet of activity at a place of the pose cells (cells and radians), to watch it compete: no sense says it.
+
+    share: of all activity afterwards.
+    """
+
+    type: Literal["inject_packet"]
+    x: Annotated[int, Field(ge=0)]
+    y: Annotated[int, Field(ge=0)]
+    heading_rad: Finite = 0.0
+    share: Annotated[float, Field(ge=0.01, le=0.95)] = 0.45
+
+
 class Inspect(_Command):
     """Choose what everybody looks at: an experience, a view, or the pose cells at x', y'; nothing of it: nothing.
 
@@ -515,7 +528,7 @@ class Inspect(_Command):
 
 
 OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
-LookOrder = Inspect | StepStage
+LookOrder = Inspect | StepStage | InjectPacket
 Command = Annotated[
     SetGoal
     | CancelGoal
@@ -536,18 +549,30 @@ Command = Annotated[
 
 @dataclass(frozen=True, slots=True)
 class ReadExperience:
-    """A question, no command: the answer's `result` is an ExperienceReport."""
+    """The answer's `result` is an ExperienceReport."""
 
     experience: int
 
 
-Question = ReadExperience
+@dataclass(frozen=True, slots=True)
+class ReadBrain:
+    """The answer's `result` is a snapshot of the whole brain, the engine's own."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class UseBrain:
+    """Start anew in the same world with this brain, the engine's own class; what cannot be used is refused."""
+
+    brain: object
+
+
+Errand = ReadExperience | ReadBrain | UseBrain  # what no command can hold; goes the same way
 
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
     tick: int  # the tick before which the command took effect
-    result: object = None  # what a question asked for
+    result: object = None  # what an errand asked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -561,7 +586,7 @@ class Refused:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Request:
-    """A command or a question on its way to the engine, with the place where its answer will appear."""
+    """A command or an errand on its way to the engine, with the place where its answer will appear."""
 
-    command: Command | Question
+    command: Command | Errand
     answer: Future[Accepted | Refused]

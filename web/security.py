@@ -6,7 +6,8 @@ ASGI: it runs before a websocket is accepted, which ordinary HTTP middleware doe
 - Host must be one of ours with our port, once. Missing or repeated: 400. Anything else: 403.
 - Origin, where there is one, must be "http://" + that Host. A websocket must have one (browsers always send it, so
   whoever leaves it out is a program and can add it); other requests may come without, as curl's do.
-- A request that is neither GET nor HEAD must not be cross-site (Sec-Fetch-Site) and must carry JSON of at most 64 KiB.
+- A request that is neither GET nor HEAD must not be cross-site (Sec-Fetch-Site) and must carry JSON of at most 64 KiB;
+  a brain that is uploaded is application/octet-stream (no form can send that either) of at most 256 MiB.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from web.commands import problem
 
 MAX_BODY_BYTES = 64 * 1024
+BRAIN_PATH, MAX_BRAIN_BYTES = "/api/brain", 256 * 1024 * 1024
 HOST_NAMES = ("127.0.0.1", "localhost", "[::1]")
 
 PAGE_POLICY = (
@@ -94,19 +96,21 @@ def refusal_of(scope: Scope, hosts: frozenset[str]) -> Refusal | None:
         return None if origin else Refusal(403, f"a websocket needs the header Origin: http://{host[0]}")
     if scope["method"] in ("GET", "HEAD"):
         return None
-    return _refusal_of_change(headers)
+    return _refusal_of_change(headers, scope["path"] == BRAIN_PATH)
 
 
-def _refusal_of_change(headers: Mapping[str, str]) -> Refusal | None:
+def _refusal_of_change(headers: Mapping[str, str], brain: bool) -> Refusal | None:
     if headers.get("sec-fetch-site", "none") not in ("same-origin", "none"):
         return Refusal(403, "changes from another site are refused")
-    if headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
-        return Refusal(415, "a change needs a JSON body with the header Content-Type: application/json")
+    kind, most = ("application/octet-stream", MAX_BRAIN_BYTES) if brain else ("application/json", MAX_BODY_BYTES)
+    if headers.get("content-type", "").partition(";")[0].strip().lower() != kind:
+        what = "a brain" if brain else "a JSON body"
+        return Refusal(415, f"a change needs {what} with the header Content-Type: {kind}")
     length = headers.get("content-length", "0")
     if not (length.isascii() and length.isdigit()):
         return Refusal(400, "Content-Length must be a whole number")
-    if len(length) > 9 or int(length) > MAX_BODY_BYTES:
-        return Refusal(413, f"a body may have at most {MAX_BODY_BYTES} bytes")
+    if len(length) > 9 or int(length) > most:
+        return Refusal(413, f"a body may have at most {most} bytes")
     return None
 
 

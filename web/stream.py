@@ -19,12 +19,12 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from web.commands import Malformed, check, problem_of, read_object, wrong
 from web.latest import Latest
-from web.messages import Accepted, Command, Drive, Question, Refused, Snapshot
+from web.messages import Accepted, Command, Drive, Errand, Refused, Snapshot
 from web.proxy import VIEWS, Cameras, StageLike, Theme, close_quietly, end_all
 from web.security import Limits
 from web.state import StateText, event_fields, to_json
 
-Submit = Callable[[Command | Question], "Future[Accepted | Refused]"]
+Submit = Callable[[Command | Errand], "Future[Accepted | Refused]"]
 
 PERIOD_S = 0.045  # at x1 the engine ticks ten times a second; what a command changes need not wait for that
 SEND_TIMEOUT_S = 5.0
@@ -41,7 +41,7 @@ class NoAnswer(Exception):  # noqa: N818
         self.status = status
 
 
-async def ask(submit: Submit, command: Command | Question) -> Accepted | Refused:
+async def ask(submit: Submit, command: Command | Errand) -> Accepted | Refused:
     """Hand a command to the engine and wait for what it says. Raises NoAnswer."""
     answer = asyncio.wrap_future(submit(command))
     done, _ = await asyncio.wait({answer}, timeout=ANSWER_TIMEOUT_S)

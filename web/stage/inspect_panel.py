@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import viser
 
-from web.messages import Command, ExperienceReport, Inspect, Refused, Report, Snapshot, ViewReport
+from web.messages import (
+    CellReport,
+    Command,
+    ExperienceReport,
+    InjectPacket,
+    Inspect,
+    Refused,
+    Report,
+    Snapshot,
+    ViewReport,
+)
 from web.stage import markup
 from web.stage.hand import Answer
 from web.stage.inspect_pages import report_page
@@ -41,6 +52,14 @@ class InspectPanel:
         )
         self._view = gui.add_number("view #", 0, min=0, step=1, hint="Look at the view of this number.")
         self._page = gui.add_html("")
+        with gui.add_folder("Inject a packet here", expand_by_default=True, visible=False) as self._packet:
+            gui.add_html(markup.page(markup.note("No sense says it: watch how it competes with the others.")))
+            self._heading = gui.add_slider("heading θ′ [°]", 0, 350, 10, 0)
+            self._share = gui.add_slider(
+                "share [%]", 5, 90, 5, 45, hint="Of all activity, right after it is put there."
+            )
+            gui.add_button("Inject").on_click(self._inject)
+        self._cell: CellReport | None = None
         self._now.on_click(self._pressed)
         self._experience.on_update(lambda event: self._typed(event, "experience"))
         self._view.on_update(lambda event: self._typed(event, "view"))
@@ -63,9 +82,24 @@ class InspectPanel:
 
     def draw(self, report: Report | None) -> None:
         self._page.content = markup.page(markup.note(NOTHING)) if report is None else report_page(report)
+        self._cell = report if isinstance(report, CellReport) else None
+        self._packet.visible = self._cell is not None
         for kind, field in ((ExperienceReport, self._experience), (ViewReport, self._view)):
             if isinstance(report, kind) and field.value != report.id:
                 field.value = report.id
+
+    def _inject(self, event: viser.GuiEvent[Any]) -> None:
+        client_id, cell = event.client_id, self._cell
+        if client_id is None or cell is None:
+            return
+
+        def answered(answer: Answer) -> None:
+            if isinstance(answer, Refused):
+                self._complain(client_id, "No packet injected", answer.reason)
+
+        heading, share = math.radians(self._heading.value), self._share.value / 100
+        wish = InjectPacket(type="inject_packet", x=cell.x, y=cell.y, heading_rad=heading, share=share)
+        self._send(wish, answered)
 
     def _typed(self, event: viser.GuiEvent[Any], field: str) -> None:
         if event.client_id is not None:  # a person

@@ -54,10 +54,11 @@ def _packets(layer: PoseCellLayer) -> str:
 
 def _invariants(layer: PoseCellLayer) -> str:
     """What excitation, inhibition and normalisation leave as it is, checked here and now. ACRA 2004 eqs. 10-12."""
-    holds = abs(layer.total - 1) < 1e-4 and layer.least >= 0
+    whole, positive = abs(layer.total - 1) < 1e-4, layer.least >= 0
+    verdict = "broken" if not positive else "holds" if whole else "not normalised yet"
     rows = [("sum of all activity", f"{layer.total:.6f}"), ("least activity of an active cell", f"{layer.least:.1e}")]
     count = f"{layer.active_cells:,} of {math.prod(layer.shape):,}".replace(",", " ")
-    rows += [("active cells", count), ("sum 1, nothing below 0", "holds" if holds else "broken")]
+    rows += [("active cells", count), ("sum 1, nothing below 0", verdict)]
     return markup.table("Attractor", rows)
 
 

@@ -70,6 +70,19 @@ const restart = (seed) => {
   command({ type: "reset", seed }, `Started anew with seed ${seed}.`);
 };
 
+// A saved brain goes up as it is; what is wrong with it comes back as a sentence.
+async function loadBrain(file) {
+  const headers = { "Content-Type": "application/octet-stream" };
+  try {
+    const answer = await fetch("/api/brain", { method: "POST", headers, body: file });
+    const told = await answer.json();
+    if (answer.ok) toast(`Started anew with the brain of ${file.name}.`);
+    else for (const wrong of told.detail) toast(sentence(wrong.reason), { bad: true });
+  } catch {
+    toast(`${file.name} could not be sent.`, { bad: true });
+  }
+}
+
 on("play", playOrPause);
 on("step", oneTick);
 on("stage-step", () => oneStage());
@@ -85,6 +98,15 @@ on("help", toggleHelp);
 on("help-close", toggleHelp);
 on("restart-same", () => restart(state.seed));
 on("restart-new", () => restart(crypto.getRandomValues(new Uint16Array(1))[0] % 10000));
+on("brain-save", () => ($("restart").open = false));
+on("brain-load", () => {
+  $("restart").open = false;
+  $("brain-file").click();
+});
+$("brain-file").addEventListener("change", ({ target }) => {
+  if (target.files.length) loadBrain(target.files[0]);
+  target.value = ""; // so that the same file can be chosen again
+});
 on("panels", () => stage.showPanels(!stage.panels));
 on("more", () => {
   const open = document.querySelector("header").classList.toggle("open");

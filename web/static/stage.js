@@ -72,8 +72,12 @@ export class Stage {
     const before = this.looked;
     this.looked = name;
     if (name === null || before === undefined || name === before) return;
-    const tabs = this.frame.contentDocument?.querySelectorAll("[role=tab]") ?? [];
-    for (const tab of tabs) if (tab.textContent.trim() === "Inspect") tab.click();
+    const inside = this.frame.contentWindow;
+    for (const tab of this.frame.contentDocument?.querySelectorAll("[role=tab]") ?? []) {
+      if (tab.textContent.trim() !== "Inspect") continue;
+      for (const kind of ["pointerdown", "pointerup"]) // viser's tabs can be dragged: a click alone does nothing
+        tab.dispatchEvent(new inside.PointerEvent(kind, { bubbles: true, button: 0, isPrimary: true, pointerId: 1 }));
+    }
   }
 
   // On a phone viser's panel would cover the stage; a button brings it.
@@ -87,6 +91,7 @@ export class Stage {
 const HIDE_PANEL = ".mantine-Paper-root[style*='fixed'] { display: none !important; }";
 // viser's panel in the page's own colours.
 const COLOURS = `
+  [data-dock-tab] { padding: 0 .62em !important; }
   :root[data-mantine-color-scheme="dark"] {
     --mantine-color-body: #151c26 !important; --mantine-color-default: #202a37 !important;
     --mantine-color-default-hover: #2b3747 !important; --mantine-color-default-border: #2f3b4b !important;

@@ -5,11 +5,11 @@ import { svg } from "./icons.js";
 const NAMES = {
   snap: "snap", kidnap: "kidnap", recovered: "recovered", goal: "goal set", arrived: "arrived", lost: "lost",
   link: "link lost", place: "places", fault: "fault", parameter: "setting", false: "false positive",
-  office: "office", warning: "note",
+  office: "office", warning: "note", packet: "packet", brain: "brain",
 };
 const WEIGHT = {
   fault: 6, kidnap: 5, arrived: 4, goal: 4, recovered: 3, lost: 3, link: 2, warning: 2, place: 1, parameter: 1, false: 1,
-  office: 1,
+  office: 1, packet: 2, brain: 3,
 };
 const STEPS_S = [10, 30, 60, 120, 180, 300, 600, 900, 1800, 3600, 7200, 14400];
 const REDRAW_MS = 500;

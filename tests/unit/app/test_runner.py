@@ -10,7 +10,9 @@ from app import runner as runner_module
 from app.config import Config
 from app.runner import Runner
 from app.session import PARTS, Session
-from sim2d import load_world
+from ratslam_core import RatSlam
+from ratslam_core.brain_snapshot import restore_snapshot
+from sim2d import SONAR_ANGLES_RAD, load_world
 from web import messages as m
 
 from .worlds import room
@@ -436,3 +438,48 @@ def test_a_fault_ends_the_walk(start: Callable[..., Runner], monkeypatch: pytest
     assert now.walk is None
     assert now.fault == "RuntimeError: broken"
     assert refuse(runner, stage()).field == "type"
+
+
+def test_a_brain_is_read_and_used_again(start: Callable[..., Runner]) -> None:
+    runner = start()
+    accept(runner, step(100))
+    answer = do(runner, m.ReadBrain())
+    assert isinstance(answer, m.Accepted)
+    brain = restore_snapshot(answer.result)  # type: ignore[arg-type]
+    known = len(brain.experience_map)
+    accept(runner, step(50))
+    before = snapshot(runner)
+    assert isinstance(do(runner, m.UseBrain(brain)), m.Accepted)
+    now = snapshot(runner)
+    assert (now.run, now.tick, now.world.name) == (before.run + 1, 0, before.world.name)
+    assert now.experiences >= known
+    assert now.events[-1].text == f"woke up with {now.experiences} experiences"
+    assert accept(runner, step(20)).tick == 20
+
+
+@pytest.mark.parametrize("why", ["no sonars", "other", "broken"])
+def test_a_brain_that_cannot_be_used_leaves_the_session_as_it_is(start: Callable[..., Runner], why: str) -> None:
+    runner = start()
+    accept(runner, step(30))
+    before, run = runner.session.state_hash(), snapshot(runner).run
+    brain: object = "no brain"
+    if why != "other":
+        brain = RatSlam()
+    if why == "broken":
+        brain = runner.session.brain.__class__(sonar_angles_rad=SONAR_ANGLES_RAD)
+        brain.experience_map.transitions = None  # type: ignore[assignment]
+    answer = do(runner, m.UseBrain(brain))
+    assert isinstance(answer, m.Refused)
+    assert answer.field == "brain"
+    assert "this brain cannot be used here" in answer.reason
+    assert (runner.session.state_hash(), snapshot(runner).run) == (before, run)
+    assert accept(runner, step(5)).tick == 35
+
+
+def test_a_packet_is_injected_and_noted(start: Callable[..., Runner]) -> None:
+    runner = start()
+    accept(runner, step(30))
+    now = accept(runner, m.InjectPacket(type="inject_packet", x=5, y=6, heading_rad=1.0, share=0.4))
+    assert now.events[-1].kind == "packet"
+    assert len(accept(runner, step()).pose_cells.packets) == 2
+    assert refuse(runner, m.InjectPacket(type="inject_packet", x=99, y=6)).value == (99, 6)

@@ -21,6 +21,7 @@ from web.latest import Latest
 from web.messages import (
     Accepted,
     Command,
+    InjectPacket,
     Inspect,
     Kidnap,
     MapLayer,
@@ -867,3 +868,21 @@ def test_the_residual_of_map_correction_is_told_and_drawn(bench: Bench) -> None:
     truth = bench.stage.panels.truth
     assert f"a residual of {snapshot.series.residual_mm[-1]:.1f} mm" in truth._residual_words.content
     assert np.array_equal(truth._residual.data[1], snapshot.series.residual_mm)
+
+
+def test_a_packet_is_injected_where_the_cell_is(bench: Bench) -> None:
+    panel = bench.stage.panels.inspect
+    panel._complain = lambda *words: bench.complaints.append(words)
+    person = SimpleNamespace(client_id=7)
+    bench.show(replace(fake_snapshot(430), inspected=None), 5)
+    assert not panel._packet.visible
+    panel._inject(person)  # type: ignore[arg-type]
+    assert bench.engine.commands == []
+    bench.show(replace(fake_snapshot(430), inspected=fake_reports()["cell"]), 5)
+    assert panel._packet.visible
+    panel._inject(person)  # type: ignore[arg-type]
+    (command,) = bench.engine.commands
+    assert command == InjectPacket(type="inject_packet", x=31, y=22, heading_rad=0.0, share=0.45)
+    bench.engine.answers[0].set_result(Refused("x, y", (31, 22), "a pose cell has x from 0 to 20"))
+    bench.show(None, 0.05)
+    assert bench.complaints == [(7, "No packet injected", "a pose cell has x from 0 to 20")]
