@@ -91,7 +91,7 @@ export class Stage {
 const HIDE_PANEL = ".mantine-Paper-root[style*='fixed'] { display: none !important; }";
 // viser's panel in the page's own colours.
 const COLOURS = `
-  [data-dock-tab] { padding: 0 .62em !important; }
+  [data-dock-tab] { padding: 0 .42em !important; font-size: 12.5px; }
   :root[data-mantine-color-scheme="dark"] {
     --mantine-color-body: #151c26 !important; --mantine-color-default: #202a37 !important;
     --mantine-color-default-hover: #2b3747 !important; --mantine-color-default-border: #2f3b4b !important;
