@@ -10,7 +10,7 @@ from web.stage import markup
 from web.stage.images import Pixels
 from web.stage.memory_panel import clock
 
-LINKS, NUMBERS = 24, 12
+LINKS, NUMBERS = 24, 6
 BAR = (76, 160, 220)
 
 
@@ -27,7 +27,8 @@ def report_page(report: Report) -> str:
 def experience_page(report: ExperienceReport) -> str:
     view = markup.caption("view") + markup.blank("made where there was nothing to see", 1.5)
     if report.picture is not None:
-        view = markup.caption(f"its view #{report.view}") + _picture(report.picture, f"the stored view {report.view}")
+        stored = _picture(report.picture, f"the stored view {report.view}")
+        view = markup.caption(f"its view #{report.view}") + markup.choice("view", report.view, stored, "display:block")
     x, y, theta = report.cell
     pose = report.pose
     words = "active now" if report.active else "not active"
@@ -59,7 +60,7 @@ def view_page(report: ViewReport) -> str:
         markup.row(stored, now),
         markup.table("Against what is seen now", rows),
         markup.table("When", _times(report.times)),
-        markup.table("Experiences made with it", [_numbers(report.experiences)] if report.experiences else [], "none"),
+        _experiences("Experiences made with it", report.experiences),
         _hebbian("Links to pose cells", report.hebbian),
     )
 
@@ -79,16 +80,18 @@ def cell_page(report: CellReport) -> str:
             ("packet", f"{p.id}, with {_percent(p.mass)} of all activity"),
             ("its centre", f"x′ {p.x:.1f}  y′ {p.y:.1f}  θ′ {_degrees(p.heading_rad % math.tau)}"),
         ]
-    views = [(f"#{view}", f"{strength:.4f}") for view, strength in report.views[:NUMBERS]]
-    if report.view_count > len(views) > 0:
-        views.append(("and weaker ones", str(report.view_count - len(views))))
+    views = [(view, f"{strength:.3f}") for view, strength in report.views[:NUMBERS]]
     return markup.page(
         markup.row(_name("pose cells at", f"{report.x}, {report.y}", share), bars),
         markup.table("Belongs to", packet, "no packet: nothing is active here"),
-        markup.table("Views linked here, by strength", views, "none: no view has been learnt here"),
-        markup.table(
-            "Experiences whose zone this is in", [_numbers(report.experiences)] if report.experiences else [], "none"
+        markup.choices(
+            "Views linked here, by strength",
+            "view",
+            views,
+            report.view_count - len(views),
+            "none: no view has been learnt here",
         ),
+        _experiences("Experiences whose zone this is in", report.experiences),
     )
 
 
@@ -108,10 +111,9 @@ def _times(times: Times) -> markup.Rows:
     return [("first", clock(times.first_s)), ("last", clock(times.last_s)), ("became active", often)]
 
 
-def _numbers(numbers: tuple[int, ...]) -> tuple[str, str]:
-    """How many, and the first of them."""
-    more = f" and {len(numbers) - NUMBERS // 2} more" if len(numbers) > NUMBERS // 2 else ""
-    return str(len(numbers)), ", ".join(f"#{number}" for number in numbers[: NUMBERS // 2]) + more
+def _experiences(title: str, numbers: tuple[int, ...]) -> str:
+    shown = [(number, "") for number in numbers[:NUMBERS]]
+    return markup.choices(title, "experience", shown, len(numbers) - len(shown))
 
 
 def _hebbian(title: str, links: HebbianReport) -> str:
@@ -131,13 +133,14 @@ def _links(report: ExperienceReport) -> str:
 
 def _link(link: LinkReport, here: int) -> str:
     """Two lines: where it leads by odometry, and what the robot knows of going there."""
-    to = f"to #{link.end}" if link.start == here else f"from #{link.start}"
+    word, other = ("to", link.end) if link.start == here else ("from", link.start)
+    to = markup.choice("experience", other, f"{word} #{other}", "font-weight:700;text-decoration:underline")
     way = f"{link.distance_m:.2f} m at {_degrees(link.bearing_rad)}, turns {_degrees(link.facing_rad)}"
     often = "once" if link.passages == 1 else f"{link.passages} times"
     trust = f"confidence {_percent(link.confidence)}" if link.trials else "not tried yet"
     known = f"{link.time_s:.1f} s, gone {often}, {link.behaviour}; {trust}"
     row = "display:flex;justify-content:space-between;gap:8px"
-    head = f'<div style="{row}"><b>{html.escape(to)}</b><span>{html.escape(way)}</span></div>'
+    head = f'<div style="{row}">{to}<span>{html.escape(way)}</span></div>'
     return f'<div style="margin:5px 0">{head}<div style="opacity:.75;font-size:12px">{html.escape(known)}</div></div>'
 
 

@@ -20,7 +20,7 @@ def css(colour: Rgb, opacity: float = 1.0) -> str:
 
 def page(*parts: str) -> str:
     """One column of parts at the panel's margins."""
-    return f'<div style="font-size:13px;line-height:1.45;padding:2px 6px">{"".join(parts)}</div>'
+    return f'<div style="font-size:13px;line-height:1.45;padding:2px 12px 2px 6px">{"".join(parts)}</div>'
 
 
 def heading(words: str) -> str:
@@ -51,6 +51,26 @@ def row(*cells: str) -> str:
     """Cells of equal width, side by side."""
     inner = "".join(f'<div style="flex:1 1 0;min-width:0">{cell}</div>' for cell in cells)
     return f'<div style="display:flex;gap:10px">{inner}</div>'
+
+
+def choice(kind: str, number: int, inner: str, style: str = "") -> str:
+    """What a click inspects: `kind` is a field of `Inspect`; the page around listens (web/static/stage.js)."""
+    return f'<span role="button" tabindex="0" data-{kind}="{number}" style="cursor:pointer;{style}">{inner}</span>'
+
+
+def choices(title: str, kind: str, entries: list[tuple[int, str]], more: int = 0, empty: str = "none") -> str:
+    """A row of numbers that can be clicked, each with a word; how many are left out, or why there are none."""
+    if not entries:
+        return heading(title) + note(empty)
+    style = (
+        "display:inline-block;border:1px solid;border-radius:9px;padding:0 7px;margin:3px 5px 0 0;white-space:nowrap"
+    )
+    chips = [
+        choice(kind, number, f'<b>#{number}</b><span style="opacity:.75"> {html.escape(words)}</span>', style)
+        for number, words in entries
+    ]
+    left = f'<span style="opacity:.7">and {more} more</span>' if more else ""
+    return heading(title) + f"<div>{''.join(chips)}{left}</div>"
 
 
 def picture(pixels: Pixels, words: str, aspect: float) -> str:

@@ -53,7 +53,9 @@ def views_page(senses: Senses, palette: Palette) -> str:
     best = markup.caption("best match") + markup.blank("none yet: every view is new", _aspect(senses.seen))
     if senses.best is not None:
         words = f"the stored view {senses.best_view}: {senses.best_words}"
-        best = markup.caption(f"best match #{senses.best_view}") + _view(senses.best, words)
+        best = markup.caption(f"best match #{senses.best_view}") + markup.choice(
+            "view", senses.best_view, _view(senses.best, words)
+        )
     return markup.page(
         markup.row(camera, _verdict(senses, palette)), markup.row(seen, best), _difference(senses, palette)
     )
@@ -103,7 +105,7 @@ def cells_page(layer: PoseCellLayer, snapshot: Snapshot, recent: tuple[int, ...]
     bars = markup.histogram(turns, palette.packets[0], "activity by heading", 1.12, ("0°", "180°", "360°"))
     return markup.page(
         markup.caption(f"local view cells ({shown})"),
-        markup.picture(strip, f"local view cells, {shown}", STRIP_HW[1] / STRIP_HW[0]),
+        _clickable(markup.picture(strip, f"local view cells, {shown}", STRIP_HW[1] / STRIP_HW[0]), snapshot.views),
         markup.row(markup.caption("pose cells from above") + above, markup.caption("heading θ′") + bars),
     )
 
@@ -113,7 +115,7 @@ def view_strip(active: int, views: int, recent: tuple[int, ...], palette: Palett
     rows, columns = STRIP_HW
     count = rows * columns
     squares = np.tile(np.array((*palette.text_2, 18), np.uint8), (count, 1))
-    per_square = max(1, -(-views // count))
+    per_square = views_a_square(views)
     squares[: -(-views // per_square), 3] = 60
     quiet = mix(palette.panel, palette.text_2, 0.3)
     for age, view in zip(range(len(recent), 0, -1), recent, strict=True):
@@ -124,6 +126,17 @@ def view_strip(active: int, views: int, recent: tuple[int, ...], palette: Palett
     large[SQUARE - 1 :: SQUARE, :, 3] = 0
     large[:, SQUARE - 1 :: SQUARE, 3] = 0
     return large
+
+
+def views_a_square(views: int) -> int:
+    return max(1, -(-views // (STRIP_HW[0] * STRIP_HW[1])))
+
+
+def _clickable(strip: str, views: int) -> str:
+    """A click on a square inspects its first view; web/static/stage.js reckons which."""
+    rows, columns = STRIP_HW
+    shape = f'data-rows="{rows}" data-columns="{columns}" data-each="{views_a_square(views)}" data-views="{views}"'
+    return f'<div class="view-strip" {shape} style="cursor:pointer">{strip}</div>'
 
 
 def from_above(layer: PoseCellLayer, palette: Palette) -> Pixels:

@@ -50,6 +50,11 @@ export class Stage {
     inside.addEventListener("pointerdown", (event) => {
       if (event.target.tagName === "CANVAS") event.preventDefault = () => {};
     }, true);
+    paper.addEventListener("click", (event) => this.chosen(event.target.closest(CHOICES), event));
+    paper.addEventListener("keydown", (event) => {
+      const choice = event.key === "Enter" ? event.target.closest(CHOICES) : null;
+      if (choice) this.chosen(choice, event);
+    });
     this.style = paper.createElement("style");
     paper.head.append(this.style);
     this.showPanels(this.panels);
@@ -65,6 +70,20 @@ export class Stage {
     document.getElementById("waiting").hidden = true;
     let looks = 20;
     const timer = setInterval(() => (dismissSlowNotice(paper) || --looks === 0) && clearInterval(timer), 250);
+  }
+
+  // A click on a view or a number in the panels: what it stands for is inspected.
+  chosen(choice, event) {
+    if (!choice) return;
+    if (choice.matches(".view-strip")) {
+      const { rows, columns, each, views } = choice.dataset;
+      const box = choice.getBoundingClientRect();
+      const row = Math.floor(((event.clientY - box.top) / box.height) * rows);
+      const column = Math.floor(((event.clientX - box.left) / box.width) * columns);
+      const view = (row * columns + column) * each;
+      if (view < views) this.link.ask({ type: "inspect", view });
+    } else if (choice.dataset.view) this.link.ask({ type: "inspect", view: Number(choice.dataset.view) });
+    else this.link.ask({ type: "inspect", experience: Number(choice.dataset.experience) });
   }
 
   // Whoever chooses something sees what is told of it; a page that has just come shows what it showed.
@@ -88,6 +107,7 @@ export class Stage {
   }
 }
 
+const CHOICES = "[data-view], [data-experience], .view-strip";
 const HIDE_PANEL = ".mantine-Paper-root[style*='fixed'] { display: none !important; }";
 // viser's panel in the page's own colours.
 const COLOURS = `

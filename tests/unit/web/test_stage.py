@@ -777,8 +777,8 @@ def test_what_is_inspected_is_told_and_marked(bench: Bench, kind: str) -> None:
     words = {
         "experience": ("#12", "its view #7", "Links to other experiences: 2", "1.50 m at 45°", "following the wall",
                        "confidence 80 %", "first", "1:05", "gone 3 times"),
-        "view": ("#7", "12.5", "another view", "#12, #40", "pose cells linked"),
-        "cell": ("31, 22", "40 % of all activity", "3, with 62 %", "#7", "0.0500", "Experiences whose zone"),
+        "view": ("#7", "12.5", "another view", "#12<", "#40<", "pose cells linked"),
+        "cell": ("31, 22", "40 % of all activity", "3, with 62 %", "#7<", "0.050", "Experiences whose zone"),
     }[kind]  # fmt: skip
     page = stage.panels.inspect._page.content
     for word in words:

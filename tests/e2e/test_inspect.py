@@ -1,0 +1,145 @@
+"""Looking into the robot's head in a real browser: clicks that inspect, a tick stage by stage, brains up and down."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import FrameLocator, Page, expect
+
+from tests.e2e.browser import on_screen, open_page, show, until
+from tests.e2e.program import Program
+from tests.e2e.test_dashboard import node_on_stage
+from web.messages import Packet
+from web.stage.cell_fit import CellFit
+from web.stage.pose_cell_plate import ORIGIN as CELLS_ORIGIN
+
+PATIENCE_MS = 15_000
+
+
+@pytest.fixture(scope="module")
+def walked(program, browser) -> Program:
+    """A minute and a half of exploring, paused; the page has seen the start and so knows the map's turn."""
+    with open_page(browser, program.url):
+        start = program.state()
+        program.turn = float(
+            np.remainder(start["robot"]["heading_rad"] - start["estimate"]["heading_rad"] + np.pi, 2 * np.pi) - np.pi
+        )
+    program.command("step", ticks=900)
+    return program
+
+
+def panel(page: Page) -> FrameLocator:
+    return page.frame_locator("#stage")
+
+
+def selected(page: Page, tab: str) -> None:
+    expect(panel(page).get_by_role("tab", name=tab, exact=True)).to_have_attribute(
+        "aria-selected", "true", timeout=PATIENCE_MS
+    )
+
+
+def open_tab(page: Page, tab: str) -> None:
+    panel(page).get_by_role("tab", name=tab, exact=True).click()
+    selected(page, tab)
+
+
+def says(page: Page, words: str | re.Pattern[str]) -> None:
+    expect(panel(page).get_by_text(words).first).to_be_visible(timeout=PATIENCE_MS)
+
+
+def test_a_click_with_shift_on_the_map_and_a_click_into_the_pose_cells_inspect(walked, browser):
+    with open_page(browser, walked.url) as page:
+        show(page, "map")
+        nodes = np.array(walked.state(full=True)["map"]["xy"])
+        page.keyboard.down("Shift")
+        page.mouse.click(*on_screen(page, "map", node_on_stage(walked, nodes[40], nodes)))
+        page.keyboard.up("Shift")
+        selected(page, "Inspect")
+        says(page, "Links to other experiences")
+        number = panel(page).get_by_label("experience #")
+        assert np.hypot(*(nodes[int(number.input_value())] - nodes[40])) < 0.3
+        assert walked.state()["goal"] is None  # it did not go there
+
+        link = panel(page).get_by_text(re.compile(r"^(to|from) #\d+$")).first
+        wanted = link.inner_text().split("#")[1]
+        link.click()
+        expect(number).to_have_value(wanted, timeout=PATIENCE_MS)
+
+        show(page, "pose")
+        state = walked.state()["pose_cells"]
+        fit = CellFit(tuple(state["shape"]))
+        at = fit.packet(Packet(**state["packets"][0])) + CELLS_ORIGIN
+        page.mouse.click(*on_screen(page, "pose", tuple(at.tolist())))
+        says(page, "pose cells at")
+        says(page, "Views linked here, by strength")
+        panel(page).get_by_role("button", name="Inject", exact=True).click()
+        until(page, "() => document.getElementById('events').textContent.includes('packet')")
+        walked.command("step")
+        assert len(walked.state()["pose_cells"]["packets"]) == 2
+
+
+def test_a_click_on_a_view_shows_it_beside_what_is_seen_now(walked, browser):
+    with open_page(browser, walked.url) as page:
+        open_tab(page, "Senses")
+        panel(page).locator("[data-view]").first.click()
+        selected(page, "Inspect")
+        says(page, "as it is stored")
+        open_tab(page, "Senses")
+        strip = panel(page).locator(".view-strip").bounding_box()
+        assert strip is not None
+        page.mouse.click(strip["x"] + 3, strip["y"] + 3)
+        selected(page, "Inspect")
+        says(page, re.compile(r"^#0$"))
+
+
+def test_a_tick_is_walked_through_by_key_and_by_button(walked, browser):
+    walked.command("pause")
+    with open_page(browser, walked.url) as page:
+        tick = walked.state()["tick"]
+        page.keyboard.press(",")
+        expect(page.locator("#walk")).to_be_visible(timeout=PATIENCE_MS)
+        titles = []
+        for k in range(1, 10):
+            expect(page.locator("#walk .which")).to_have_text(f"{k} of 9", timeout=PATIENCE_MS)
+            titles.append(page.locator("#walk .title").inner_text())
+            if k < 9:
+                page.click("#walk-next")
+        assert titles == [
+            "Image and odometry", "View match", "Path integration", "Injection by the view", "Excitation", "Inhibition",
+            "Normalisation", "Experience choice", "Map correction",
+        ]  # fmt: skip
+        assert walked.state()["tick"] == tick + 1
+        page.click("#walk-back")
+        expect(page.locator("#walk .title")).to_have_text("Experience choice", timeout=PATIENCE_MS)
+        open_tab(page, "Tick")
+        says(page, "Stage 8 of 9")
+        says(page, re.compile(r"^A tick takes [\d.]+ of its 100 ms$"))
+        page.keyboard.press(".")
+        expect(page.locator("#walk")).to_be_hidden(timeout=PATIENCE_MS)
+
+
+def test_a_brain_goes_down_to_a_file_and_comes_up_again(walked, browser, tmp_path: Path):
+    walked.command("pause")
+    known = walked.state()["experiences"]
+    with open_page(browser, walked.url, refused=True) as page:
+        page.click("#restart summary")
+        with page.expect_download() as loading:
+            page.click("#brain-save")
+        file = tmp_path / loading.value.suggested_filename
+        loading.value.save_as(file)
+        assert file.name == "brain-office-seed5.npz"
+        before = walked.state()
+
+        bad = tmp_path / "cat.npz"
+        bad.write_bytes(b"a picture of a cat")
+        page.set_input_files("#brain-file", bad)
+        page.wait_for_selector("#alerts .toast:has-text('This file is no brain')", timeout=PATIENCE_MS)
+        assert walked.state() == before
+
+        page.set_input_files("#brain-file", file)
+        page.wait_for_selector("#toasts .toast:has-text('Started anew with the brain')", timeout=PATIENCE_MS)
+        after = walked.wait(lambda state: state["tick"] == 0, 5)
+        assert after["experiences"] >= known
