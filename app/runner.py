@@ -7,8 +7,9 @@ import queue
 import threading
 import time
 import traceback
-from collections.abc import Mapping
+from collections.abc import Callable
 from concurrent.futures import Future
+from dataclasses import replace
 
 from app.chronicle import Chronicle
 from app.config import Config
@@ -18,9 +19,10 @@ from app.packets import inject_packet
 from app.session import Session
 from app.snapshots import Snapshots
 from app.tick_stages import TickRecorder
+from app.world_editing import WorldEditor
 from ratslam_core import RatSlam
 from ratslam_core.brain_snapshot import take_snapshot
-from sim2d import World, load_world, world_names
+from sim2d import World, load_world, own_worlds, world_names
 from web import messages as m
 from web.latest import Latest
 
@@ -43,10 +45,10 @@ class Runner:
         brain: RatSlam | None = None,
     ) -> None:
         self.latest: Latest[m.Snapshot] = Latest()
-        self._own_worlds: Mapping[str, World] = {world.name: world}
-        titles = dict(world_names())
-        titles.setdefault(world.name, world.title)
-        self._worlds = tuple(titles.items())
+        self._own_worlds = {world.name: world}
+        self._titles = dict(world_names()) | dict(own_worlds.names())
+        self._titles.setdefault(world.name, world.title)
+        self._editor = WorldEditor(world)
         self._first = (world, seed, config, brain)
         self._requests: queue.SimpleQueue[m.Request | None] = queue.SimpleQueue()
         self._speed, self._running = speed, running
@@ -97,10 +99,11 @@ class Runner:
         """Another run, or none of it: what fails leaves the old one as it is."""
         session = Session(world, seed, config, brain)
         chronicle = Chronicle(session)
-        snapshots = Snapshots(session, chronicle, self._run + 1, self._worlds)
+        snapshots = Snapshots(session, chronicle, self._run + 1, tuple(self._titles.items()))
         if brain is not None:  # a foreign one has to be such that it can be shown
             snapshots.build(running=False, speed=1.0, real_time_factor=0.0, fault=None)
         self.session, self._chronicle, self._snapshots = session, chronicle, snapshots
+        self._editor.begin(world)
         self._run += 1
         self._fault = None
         for words in config.warnings:
@@ -161,6 +164,8 @@ class Runner:
     def _publish(self) -> None:
         self._published = time.perf_counter()
         speed = self._speed if self._speed > 0 else math.inf
+        self._editor.follow(self.session.simulator.world)
+        self._snapshots.office = self._editor.edition
         self.latest.put(
             self._snapshots.build(running=self._running, speed=speed, real_time_factor=self._factor, fault=self._fault)
         )
@@ -177,6 +182,11 @@ class Runner:
                 return m.Accepted(self.session.tick_count, take_snapshot(self.session.brain))
             case m.UseBrain(brain=brain):
                 return self._use(brain)
+            case m.ReadWorld():
+                self._editor.follow(self.session.simulator.world)
+                return m.Accepted(self.session.tick_count, (self._editor.world, self._editor.edition))
+            case m.OpenWorld() | m.WorldSaved():
+                return self._receive(errand)
 
     def _use(self, brain: object) -> m.Accepted | m.Refused:
         """A new run with a foreign brain in the same world; the old run goes on when that cannot be."""
@@ -190,6 +200,31 @@ class Runner:
         self._chronicle.note("brain", f"woke up with {len(brain.experience_map)} experiences")
         self._publish()
         return m.Accepted(0)
+
+    def _receive(self, delivery: m.OpenWorld | m.WorldSaved) -> m.Accepted | m.Refused:
+        """A world from a file, or news that the present one is in a file now."""
+        world = delivery.world
+        if isinstance(delivery, m.OpenWorld):
+            world = self._own_worlds[world.name] if self._own_worlds.get(world.name) == world else self._new_name(world)
+            was_faulty = self._fault is not None
+            try:
+                self._begin(world, self.session.seed, self.session.config)
+            except ValueError as error:
+                return m.Refused("world", world.name, str(error))
+            self._running = self._running or was_faulty
+        else:
+            self._editor.named(delivery.was, world, self.session.edit_world)
+        self._own_worlds[world.name] = world
+        self._titles[world.name] = world.title
+        self._snapshots.worlds = tuple(self._titles.items())
+        return m.Accepted(self.session.tick_count, world.name)
+
+    def _new_name(self, world: World) -> World:
+        """The same with a name that no other world has: plan, plan-2, plan-3."""
+        name, k = world.name, 2
+        while name in self._titles:
+            name, k = f"{world.name[:36]}-{k}", k + 1
+        return replace(world, name=name)
 
     # ------------------------------------------------------------ commands
 
@@ -247,6 +282,8 @@ class Runner:
                 return self._try(
                     "x, y", (command.x, command.y), lambda: note("packet", inject_packet(session, command))
                 )
+            case m.EditWorld() | m.UndoEdit() | m.RedoEdit():
+                return self._edit(command)
             case m.Inspect():
                 chosen = command.model_dump(exclude={"type"}, exclude_none=True)
                 return self._try(", ".join(chosen) or "type", list(chosen.values()), lambda: self._choose(command))
@@ -271,6 +308,22 @@ class Runner:
         self._snapshots.walk = following
         return None
 
+    def _edit(self, order: m.EditOrder) -> m.Refused | None:
+        editor, session = self._editor, self.session
+        editor.follow(session.simulator.world)
+        match order:
+            case m.EditWorld():
+                radius = session.simulator.params.robot_radius_m
+                steps = [step.model_dump(exclude_none=True) for step in order.steps]
+                return self._note("steps", steps, lambda: editor.edit(order, radius, session.edit_world))
+            case m.UndoEdit():
+                return self._note("type", order.type, lambda: editor.undo(session.edit_world))
+            case m.RedoEdit():
+                return self._note("type", order.type, lambda: editor.redo(session.edit_world))
+
+    def _note(self, field: str, value: object, order: Callable[[], str]) -> m.Refused | None:
+        return self._try(field, value, lambda: self._chronicle.note("office", order()))
+
     def _choose(self, wish: m.Inspect) -> None:
         inspect(self.session, self._chronicle, wish)
         self._snapshots.inspected = wish
@@ -287,10 +340,13 @@ class Runner:
         session = self.session
         world = session.world
         if name is not None and name != world.name:
-            known = dict(self._worlds)
-            if name not in known:
-                return m.Refused("world", name, f"unknown world {name!r}; expected one of: {', '.join(known)}")
-            world = self._own_worlds.get(name) or load_world(name)
+            if name not in self._titles:
+                known = ", ".join(self._titles)
+                return m.Refused("world", name, f"unknown world {name!r}; expected one of: {known}")
+            try:
+                world = self._own_worlds.get(name) or load_world(name)
+            except ValueError as error:  # a saved one that somebody has spoilt since
+                return m.Refused("world", name, str(error))
         was_faulty = self._fault is not None
         try:
             self._begin(world, session.seed if seed is None else seed, session.config)

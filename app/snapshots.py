@@ -27,6 +27,7 @@ from web.messages import (
     MapLayer,
     OccupancyLayer,
     OccupancyPicture,
+    OfficeEdition,
     Packet,
     Parameter,
     Pose,
@@ -53,7 +54,8 @@ class Snapshots:
     """`build` looks at one session; it changes nothing that the session's future depends on."""
 
     def __init__(self, session: Session, chronicle: Chronicle, run: int, worlds: tuple[tuple[str, str], ...]) -> None:
-        self._session, self._chronicle, self._run, self._worlds = session, chronicle, run, worlds
+        self._session, self._chronicle, self._run, self.worlds = session, chronicle, run, worlds
+        self.office: OfficeEdition | None = None
         self._drawn: tuple[object, object] | None = None
         self._world = self._draw_world()
         self._living = LivingView()
@@ -89,7 +91,7 @@ class Snapshots:
             fault=fault,
             lost=chronicle.lost,
             world=self._draw_world(),
-            worlds=self._worlds,
+            worlds=self.worlds,
             truth=Pose(truth.x, truth.y, truth.heading_rad),
             trail=_frozen(chronicle.trail),
             estimate=parts["estimate"],
@@ -117,13 +119,14 @@ class Snapshots:
             walk=None if self.walk is None else self.walk.told,
             presets=_PRESETS,
             preset=self._parameter_rows()[1],
+            office=self.office,
         )
 
     def _draw_world(self) -> WorldDrawing:
         """Drawn anew only when walls, places or the camera's lens have changed."""
         simulator, params = self._session.simulator, self._session.simulator.params
         world, drawn = simulator.world, self._drawn
-        now = (world.slow_zones, world.places, params.camera_fov_rad)
+        now = (world.name, world.title, world.slow_zones, world.places, params.camera_fov_rad)
         if drawn is None or drawn[0] is not world.walls or drawn[1] != now:
             self._drawn = (world.walls, now)
             self._world = world_drawing(world, params.robot_radius_m, params.camera_fov_rad)

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from sim2d import WorldError, load_world, world_names, world_to_json
+from sim2d import WorldError, load_world, own_worlds, world_names, world_to_json
 from sim2d.importers import import_file
 from sim2d.world_file import complaints, parse_json, schema_text
 
@@ -37,6 +37,8 @@ def _list(_args: argparse.Namespace) -> int:
         world = load_world(name)
         x0, y0, x1, y1 = world.bounds
         print(f"{name:12} {world.title}; {x1 - x0:g} x {y1 - y0:g} m; {world.paper or 'ours'}: {world.about}")
+    for name, title in own_worlds.names():
+        print(f"{name:12} {title}; yours, in {own_worlds.folder()}")
     return 0
 
 

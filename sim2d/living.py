@@ -108,6 +108,18 @@ class Living:
                 return f"({x:g}, {y:g}) is in box {box.name!r}"
         return None
 
+    def leaf_on(self, doors: tuple[Door, ...], x: float, y: float, radius: float) -> str | None:
+        """Which leaf would cover a disc if these doors took the place of ours, or None. Doors that stay are no matter."""
+        was = _by_name(self.world.doors)
+        for i, door in enumerate(doors):
+            k = was.get(door.name)
+            if k is not None and self.world.doors[k] == door:
+                continue
+            opening = float(door.open) if k is None else float(self.opening[k])
+            if nearest_segment(leaf(door, opening)[None], x, y)[1] < radius:
+                return f"doors[{i}] ({door.name}) would cover the robot at ({x:.2f}, {y:.2f}); keep {radius:.2f} m away from it"
+        return None
+
     def adopt(self, old: Living) -> None:
         """After an edit: all that has kept its name and kind goes on as it was."""
         doors, boxes = _by_name(old.world.doors), _by_name(old.world.boxes)

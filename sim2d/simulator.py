@@ -218,7 +218,8 @@ class Simulator:
         world: as `check_world` lets it pass. Refused when a wall or thing would cover the robot or leave it outside.
         """
         x, y, _ = self._pose()
-        refusal = _covered(world, x, y, self.params.robot_radius_m)
+        radius = self.params.robot_radius_m
+        refusal = _covered(world, x, y, radius) or self.living.leaf_on(world.doors, x, y, radius - LEANS_M)
         if refusal is not None:
             raise ValueError(refusal)
         walls_stay = world.walls == self.world.walls
@@ -227,6 +228,7 @@ class Simulator:
             self._measure()
         self.living = Living(world, np.random.default_rng(self._pose_rng.integers(2**63)), self.params.tick_s)
         self.living.adopt(before)
+        self.living.make_way((x, y), radius)
         self._camera.set_world(world, self.living, self._all_walls)
         self._painted = world
         if walls_stay:

@@ -9,10 +9,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from sim2d import own_worlds
 from sim2d.json_lines import line_of
 from sim2d.params import SimParams
 from sim2d.world import World
-from sim2d.world_check import Where, world_faults
+from sim2d.world_check import Fault, Where, world_faults
 from sim2d.world_schema import WorldFile
 
 WORLDS = Path(__file__).parent / "worlds"
@@ -54,7 +55,7 @@ def world_from_json(text: str, file_name: str, robot_radius_m: float | None = No
     try:
         world = WorldFile.model_validate(raw).world()
     except ValidationError as error:
-        raise WorldError(next(_schema_complaints(error, text, file_name))) from None
+        raise WorldError(next(_schema_complaints(error, file_name, text))) from None
     for complaint in _complaints(world, text, file_name, robot_radius_m):
         raise WorldError(complaint)
     return world
@@ -65,7 +66,7 @@ def complaints(text: str, file_name: str, robot_radius_m: float | None = None) -
     try:
         world = WorldFile.model_validate(parse_json(text, file_name)).world()
     except ValidationError as error:
-        return list(_schema_complaints(error, text, file_name))
+        return list(_schema_complaints(error, file_name, text))
     except WorldError as error:
         return [str(error)]
     return list(_complaints(world, text, file_name, robot_radius_m))
@@ -87,29 +88,45 @@ def parse_json(text: str, file_name: str) -> Any:
         raise WorldError(f"{file_name}: not a world: nested too deeply") from None
 
 
-def _schema_complaints(error: ValidationError, text: str, name: str) -> Iterator[str]:
+def item_complaint(error: ValidationError, kind: str) -> str:
+    """The first thing that is wrong with one item of a list: `walls: height: got -1; input should be ...`."""
+    return next(_schema_complaints(error, kind))
+
+
+def fault_words(fault: Fault) -> str:
+    """What is wrong and with which item, without a file."""
+    between = " " if fault.message.startswith("(") else ": "
+    return f"{_path(fault.where)}{between}{fault.message}"
+
+
+def _schema_complaints(error: ValidationError, name: str, text: str | None = None) -> Iterator[str]:
     """`walls[3].height: got -1; input should be greater than 0 (line 12)`."""
     for item in error.errors(include_url=False):
         message = item["msg"][0].lower() + item["msg"][1:]
         if item["type"] == "extra_forbidden":
             message = "unknown key; take it out or correct its spelling"
         got = "" if item["type"] in ("missing", "model_type", "too_long") else f" got {_short(item['input'])};"
-        yield f"{name}: {_path(item['loc']) or 'file'}:{got} {message}{_line(text, item['loc'])}"
+        line = "" if text is None else _line(text, item["loc"])
+        yield f"{name}: {_path(item['loc']) or 'file'}:{got} {message}{line}"
 
 
 def _complaints(world: World, text: str, name: str, radius_m: float | None) -> Iterator[str]:
     radius = SimParams().robot_radius_m if radius_m is None else radius_m
     for fault in world_faults(world, radius):
-        between = " " if fault.message.startswith("(") else ": "
-        yield f"{name}: {_path(fault.where)}{between}{fault.message}{_line(text, fault.where)}"
+        yield f"{name}: {fault_words(fault)}{_line(text, fault.where)}"
 
 
 def _find(name_or_path: str | Path) -> Path:
-    """One of ours by its name, else a file. Who takes names from strangers must compare with `world_names` first."""
+    """One of ours by its name, one that a person saved, else a file. Who takes names from strangers must compare with
+    `world_names` and `own_worlds.names` first."""
     text = str(name_or_path)
     known = [name for name, _ in world_names()]
     if text in known:
         return WORLDS / f"{text}.json"
+    own = own_worlds.path_of(text)
+    if own is not None and own.is_file():
+        return own
+    known += [name for name, _ in own_worlds.names()]
     path = Path(name_or_path)
     if path.suffix == ".json" and path.is_file():
         return path

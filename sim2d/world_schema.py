@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, get_args
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -11,7 +12,11 @@ from sim2d.texture import TEXTURES
 from sim2d.things import Action, Box, Daylight, Door, Event, Lamp, Person, Rgb, SlowZone
 from sim2d.world import Panel, Place, Start, Wall, World
 
+Thing = Wall | Start | Place | Door | Lamp | Box | Person | SlowZone
 MOST_WALLS, MOST_PEOPLE, MOST_THINGS, MOST_EVENTS = 10_000, 50, 200, 1000
+MOST = {"walls": MOST_WALLS, "people": MOST_PEOPLE, **dict.fromkeys(
+    ("starts", "places", "doors", "lamps", "boxes", "slow_zones"), MOST_THINGS
+)}  # fmt: skip
 KINDS = ("wall", "partition", "desk", "door", "window", "screen", "glass")
 
 
@@ -170,18 +175,40 @@ class WorldFile(_Item):
             paper=self.paper,
             about=self.about,
             walls=tuple(map(_wall, self.walls)),
-            starts=tuple(Start(s.name, s.x, s.y, math.radians(s.heading_deg)) for s in self.starts),
-            places=tuple(Place(p.name, p.x, p.y) for p in self.places),
+            starts=tuple(map(_start, self.starts)),
+            places=tuple(map(_place, self.places)),
             floor_colour=_rgb(self.floor_colour),
             ceiling_colour=_rgb(self.ceiling_colour),
             doors=tuple(map(_door, self.doors)),
-            lamps=tuple(Lamp(k.name, k.x, k.y, k.reach, k.brightness, k.on) for k in self.lamps),
+            lamps=tuple(map(_lamp, self.lamps)),
             daylight=day and Daylight(tuple(p[0] for p in day.points), tuple(p[1] for p in day.points), day.repeat_s),
             boxes=tuple(map(_box, self.boxes)),
             people=tuple(map(_person, self.people)),
-            slow_zones=tuple(SlowZone(z.name, _points(z.corners), z.factor) for z in self.slow_zones),
+            slow_zones=tuple(map(_zone, self.slow_zones)),
             script=tuple(Event(e.at_s, e.do, e.name, e.level) for e in self.script),
         )
+
+
+def thing_of(kind: str, item: dict[str, Any]) -> Thing:
+    """One item of one of the file's lists. Raises pydantic's ValidationError."""
+    model, make = _MAKERS[kind]
+    return make(model.model_validate(item))
+
+
+def _start(item: _StartItem) -> Start:
+    return Start(item.name, item.x, item.y, math.radians(item.heading_deg))
+
+
+def _place(item: _PlaceItem) -> Place:
+    return Place(item.name, item.x, item.y)
+
+
+def _lamp(item: _LampItem) -> Lamp:
+    return Lamp(item.name, item.x, item.y, item.reach, item.brightness, item.on)
+
+
+def _zone(item: _ZoneItem) -> SlowZone:
+    return SlowZone(item.name, _points(item.corners), item.factor)
 
 
 def _wall(item: _WallItem) -> Wall:
@@ -219,3 +246,15 @@ def _points(points: list[list[float]]) -> tuple[tuple[float, float], ...]:
 
 def _rgb(text: str) -> Rgb:
     return int(text[1:3], 16), int(text[3:5], 16), int(text[5:7], 16)
+
+
+_MAKERS: dict[str, tuple[type[_Item], Callable[[Any], Thing]]] = {
+    "walls": (_WallItem, _wall),
+    "starts": (_StartItem, _start),
+    "places": (_PlaceItem, _place),
+    "doors": (_DoorItem, _door),
+    "lamps": (_LampItem, _lamp),
+    "boxes": (_BoxItem, _box),
+    "people": (_PersonItem, _person),
+    "slow_zones": (_ZoneItem, _zone),
+}

@@ -25,6 +25,7 @@ from web.proxy import PAGE_ID, Cameras, StageLike, ViserProxy
 from web.security import MAX_BODY_BYTES, MAX_BRAIN_BYTES, Guard, Limits
 from web.state import experience_fields, to_json
 from web.stream import NoAnswer, Stream, Submit, ask
+from web.worlds import add_worlds
 
 STATIC = pathlib.Path(__file__).parent / "static"
 _REF = "#/components/schemas/{model}"
@@ -63,6 +64,7 @@ def create_app(latest: Latest[Snapshot], submit: Submit, stage: StageLike, port:
     _add_experience(app, submit)
     _add_brain(app, latest, submit)
     _add_commands(app, submit)
+    add_worlds(app, latest, submit)
     _add_stream(app, stream)
     _add_viser(app, ViserProxy(stage, cameras))
     _add_pages(app)

@@ -90,6 +90,9 @@ def _explain(document: dict[str, Any], error: ValidationError) -> list[dict[str,
             value = document.get("type")
             reason = "is missing" if "type" not in document else f"{_shown(value)} is not a command"
             reason = f"type {reason}; expected one of: {', '.join(MODELS)}"
+        elif field == "steps" and len(where) > 2:
+            path = "steps" + "".join(f"[{part}]" if part.isdigit() else f".{part}" for part in where[2:])
+            reason = f"{path} is wrong: {item['msg'][0].lower()}{item['msg'][1:]}, got {_shown(value)}"
         elif len(where) > 2:  # a field that may be of several types
             reason = f"{field} must be a number, true, false or text of at most 64 characters, got {_shown(value)}"
         else:

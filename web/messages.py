@@ -11,11 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
+
+from sim2d.world import World
 
 # ---------------------------------------------------------------- out
 
@@ -325,6 +327,16 @@ class Series:
     residual_deg: NDArray[np.float64]
 
 
+@dataclass(frozen=True, slots=True)
+class OfficeEdition:
+    """Which state of the office this is, for editors."""
+
+    number: int  # grows with every change of the world and every other world
+    undo: str  # what would be taken back; empty: nothing
+    redo: str
+    saved: bool  # as it was opened or saved last
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Snapshot:
     """The session at the end of one tick."""
@@ -369,6 +381,7 @@ class Snapshot:
     walk: TickWalk | None = None  # None: nothing is shown stage by stage
     presets: tuple[str, ...] = ()
     preset: str = ""  # the one whose values are all set
+    office: OfficeEdition | None = None
 
 
 # ---------------------------------------------------------------- in
@@ -527,6 +540,40 @@ class Inspect(_Command):
     y: Annotated[int, Field(ge=0)] | None = None
 
 
+OfficeList = Literal["walls", "starts", "places", "doors", "lamps", "boxes", "people", "slow_zones"]
+
+
+class EditStep(_Command):
+    """One item of one list of the world file: added at the end, changed, or deleted. `item` is written as in that file."""
+
+    do: Literal["add", "change", "delete"]
+    list: OfficeList
+    number: Annotated[int, Field(ge=0, le=100_000)] | None = None  # of the item to change or delete, from 0
+    item: dict[str, Any] | None = None  # to add, or to change into; a wall without a colour gets looks of its own
+
+
+class EditWorld(_Command):
+    """Change the office under the running robot, all steps or none. Refused when the world would not be sound, when the
+    robot would be covered, or when the office is no longer the edition that the editor saw. Undone as one."""
+
+    type: Literal["edit_world"]
+    steps: Annotated[list[EditStep], Field(min_length=1, max_length=200)]
+    edition: int | None = None
+
+
+class UndoEdit(_Command):
+    """Take the last change of the office back."""
+
+    type: Literal["undo_edit"]
+
+
+class RedoEdit(_Command):
+    """Do again what was taken back last."""
+
+    type: Literal["redo_edit"]
+
+
+EditOrder = EditWorld | UndoEdit | RedoEdit
 OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
 LookOrder = Inspect | StepStage | InjectPacket
 Command = Annotated[
@@ -542,6 +589,7 @@ Command = Annotated[
     | Reset
     | SetParameter
     | OfficeOrder
+    | EditOrder
     | LookOrder,
     Field(discriminator="type"),
 ]
@@ -566,7 +614,28 @@ class UseBrain:
     brain: object
 
 
-Errand = ReadExperience | ReadBrain | UseBrain  # what no command can hold; goes the same way
+class ReadWorld:
+    """The answer's `result` is the World as it is now and its OfficeEdition."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OpenWorld:
+    """Begin anew in this world, which has been checked. The answer's `result` is the name that it got."""
+
+    world: World
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WorldSaved:
+    """The world that was read has been saved, named as `world` is."""
+
+    was: World
+    world: World
+
+
+Errand = (
+    ReadExperience | ReadBrain | UseBrain | ReadWorld | OpenWorld | WorldSaved
+)  # what no command can hold; goes the same way
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,8 @@ ASGI: it runs before a websocket is accepted, which ordinary HTTP middleware doe
 - Host must be one of ours with our port, once. Missing or repeated: 400. Anything else: 403.
 - Origin, where there is one, must be "http://" + that Host. A websocket must have one (browsers always send it, so
   whoever leaves it out is a program and can add it); other requests may come without, as curl's do.
-- A request that is neither GET nor HEAD must not be cross-site (Sec-Fetch-Site) and must carry JSON of at most 64 KiB;
-  a brain that is uploaded is application/octet-stream (no form can send that either) of at most 256 MiB.
+- A request that is neither GET nor HEAD must not be cross-site (Sec-Fetch-Site) and must carry JSON of at most 64 KiB,
+  24 MiB with plans; a brain that is uploaded is application/octet-stream (no form can send that either) of at most 256 MiB.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from web.commands import problem
 
 MAX_BODY_BYTES = 64 * 1024
 BRAIN_PATH, MAX_BRAIN_BYTES = "/api/brain", 256 * 1024 * 1024
+PLAN_PATH, MAX_PLAN_BYTES = "/api/worlds/open", 24 * 1024 * 1024  # a picture of 16 MB in base64
 HOST_NAMES = ("127.0.0.1", "localhost", "[::1]")
 
 PAGE_POLICY = (
@@ -96,13 +97,15 @@ def refusal_of(scope: Scope, hosts: frozenset[str]) -> Refusal | None:
         return None if origin else Refusal(403, f"a websocket needs the header Origin: http://{host[0]}")
     if scope["method"] in ("GET", "HEAD"):
         return None
-    return _refusal_of_change(headers, scope["path"] == BRAIN_PATH)
+    return _refusal_of_change(headers, scope["path"])
 
 
-def _refusal_of_change(headers: Mapping[str, str], brain: bool) -> Refusal | None:
+def _refusal_of_change(headers: Mapping[str, str], path: str) -> Refusal | None:
     if headers.get("sec-fetch-site", "none") not in ("same-origin", "none"):
         return Refusal(403, "changes from another site are refused")
+    brain = path == BRAIN_PATH
     kind, most = ("application/octet-stream", MAX_BRAIN_BYTES) if brain else ("application/json", MAX_BODY_BYTES)
+    most = MAX_PLAN_BYTES if path == PLAN_PATH else most
     if headers.get("content-type", "").partition(";")[0].strip().lower() != kind:
         what = "a brain" if brain else "a JSON body"
         return Refusal(415, f"a change needs {what} with the header Content-Type: {kind}")

@@ -18,6 +18,7 @@ from web.messages import (
     Goal,
     LivingLayer,
     MapLayer,
+    OfficeEdition,
     Pose,
     Report,
     Snapshot,
@@ -73,9 +74,14 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
         "title": snapshot.world.title,
         "worlds": snapshot.worlds,
         "places": snapshot.world.places,
+        "office": None if snapshot.office is None else office_fields(snapshot.office),
         "inspected": None if snapshot.inspected is None else _inspected(snapshot.inspected),
         "walk": None if snapshot.walk is None else _walk(snapshot.walk),
     }
+
+
+def office_fields(office: OfficeEdition) -> dict[str, Any]:
+    return {"edition": office.number, "undo": office.undo, "redo": office.redo, "saved": office.saved}
 
 
 def _inspected(report: Report) -> str:

@@ -41,12 +41,15 @@ class NoAnswer(Exception):  # noqa: N818
         self.status = status
 
 
-async def ask(submit: Submit, command: Command | Errand) -> Accepted | Refused:
+async def ask(submit: Submit, command: Command | Errand, timeout_s: float | None = None) -> Accepted | Refused:
     """Hand a command to the engine and wait for what it says. Raises NoAnswer."""
     answer = asyncio.wrap_future(submit(command))
-    done, _ = await asyncio.wait({answer}, timeout=ANSWER_TIMEOUT_S)
+    timeout_s = ANSWER_TIMEOUT_S if timeout_s is None else timeout_s
+    done, _ = await asyncio.wait({answer}, timeout=timeout_s)
     if not done:
-        raise NoAnswer(503, "the engine did not answer within 3 s; the command may still take effect, see /api/state")
+        raise NoAnswer(
+            503, f"the engine did not answer within {timeout_s:g} s; the command may still take effect, see /api/state"
+        )
     error = answer.exception()
     if error is not None:
         raise NoAnswer(500, f"the engine failed at this command: {type(error).__name__}: {error}")

@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -483,3 +485,81 @@ def test_a_packet_is_injected_and_noted(start: Callable[..., Runner]) -> None:
     assert now.events[-1].kind == "packet"
     assert len(accept(runner, step()).pose_cells.packets) == 2
     assert refuse(runner, m.InjectPacket(type="inject_packet", x=99, y=6)).value == (99, 6)
+
+
+def wall_order() -> m.EditWorld:
+    step = {"do": "add", "list": "walls", "item": {"from": [0.5, 0.5], "to": [1.5, 0.5]}}
+    return m.EditWorld.model_validate({"type": "edit_world", "steps": [step]})
+
+
+def test_an_edit_is_a_command_on_a_tick_and_outlives_a_reset(start: Callable[..., Runner]) -> None:
+    runner = start(world=room(start=(2.0, 2.0, 0.0)))
+    before = snapshot(runner)
+    assert do(runner, m.Step(type="step", ticks=3)).tick == 3
+    assert do(runner, wall_order()).tick == 3
+    after = snapshot(runner)
+    assert len(after.world.walls) == len(before.world.walls) + 1
+    assert (after.office.undo, after.office.saved) == ("wall drawn", False)
+    assert after.office.number > before.office.number
+    do(runner, m.Reset(type="reset"))
+    assert len(snapshot(runner).world.walls) == 5
+    do(runner, m.UndoEdit(type="undo_edit"))
+    assert (len(snapshot(runner).world.walls), snapshot(runner).office.redo) == (4, "wall drawn")
+    do(runner, m.RedoEdit(type="redo_edit"))
+    assert len(snapshot(runner).world.walls) == 5
+    assert do(runner, m.RedoEdit(type="redo_edit")) == m.Refused("type", "redo_edit", "there is nothing to redo")
+
+
+def test_a_refused_edit_says_why_and_the_robot_drives_on(start: Callable[..., Runner]) -> None:
+    runner = start(world=room(start=(2.0, 2.0, 0.0)))
+    across = {"do": "add", "list": "walls", "item": {"from": [1.0, 2.0], "to": [3.0, 2.0]}}
+    refused = do(runner, m.EditWorld.model_validate({"type": "edit_world", "steps": [across]}))
+    assert refused.field == "steps"
+    assert "home" in refused.reason
+    assert do(runner, m.Step(type="step")).tick == 1
+
+
+def test_an_opened_world_is_begun_and_listed_and_names_are_not_taken_twice(start: Callable[..., Runner]) -> None:
+    plan = room(start=(2.0, 2.0, 0.0))
+    runner = start()
+    assert do(runner, m.OpenWorld(plan)).result == "room"
+    opened = snapshot(runner)
+    assert (opened.world.name, opened.tick, opened.office.saved) == ("room", 0, True)
+    assert ("room", "A room") in opened.worlds
+    assert do(runner, m.OpenWorld(plan)).result == "room"  # the same again
+    assert do(runner, m.OpenWorld(room((1.0, 1.0, 1.5, 1.0), start=(2.0, 2.0, 0.0)))).result == "room-2"
+    do(runner, m.Reset(type="reset", world="room"))
+    assert len(snapshot(runner).world.walls) == 4
+
+
+def test_a_world_that_cannot_be_begun_leaves_the_session_alone(start: Callable[..., Runner]) -> None:
+    runner = start(world=room(start=(2.0, 2.0, 0.0)))
+    do(runner, m.Step(type="step", ticks=2))
+    refused = do(runner, m.OpenWorld(room(start=(0.1, 0.1, 0.0))))
+    assert (refused.field, "cannot start" in refused.reason) == ("world", True)
+    after = snapshot(runner)
+    assert (after.tick, after.world.name, len(after.worlds)) == (2, "room", len(dict(after.worlds)))
+
+
+def test_a_saved_world_bears_its_name(start: Callable[..., Runner]) -> None:
+    runner = start(world=room(start=(2.0, 2.0, 0.0)))
+    do(runner, wall_order())
+    world, edition = do(runner, m.ReadWorld()).result
+    assert edition == snapshot(runner).office
+    do(runner, m.WorldSaved(world, replace(world, name="mine", title="Mine")))
+    after = snapshot(runner)
+    assert (after.world.name, after.office.saved, after.tick) == ("mine", True, 0)
+    assert ("mine", "Mine") in after.worlds
+    assert len(after.world.walls) == 5
+
+
+def test_a_saved_world_that_is_spoilt_is_refused(
+    start: Callable[..., Runner], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("RATSLAM_WORLDS", str(tmp_path))
+    (tmp_path / "bad.json").write_text("{}")
+    runner = start(world=room(start=(2.0, 2.0, 0.0)))
+    assert ("bad", "bad (cannot be read)") in snapshot(runner).worlds
+    refused = do(runner, m.Reset(type="reset", world="bad"))
+    assert (refused.field, refused.value) == ("world", "bad")
+    assert "bad.json" in refused.reason

@@ -27,17 +27,19 @@ OURS = {"Host": f"127.0.0.1:{PORT}", "Origin": ORIGIN}  # of a websocket that ma
 
 
 class StubEngine:
-    """Takes down every command and gives the next answer at once (None: never)."""
+    """Takes down every command and gives the next answer at once (None: never; a function: what it says)."""
 
     def __init__(self) -> None:
         self.commands: list[Command] = []
-        self.answer: Accepted | Refused | Exception | None = Accepted(5)
+        self.answer: Accepted | Refused | Exception | Callable[[Any], Accepted | Refused] | None = Accepted(5)
 
     def submit(self, command: Command) -> Future[Accepted | Refused]:
         self.commands.append(command)
         future: Future[Accepted | Refused] = Future()
         if isinstance(self.answer, Exception):
             future.set_exception(self.answer)
+        elif callable(self.answer):
+            future.set_result(self.answer(command))
         elif self.answer is not None:
             future.set_result(self.answer)
         return future

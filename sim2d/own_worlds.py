@@ -1,0 +1,62 @@
+"""Worlds that a person has saved: files in a folder of their own, known by their names."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import tempfile
+from pathlib import Path
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,39}")
+NAME_RULE = "1 to 40 letters, digits, - and _, beginning with a letter or digit"
+
+
+def folder() -> Path:
+    """RATSLAM_WORLDS, or `.ratslam/worlds` in the home directory. It need not exist."""
+    return Path(os.environ.get("RATSLAM_WORLDS") or Path.home() / ".ratslam" / "worlds")
+
+
+def path_of(name: str) -> Path | None:
+    """The file of a world of this name, whether it exists or not; None when it is not a name but, say, a path."""
+    return folder() / f"{name}.json" if _NAME.fullmatch(name) else None
+
+
+def names() -> tuple[tuple[str, str], ...]:
+    """(name, title) of all saved worlds, by name."""
+    found = (path for path in folder().glob("*.json") if _NAME.fullmatch(path.stem))
+    return tuple(sorted((path.stem, _title(path)) for path in found))
+
+
+def save(name: str, text: str) -> Path:
+    """Write a world file; the one before is kept as `NAME.json.before`. ValueError says why it cannot be.
+
+    A crash at any moment leaves the old file or the new one.
+    """
+    path = path_of(name)
+    if path is None:
+        raise ValueError(f"a name has {NAME_RULE}, got {name!r}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(prefix=".saving-", dir=path.parent)
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                file.write(text)
+                file.flush()
+                os.fsync(file.fileno())
+            if path.exists():
+                shutil.copyfile(path, path.with_name(f"{path.name}.before"))
+            Path(temporary).replace(path)
+        finally:
+            Path(temporary).unlink(missing_ok=True)
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be written: {error.strerror or error}") from None
+    return path
+
+
+def _title(path: Path) -> str:
+    try:
+        return str(json.loads(path.read_text("utf-8"))["title"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return f"{path.stem} (cannot be read)"

@@ -1,0 +1,324 @@
+"""Edits of the office: undo and redo give the very worlds back, bad edits change nothing, the robot is never covered."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.session import Session
+from app.world_editing import MOST_UNDOS, WorldEditor, edited
+from sim2d import Place, World, world_from_json, world_to_json
+from sim2d.world_check import check_world
+from web.messages import EditWorld
+
+from .worlds import room
+
+RADIUS = 0.2
+SIDE = 6.0
+ITEMS: dict[str, dict[str, Any]] = {
+    "walls": {"from": [0.5, 0.5], "to": [1.5, 0.5]},
+    "starts": {"name": "s", "x": 1.0, "y": 1.0, "heading_deg": 90.0},
+    "places": {"name": "p", "x": 1.0, "y": 2.0},
+    "doors": {"name": "d", "hinge": [4.5, 4.5], "angle_deg": 0.0, "width": 0.9},
+    "lamps": {"name": "l", "x": 1.0, "y": 1.0},
+    "boxes": {"name": "b", "x": 4.0, "y": 1.0, "width": 0.4, "depth": 0.4},
+    "people": {"name": "q", "path": [[1.0, 5.0], [5.0, 5.0]]},
+    "slow_zones": {"name": "z", "corners": [[1, 1], [2, 1], [2, 2]], "factor": 0.5},
+}
+
+
+def office() -> World:
+    return room(side=SIDE, start=(3.0, 3.0, 0.0))
+
+
+def order(*steps: tuple[Any, ...], edition: int | None = None) -> EditWorld:
+    """Steps as (do, list, number, item)."""
+    keys = ("do", "list", "number", "item")
+    return EditWorld.model_validate(
+        {"type": "edit_world", "edition": edition, "steps": [dict(zip(keys, s, strict=True)) for s in steps]}
+    )
+
+
+class Taken:
+    """Stands in for the session: keeps the world that it was given, or refuses it."""
+
+    def __init__(self) -> None:
+        self.world: World | None = None
+        self.refuses = False
+
+    def __call__(self, world: World) -> None:
+        if self.refuses:
+            raise ValueError("walls[4] would cover the robot")
+        self.world = world
+
+
+def placed(kind: str, item: dict[str, Any], name: str, x: float, y: float) -> dict[str, Any]:
+    if kind == "walls":
+        return {**item, "from": [x, y], "to": [x + 0.3, y + 0.2]}
+    moved = {**item, "name": name}
+    return moved | {"x": x, "y": y} if kind in ("lamps", "boxes", "places") else moved
+
+
+@st.composite
+def some_edits(draw: st.DrawFn) -> list[Any]:
+    """Orders, good and bad ones, with undo and redo between them."""
+    place = st.floats(-1.0, SIDE + 1.0, allow_nan=False)
+    step = st.builds(
+        lambda do, kind, number, name, x, y: (
+            do,
+            kind,
+            None if do == "add" else number,
+            None if do == "delete" else placed(kind, ITEMS[kind], name, x, y),
+        ),
+        st.sampled_from(["add", "change", "delete"]), st.sampled_from(list(ITEMS)), st.integers(0, 6),
+        st.sampled_from("abcd"), place, place,
+    )  # fmt: skip
+    edit = st.lists(step, min_size=1, max_size=3).map(lambda steps: order(*steps))
+    return draw(st.lists(st.one_of(edit, edit, st.sampled_from(["undo", "redo"])), max_size=12))
+
+
+@settings(max_examples=60, deadline=None)
+@given(some_edits(), st.lists(st.booleans(), min_size=12, max_size=12))
+def test_undo_goes_back_to_the_first_world_and_redo_to_the_last(edits: list[Any], refuses: list[bool]) -> None:
+    first = office()
+    editor, taken = WorldEditor(first), Taken()
+    worlds = [first]  # what undo must find, a second way: by keeping all of them in a plain list
+    at = 0
+    for edit, taken.refuses in zip(edits, refuses, strict=False):
+        before, edition = editor.world, editor.edition
+        try:
+            if edit == "undo":
+                editor.undo(taken)
+                at -= 1
+            elif edit == "redo":
+                editor.redo(taken)
+                at += 1
+            else:
+                editor.edit(edit, RADIUS, taken)
+                worlds, at = [*worlds[: at + 1], editor.world], at + 1
+        except ValueError:
+            assert editor.world is before
+            assert editor.edition == edition
+            continue
+        assert editor.world is worlds[at] is taken.world
+        assert editor.edition.number > edition.number
+        check_world(editor.world, RADIUS)
+    taken.refuses = False
+    for _ in range(at):
+        editor.undo(taken)
+    assert editor.world is first
+    assert first == office()
+    assert editor.edition.saved
+    with pytest.raises(ValueError, match="nothing to undo"):
+        editor.undo(taken)
+    for _ in worlds[1:]:
+        editor.redo(taken)
+    assert editor.world is worlds[-1]
+    with pytest.raises(ValueError, match="nothing to redo"):
+        editor.redo(taken)
+
+
+@pytest.mark.parametrize("kind", ITEMS)
+def test_every_kind_is_added_changed_and_deleted(kind: str) -> None:
+    world = office()
+    count = len(getattr(world, kind))
+    added = edited(world, order(("add", kind, None, ITEMS[kind])).steps)
+    check_world(added, RADIUS)
+    assert len(getattr(added, kind)) == count + 1
+    assert world_from_json(world_to_json(added), "f") == added
+    changed = edited(added, order(("change", kind, count, ITEMS[kind])).steps)
+    assert changed == added
+    assert edited(changed, order(("delete", kind, count, None)).steps) == world
+    assert world == office()
+
+
+@pytest.mark.parametrize(
+    ("steps", "reason"),
+    [
+        ([("add", "walls", None, None)], r"steps\[0\]: item: is missing; must be a wall as in a world file"),
+        ([("add", "walls", 3, ITEMS["walls"])], r"number: got 3; what is added takes none"),
+        ([("delete", "doors", 0, None)], r"number: got 0; there is no such door, there are none"),
+        ([("delete", "walls", 4, None)], r"number: got 4; there is no such wall, must be from 0 to 3"),
+        ([("delete", "walls", None, None)], r"number: got None"),
+        ([("delete", "walls", 0, ITEMS["walls"])], r"item: what is deleted takes none"),
+        ([("delete", "starts", 0, None)], r"this is the only start; the robot needs one"),
+        ([("delete", "walls", 0, None)], r"walls\[2\]: the outline is open: it ends at \(0, 0\)|walls\[\d\]: .*open"),
+        ([("add", "lamps", None, {**ITEMS["lamps"], "reach": -1})], r"lamp: reach: got -1; input should be"),
+        ([("add", "lamps", None, {**ITEMS["lamps"], "glow": 1})], r"lamp: glow: got 1; unknown key"),
+        ([("add", "boxes", None, {**ITEMS["boxes"], "x": 99})], r"boxes\[0\]: 'b' \(99, 1\) is outside of room"),
+        ([("add", "boxes", None, {**ITEMS["boxes"], "x": 3.0, "y": 3.0})], r"box 'b' is on it; the robot needs 0.2 m"),
+        (
+            [("add", "walls", None, {"from": [2, 3], "to": [4, 3]})],
+            r"starts\[0\] \(home\): .* from walls\[4\] \(wall\)",
+        ),
+        ([("add", "walls", None, {"from": [1, 1], "to": [1, 1]})], r"walls\[4\]: no length"),
+        ([("add", "doors", None, ITEMS["doors"])] * 2, r"doors\[1\].name: 'd' is taken by doors\[0\]"),
+        ([("add", "walls", None, ITEMS["walls"]), ("delete", "walls", 9, None)], r"steps\[1\]: number: got 9"),
+    ],
+)
+def test_a_bad_edit_says_what_is_wrong_and_changes_nothing(steps: list[Any], reason: str) -> None:
+    session = Session(office(), 3)
+    editor, before, edition = WorldEditor(session.world), session.state_hash(), 1
+    with pytest.raises(ValueError, match=reason):
+        editor.edit(order(*steps), RADIUS, session.edit_world)
+    assert session.state_hash() == before
+    assert session.world is editor.world is session.simulator.world
+    assert editor.edition.number == edition
+
+
+def drive_to(session: Session, x: float, y: float) -> None:
+    session.simulator.teleport(x, y, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("step", "reason"),
+    [
+        (("add", "walls", None, {"from": [0.5, 1.0], "to": [1.5, 1.0]}), r"walls\[4\] \(wall\) would cover the robot"),
+        (("add", "boxes", None, {**ITEMS["boxes"], "x": 1.0, "y": 1.0}), r"box 'b' would cover the robot"),
+        (("add", "doors", None, {**ITEMS["doors"], "hinge": [0.9, 0.5]}), r"doors\[0\] \(d\) would cover the robot"),
+    ],
+)
+def test_what_would_cover_the_robot_is_refused(step: Any, reason: str) -> None:
+    session = Session(office(), 3)
+    drive_to(session, 1.0, 1.0)
+    editor, before = WorldEditor(session.world), session.state_hash()
+    with pytest.raises(ValueError, match=reason):
+        editor.edit(order(step), RADIUS, session.edit_world)
+    assert session.state_hash() == before
+    assert session.simulator.world is session.world is editor.world
+
+
+def test_undo_that_would_cover_the_robot_is_refused_and_can_be_tried_again() -> None:
+    walled = room((0.5, 1.0, 1.5, 1.0), side=SIDE, start=(3.0, 3.0, 0.0))
+    session = Session(walled, 3)
+    editor = WorldEditor(walled)
+    editor.edit(order(("delete", "walls", 4, None)), RADIUS, session.edit_world)
+    drive_to(session, 1.0, 1.0)
+    with pytest.raises(ValueError, match="would cover the robot"):
+        editor.undo(session.edit_world)
+    drive_to(session, 3.0, 3.0)
+    editor.undo(session.edit_world)
+    assert session.world is walled
+
+
+def test_the_robot_keeps_its_brain_and_the_same_edits_at_the_same_ticks_give_the_same_run() -> None:
+    def run() -> tuple[str, int, int]:
+        session = Session(office(), 3)
+        editor = WorldEditor(session.world)
+        orders = [
+            order(("add", kind, None, ITEMS[kind])) for kind in ("walls", "doors", "people", "boxes", "slow_zones")
+        ]
+        for k in range(60):
+            if k % 10 == 5 and orders:
+                editor.edit(orders.pop(), RADIUS, session.edit_world)
+            if k == 57:
+                editor.undo(session.edit_world)
+            session.tick()
+        return session.state_hash(), session.tick_count, len(session.brain.experience_map)
+
+    first = run()
+    assert first == run()
+    assert first[1:] == (60, first[2])
+    assert first[2] > 1
+
+
+def test_a_person_drawn_onto_the_robot_waits_until_it_is_gone() -> None:
+    session = Session(office(), 3)
+    WorldEditor(session.world).edit(
+        order(("add", "people", None, {"name": "q", "path": [[3.0, 3.0]]})), RADIUS, session.edit_world
+    )
+    assert not session.simulator.living.walkers.present.any()
+
+
+def test_an_edit_of_an_older_edition_is_refused() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    editor.edit(order(("add", "walls", None, ITEMS["walls"]), edition=1), RADIUS, taken)
+    with pytest.raises(ValueError, match="somebody has changed the office since"):
+        editor.edit(order(("delete", "walls", 4, None), edition=1), RADIUS, taken)
+    assert len(editor.world.walls) == 5
+
+
+def test_a_wall_gets_looks_of_its_own() -> None:
+    steps = order(
+        ("add", "walls", None, {"from": [0.5, 0.5], "to": [4.5, 0.5]}),
+        ("add", "walls", None, {"from": [0.5, 1.5], "to": [4.5, 1.5]}),
+        ("add", "walls", None, {"from": [0.5, 5.0], "to": [4.5, 5.0], "kind": "glass"}),
+        ("add", "walls", None, {"from": [0.5, 2.0], "to": [2.0, 2.0], "colour": "#102030", "height": 1.0}),
+    ).steps
+    world = edited(office(), steps)
+    first, second, glass, plain = world.walls[4:]
+    assert {panel.side for panel in first.panels} == {"left", "right"}
+    assert first.panels != second.panels
+    assert glass.panels == plain.panels == ()
+    assert (plain.colour, plain.height) == ((16, 32, 48), 1.0)
+    assert edited(office(), steps) == world
+    check_world(world, RADIUS)
+
+
+def test_what_others_do_to_the_office_is_a_step_of_its_own() -> None:
+    session = Session(office(), 3)
+    editor = WorldEditor(session.world)
+    editor.edit(order(("add", "boxes", None, ITEMS["boxes"])), RADIUS, session.edit_world)
+    session.simulator.remove_box("b")
+    editor.follow(session.simulator.world)
+    assert editor.edition.undo == "box put down or taken away"
+    editor.undo(session.edit_world)
+    assert [box.name for box in session.simulator.world.boxes] == ["b"]
+    assert editor.edition.undo == "box drawn"
+
+
+def test_a_reset_keeps_the_edits_and_another_world_has_none() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    editor.edit(order(("add", "walls", None, ITEMS["walls"])), RADIUS, taken)
+    mine = editor.world
+    editor.begin(mine)
+    assert editor.edition.undo == "wall drawn"
+    editor.follow(edited(mine, order(("add", "boxes", None, ITEMS["boxes"])).steps))
+    editor.begin(mine)  # a reset takes the box away
+    assert editor.world is mine
+    assert (editor.edition.undo, editor.edition.saved) == ("wall drawn", False)
+    editor.begin(room(start=(2.0, 2.0, 0.0)))
+    assert (editor.edition.undo, editor.edition.redo, editor.edition.saved) == ("", "", True)
+
+
+def test_saving_gives_the_world_its_name() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    editor.edit(order(("add", "places", None, ITEMS["places"])), RADIUS, taken)
+    was = editor.world
+    named = World(**{**{f: getattr(was, f) for f in was.__dataclass_fields__}, "name": "mine", "title": "Mine"})
+    editor.named(was, named, taken)
+    assert editor.edition.saved
+    assert taken.world is editor.world is named
+    editor.undo(taken)
+    assert not editor.edition.saved
+    editor.named(was, named, taken)  # it was edited again while it was written
+    assert not editor.edition.saved
+
+
+def test_undo_reaches_a_long_way_back_but_not_for_ever() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    for k in range(MOST_UNDOS + 5):
+        order_k = order(
+            ("add" if k == 0 else "change", "places", None if k == 0 else 0, {"name": f"p{k}", "x": 1, "y": 1})
+        )
+        editor.edit(order_k, RADIUS, taken)
+    for _ in range(MOST_UNDOS):
+        editor.undo(taken)
+    assert editor.world.places == (Place("p4", 1.0, 1.0),)
+
+
+def test_what_many_steps_did_is_told_by_what_was_drawn() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    words = editor.edit(
+        order(
+            ("add", "walls", None, ITEMS["walls"]),
+            ("add", "doors", None, ITEMS["doors"]),
+            ("change", "walls", 4, ITEMS["walls"]),
+        ),
+        RADIUS,
+        taken,
+    )
+    assert words == "door drawn and 2 more changes"

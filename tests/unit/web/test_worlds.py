@@ -1,0 +1,230 @@
+"""The world as a file: read, downloaded, saved, opened from what is dropped; errors name file, value and what is right."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+
+from sim2d import World, load_world, own_worlds, world_from_json, world_to_json
+from tests.unit.web.doubles import House, house
+from web.messages import Accepted, OfficeEdition, OpenWorld, ReadWorld, Refused, WorldSaved
+from web.security import Limits
+
+OFFICE = load_world("office")
+EDITION = OfficeEdition(7, "wall drawn", "", False)
+
+
+class Engine:
+    """Answers what the engine would, from one world."""
+
+    def __init__(self) -> None:
+        self.world: World = OFFICE
+        self.got: list[Any] = []
+        self.refuses = False
+
+    def __call__(self, request: Any) -> Accepted | Refused:
+        self.got.append(request)
+        if self.refuses and not isinstance(request, ReadWorld):
+            return Refused("world", "plan", "the robot cannot start there")
+        match request:
+            case ReadWorld():
+                return Accepted(5, (self.world, EDITION))
+            case OpenWorld(world):
+                return Accepted(5, world.name)
+            case WorldSaved(_, world):
+                self.world = world
+        return Accepted(5)
+
+
+@pytest.fixture
+def server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[House]:
+    monkeypatch.setenv("RATSLAM_WORLDS", str(tmp_path / "worlds"))
+    with house() as made:
+        made.engine.answer = Engine()
+        yield made
+
+
+def post(server: House, path: str, body: Any) -> tuple[int, Any]:
+    answer = server.client.post(path, content=json.dumps(body), headers={"Content-Type": "application/json"})
+    return answer.status_code, answer.json()
+
+
+def files(**given: bytes) -> list[dict[str, str]]:
+    return [{"name": name.replace("__", "."), "data": base64.b64encode(data).decode()} for name, data in given.items()]
+
+
+def plan_png() -> bytes:
+    """A room of 80 x 60 pixels with a wall in it."""
+    picture = np.zeros((70, 90), np.uint8)
+    picture[5:65, 5:85] = 255
+    picture[5:40, 44:47] = 0
+    return cv2.imencode(".png", picture)[1].tobytes()
+
+
+def why(answer: Any) -> str:
+    return answer["detail"][0]["reason"]
+
+
+def test_the_world_is_read_with_its_edition(server: House) -> None:
+    answer = server.client.get("/api/world").json()
+    assert {key: answer[key] for key in ("edition", "undo", "redo", "saved")} == {
+        "edition": 7, "undo": "wall drawn", "redo": "", "saved": False,
+    }  # fmt: skip
+    assert world_from_json(json.dumps(answer["world"]), "f") == OFFICE
+    assert "office" in answer["ours"]
+
+
+def test_the_world_is_a_file_to_keep(server: House) -> None:
+    server.engine.answer.world = replace(OFFICE, name='a"b/ü')  # type: ignore[union-attr]
+    answer = server.client.get("/api/world/file")
+    assert answer.headers["content-disposition"] == 'attachment; filename="a-b--.json"'
+    assert answer.text == world_to_json(replace(OFFICE, name='a"b/ü'))
+
+
+def test_a_saved_world_is_there_and_the_one_before_is_kept(server: House) -> None:
+    status, answer = post(server, "/api/worlds/save", {"name": "mine", "title": "Mine"})
+    assert (status, answer["name"]) == (200, "mine")
+    path = Path(answer["file"])
+    assert load_world("mine") == replace(OFFICE, name="mine", title="Mine")
+    assert server.engine.answer.world.name == "mine"  # type: ignore[union-attr]
+    first = path.read_text("utf-8")
+    server.engine.answer.world = replace(OFFICE, name="mine", title="Mine", about="other")  # type: ignore[union-attr]
+    assert post(server, "/api/worlds/save", {"name": "mine"})[0] == 200
+    assert load_world("mine").about == "other"
+    assert path.with_name("mine.json.before").read_text("utf-8") == first
+    assert sorted(p.name for p in path.parent.iterdir()) == ["mine.json", "mine.json.before"]
+    assert own_worlds.names() == (("mine", "Mine"),)
+
+
+@pytest.mark.parametrize("name", ["../evil", "a/b", "..", ".x", "a b", "x" * 41, "c:x", "ü"])
+def test_a_name_is_no_path(server: House, name: str) -> None:
+    status, answer = post(server, "/api/worlds/save", {"name": name})
+    assert status == 422
+    assert "a name has 1 to 40 letters" in why(answer)
+    assert not own_worlds.folder().exists()
+
+
+def test_worlds_that_are_there_are_not_lost(server: House) -> None:
+    status, answer = post(server, "/api/worlds/save", {"name": "office"})
+    assert (status, "comes with the program" in why(answer)) == (422, True)
+    own_worlds.save("mine", world_to_json(replace(OFFICE, name="mine")))
+    status, answer = post(server, "/api/worlds/save", {"name": "mine"})
+    assert status == 422
+    assert "there is a world 'mine' already; replace it or choose another name" in why(answer)
+    assert post(server, "/api/worlds/save", {"name": "mine", "replace": True})[0] == 200
+
+
+def test_a_folder_that_cannot_be_written_is_told(
+    server: House, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("RATSLAM_WORLDS", str(tmp_path / "file" / "worlds"))
+    status, answer = post(server, "/api/worlds/save", {"name": "mine"})
+    assert status == 422
+    assert "cannot be written" in why(answer)
+    assert server.engine.answer.world is OFFICE  # type: ignore[union-attr]
+
+
+def test_a_spoilt_file_is_listed_as_such(server: House) -> None:
+    own_worlds.save("bad", "[]")
+    own_worlds.save("worse", "{")
+    assert own_worlds.names() == (("bad", "bad (cannot be read)"), ("worse", "worse (cannot be read)"))
+    assert server.client.get("/api/world").json()["yours"] == dict(own_worlds.names())
+
+
+def test_a_picture_becomes_a_world(server: House) -> None:
+    status, answer = post(server, "/api/worlds/open", {"files": files(plan__png=plan_png()), "scale_m": 0.1})
+    assert status == 200
+    assert (answer["name"], answer["size_m"]) == ("plan", [8.0, 6.0])
+    (opened,) = server.engine.answer.got  # type: ignore[union-attr]
+    assert (len(opened.world.walls), len(opened.world.starts)) == (answer["walls"], answer["starts"])
+
+
+def test_a_map_server_pair_becomes_a_world(server: House) -> None:
+    yaml = b"image: p.png\nresolution: 0.05\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    pair = files(p__png=plan_png(), m__yaml=yaml)
+    status, answer = post(server, "/api/worlds/open", {"files": pair})
+    assert (status, answer["size_m"]) == (200, [4.0, 3.0])
+    status, answer = post(server, "/api/worlds/open", {"files": pair[1:]})
+    assert (status, "image: 'p.png' was not given with it; put both together" in why(answer)) == (422, True)
+
+
+def test_worlds_and_vector_maps_are_opened(server: House) -> None:
+    status, answer = post(server, "/api/worlds/open", {"files": files(office__json=world_to_json(OFFICE).encode())})
+    assert (status, answer["walls"], answer["size_m"]) == (200, len(OFFICE.walls), [10.0, 8.0])
+    segments = json.dumps([[0, 0, 5, 0], [5, 0, 5, 5], [5, 5, 0, 5], [0, 5, 0, 0]]).encode()
+    status, answer = post(server, "/api/worlds/open", {"files": files(v__json=segments)})
+    assert (status, answer["size_m"]) == (200, [5.6, 5.6])
+
+
+@pytest.mark.parametrize(
+    ("body", "reason"),
+    [
+        ({"files": files(p__png=plan_png())}, "p.png: a plain picture needs its scale, metres a pixel"),
+        ({"files": files(p__png=plan_png()), "scale_m": -1}, "p.png: got a scale of -1; must be from 0.001 to 1"),
+        ({"files": files(p__png=b"no picture"), "scale_m": 0.1}, "p.png: not a picture that can be read"),
+        ({"files": files(p__json=b'{"format": 1,\n"name": }')}, "p.json: not JSON: line 2, column 9"),
+        ({"files": files(p__txt=b"x")}, "p.txt: cannot be imported; expected .json"),
+        ({"files": files(p__json=b" " * 1_000_001)}, "p.json: 1000001 bytes; at most 1000000"),
+        ({"files": files(a__png=b"1", b__png=b"2")}, "got 2 files, a.png, b.png; drop one plan at a time"),
+        ({"files": [{"name": "p.png", "data": "?"}]}, "p.png: data must be base64"),
+        ({"files": []}, "files: list should have at least 1 item"),
+        ({"file": 1}, "files: field required; it takes files, scale_m, seed"),
+        ({"files": files(p__png=plan_png()), "scale_m": "x"}, "scale_m: input should be a valid number"),
+    ],
+)
+def test_what_cannot_be_opened_says_why_and_never_reaches_the_engine(server: House, body: Any, reason: str) -> None:
+    status, answer = post(server, "/api/worlds/open", body)
+    assert status == 422
+    assert reason in why(answer)
+    assert server.engine.answer.got == []  # type: ignore[union-attr]
+
+
+def test_a_world_that_the_engine_refuses_is_told(server: House) -> None:
+    server.engine.answer.refuses = True  # type: ignore[union-attr]
+    status, answer = post(server, "/api/worlds/open", {"files": files(plan__png=plan_png()), "scale_m": 0.1})
+    assert (status, why(answer)) == (422, "the robot cannot start there")
+
+
+def test_names_of_files_are_no_paths(server: House) -> None:
+    segments = b"[[0, 0, 5, 0], [5, 0, 5, 5], [5, 5, 0, 5], [0, 5, 0, 0]]"
+    status, answer = post(server, "/api/worlds/open", {"files": [{**files(x=segments)[0], "name": "../a/w.json"}]})
+    assert (status, answer["name"]) == (200, "w")
+
+
+def test_uploads_may_be_larger_than_commands_but_not_endless(server: House) -> None:
+    body = b'{"files": "' + b"x" * 100_000 + b'"}'
+    kind = {"Content-Type": "application/json"}
+    assert server.client.post("/api/worlds/open", content=body, headers=kind).status_code == 422
+    assert server.client.post("/api/worlds/save", content=body, headers=kind).status_code == 413
+    assert server.client.post("/api/commands", content=body, headers=kind).status_code == 413
+    huge = b"x" * (24 * 1024 * 1024 + 1)
+    assert server.client.post("/api/worlds/open", content=huge, headers=kind).status_code == 413
+
+    def parts() -> Iterator[bytes]:
+        yield from (huge[:10_000_000] for _ in range(3))
+
+    assert server.client.post("/api/worlds/open", content=parts(), headers=kind).status_code == 413
+
+
+def test_only_json_from_our_own_pages(server: House) -> None:
+    for path in ("/api/worlds/open", "/api/worlds/save"):
+        assert server.client.post(path, content=b"{}", headers={"Content-Type": "text/plain"}).status_code == 415
+        foreign = {"Content-Type": "application/json", "Origin": "http://evil.example"}
+        assert server.client.post(path, content=b"{}", headers=foreign).status_code == 403
+
+
+def test_too_many_wishes_are_429(server: House, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Limits, "refusal", lambda _self, _kind: "wait a moment")
+    for path, body in (("/api/worlds/open", {"files": files(x__json=b"[]")}), ("/api/worlds/save", {"name": "mine"})):
+        status, answer = post(server, path, body)
+        assert (status, why(answer)) == (429, "wait a moment")
+    assert server.engine.answer.got == []  # type: ignore[union-attr]
