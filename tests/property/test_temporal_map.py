@@ -238,6 +238,19 @@ def test_a_shortcut_saves_the_way_round(shortcut_m: float, saves: bool) -> None:
     assert (len(route.experiences) == 2) is saves
 
 
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_a_crowd_within_reach_of_each_other(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only shortcuts, from everyone to everyone: more of them wait than the heap had room for."""
+    if interpreted:
+        literal.interpret(dijkstra, monkeypatch)
+        literal.interpret(transitions, monkeypatch)
+    rng = np.random.default_rng(5)
+    places = np.column_stack([rng.uniform(0, 1, (90, 2)), np.zeros(90)])
+    map_ = Links(places, pace=2.0, params=ExperienceMapParams(shortcut_m=3.0))
+    away = np.hypot(*(places[:, :2] - places[7, :2]).T)
+    assert ways_of(map_).times_to(7) == pytest.approx(2.0 * away, abs=2e-3)
+
+
 @pytest.mark.parametrize("bad", [-1, 4])
 def test_unknown_experiences_are_refused(bad: int) -> None:
     ways = ways_of(links(4, [(0, 1, 1.0)]))

@@ -75,13 +75,15 @@ def test_the_choice_is_that_of_a_loop_over_all(shape, p: ExperienceMapParams, ma
     assert known.most_energetic(packet, view, p, robot) == best
 
 
-@pytest.mark.parametrize("choice", [{}, {"match_view": False}, {"match_view": False, "energy": "2005"}])
+@pytest.mark.parametrize(
+    "choice", [{}, {"match_view": False}, {"match_view": False, "energy": "2005"}, {"match_view": False, "zone_theta": 20.0}]
+)
 def test_the_interpreted_choice_is_the_compiled_one(choice, monkeypatch: pytest.MonkeyPatch) -> None:
     p = ExperienceMapParams(**choice)
     known = Experiences((36, 64, 64))
     for k in range(60):
-        known.add(Packet(30 + k % 7, 30 + k % 5, k % 4 / 5, 1.0), k % 3, Pose2(0.0, 0.0, 0.0))
-    questions = [(Packet(31 + k / 3, 30 + k / 4, k / 30, 1.0), k % 3) for k in range(20)]
+        known.add(Packet(30 + k % 7, 30 + k % 5, k % 4 / 5, 1.0), k % 3 - 1, Pose2(float(k), 0.0, 0.0))
+    questions = [(Packet(31 + k / 3, 30 + k / 4, k / 30, 1.0), k % 3 - 1) for k in range(20)]
     compiled = [known.most_energetic(*question, p, Pose2(0.0, 0.0, 0.0)) for question in questions]
     interpret(experiences, monkeypatch)
     assert [known.most_energetic(*question, p, Pose2(0.0, 0.0, 0.0)) for question in questions] == compiled

@@ -155,6 +155,25 @@ def test_new_parameters_reach_every_part_and_the_size_is_refused() -> None:
     circle.advance(brain, 5)
 
 
+def test_new_parameters_reach_the_grids_of_a_robot_with_sonars() -> None:
+    brain = RatSlam(sonar_angles_rad=np.zeros(1))
+    new = replace(brain.params, occupancy=replace(brain.params.occupancy))
+    brain.set_params(new)
+    assert brain.occupancy is not None
+    assert brain.map_grid is not None
+    assert brain.occupancy.params is brain.map_grid.params is new.occupancy
+
+
+def test_without_robust_weights_every_link_is_believed_as_measured() -> None:
+    circle, brain = start()
+    for robust in (True, False):
+        experience_map = replace(brain.params.experience_map, robust=robust, solve_every=5)
+        brain.set_params(replace(brain.params, experience_map=experience_map))
+        circle.advance(brain, 2 * LAP)
+        t = brain.experience_map.transitions
+        assert np.array_equal(t.believed[: t.count], t.weight[: t.count]) is not robust
+
+
 def test_what_is_not_an_image_changes_nothing() -> None:
     circle, brain = start()
     before = brain.pose_cells.activity

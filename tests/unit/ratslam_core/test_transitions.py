@@ -119,8 +119,7 @@ outcomes = st.lists(st.booleans(), max_size=60)
 @given(outcomes)
 def test_confidence_is_the_share_of_trials_that_arrived(tried: list[bool]) -> None:
     """D9 with plain counts: c_ij = n_ij / n. The passage by which it was learnt is the first trial."""
-    p = replace(EXACT, link_confidence=0.0)
-    robot = two_places(p)
+    robot = two_places(replace(EXACT, link_confidence=0.0, link_recency=0.0))
     for reached in tried:
         assert not robot.map.tried(0, 1, reached)
     link = robot.map.link(0, 1)
@@ -178,7 +177,7 @@ def test_a_trial_counts_for_both_ways_round() -> None:
 
 
 def test_without_a_bar_nothing_is_deleted() -> None:
-    robot = two_places(replace(EXACT, link_confidence=0.0))
+    robot = two_places(replace(EXACT, link_confidence=0.0, link_recency=0.0))
     for _ in range(200):
         assert not robot.map.tried(0, 1, False)
     assert robot.map.link(0, 1).confidence == pytest.approx(1 / 201)
