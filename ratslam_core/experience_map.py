@@ -20,6 +20,7 @@ from ratslam_core.transitions import require_behaviour
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite, wrap_angle
 
 CARRIED_M = 100.0  # how well the robot knows where it is after it was carried away
+WORK_A_STEP = 1e5  # what exact corrections may cost a step on average, in units of `Solution.work`
 NOWHERE_M = 0.5  # an experience of a view that shows nothing is only known to be somewhere in its zone
 
 
@@ -40,6 +41,7 @@ class ExperienceMap(MapReading):
         self._confirmation = Confirmation()
         self.closures = 0  # links made to experiences that existed before
         self._solved_at = self._closures_at_solve = 0
+        self._rest_after_solve = 0.0
         self._steps = 0
 
     def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0) -> bool:
@@ -94,14 +96,17 @@ class ExperienceMap(MapReading):
         """One step of map correction: sweeps in every step, the exact solution now and then while loops close.
 
         ACRA 2005 eqs. 12-14 by sweeps that divide by the number of links, which cannot diverge. [ours] Sweeps alone lag
-        behind a growing map, so their fixed point is computed directly every `solve_every` steps when loops have closed.
-        test_map_correction.py::{test_a_sweep_never_raises_the_residual, test_sweeps_and_solution_agree}.
+        behind a growing map, so their fixed point is computed directly every `solve_every` steps when loops have closed; with
+        a large map more seldom, so that a step costs the same on average.
+        test_map_correction.py::{test_a_sweep_never_raises_the_residual, test_sweeps_and_solution_agree},
+        test_experience_map.py::test_a_correction_that_was_hard_is_followed_by_a_long_rest.
         """
         t, poses = self.transitions, self.poses
         ends, moves = t.ends[: t.count], t.move[: t.count]
         for _ in range(self.params.sweeps):
             map_correction.sweep(poses, t.graph, ends, moves, t.believed, self.params.correction)
-        due = self.params.solve_every and self._steps - self._solved_at >= self.params.solve_every
+        rest = max(self.params.solve_every, self._rest_after_solve)
+        due = self.params.solve_every and self._steps - self._solved_at >= rest
         if due and self.closures > self._closures_at_solve:
             self._solve(poses)
 
@@ -113,11 +118,12 @@ class ExperienceMap(MapReading):
             t.believed[rows] *= map_correction.trust(
                 poses, ends, moves, t.weight[rows], t.chain[rows], self.params.odometry_sigma
             )
-        more = map_correction.solve(poses, ends, moves, t.believed[rows], turning)
+        more, work = map_correction.solve(poses, ends, moves, t.believed[rows], turning)
         if turning is not None:
             self.yaw_bias += more
             moves[:, 2] -= more * turning
         self._solved_at, self._closures_at_solve = self._steps, self.closures
+        self._rest_after_solve = work / WORK_A_STEP
 
     # ------------------------------------------------------------ inside
 

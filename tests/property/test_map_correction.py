@@ -147,7 +147,7 @@ def test_a_bias_of_the_yaw_rate_is_found(graph: Graph, bias: float) -> None:
     turning_s = graph.rng.uniform(0.1, 10.0, len(graph.links))
     graph.moves[:, 2] = wrap(graph.moves[:, 2] + bias * turning_s)
     poses = graph.poses.copy()
-    found = solve(poses, graph.links, graph.moves, graph.weights, turning_s)
+    found = solve(poses, graph.links, graph.moves, graph.weights, turning_s).bias
     assert found == pytest.approx(bias, abs=1e-9)
     assert np.abs(wrap(poses[:, 2] - true[:, 2])).max() < 1e-7
     assert np.abs(poses[:, :2] - true[:, :2]).max() < 1e-6
@@ -163,7 +163,7 @@ def test_without_a_loop_no_bias_is_found(graph: Graph, bias: float) -> None:
     turning_s = graph.rng.uniform(0.1, 10.0, tree)
     graph.moves[:, 2] = wrap(graph.moves[:, 2] + bias * turning_s)
     poses = graph.poses.copy()
-    assert solve(poses, graph.links, graph.moves, graph.weights, turning_s) == 0.0
+    assert solve(poses, graph.links, graph.moves, graph.weights, turning_s).bias == 0.0
     i, j = graph.links.T
     assert np.abs(wrap(poses[i, 2] + graph.moves[:, 2] - poses[j, 2])).max() < 1e-8
 
@@ -258,7 +258,7 @@ def test_an_experience_without_links_stays(interpreted: bool, monkeypatch: pytes
 
 def test_a_map_without_links_is_left_alone() -> None:
     poses = np.array([[1.0, 2.0, 3.0]])
-    assert solve(poses, np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros(0), np.zeros(0)) == 0.0
+    assert solve(poses, np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros(0), np.zeros(0)) == (0.0, 0.0)
     assert poses.tolist() == [[1, 2, 3]]
 
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2, Recognition
+from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2, Recognition, experience_map, map_correction
 
 from .drives import Robot
 
@@ -336,6 +336,24 @@ def test_a_closed_loop_straightens_the_map_and_finds_the_bias() -> None:
         d_map = np.hypot(*(learnt.map.poses[i, :2] - learnt.map.poses[(i + 8) % 16, :2]))
         d_true = math.hypot(true[i].x - true[(i + 8) % 16].x, true[i].y - true[(i + 8) % 16].y)
         assert d_map == pytest.approx(d_true, rel=0.1)
+
+
+@pytest.mark.parametrize(("a_step", "rested"), [(1e5, False), (1e3, True)])
+def test_a_correction_that_was_hard_is_followed_by_a_long_rest(
+    a_step: float, rested: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A loop that closes in every step; corrections are due in every step and again after what the last one cost."""
+    monkeypatch.setattr(experience_map, "WORK_A_STEP", a_step)
+    robot = loop(ExperienceMapParams(solve_every=1), 1.0, 0.0, 1)
+    solve, solved = map_correction.solve, []
+    monkeypatch.setattr(map_correction, "solve", lambda *given: solved.append(solve(*given)) or solved[-1])
+    for _ in range(60):
+        robot.map.closures += 1
+        robot.map._steps += 1
+        robot.map.correct()
+    rests = max(1, math.ceil(solved[0].work / a_step))
+    assert (rests > 4) is rested
+    assert len(solved) == pytest.approx(60 / rests, abs=1)
 
 
 def test_without_calibration_no_bias_is_learnt() -> None:

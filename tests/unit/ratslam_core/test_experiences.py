@@ -76,7 +76,8 @@ def test_the_choice_is_that_of_a_loop_over_all(shape, p: ExperienceMapParams, ma
 
 
 @pytest.mark.parametrize(
-    "choice", [{}, {"match_view": False}, {"match_view": False, "energy": "2005"}, {"match_view": False, "zone_theta": 20.0}]
+    "choice",
+    [{}, {"match_view": False}, {"match_view": False, "energy": "2005"}, {"match_view": False, "zone_theta": 20.0}],
 )
 def test_the_interpreted_choice_is_the_compiled_one(choice, monkeypatch: pytest.MonkeyPatch) -> None:
     p = ExperienceMapParams(**choice)
