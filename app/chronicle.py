@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import deque
 
 import numpy as np
@@ -156,7 +155,7 @@ class Chronicle:
         self.error_map_m, self.error_odometry_m = session.evaluation.errors(session.brain.experience_map, every)
         views, experiences = len(session.brain.local_view), len(session.brain.experience_map)
         metres, radians = session.brain.experience_map.residual
-        residual = 1000 * metres, math.degrees(radians)
+        residual = 1000 * metres, 1000 * radians
         self._samples.append((session.time_s, self.error_map_m, self.error_odometry_m, views, experiences, *residual))
         if len(self._samples) > SERIES_POINTS:
             self._samples = self._samples[::2]

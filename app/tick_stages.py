@@ -94,8 +94,11 @@ class TickRecorder:
         left = inhibited(near, params)
         chosen = {"times": after["times"], **self._map}
 
+        # What has been injected is a packet of its own as soon as it is there, though the engine looks for packets at the end.
+        like = replace(before["pose_cells"], packets=after["pose_cells"].packets)
+
         def cells(activity: Activity) -> dict[str, Any]:
-            return before | {"pose_cells": _layer(before["pose_cells"], activity)}
+            return before | {"pose_cells": _layer(like, activity)}
 
         steps = [
             ("image", self._image(), before),

@@ -432,7 +432,7 @@ def _series(second: int) -> Series:
         views=_frozen(600 * (1 - np.exp(-time_s / 90))),
         experiences=_frozen(NODES * (1 - np.exp(-time_s / 120))),
         residual_mm=_frozen(3 + np.sin(time_s / 7)),
-        residual_deg=_frozen(0.4 + 0.1 * np.sin(time_s / 5)),
+        residual_mrad=_frozen(4 + 1.0 * np.sin(time_s / 5)),
     )
 
 

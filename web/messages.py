@@ -324,7 +324,7 @@ class Series:
     views: NDArray[np.float64]
     experiences: NDArray[np.float64]
     residual_mm: NDArray[np.float64]  # by how much links and map disagree, root mean square
-    residual_deg: NDArray[np.float64]
+    residual_mrad: NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,7 +42,9 @@ class InspectPanel:
         self._send, self._complain = send, complain
         self._snapshot: Snapshot | None = None
         self._switch = gui.add_checkbox(
-            "click on the map inspects", False, hint="Instead of sending the robot there. With shift it always does."
+            "click inspects",
+            False,
+            hint="A click on the map, instead of sending the robot there. With shift it always does.",
         )
         self._now = gui.add_button_group(
             "active now", (HERE, VIEW, NONE), hint="Look at what is active at this moment."

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import viser
 from viser import uplot
@@ -55,18 +57,18 @@ class TruthPanel:
             return
         self._errors.data = (series.time_s, series.map_error_m, series.odometry_error_m)
         self._counts.data = (series.time_s, series.views, series.experiences)
-        self._residual.data = (series.time_s, series.residual_mm, series.residual_deg)
+        self._residual.data = (series.time_s, series.residual_mm, series.residual_mrad)
         self._residual_words.content = markup.page(*residual_words(series))
 
 
 def residual_words(series: Series) -> list[str]:
-    now = f"{series.residual_mm[-1]:.1f} mm and {series.residual_deg[-1]:.2f}°"
+    now = f"{series.residual_mm[-1]:.1f} mm and {math.degrees(series.residual_mrad[-1] / 1000):.2f}°"
     why = "A closed loop makes links and map disagree; correction spreads the difference over the map."
     return [markup.heading(f"Map correction: a residual of {now}"), markup.note(why)]
 
 
 def _residual_series(palette: Palette) -> tuple[uplot.Series, ...]:
-    angle = uplot.Series(label="angle (°)", stroke=markup.css(palette.robot), width=2, dash=(6, 4))
+    angle = uplot.Series(label="angle (mrad)", stroke=markup.css(palette.robot), width=2, dash=(6, 4))
     return (
         uplot.Series(label="s"),
         uplot.Series(label="distance (mm)", stroke=markup.css(palette.packets[1]), width=2),

@@ -103,6 +103,7 @@ export class Stage {
   showPanels(on) {
     this.panels = on;
     document.getElementById("panels").setAttribute("aria-pressed", String(on));
+    document.body.dataset.panels = String(on); // on a phone they take the place of the card of stages
     if (this.style) this.style.textContent = COLOURS + (on ? "" : HIDE_PANEL);
   }
 }
