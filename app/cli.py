@@ -7,6 +7,7 @@ import json
 import os
 import sys
 import webbrowser
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -217,11 +218,11 @@ def _config(args: argparse.Namespace) -> int:
 
 
 def _bench(args: argparse.Namespace) -> int:
-    from benchmarks.engine import line, rows
+    from benchmarks import engine, office
 
     measured = []
-    for row in rows():
-        print(line(row), flush=True)
+    for row in chain(engine.rows(), office.rows()):
+        print(engine.line(row), flush=True)
         measured.append(row)
     if args.json is not None:
         args.json.write_text(json.dumps(measured, indent=2) + "\n", encoding="utf-8")

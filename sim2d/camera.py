@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sim2d.atlas import build_atlas
+from sim2d.atlas import Atlas
 from sim2d.column_hits import MAX_HITS, column_hits
 from sim2d.lights import Lights
 from sim2d.living import Living
@@ -48,7 +48,7 @@ class Camera:
         self._full[self._walls_end :] = False  # they move: none is sure to hide what is behind
         self._glass = np.array([w.kind == "glass" for w in walls])
         self._has_glass = bool(self._glass.any())
-        atlas = build_atlas(walls)
+        self._atlas = atlas = Atlas(walls)
         self._strips = Strips(
             atlas.texels, atlas.first, atlas.columns, atlas.rows, np.array([w.bottom for w in walls]), tops,
             _shades(self._segments), np.array([w.reflection if w.kind == "glass" else -1.0 for w in walls]),
@@ -106,6 +106,9 @@ class Camera:
                 self._index, self._segments, things, self._glass, *eye, self._rays, self._counts, self._walls, self._hits,
                 self._panes, self._mirror_strips, self._mirror_hits,
             )  # fmt: skip
+            self._atlas.paint_seen(self._counts, self._walls, self._mirror_strips)
+        else:
+            self._atlas.paint_seen(self._counts, self._walls)
         paint_columns(
             self._strips, self._eye, self._focal, self._background, self._glow, self._counts, self._walls, self._hits,
             self._panes, self._mirror_strips, self._mirror_hits, self._canvas,

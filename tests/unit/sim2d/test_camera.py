@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim2d import Panel, SimParams, Wall, World, camera, column_hits, load_world, painting
-from sim2d.atlas import build_atlas
+from sim2d.atlas import Atlas
 from sim2d.camera import Camera
 from sim2d.geometry import ray_length
 from sim2d.texture import paint_strip
@@ -197,6 +197,19 @@ def test_images_keep_still_where_the_robot_does_and_change_where_it_moves() -> N
 
 
 def test_equal_sides_share_texels() -> None:
-    atlas = build_atlas(room(Wall(1, 1, 2, 1, "partition", 1.4, GREY)).walls)
+    atlas = Atlas(room(Wall(1, 1, 2, 1, "partition", 1.4, GREY)).walls)
     assert (atlas.first[8] == atlas.first[9]).all()
     assert atlas.texels.dtype == np.float32
+
+
+def test_a_side_is_painted_when_it_is_first_seen_and_never_otherwise() -> None:
+    world = load_world()
+    fresh, used = Camera(world, PARAMS), Camera(world, PARAMS)
+    place = (world.starts[0].x, world.starts[0].y)
+    rng = np.random.default_rng(0)
+    for heading in np.linspace(0, 2 * math.pi, 9):
+        used.image(*place, float(heading), 1.0, 0.0, rng)
+    assert not fresh._atlas._painted.any()
+    picture = fresh.image(*place, 0.3, 1.0, 0.0, rng)
+    assert np.array_equal(picture, used.image(*place, 0.3, 1.0, 0.0, rng))
+    assert 0 < fresh._atlas._painted.sum() < used._atlas._painted.sum() < used._atlas._painted.size

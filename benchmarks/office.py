@@ -1,0 +1,111 @@
+"""The office's speed: `ratslam bench`, after the engine's rows. Worlds are grids of open rooms of 4 x 4 m."""
+
+from __future__ import annotations
+
+import math
+import statistics
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.session import Session
+from sim2d import Drive, Person, Place, Simulator, Start, Wall, World, load_world, world_to_json
+from sim2d.importers.dress import Dresser
+
+Row = dict[str, Any]
+ROOM_M, GAP_M = 4.0, 1.4
+WARM_TICKS, TICKS, LOOP_S = 50, 1500, 60.0
+FASTEST = 300  # times real time that the closed loop has to be
+
+
+def rows() -> Iterator[Row]:
+    """One row after the other, as soon as it is measured."""
+    for walls, bar in ((100, 0.15), (400, 0.2), (2000, 0.3)):
+        ms = tick_ms(Simulator(rooms(walls), seed=1))
+        yield _row("office: one 10 Hz tick", f"{walls:,} walls", ms, f"{bar:g} ms", ms <= bar)
+    yield _closed_loop()
+    yield from _largest()
+
+
+def rooms(walls: int, people: int = 0, seed: int = 0) -> World:
+    """So many walls with pictures on them; people go round in rooms."""
+    across = math.ceil(0.5 + math.sqrt(0.25 + (walls - 4) / 2))  # 2 n (n - 1) walls between n x n rooms
+    side, dresser = across * ROOM_M, Dresser(seed)
+    outline = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side), (0.0, 0.0)]
+    made: list[Wall] = dresser.line(outline, "left", outer=True)
+    for row in range(across):
+        for column in range(1, across):
+            a, b = column * ROOM_M, row * ROOM_M
+            for x1, y1, x2, y2 in ((a, b, a, b + ROOM_M - GAP_M), (b, a, b + ROOM_M - GAP_M, a)):
+                if len(made) < walls:
+                    made += dresser.line([(x1, y1), (x2, y2)], "each")
+    rng = np.random.default_rng(seed)
+    middle = (across // 2 + 0.5) * ROOM_M
+    walkers = []
+    for k in range(people):
+        x, y = (rng.integers(0, across, 2) + 0.5) * ROOM_M
+        ring = tuple((float(x + dx), float(y + dy)) for dx, dy in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
+        walkers.append(Person(f"person {k}", ring, (1.0,) * 4))
+    world = World(
+        f"rooms-{walls}", f"{walls} walls", "benchmark", tuple(made), (Start("home", middle, middle, 0.0),),
+        (Place("home", middle, middle),),
+    )  # fmt: skip
+    return replace(world, people=tuple(walkers))
+
+
+def tick_ms(simulator: Simulator, seed: int = 0) -> float:
+    """Median of a tick of physics, camera 64 x 48, sonar and encoders while the robot drives about at random."""
+    rng = np.random.default_rng(seed)
+    times = []
+    for tick in range(WARM_TICKS + TICKS):
+        if tick % 20 == 0:
+            drive = Drive(float(rng.uniform(-0.2, 0.5)), float(rng.uniform(-1.2, 1.2)))
+        began = time.perf_counter()
+        simulator.step(drive)
+        times.append(time.perf_counter() - began)
+    return 1e3 * statistics.median(times[WARM_TICKS:])
+
+
+def _closed_loop() -> Row:
+    """The default office, first minute behind it; a tick of 0.1 s may take 0.1 s / 300."""
+    session = Session(load_world(), 1)
+    ticks = round(LOOP_S / session.frame.dt)
+    for _ in range(ticks):
+        session.tick()
+    began = time.perf_counter()
+    for _ in range(ticks):
+        session.tick()
+    ms = 1e3 * (time.perf_counter() - began) / ticks
+    size = f"default office: {1e3 * session.frame.dt / ms:.0f} x real time"
+    bar = 1e3 * session.frame.dt / FASTEST
+    return _row("office: headless closed loop, tick", size, ms, f"{bar:.3f} ms ({FASTEST} x)", ms <= bar)
+
+
+def _largest() -> Iterator[Row]:
+    """The largest world that is allowed, from its file to the first frame, and live."""
+    size = "10,000 walls, 50 people"
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "large.json"
+        file.write_text(world_to_json(rooms(10_000, 50)), encoding="utf-8")
+        began = time.perf_counter()
+        session = Session(load_world(file), 1)
+        ms = 1e3 * (time.perf_counter() - began)
+    yield _row("office: loading a world", size, ms, "3000 ms", ms <= 3000)
+    times = []
+    for _ in range(600):
+        began = time.perf_counter()
+        session.tick()
+        times.append(1e3 * (time.perf_counter() - began))
+    yield _row("office: whole tick, worst of 600", size, max(times[5:]), "100 ms (x1)", max(times[5:]) <= 100)
+
+
+def _row(work: str, size: str, ms: float, bar: str, holds: bool) -> Row:
+    return {
+        "work": work, "size": size, "ms": round(ms, 4), "reference": "-", "reference_ms": None, "bar": bar,
+        "holds": bool(holds),
+    }  # fmt: skip
