@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -268,3 +269,23 @@ def test_the_fixed_rate_is_fixed() -> None:
     circle, brain = start()
     circle.advance(brain, LAP)
     assert brain.learning_rate == brain.params.local_view.learning_rate
+
+
+def test_a_step_allocates_no_more_with_time() -> None:
+    """Known ground, lap after lap: what steps allocate goes again, and the tenth lap needs no more than the third."""
+    circle, brain = start()
+    circle.advance(brain, 3 * LAP)
+    tracemalloc.start()
+    try:
+        held, needed = [], []
+        for _ in range(8):
+            tracemalloc.reset_peak()
+            before = tracemalloc.get_traced_memory()[0]
+            circle.advance(brain, LAP)
+            now, peak = tracemalloc.get_traced_memory()
+            held.append(now)
+            needed.append(peak - before)
+    finally:
+        tracemalloc.stop()
+    assert np.median(needed[4:]) < 1.2 * np.median(needed[:4])
+    assert held[-1] < 1_000_000  # arrays that double included
