@@ -26,6 +26,5 @@ def carry_out(session: Session, order: m.OfficeOrder) -> str:
             simulator.remove_box(name)
             return f"{name} taken away"
         case m.UsePreset(name=name):
-            before = {key: value for key, _, value in session.config.items()}
-            waiting = [k for k, v in values_of(name).items() if not session.set_parameter(k, v) and before[k] != v]
+            waiting = session.set_parameters(values_of(name))
             return f"preset {name}" + (f"; from the next reset on: {', '.join(waiting)}" if waiting else "")

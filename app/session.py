@@ -6,7 +6,7 @@ No thread, no clock, no page: the same seed and the same calls give the same run
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -106,15 +106,27 @@ class Session:
 
     def set_parameter(self, name: str, value: Value) -> bool:
         """Change one parameter; True when it acts at once, False when it waits for the next reset."""
-        before, self.config = self.config, self.config.with_value(name, value)
-        changed = [dotted for (dotted, _, old), (_, _, new) in zip(before.items(), self.config.items(), strict=True)
-                   if old != new]  # fmt: skip
-        live = {dotted: item.metadata["live"] for dotted, item, _ in self.config.items()}
-        for dotted in changed:
+        self.set_parameters({name: value})
+        return next(item.metadata["live"] for dotted, item, _ in self.config.items() if dotted == name)
+
+    def set_parameters(self, values: Mapping[str, Value]) -> list[str]:
+        """Change several, all or none; the names of those that are new and wait for the next reset."""
+        config = self.config
+        for name, value in values.items():
+            config = config.with_value(name, value)
+        changes: dict[str, dict[str, Value]] = {"robot": {}}  # first: it alone may have no room for what is asked
+        waiting = []
+        for (dotted, item, old), (_, _, new) in zip(self.config.items(), config.items(), strict=True):
             section, key = dotted.split(".")
-            if live[dotted]:
-                self._take(section, {key: getattr(getattr(self.config, section), key)})
-        return live[name]
+            if old != new and item.metadata["live"]:
+                changes.setdefault(section, {})[key] = new
+            elif old != new:
+                waiting.append(dotted)
+        for section, change in changes.items():
+            if change:
+                self._take(section, change)
+        self.config = config
+        return waiting
 
     def edit_world(self, world: World) -> None:
         """Go on in an edited world, and begin in it after a reset. ValueError when it would cover the robot."""
@@ -147,7 +159,7 @@ class Session:
         return estimate
 
     def _take(self, section: str, change: dict[str, Value]) -> None:
-        """Hand one live parameter to whoever uses it; the others keep what they run with."""
+        """Hand live parameters of a section to whoever uses it; the others keep what they run with."""
         brain = self.brain
         if section == "robot":
             self.simulator.set_params(replace(self.simulator.params, **change))  # type: ignore[arg-type]

@@ -123,10 +123,10 @@ class Snapshots:
         )
 
     def _draw_world(self) -> WorldDrawing:
-        """Drawn anew only when walls, places or the camera's lens have changed."""
+        """Drawn anew only when walls, places, lens or the robot's size have changed."""
         simulator, params = self._session.simulator, self._session.simulator.params
         world, drawn = simulator.world, self._drawn
-        now = (world.name, world.title, world.slow_zones, world.places, params.camera_fov_rad)
+        now = (world.name, world.title, world.slow_zones, world.places, params.camera_fov_rad, params.robot_radius_m)
         if drawn is None or drawn[0] is not world.walls or drawn[1] != now:
             self._drawn = (world.walls, now)
             self._world = world_drawing(world, params.robot_radius_m, params.camera_fov_rad)

@@ -56,12 +56,17 @@ class Living:
         self.walkers.present &= params.people
         self._show()
 
-    def step(self, tick: int, robot: tuple[float, float], radius: float, comes: float, params: OfficeParams) -> None:
-        """The tick that begins now. robot: its place; radius: its own; comes: how far it may come in a tick, metres."""
+    def set_tick(self, tick_s: float) -> None:
+        """Ticks last so long from now on."""
+        self._tick_s = self.walkers.tick_s = tick_s
+
+    def step(
+        self, time_s: float, robot: tuple[float, float], radius: float, comes: float, params: OfficeParams
+    ) -> None:
+        """The tick that ends at this time. robot: its place; radius: its own; comes: how far it may come in a tick, metres."""
         self._lamps_on = params.lamps
         if not self._anything:
             return
-        time_s = tick * self._tick_s
         while self._next < len(self._script) and self._script[self._next].at_s <= time_s + 1e-9:
             if params.script:
                 self._do(self._script[self._next])

@@ -50,13 +50,13 @@ class SimParams:
     """Robot, camera, sonar and odometry of one simulation. A number out of its range raises ValueError."""
 
     physics_rate_hz: int = _number(
-        240, 60, 2000, "f_p", "Hz", "physics sub-steps a second; a multiple of the sensor rate"
+        240, 60, 2000, "f_p", "Hz", "physics sub-steps a second; a multiple of the sensor rate", live=True
     )
     sensor_rate_hz: int = _number(
-        10, 1, 60, "f_s", "Hz", "ticks a second: camera, sonar, encoders, one command", "ACRA 2005"
+        10, 1, 60, "f_s", "Hz", "ticks a second: camera, sonar, encoders, one command", "ACRA 2005", live=True
     )
 
-    robot_radius_m: float = _number(0.22, 0.05, 0.5, "r", "m", "radius of the round robot", "Pioneer 2-DXE")
+    robot_radius_m: float = _number(0.22, 0.05, 0.5, "r", "m", "radius of the round robot", "Pioneer 2-DXE", live=True)
     max_speed: float = _number(0.5, 0.05, 2.0, "v_max", "m/s", "fastest drive, forwards and backwards", live=True)
     max_yaw_rate: float = _number(math.pi / 2, 0.1, 2 * math.pi, "w_max", "rad/s", "fastest turn", live=True)
     max_acceleration: float = _number(

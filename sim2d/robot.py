@@ -25,7 +25,7 @@ class Robot:
     def __init__(self, space: pymunk.Space, params: SimParams, x: float, y: float, heading_rad: float) -> None:
         radius = params.robot_radius_m
         self.body = pymunk.Body(_MASS_KG, pymunk.moment_for_circle(_MASS_KG, 0.0, radius))
-        disc = pymunk.Circle(self.body, radius)
+        self._disc = disc = pymunk.Circle(self.body, radius)
         disc.friction = 0.3
         self._wheels = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
         pivot = PivotJoint(self._wheels, self.body, (0.0, 0.0), (0.0, 0.0))
@@ -36,6 +36,12 @@ class Robot:
         self.speed = 0.0  # what the wheels do now, m/s
         self.yaw_rate = 0.0  # rad/s
         self.place(x, y, heading_rad)
+
+    def resize(self, space: pymunk.Space, radius: float) -> None:
+        """Another radius; whether there is room for it is the caller's business."""
+        self._disc.unsafe_set_radius(radius)
+        self.body.moment = pymunk.moment_for_circle(_MASS_KG, 0.0, radius)
+        space.reindex_shapes_for_body(self.body)
 
     def place(self, x: float, y: float, heading_rad: float) -> None:
         """Put down at rest."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pymunk
@@ -122,6 +122,7 @@ class Simulator:
         self._robot = Robot(self._space, self.params, start.x, start.y, start.heading_rad)
         self._begin_here()
         self._tick = 0
+        self._clock = (0, 0.0)  # tick and time at which the present rate of ticks began
         self._motion = (0.0, 0.0)
         self._frame = self._sense(0.0, 0.0)
 
@@ -139,10 +140,10 @@ class Simulator:
         """Drive for one tick, then sense."""
         before, params = self._pose(), self.params
         here = before[:2]
-        self.living.step(self._tick + 1, here, params.robot_radius_m, params.max_speed * params.tick_s, self.office)
+        self._tick += 1
+        self.living.step(self._time_s, here, params.robot_radius_m, params.max_speed * params.tick_s, self.office)
         self._solids.follow(here)
         self._robot.drive(self._space, drive.speed, drive.yaw_rate, params, self._slowness(*here))
-        self._tick += 1
         self._motion = true_motion(before, self._pose(), self.params.tick_s)
         self._frame = self._sense(*report(*self._motion, self.params, self._odometry_rng))
         return self._frame
@@ -171,18 +172,25 @@ class Simulator:
     # ------------------------------------------------------------ changes; ValueError says why one cannot be
 
     def set_params(self, params: SimParams) -> None:
-        """Change what may change while running; ValueError that names anything else."""
-        for item in fields(params):
-            old, new = getattr(self.params, item.name), getattr(params, item.name)
-            if old != new and not item.metadata["live"]:
-                raise ValueError(
-                    f"{item.name} cannot change while running (from {old!r} to {new!r}); make a new simulator"
-                )
+        """Go on with these from the next tick on. ValueError when the robot has grown and has no room where it is."""
+        before = self.params
+        if params.robot_radius_m > before.robot_radius_m:
+            self._require_room(params.robot_radius_m)
+        self._clock, self.params = (self._tick, self._time_s), params
+        if params.sensor_rate_hz != before.sensor_rate_hz:
+            self.living.set_tick(params.tick_s)
+        if params.robot_radius_m != before.robot_radius_m:
+            self._robot.resize(self._space, params.robot_radius_m)
+            self._measure()
         lens = ("camera_fov_rad", "image_width", "image_height", "camera_height_m")
-        changed = any(getattr(params, name) != getattr(self.params, name) for name in lens)
-        self.params = params
-        if changed:
+        if any(getattr(params, name) != getattr(before, name) for name in lens):
             self._camera.set_lens(params)
+
+    def _require_room(self, radius: float) -> None:
+        x, y, _ = self._pose()
+        refusal = _covered(self.world, x, y, radius) or self.living.refusal(x, y, radius - LEANS_M)
+        if refusal is not None:
+            raise ValueError(f"robot_radius_m cannot become {radius:g} here: {refusal}")
 
     def set_door(self, name: str, is_open: bool) -> None:
         """Open or shut a door. It moves from the next tick on, and waits for who stands in it."""
@@ -242,7 +250,7 @@ class Simulator:
         """Digest of everything that decides the future: equal histories give equal digests."""
         body = self._robot.body
         numbers = [*self._pose(), *body.velocity, body.angular_velocity, self._robot.speed, self._robot.yaw_rate]
-        digest = hashlib.sha256(np.array([self._tick, *self._motion, *numbers], np.float64).tobytes())
+        digest = hashlib.sha256(np.array([self._tick, self._time_s, *self._motion, *numbers], np.float64).tobytes())
         generators = (
             self._image_rng,
             self._sonar_rng,
@@ -257,6 +265,11 @@ class Simulator:
         digest.update(repr((self.params, self.office)).encode())
         digest.update(self.living.state())
         return digest.digest()
+
+    @property
+    def _time_s(self) -> float:
+        tick, time_s = self._clock
+        return time_s + (self._tick - tick) / self.params.sensor_rate_hz
 
     def _pose(self) -> tuple[float, float, float]:
         x, y = self._robot.body.position
@@ -292,7 +305,7 @@ class Simulator:
             array.setflags(write=False)
         scene = scene_number(x, y, heading, self._bounds, params.scene_cell_m, params.scene_sector_rad)
         return SensorFrame(
-            self._tick, self._tick / params.sensor_rate_hz, image, speed, yaw_rate, params.tick_s, ranges,
+            self._tick, self._time_s, image, speed, yaw_rate, params.tick_s, ranges,
             bumped, scan, scene,
         )  # fmt: skip
 

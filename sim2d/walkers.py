@@ -24,7 +24,7 @@ class Walkers:
 
     def __init__(self, people: tuple[Person, ...], rng: np.random.Generator, tick_s: float) -> None:
         n = len(people)
-        self._people, self._tick_s = people, tick_s
+        self._people, self.tick_s = people, tick_s
         self.radius = np.array([p.radius for p in people])
         self._speed = np.array([p.speed for p in people])
         self._loop = np.array([p.loop for p in people], bool)
@@ -51,7 +51,7 @@ class Walkers:
             _walk(
                 self.xy, self.heading, self._towards, self._way, self._waits, self._patience, self.present, self._drawn,
                 self._chance, self.radius, self._speed, self._loop, self._first, self._path, self._wait_s,
-                robot[0], robot[1], reach, walking, obstacles, present, self._tick_s,
+                robot[0], robot[1], reach, walking, obstacles, present, self.tick_s,
             )  # fmt: skip
 
     def make_way(self, robot: tuple[float, float], radius: float) -> None:

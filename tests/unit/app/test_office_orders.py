@@ -94,11 +94,18 @@ def test_a_preset_by_its_name_on_a_command_line() -> None:
     assert preset_of(Config()) == ""
 
 
-def test_a_preset_names_what_waits_for_a_reset_only_where_it_differs(session: Session) -> None:
+def test_a_preset_is_taken_whole_or_not_at_all(session: Session) -> None:
+    session.set_parameter("robot.robot_radius_m", 0.1)
+    session.kidnap(0.15, 2.0, 0.0)
+    before, config = session.state_hash(), session.config
+    with pytest.raises(ValueError, match=r"robot_radius_m cannot become 0\.22 here: walls\[3\]"):
+        order(session, type="use_preset", name="Pioneer 2DXE 2004")
+    assert session.state_hash() == before
+    assert session.config == config
+    session.kidnap(2.0, 2.0, 0.0)
     assert order(session, type="use_preset", name="Pioneer 2DXE 2004") == "preset Pioneer 2DXE 2004"
-    session.set_parameter("robot.robot_radius_m", 0.3)
-    words = order(session, type="use_preset", name="Pioneer 2DXE 2004")
-    assert words == "preset Pioneer 2DXE 2004; from the next reset on: robot.robot_radius_m"
+    assert session.simulator.params.robot_radius_m == 0.22
+    assert session.set_parameters({"robot.light": 0.5, "pose_cells.n_x": 32}) == ["pose_cells.n_x"]
 
 
 def test_who_tells_the_brain_another_field_of_view_hears_of_it() -> None:

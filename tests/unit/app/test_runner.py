@@ -287,6 +287,7 @@ def test_a_world_of_ones_own_can_be_come_back_to(start: Callable[..., Runner]) -
 def test_a_reset_that_cannot_be_is_refused_and_the_old_run_goes_on(start: Callable[..., Runner]) -> None:
     runner = start(world=room(start=(0.4, 2.0, 0.0)))
     accept(runner, step(5))
+    accept(runner, m.Kidnap(type="kidnap", x=2.0, y=2.0))
     accept(runner, m.SetParameter(type="set_parameter", name="robot.robot_radius_m", value=0.5))
     refused = refuse(runner, m.Reset(type="reset"))
     assert (refused.field, refused.value) == ("world", "room")

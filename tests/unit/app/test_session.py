@@ -220,9 +220,7 @@ def test_live_parameters_act_at_once_others_wait() -> None:
     assert session.config.pose_cells.n_x == 32
     assert session.set_parameter("pose_cells.inhibit", 4e-4)  # though another waits
     assert session.brain.pose_cells.params.inhibit == 4e-4
-    assert not session.set_parameter("robot.robot_radius_m", 0.3)
     assert session.set_parameter("robot.light", 0.8)
-    assert session.simulator.params.robot_radius_m == 0.22
     session.tick()
     anew = Session(OFFICE, 3, session.config)
     assert anew.brain.pose_cells.shape == (36, 64, 32)

@@ -6,7 +6,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from sim2d import SONAR_ANGLES_RAD, Drive, SensorFrame, SimParams, Simulator, Wall, load_world, world_names
+from sim2d import SONAR_ANGLES_RAD, Drive, Person, SensorFrame, SimParams, Simulator, Wall, load_world, world_names
 
 from .rooms import GREY, room
 
@@ -208,9 +208,39 @@ def test_live_parameters() -> None:
     for _ in range(10):
         frame = simulator.step(Drive(0.3, 0.0))
     assert frame.odometry_speed == pytest.approx(1.5 * simulator.truth.speed)
-    with pytest.raises(ValueError, match=r"robot_radius_m cannot change while running \(from 0.22 to 0.3\); make a"):
-        simulator.set_params(replace(EXACT, robot_radius_m=0.3))
     assert simulator.params.light == 0.5
+
+
+def test_rates_change_while_it_runs_and_time_goes_on() -> None:
+    people = (Person("Ada", ((0.5, 0.5), (3.5, 0.5)), (0.0, 0.0), speed=0.8),)
+    simulator = Simulator(replace(room(), people=people), EXACT)
+    times = [simulator.step(Drive(0.4, 0.0)).time_s for _ in range(10)]
+    at, walked = simulator.truth.x, simulator.living.walkers.xy[0, 0]
+    simulator.set_params(replace(EXACT, sensor_rate_hz=20, physics_rate_hz=480))
+    frames = [simulator.step(Drive(0.4, 0.0)) for _ in range(10)]
+    assert times + [frame.time_s for frame in frames] == pytest.approx(
+        [*np.arange(1, 11) / 10, *(1 + np.arange(1, 11) / 20)]
+    )
+    assert frames[-1].dt == 0.05
+    assert frames[-1].odometry_speed == pytest.approx(0.4)
+    assert simulator.truth.x - at == pytest.approx(0.2, abs=0.01)  # half a second
+    assert simulator.living.walkers.xy[0, 0] - walked == pytest.approx(0.4, abs=0.01)
+
+
+def test_the_robot_grows_where_there_is_room() -> None:
+    simulator = Simulator(room(), EXACT)
+    reason = r"robot_radius_m cannot become 0\.5 here: .* would cover the robot at \(0\.48, 2\.00\); keep"
+    simulator.teleport(0.48, 2.0, math.pi)
+    before = simulator.state()
+    with pytest.raises(ValueError, match=reason):
+        simulator.set_params(replace(EXACT, robot_radius_m=0.5))
+    assert simulator.state() == before
+    simulator.set_params(replace(EXACT, robot_radius_m=0.4))
+    for _ in range(20):
+        simulator.step(Drive(0.5, 0.0))
+    assert simulator.truth.x == pytest.approx(0.4, abs=0.004)
+    with pytest.raises(ValueError, match=r"the robot needs 0\.4 m"):
+        simulator.teleport(0.3, 2.0, 0.0)
 
 
 def test_a_robot_too_large_for_its_start() -> None:
