@@ -72,6 +72,7 @@ def view_report(session: Session, chronicle: Chronicle, view: int) -> ViewReport
         id=view,
         picture=stored_picture(brain, view),
         now=present_picture(brain),
+        camera=session.frame.image,
         difference=brain.local_view.difference_to(view),
         threshold=brain.local_view.front_end.threshold(brain.params.local_view),
         active=session.estimate.recognition.view == view,

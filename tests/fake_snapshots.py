@@ -466,6 +466,7 @@ def fake_reports() -> dict[str, Report]:
     """One of each kind that can be inspected."""
     picture = _frozen(np.arange(96, dtype=np.uint8).reshape(8, 12) * 2)
     cells = _frozen(np.array([[3, 22, 31], [4, 22, 31], [4, 23, 32]], np.int32))
+    camera = fake_snapshot(430).senses.camera
     hebbian = HebbianReport(140, cells, _frozen(np.array([0.05, 0.04, 0.01], np.float32)), 0.1)
     links = (
         LinkReport(12, 13, 1.5, math.pi / 4, -0.2, 5.25, "following the wall", 3, 5, 0.8),
@@ -481,7 +482,7 @@ def fake_reports() -> dict[str, Report]:
             12, (31.2, 22.1, 3.4), 7, picture, pose, 2.5, 2.0, 1.25, True, links, hebbian, times
         ),
         "view": ViewReport(
-            7, picture, _frozen(255 - picture), 12.5, 8.0, False, (12, 40), hebbian, Times(None, None, 0)
+            7, picture, _frozen(255 - picture), camera, 12.5, 8.0, False, (12, 40), hebbian, Times(None, None, 0)
         ),
         "cell": CellReport(31, 22, _frozen(by_heading), Packet(31.2, 22.4, 0.6, 0.62, 3), ((7, 0.05),), 1, (12, 40)),
     }

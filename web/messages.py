@@ -200,6 +200,7 @@ class ViewReport:
     id: int
     picture: NDArray[np.uint8]  # (h, w) or (h, w, 3) as it is stored
     now: NDArray[np.uint8]  # the same of what is seen now
+    camera: NDArray[np.uint8]  # (h, w, 3) the image that it was made of
     difference: float  # between the two at the best shift, as in Senses
     threshold: float
     active: bool

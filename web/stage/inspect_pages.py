@@ -54,9 +54,10 @@ def view_page(report: ViewReport) -> str:
         ("threshold", f"{report.threshold:.1f}: {'the same view' if known else 'another view'}"),
     ]
     stored = markup.caption("as it is stored") + _picture(report.picture, f"the stored view {report.id}")
-    now = markup.caption("what is seen now") + _picture(report.now, "what the robot sees now")
+    now = markup.caption("what is made of it") + _picture(report.now, "what the robot makes of it")
+    camera = markup.caption("camera now") + _picture(report.camera, "what the robot's camera sees now")
     return markup.page(
-        _name("local view cell", f"#{report.id}", "active now" if report.active else "not active"),
+        markup.row(_name("local view cell", f"#{report.id}", "active now" if report.active else "not active"), camera),
         markup.row(stored, now),
         markup.table("Against what is seen now", rows),
         markup.table("When", _times(report.times)),

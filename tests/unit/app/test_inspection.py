@@ -57,6 +57,7 @@ def test_a_view_is_told_with_what_is_seen_now(watched: tuple[Session, Chronicle]
     assert isinstance(report, ViewReport)
     np.testing.assert_array_equal(report.picture, stored_picture(session.brain, seen.best_view))
     np.testing.assert_array_equal(report.now, present_picture(session.brain))
+    assert report.camera is session.frame.image
     assert report.difference == pytest.approx(seen.difference)  # as the engine itself measured it
     assert all(session.brain.experience_map.views[k] == report.id for k in report.experiences)
     cells, strength = session.brain.view_links.of(report.id)
