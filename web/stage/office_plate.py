@@ -78,7 +78,8 @@ class OfficePlate(Plate):
     def set_world(self, world: WorldDrawing) -> None:
         """Draws another office: floor with its shadows, walls, furniture, posters."""
         self.world, self.fit = world, OfficeFit(world.bounds)
-        self._walls = np.asarray(world.walls, np.float64)
+        opaque = [kind != "glass" for kind in world.wall_kind]
+        self._walls = np.asarray(world.walls, np.float64)[opaque]
         self.robot.resize(self.fit.scale * max(world.robot_radius_m, 0.05))
         add_floor(self.scene, f"{self.root}/floor", self.palette, world, self.fit, FLOOR_Z)
         add_furniture(self.scene, f"{self.root}/furniture", self.palette, world, self.fit)
@@ -96,7 +97,9 @@ class OfficePlate(Plate):
         self._draw_sonar(truth, self.world.sonar_angles_rad, senses.ranges_m)
 
     def _draw_view(self, truth: Pose, fov_rad: float) -> None:
-        rim = self.fit.to_plate(fan_of_view(self._walls, truth, fov_rad))
+        layer = self.things.layer
+        leaves = self._walls[:0] if layer is None else layer.doors.astype(np.float64)
+        rim = self.fit.to_plate(fan_of_view(np.vstack([self._walls, leaves]), truth, fov_rad))
         centre = self.fit.to_plate(np.array([[truth.x, truth.y]]))[0]
         vertices, faces = ribbons.flat_fan((float(centre[0]), float(centre[1])), rim, 0.03)
         self._fan.vertices, self._fan.faces = vertices - np.array(LATE, np.float32), faces

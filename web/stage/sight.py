@@ -32,7 +32,9 @@ def distances(walls: Array, origin: tuple[float, float], angles: Array) -> Array
 def fan_of_view(walls: Array, pose: Pose, fov_rad: float, rays: int = RAYS) -> Array:
     """(rays, 2) where the view ends on the walls, from right to left, so that a fan of them faces up."""
     angles = pose.heading_rad + np.linspace(-fov_rad / 2, fov_rad / 2, rays)
-    reach = distances(walls, (pose.x, pose.y), angles)
+    offset = walls.reshape(-1, 2, 2) - (pose.x, pose.y)
+    within = ((offset.min(1) <= FAR_M) & (offset.max(1) >= -FAR_M)).all(1)  # of ten thousand walls only those count
+    reach = distances(walls[within], (pose.x, pose.y), angles)
     return np.column_stack([pose.x + reach * np.cos(angles), pose.y + reach * np.sin(angles)])
 
 

@@ -247,3 +247,24 @@ def test_glass_and_slow_floors_are_drawn(office: Office) -> None:
     assert glass.vertices[:, 2].max() > 0
     assert glass.opacity < 1
     assert not np.array_equal(scene._handle_from_node_name["/office/floor"].image, plain)
+
+
+def test_the_view_ends_at_a_leaf_and_goes_on_behind_glass(office: Office) -> None:
+    s = fake_snapshot(430)
+    truth = replace(s.truth, x=5.0, y=4.0, heading_rad=0.0)
+    pane = (6.0, 3.0, 6.0, 5.0)
+    walls = np.vstack([s.world.walls, [pane]]).astype(np.float32)
+    heights = np.append(s.world.wall_height_m, 2.5).astype(np.float32)
+
+    def reach(kind: str, layer: LivingLayer | None) -> float:
+        office.now_s += 20.0
+        world = replace(s.world, walls=walls, wall_height_m=heights, wall_kind=(*s.world.wall_kind, kind))
+        office.stage.tick(replace(s, world=world, truth=truth, living=layer), office.now_s)
+        plate = office.stage._scenery.office
+        tips = plate._fan_edges.points[:, 1, :2]  # of the two outermost rays
+        return float(plate.fit.to_office(tips)[:, 0].max())
+
+    leaf = np.array([(6.0, 3.0, 6.0, 5.0), (8.0, 4.0, 8.0, 5.0)], np.float32)
+    assert reach("wall", None) == pytest.approx(6.0, abs=1e-5)
+    assert reach("glass", living()) > 6.3  # a desk
+    assert reach("glass", living(doors=leaf)) == pytest.approx(6.0, abs=1e-5)
