@@ -60,6 +60,7 @@ def test_nothing_sticks_out(program, browser, width):
         assert page.evaluate(sticking_out) == []
         if width < 500:
             small = """() => [...document.querySelectorAll(".pad button, .views button, .transport button, #more")]
+                .filter((part) => part.checkVisibility())
                 .filter((part) => Math.min(part.getBoundingClientRect().height, part.getBoundingClientRect().width) < 43)
                 .map((part) => part.textContent || part.id)"""
             assert page.evaluate(small) == []
