@@ -16,6 +16,7 @@ from ratslam_core import Odometry
 MEMORY_TICKS = 30
 FARTHEST_M = 1.6  # echoes beyond this are of no concern for the next second
 HORIZON_S = 1.2
+NARROW_M = 0.15  # beyond the clearance an echo costs the less the farther it is, up to here
 
 
 class LocalMovement:
@@ -75,6 +76,7 @@ def _best_arc(echoes, x, y, speed, turn_rate, clearance):
     """Least (distance left + share of the turn left) over arcs that keep clear; turning on the spot is always free."""
     best, best_v, best_w = np.inf, 0.0, 0.0
     bearing = math.atan2(y, x)
+    echoes = _within(echoes, speed * HORIZON_S + clearance + NARROW_M + 0.01)
     for vi in range(4):
         v = speed * (1.0, 0.6, 0.3, 0.0)[vi]
         for wi in range(-6, 7):
@@ -110,10 +112,22 @@ def _best_arc(echoes, x, y, speed, turn_rate, clearance):
             left = math.hypot(x - px, y - py)
             aim = math.atan2(y - py, x - px) - heading if left > 0.15 else bearing - heading
             aim = abs(aim - 2 * math.pi * np.round(aim / (2 * math.pi)))
-            cost = left + 0.25 * aim + 0.15 * max(0.0, clearance + 0.15 - math.sqrt(nearest)) / 0.15
+            cost = left + 0.25 * aim + 0.15 * max(0.0, clearance + NARROW_M - math.sqrt(nearest)) / NARROW_M
             if cost < best:
                 best, best_v, best_w = cost, v, w
     return best_v, best_w
+
+
+@njit(cache=True, nogil=True)
+def _within(echoes, reach):
+    """Those at most so far away, in their order: no other can matter to an arc."""
+    out = np.empty_like(echoes)
+    n = 0
+    for e in range(echoes.shape[0]):
+        if echoes[e, 0] * echoes[e, 0] + echoes[e, 1] * echoes[e, 1] <= reach * reach:
+            out[n] = echoes[e]
+            n += 1
+    return out[:n]
 
 
 @njit(cache=True, nogil=True)
