@@ -34,6 +34,7 @@ function article(title, text, fields) {
 const EXAMPLES = {
   set_goal: { x: 1, y: 0.5 }, drive: { speed: 0.3, yaw_rate: 0 }, kidnap: {}, step: { ticks: 1 }, set_speed: { factor: 4 },
   set_mode: { mode: "explore" }, reset: { seed: 7 }, set_parameter: { name: "", value: 0 },
+  edit_world: { steps: [{ do: "add", list: "walls", item: { from: [1, 1], to: [2, 1] } }] },
 };
 
 function showCommands(schema, schemas) {

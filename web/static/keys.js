@@ -5,7 +5,7 @@ const DRIVE = {
   KeyW: "up", KeyS: "down", KeyA: "left", KeyD: "right",
 };
 // Widgets that use arrows, space or letters themselves.
-const TYPING = "input, textarea, select, [contenteditable='true'], [role='textbox'], [role='combobox'], [role='listbox']";
+const TYPING = "input, textarea, select, [contenteditable='true'], [role='textbox'], [role='combobox'], [role='listbox'], [role='application']";
 const ARROWS = "[role='slider'], [role='tab'], [role='radio'], [role='menuitem'], [role='spinbutton'], [role='separator']";
 const PRESSING = "button, summary, a[href], [role='button'], [role='tab'], [role='checkbox'], [role='switch']";
 

@@ -32,7 +32,7 @@ export class Link extends EventTarget {
       clearTimeout(slow);
       const was = this.open;
       this.open = false;
-      for (const resolve of this.waiting.values()) resolve({ accepted: false, detail: [] });
+      for (const { resolve } of this.waiting.values()) resolve({ accepted: false, detail: [] });
       this.waiting.clear();
       if (was) this.dispatchEvent(new Event("lost"));
       setTimeout(() => this.connect(), RETRY_MS[Math.min(this.tries++, RETRY_MS.length - 1)]);
@@ -40,9 +40,9 @@ export class Link extends EventTarget {
   }
 
   settle(answer) {
-    const resolve = this.waiting.get(answer.id);
+    const { resolve, quiet } = this.waiting.get(answer.id) ?? {};
     this.waiting.delete(answer.id);
-    if (!answer.accepted) this.dispatchEvent(new CustomEvent("refused", { detail: answer }));
+    if (!answer.accepted && !quiet) this.dispatchEvent(new CustomEvent("refused", { detail: answer }));
     if (resolve) resolve(answer);
   }
 
@@ -52,10 +52,10 @@ export class Link extends EventTarget {
     return this.open;
   }
 
-  // Resolves to the answer; never rejects.
-  ask(command) {
+  // Resolves to the answer; never rejects. quiet: whoever asks tells of a refusal.
+  ask(command, { quiet = false } = {}) {
     const id = ++this.lastId;
     if (!this.tell({ ...command, id })) return Promise.resolve({ accepted: false, detail: [] });
-    return new Promise((resolve) => this.waiting.set(id, resolve));
+    return new Promise((resolve) => this.waiting.set(id, { resolve, quiet }));
   }
 }

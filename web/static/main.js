@@ -1,6 +1,8 @@
 // The page: puts the parts together and turns clicks and keys into commands. The server is the only truth.
 
 import { Drive } from "./drive.js";
+import { Editor } from "./editor.js";
+import { Files, sentence } from "./files.js";
 import { Header } from "./header.js";
 import { setIcon } from "./icons.js";
 import { Keys } from "./keys.js";
@@ -19,6 +21,10 @@ const drive = new Drive((command) => link.tell(command));
 const keys = new Keys({ drive: (name, down) => drive.key(name, down), act, allUp: () => drive.allUp() });
 const stage = new Stage(link, keys);
 let state = null;
+let office = null;
+const files = new Files(() => office?.saved ?? true);
+const editor = new Editor(link, files);
+stage.addEventListener("inside", ({ detail }) => files.catchDrops(detail));
 
 // ---------------------------------------------------------------- what arrives
 
@@ -29,6 +35,8 @@ link.addEventListener("state", ({ detail }) => {
   header.show(state, detail.page);
   stage.inspected(detail.page.inspected);
   timeline.at(state.time_s);
+  office = detail.page.office;
+  editor.at(state, detail.page);
   document.body.dataset.alive = "true";
 });
 link.addEventListener("events", ({ detail }) => {
@@ -107,6 +115,10 @@ $("brain-file").addEventListener("change", ({ target }) => {
   if (target.files.length) loadBrain(target.files[0]);
   target.value = ""; // so that the same file can be chosen again
 });
+on("open-world", () => {
+  $("restart").open = false;
+  files.open();
+});
 on("panels", () => stage.showPanels(!stage.panels));
 on("more", () => {
   const open = document.querySelector("header").classList.toggle("open");
@@ -116,10 +128,20 @@ $("speed").addEventListener("change", ({ target }) => {
   command({ type: "set_speed", factor: Number(target.value) });
   target.blur();
 });
-$("world").addEventListener("change", ({ target }) => {
-  command({ type: "reset", world: target.value }, `Started anew in ${target.selectedOptions[0].text}.`);
-  target.blur();
+$("world").addEventListener("change", async ({ target }) => {
+  const [world, title] = [target.value, target.selectedOptions[0].text];
+  target.blur(); // the list shows the present world again until there is another
+  if (await mayLeave()) command({ type: "reset", world }, `Started anew in ${title}.`);
 });
+
+// Whether what has been drawn and not saved may be left behind.
+function mayLeave() {
+  if (office?.saved ?? true) return true;
+  const dialog = $("leave-dialog");
+  dialog.returnValue = "stay";
+  dialog.showModal();
+  return new Promise((resolve) => dialog.addEventListener("close", () => resolve(dialog.returnValue === "leave"), { once: true }));
+}
 window.addEventListener("click", ({ target }) => $("restart").contains(target) || ($("restart").open = false));
 $("help-dialog").addEventListener("click", ({ target }) => target === $("help-dialog") && toggleHelp());
 
@@ -134,6 +156,7 @@ function act(name) {
   else if (name === "k") kidnap();
   else if (name === "x" && state?.goal) cancelGoal();
   else if (name === "t") toggleTheme();
+  else if (name === "o") editor.toggle();
   else if (name === "?") toggleHelp();
   else if (name === "Escape" && $("restart").open) $("restart").open = false;
   else return false;
@@ -167,10 +190,6 @@ function toggleTheme() {
 function toggleHelp() {
   if ($("help-dialog").open) $("help-dialog").close();
   else $("help-dialog").showModal();
-}
-
-function sentence(text) {
-  return text[0].toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : ".");
 }
 
 showTheme(preferredTheme());

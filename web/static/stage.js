@@ -5,8 +5,9 @@ import { toast } from "./toasts.js";
 export const VIEWS = ["all", "office", "pose", "map"];
 export const phone = window.matchMedia("(max-width: 760px)");
 
-export class Stage {
+export class Stage extends EventTarget {
   constructor(link, keys) {
+    super();
     this.link = link;
     this.keys = keys;
     this.frame = document.getElementById("stage");
@@ -45,6 +46,7 @@ export class Stage {
     // viser reconnects only while its own frame has the focus; the person looks at the page as a whole.
     paper.hasFocus = () => !document.hidden;
     this.keys.listen(inside);
+    this.dispatchEvent(new CustomEvent("inside", { detail: inside }));
     // viser prevents the default of a press on a draggable thing in a passive listener: without effect, but the
     // browser notes an error each time.
     inside.addEventListener("pointerdown", (event) => {

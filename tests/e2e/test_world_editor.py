@@ -1,0 +1,330 @@
+"""The world editor and files that are dropped on the page, in a real Chromium."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+from playwright.sync_api import Page
+
+from sim2d import load_world, world_from_json
+from tests.e2e.browser import open_page, until
+from tests.e2e.program import Program
+from tests.e2e.test_accessibility import findings
+
+DROP = """async ([files, inside]) => {
+  const data = new DataTransfer();
+  for (const [name, text] of files) data.items.add(new File([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], name));
+  const frame = document.getElementById("stage");
+  const [place, Event] = inside ? [frame.contentDocument.body, frame.contentWindow.DragEvent] : [document.body, DragEvent];
+  place.dispatchEvent(new Event("dragenter", { dataTransfer: data, bubbles: true, cancelable: true }));
+  const sheet = document.getElementById("drop");
+  const shown = !sheet.hidden;
+  sheet.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+  return shown;
+}"""
+
+
+@pytest.fixture(scope="module")
+def own(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("own")
+
+
+@pytest.fixture
+def program(own: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Program]:
+    monkeypatch.setenv("RATSLAM_WORLDS", str(own))
+    made = Program("--port", "0", "--seed", "5", "--paused")
+    yield made
+    assert made.stop() == 0
+
+
+def world(page: Page) -> dict[str, Any]:
+    return page.evaluate("async () => (await (await fetch('/api/world')).json()).world")
+
+
+def walls_are(page: Page, count: int) -> None:
+    until(page, "async (n) => (await (await fetch('/api/world')).json()).world.walls.length === n", argument=count)
+
+
+def edit(page: Page) -> None:
+    page.click("#edit")
+    until(
+        page, "() => document.querySelector('#plan .outer') !== null && document.querySelector('#plan .body') !== null"
+    )
+
+
+def at(page: Page, x: float, y: float) -> tuple[float, float]:
+    """Where a point of the office (10 x 8 m) is on the page, by its drawn outline."""
+    box = page.evaluate("""() => { const b = document.querySelector("#plan .outer").getBBox();
+        const p = document.getElementById("plan").getBoundingClientRect(); return [p.x + b.x, p.y + b.y, b.width, b.height]; }""")
+    return box[0] + box[2] * x / 10, box[1] + box[3] * (1 - y / 8)
+
+
+def click(page: Page, *points: tuple[float, float]) -> None:
+    for point in points:
+        page.mouse.click(*at(page, *point))
+
+
+def drag(page: Page, start: tuple[float, float], end: tuple[float, float]) -> None:
+    page.mouse.move(*at(page, *start))
+    page.mouse.down()
+    page.mouse.move(*at(page, *end), steps=4)
+    page.mouse.up()
+
+
+def says(page: Page, words: str) -> None:
+    until(page, "(words) => document.getElementById('plan-status').textContent.includes(words)", argument=words)
+
+
+def drop(page: Page, *files: tuple[str, bytes], inside: bool = False) -> None:
+    given = [[name, base64.b64encode(data).decode()] for name, data in files]
+    assert page.evaluate(DROP, [given, inside])
+
+
+def plan_png() -> bytes:
+    picture = np.zeros((70, 90), np.uint8)
+    picture[5:65, 5:85] = 255
+    picture[5:40, 44:47] = 0
+    return cv2.imencode(".png", picture)[1].tobytes()
+
+
+def test_a_wall_is_drawn_undone_redone_saved_and_downloaded(program, browser, own):
+    office = load_world("office")
+    count = len(office.walls)
+    with open_page(browser, program.url, 1440, 900) as page:
+        edit(page)
+        page.click("[data-tool=wall]")
+        click(page, (1.02, 6.03), (2.52, 6.03))
+        walls_are(page, count + 1)
+        drawn = world(page)["walls"][-1]
+        assert (drawn["from"], drawn["to"]) == ([1.0, 6.0], [2.5, 6.0])
+        assert drawn["panels"]  # looks of its own
+        says(page, "Click where it ends")  # the next one begins there
+        click(page, (2.5, 7.0))
+        walls_are(page, count + 2)
+        until(page, "() => document.querySelector('#plan .wall')?.getAttribute('d').split('M').length === 3")
+        page.keyboard.press("Escape")
+        page.keyboard.press("Control+z")
+        walls_are(page, count + 1)
+        page.click("#edit-undo")
+        walls_are(page, count)
+        until(
+            page,
+            "() => document.querySelector('#plan .wall') === null && document.getElementById('edit-undo').disabled",
+        )
+        assert world_from_json(json.dumps(world(page)), "page") == office
+        page.keyboard.press("Control+Shift+Z")
+        page.keyboard.press("Control+y")
+        walls_are(page, count + 2)
+        until(page, "() => document.getElementById('edit-redo').disabled")
+
+        with page.expect_download() as download:
+            page.click("#edit-download")
+        assert download.value.suggested_filename == "office.json"
+        kept = Path(download.value.path()).read_text("utf-8")
+        assert len(world_from_json(kept, "kept").walls) == count + 2
+
+        page.click("#edit-save")
+        page.fill("#save-name", "office")
+        page.click("#save-form .go")
+        until(page, "() => document.getElementById('save-wrong').textContent.includes('choose another name')")
+        page.fill("#save-name", "my-office")
+        page.fill("#save-title", "Mine")
+        page.click("#save-form .go")
+        until(page, "() => document.getElementById('edit-name').textContent === 'Mine'")
+        assert not page.is_visible("#edit-unsaved")
+        assert len(json.loads((own / "my-office.json").read_text("utf-8"))["walls"]) == count + 2
+        assert program.state()["world"] == "my-office"
+        assert page.eval_on_selector_all("#world option", "all => all.map((o) => o.textContent)")[-1] == "Mine"
+
+
+def test_things_of_every_kind_are_drawn_moved_and_deleted(program, browser):
+    with open_page(browser, program.url, 1440, 900) as page:
+        edit(page)
+        for tool, points, finish in (
+            ("door", [(8.0, 1.0), (9.0, 1.0)], False),
+            ("lamp", [(5.0, 5.0)], False),
+            ("box", [(0.5, 3.0), (1.0, 3.5)], False),
+            ("person", [(1.0, 4.5), (4.0, 4.5)], True),
+            ("zone", [(6.0, 6.0), (8.0, 6.0), (8.0, 7.0)], True),
+            ("start", [(9.0, 4.0), (9.0, 5.0)], False),
+            ("place", [(0.5, 5.0)], False),
+        ):
+            page.click(f"[data-tool={tool}]")
+            click(page, *points)
+            if finish:
+                page.click("#edit-finish")
+            until(page, "() => !document.getElementById('fields').hidden")
+        now = world(page)
+        assert now["doors"][0]["hinge"] == [8.0, 1.0]
+        assert (now["doors"][0]["width"], now["doors"][0]["angle_deg"]) == (1.0, 0.0)
+        assert now["people"][0]["path"] == [[1.0, 4.5], [4.0, 4.5]]
+        assert now["slow_zones"][0]["corners"] == [[6.0, 6.0], [8.0, 6.0], [8.0, 7.0]]
+        assert now["starts"][-1]["heading_deg"] == 90.0
+        box = now["boxes"][0]
+        assert (box["x"], box["y"], box["width"], box["depth"]) == (0.75, 3.25, 0.5, 0.5)
+
+        page.click("[data-tool=select]")
+        drag(page, (0.75, 3.25), (0.75, 2.25))
+        until(page, "async () => (await (await fetch('/api/world')).json()).world.boxes[0].y === 2.25")
+        page.fill("#fields [data-key=width]", "0.8")
+        page.press("#fields [data-key=width]", "Enter")
+        until(page, "async () => (await (await fetch('/api/world')).json()).world.boxes[0].width === 0.8")
+        page.keyboard.press("Tab")
+        page.focus("#plan")
+        page.keyboard.press("Delete")
+        until(page, "async () => (await (await fetch('/api/world')).json()).world.boxes === undefined")
+        page.click("[data-tool=delete]")
+        click(page, (5.0, 5.0))
+        until(page, "async () => (await (await fetch('/api/world')).json()).world.lamps === undefined")
+
+
+def test_a_door_makes_its_own_gap_and_corners_stay_closed(program, browser):
+    count = len(load_world("office").walls)
+    with open_page(browser, program.url, 1440, 900) as page:
+        edit(page)
+        page.click("[data-tool=wall]")
+        drag(page, (1.0, 4.5), (4.0, 4.5))
+        walls_are(page, count + 1)
+        page.click("[data-tool=door]")
+        click(page, (2.0, 4.5), (3.0, 4.5))
+        walls_are(page, count + 2)
+        assert [(w["from"], w["to"]) for w in world(page)["walls"][-2:]] == [
+            ([1.0, 4.5], [2.0, 4.5]),
+            ([3.0, 4.5], [4.0, 4.5]),
+        ]
+        page.keyboard.press("Control+z")  # one step: door and gap
+        walls_are(page, count + 1)
+        page.click("[data-tool=select]")
+        click(page, (10.0, 7.5))  # the outer wall on the right, to show its grips
+        drag(page, (10.0, 8.0), (10.5, 8.0))
+        until(page, "async () => (await (await fetch('/api/world')).json()).world.walls[1].to[0] === 10.5")
+        outer = [w for w in world(page)["walls"] if w.get("outer")]
+        assert all(a["to"] == b["from"] for a, b in zip(outer, [*outer[1:], outer[0]], strict=True))
+
+
+def test_a_wall_onto_the_robot_is_refused_and_nothing_changes(program, browser):
+    program.command("kidnap", x=5.0, y=4.0, heading_rad=0.0)
+    with open_page(browser, program.url, 1440, 900) as page:
+        edit(page)
+        before, hands = world(page), program.state()
+        page.click("[data-tool=wall]")
+        click(page, (4.5, 4.0), (5.5, 4.0))
+        says(page, "would cover the robot at (5.00, 4.00)")
+        assert page.get_attribute("#plan-status", "class") == "bad"
+        assert world(page) == before
+        assert program.state()["robot"] == hands["robot"]
+        assert page.locator("#plan .dot").count() == 0
+        page.click("[data-tool=door]")
+        click(page, (1.0, 1.0), (1.25, 1.0))
+        says(page, "A door is 0.3 to 6 m wide; this one would be 0.25 m.")
+
+
+def test_the_keyboard_alone_draws_a_wall(program, browser):
+    count = len(load_world("office").walls)
+    with open_page(browser, program.url, 1440, 900) as page:
+        page.keyboard.press("o")
+        until(page, "() => document.querySelector('#plan .outer') !== null")
+        page.keyboard.press("w")
+        page.keyboard.press("Enter")
+        for key in ("ArrowRight", "ArrowRight", "Shift+ArrowUp"):
+            page.keyboard.press(key)
+        says(page, " m. Click where it ends")
+        page.keyboard.press("Enter")
+        walls_are(page, count + 1)
+        wall = world(page)["walls"][-1]
+        assert [round(b - a, 6) for a, b in zip(wall["from"], wall["to"], strict=True)] == [0.5, 1.25]
+        page.keyboard.press("Escape")
+        page.keyboard.press("v")
+        page.keyboard.press("Escape")
+        assert page.is_hidden("#editor")
+        assert page.evaluate("() => document.activeElement.id") == "edit"
+
+
+def test_edits_of_two_pages_meet(program, browser):
+    with open_page(browser, program.url, 1280, 800) as page:
+        edit(page)
+        step = {"do": "add", "list": "places", "item": {"name": "somewhere", "x": 5.0, "y": 5.0}}
+        program.command("edit_world", steps=[step])
+        until(page, "() => [...document.querySelectorAll('#plan .name')].some((t) => t.textContent === 'somewhere')")
+
+
+def test_a_dropped_picture_becomes_a_world(program, browser):
+    with open_page(browser, program.url, 1280, 800) as page:
+        drop(page, ("plan.png", plan_png()), inside=True)
+        until(page, "() => document.getElementById('scale-size').textContent.includes('90 × 70 pixels')")
+        page.fill("#scale", "0.1")
+        until(page, "() => document.getElementById('scale-size').textContent.includes('9.0 × 7.0 m')")
+        page.click("#open-scale .go")
+        until(page, "() => document.getElementById('toasts').textContent.includes('walls, 8.0 × 6.0 m')")
+        assert program.wait(lambda state: state["world"] == "plan", 10)["tick"] == 0
+        assert page.is_hidden("#open-dialog")
+        edit(page)
+        yaml = (
+            b"image: p.png\nresolution: 0.2\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+        )
+        drop(page, ("m.yaml", yaml), ("p.png", plan_png()))
+        until(page, "() => document.getElementById('toasts').textContent.includes('walls, 16.0 × 12.0 m')")
+
+
+def test_what_cannot_be_opened_says_why_and_the_session_goes_on(program, browser):
+    program.command("step", ticks=7)
+    before = program.state()
+    with open_page(browser, program.url, 1280, 800) as page:
+        for files, why in (
+            ([("w.json", b'{"format": 1,\n "name": }')], "W.json: not JSON: line 2, column 10"),
+            ([("m.yaml", b"image: p.png\nresolution: zero\n")], "M.yaml: line 2: resolution"),
+            ([("a.txt", b"hello")], "A.txt: cannot be imported"),
+            ([("v.json", b"[[0, 0, 1, 0], [1, 0, 1]]")], "V.json: [1]: got [1, 0, 1]; must be"),
+            ([("a.json", b"[]"), ("b.json", b"[]")], "one plan at a time"),
+        ):
+            drop(page, *files)
+            until(page, "(why) => document.getElementById('open-wrong').textContent.includes(why)", argument=why)
+            assert "The robot goes on as before." in (page.text_content("#open-wrong") or "")
+        drop(page, ("black.png", cv2.imencode(".png", np.zeros((20, 20), np.uint8))[1].tobytes()))
+        page.click("#open-scale .go")
+        until(page, "() => document.getElementById('open-wrong').textContent.includes('no pixel is floor')")
+    assert program.state() == before
+
+
+def test_leaving_an_edited_office_asks_first(program, browser):
+    with open_page(browser, program.url, 1280, 800) as page:
+        edit(page)
+        page.click("[data-tool=place]")
+        click(page, (5.0, 5.0))
+        until(page, "() => !document.getElementById('edit-unsaved').hidden")
+        page.select_option("#world", "loop")
+        page.click("#leave-dialog [value=stay]")
+        page.wait_for_timeout(300)
+        assert program.state()["world"] == "office"
+        page.select_option("#world", "loop")
+        page.click("#leave-dialog [value=leave]")
+        assert program.wait(lambda state: state["world"] == "loop", 10)["tick"] == 0
+
+
+@pytest.mark.parametrize("size", [(1440, 900), (1024, 740), (390, 844)])
+def test_axe_finds_nothing_in_the_editor(program, browser, size):
+    with open_page(browser, program.url, *size) as page:
+        page.evaluate("() => document.getElementById('edit').click()")
+        until(page, "() => document.querySelector('#plan .outer') !== null")
+        for _ in range(2):
+            page.wait_for_timeout(300)
+            assert findings(page) == []
+            assert page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
+            page.evaluate("() => document.getElementById('theme').click()")
+        page.click("[data-tool=wall]")
+        page.click("#edit-save")
+        assert findings(page) == []
+        page.click("#save-close")
+        page.evaluate("() => document.getElementById('edit-open').click()")
+        assert findings(page) == []
+        page.click("#open-close")
+        drop(page, ("plan.png", plan_png()))
+        until(page, "() => !document.getElementById('open-scale').hidden")
+        assert findings(page) == []
