@@ -97,7 +97,7 @@ def plan_png() -> bytes:
 def test_a_wall_is_drawn_undone_redone_saved_and_downloaded(program, browser, own):
     office = load_world("office")
     count = len(office.walls)
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, refused=True) as page:
         edit(page)
         page.click("[data-tool=wall]")
         click(page, (1.02, 6.03), (2.52, 6.03))
@@ -276,12 +276,12 @@ def test_a_dropped_picture_becomes_a_world(program, browser):
 def test_what_cannot_be_opened_says_why_and_the_session_goes_on(program, browser):
     program.command("step", ticks=7)
     before = program.state()
-    with open_page(browser, program.url, 1280, 800) as page:
+    with open_page(browser, program.url, 1280, 800, refused=True) as page:
         for files, why in (
-            ([("w.json", b'{"format": 1,\n "name": }')], "W.json: not JSON: line 2, column 10"),
-            ([("m.yaml", b"image: p.png\nresolution: zero\n")], "M.yaml: line 2: resolution"),
-            ([("a.txt", b"hello")], "A.txt: cannot be imported"),
-            ([("v.json", b"[[0, 0, 1, 0], [1, 0, 1]]")], "V.json: [1]: got [1, 0, 1]; must be"),
+            ([("w.json", b'{"format": 1,\n "name": }')], "w.json: not JSON: line 2, column 10"),
+            ([("m.yaml", b"image: p.png\nresolution: zero\n")], "m.yaml: origin is missing"),
+            ([("a.txt", b"hello")], "a.txt: cannot be imported"),
+            ([("v.json", b"[[0, 0, 1, 0], [1, 0, 1]]")], "v.json: [1]: got [1, 0, 1]; must be"),
             ([("a.json", b"[]"), ("b.json", b"[]")], "one plan at a time"),
         ):
             drop(page, *files)

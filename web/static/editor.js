@@ -112,7 +112,7 @@ export class Editor {
       if (!wish) return false;
       const answer = await this.link.ask(wish, { quiet: true });
       if (answer.accepted) await this.load();
-      else this.wrong(answer.detail.map((wrong) => sentence(wrong.reason)).join(" ") || "The connection is lost; nothing was changed.");
+      else this.wrong(answer.detail.map((wrong) => sentence(wrong.reason.replace(/^steps\[\d+\]: /, ""))).join(" ") || "The connection is lost; nothing was changed.");
       return answer.accepted;
     })();
     return this.busy;

@@ -107,7 +107,7 @@ export class Files {
         this.dialog.close();
         const size = told.size_m.map(metres).join(" × ");
         toast(`${told.name}: ${told.walls.toLocaleString("en")} walls, ${size} m. The robot starts in it.`);
-      } else this.fail(told.detail.map((wrong) => sentence(wrong.reason)).join(" "), scale !== null);
+      } else this.fail(told.detail.map((wrong) => ended(wrong.reason)).join(" "), scale !== null);
     } catch {
       this.fail(`${names} could not be sent.`, scale !== null);
     } finally {
@@ -143,6 +143,9 @@ function base64(file) {
 const megabytes = (bytes) => `${(bytes / 1e6).toFixed(1)} MB`;
 const metres = (value) => value.toFixed(1);
 
+// With a full stop; what begins with a file's name keeps its small letter.
+const ended = (text) => text + (/[.!?]$/.test(text) ? "" : ".");
+
 export function sentence(text) {
-  return text[0].toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : ".");
+  return text[0].toUpperCase() + ended(text.slice(1));
 }
