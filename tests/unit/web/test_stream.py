@@ -58,6 +58,7 @@ def test_greets_then_tells_the_state_and_the_events(server):
             "title",
             "worlds",
             "places",
+            "office",
             "inspected",
             "walk",
         }
