@@ -16,6 +16,8 @@ from ratslam_core import ExperienceMap, Odometry
 
 Mode = Literal["explore", "manual", "goal"]
 BACK_OFF_S = 1.5
+TURNED_RAD, MOST_TURNS = 1.5, 2
+SLOWEST, GRIP_S = 0.2, 2.0
 BEHAVIOURS = {  # what the experience map's links remember; 0 is standing
     "following the wall": 1,
     "crossing": 2,
@@ -41,6 +43,8 @@ class Pilot:
         self._hand = (0.0, 0.0)  # speed, yaw rate
         self._place = np.zeros(3)  # by odometry, from where it last got ahead
         self._still_s = 0.0
+        self._looked_at, self._turns = 0.0, 0  # heading by odometry when it last had turned far, and how often since it got ahead
+        self._asked, self._grip = (0.0, 0.0), 1.0  # the last drive; share of what is asked for that the wheels do, by turns
         self._astray = False  # exploring because no route leads on
         self._free_self_s = 0.0
         self._free_self = (0.0, 0.0)
@@ -90,6 +94,12 @@ class Pilot:
         self, ranges_m: NDArray[np.float32], bumped: bool, odometry: Odometry, experiences: ExperienceMap
     ) -> tuple[float, float]:
         """From what was sensed at the end of the last tick."""
+        self._asked = self._decide(ranges_m, bumped, odometry, experiences)
+        return self._asked
+
+    def _decide(
+        self, ranges_m: NDArray[np.float32], bumped: bool, odometry: Odometry, experiences: ExperienceMap
+    ) -> tuple[float, float]:
         self._local.sense(ranges_m, odometry)
         if self.mode == "manual":
             return self._by_hand()
@@ -123,6 +133,10 @@ class Pilot:
             self._astray,
             self._hand,
             self._still_s,
+            self._looked_at,
+            self._turns,
+            self._asked,
+            self._grip,
             self._free_self_s,
             self._free_self,
             self.params,
@@ -137,7 +151,8 @@ class Pilot:
     def _stuck(self, bumped: bool, odometry: Odometry) -> bool:
         """[ours] Back off and turn for a while when bumped into something or when getting nowhere.
 
-        test_pilot.py::test_a_cornered_robot_frees_itself.
+        To turn is to get somewhere, but not again and again. On a floor that makes it slow everything takes its time.
+        test_pilot.py::{test_a_cornered_robot_frees_itself, test_a_slow_floor_is_no_reason_to_back_off}.
         """
         dt = odometry.dt
         x, y, heading = self._place
@@ -145,10 +160,15 @@ class Pilot:
         self._place[:] = (
             x + odometry.speed * dt * math.cos(heading), y + odometry.speed * dt * math.sin(heading), heading,
         )  # fmt: skip
-        self._still_s += dt
+        if abs(self._asked[1]) > 0.2 and odometry.yaw_rate != 0:  # wheels that do not turn at all are not slow, but stuck
+            share = min(1.0, max(SLOWEST, odometry.yaw_rate / self._asked[1]))
+            self._grip += min(1.0, dt / GRIP_S) * (share - self._grip)
+        self._still_s += dt * self._grip
         if math.hypot(self._place[0], self._place[1]) > 0.4:
             self._place[:2] = 0.0
-            self._still_s = 0.0
+            self._still_s, self._looked_at, self._turns = 0.0, heading, 0
+        elif abs(heading - self._looked_at) > TURNED_RAD and self._turns < MOST_TURNS:
+            self._still_s, self._looked_at, self._turns = 0.0, heading, self._turns + 1
         if self._free_self_s > 0:
             self._free_self_s -= dt
             if self._free_self_s < BACK_OFF_S:

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -14,6 +15,7 @@ from app.pilot.local_movement import LocalMovement
 from app.pilot.route_following import LOOK_AROUND_S, LOST_S, NO_HEADWAY_S, REPLAN_S, RouteFollower, crosses
 from ratslam_core import Odometry, Pose2
 from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, World, load_world
+from sim2d.things import SlowZone
 from tests.unit.ratslam_core import literal
 
 from .worlds import EXACT, HandMadeMap, chain, room
@@ -73,6 +75,18 @@ def test_a_cornered_robot_frees_itself(heading: float, seed: int) -> None:
     begin = run.truth
     run.run(60)
     assert max(math.dist(begin, place) for place in run.track) > 1.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_slow_floor_is_no_reason_to_back_off(seed: int) -> None:
+    """On a floor where it is slow, exploring takes long, but the robot hardly ever frees itself of nothing."""
+    world = room(start=(3.0, 2.0, 0.0))
+    x, y, right, top = world.bounds
+    zone = SlowZone("slippery", ((x, y), (right, y), (right, top), (x, top)), 0.3)
+    run = Run(Simulator(replace(world, slow_zones=(zone,)), EXACT, seed), a_pilot(seed))
+    run.run(240)
+    assert run.doing["freeing itself"] < 0.1 * sum(run.doing.values())
+    assert len({(int(x), int(y)) for x, y in run.track}) > 5
 
 
 def test_bumped_and_getting_nowhere_it_backs_off_and_turns() -> None:
