@@ -43,8 +43,8 @@ class Pilot:
         self._hand = (0.0, 0.0)  # speed, yaw rate
         self._place = np.zeros(3)  # by odometry, from where it last got ahead
         self._still_s = 0.0
-        self._looked_at, self._turns = 0.0, 0  # heading by odometry when it last had turned far, and how often since it got ahead
-        self._asked, self._grip = (0.0, 0.0), 1.0  # the last drive; share of what is asked for that the wheels do, by turns
+        self._looked_at, self._turns = 0.0, 0  # heading when it last had turned far; how often since it got ahead
+        self._asked, self._grip = (0.0, 0.0), 1.0  # the last drive; how much of a turn that is asked for is made
         self._astray = False  # exploring because no route leads on
         self._free_self_s = 0.0
         self._free_self = (0.0, 0.0)
@@ -160,7 +160,7 @@ class Pilot:
         self._place[:] = (
             x + odometry.speed * dt * math.cos(heading), y + odometry.speed * dt * math.sin(heading), heading,
         )  # fmt: skip
-        if abs(self._asked[1]) > 0.2 and odometry.yaw_rate != 0:  # wheels that do not turn at all are not slow, but stuck
+        if abs(self._asked[1]) > 0.2 and odometry.yaw_rate != 0:  # wheels that do not turn are not slow, but stuck
             share = min(1.0, max(SLOWEST, odometry.yaw_rate / self._asked[1]))
             self._grip += min(1.0, dt / GRIP_S) * (share - self._grip)
         self._still_s += dt * self._grip
