@@ -533,7 +533,7 @@ def test_crossing_a_bar_is_what_points_on_both_lines_are(lines, bar) -> None:
     found = crosses(np.array(bar).reshape(2, 2), ends[:, :2], ends[:, 2:])
     for (ax, ay, bx, by), answer in zip(ends, found, strict=True):
         along = np.array([[bx - ax, bar[0] - bar[2]], [by - ay, bar[1] - bar[3]]])
-        if abs(np.linalg.det(along)) < 1e-6:
+        if abs(along[0, 0] * along[1, 1] - along[0, 1] * along[1, 0]) < 1e-6:
             continue  # parallel, or no length
         t, u = np.linalg.solve(along, np.array([bar[0] - ax, bar[1] - ay]))
         if min(abs(t), abs(t - 1), abs(u), abs(u - 1)) > 1e-6:  # not just touching
