@@ -36,12 +36,21 @@ def own(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("own")
 
 
-@pytest.fixture
-def program(own: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Program]:
-    monkeypatch.setenv("RATSLAM_WORLDS", str(own))
-    made = Program("--port", "0", "--seed", "5", "--paused")
+@pytest.fixture(scope="module")
+def started(own: Path) -> Iterator[Program]:
+    with pytest.MonkeyPatch.context() as environment:
+        environment.setenv("RATSLAM_WORLDS", str(own))
+        made = Program("--port", "0", "--seed", "5", "--paused")
     yield made
     assert made.stop() == 0
+
+
+@pytest.fixture
+def program(started: Program) -> Program:
+    """In the office as it comes with the program, whatever was drawn in it before."""
+    started.command("reset", world="loop")
+    started.command("reset", world="office")
+    return started
 
 
 def world(page: Page) -> dict[str, Any]:
@@ -257,6 +266,8 @@ def test_edits_of_two_pages_meet(program, browser):
 
 def test_a_dropped_picture_becomes_a_world(program, browser):
     with open_page(browser, program.url, 1280, 800) as page:
+        drop(page, ("plan.pgm", cv2.imencode(".pgm", np.zeros((7, 8), np.uint8))[1].tobytes()))
+        until(page, "() => document.getElementById('scale-size').textContent.includes('8 × 7 pixels')")
         drop(page, ("plan.png", plan_png()), inside=True)
         until(page, "() => document.getElementById('scale-size').textContent.includes('90 × 70 pixels')")
         page.fill("#scale", "0.1")

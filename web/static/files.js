@@ -73,7 +73,7 @@ export class Files {
       this.size = [picture.width, picture.height];
       picture.close();
     } catch {
-      // a kind that browsers do not know, such as .pgm: the server does
+      this.size = await portableSize(files[0]); // browsers do not know the kinds that robots write
     }
     this.showSize();
   }
@@ -128,6 +128,13 @@ export class Files {
     $("open-wrong").hidden = true;
     $("open-unsaved").hidden = this.isSaved() || step === "busy";
   }
+}
+
+// Width and height as a .pgm, .ppm or .pbm says them, or null.
+async function portableSize(file) {
+  const head = (await file.slice(0, 1000).text()).replace(/#.*\n/g, "\n");
+  const found = /^P[1-6]\s+(\d+)\s+(\d+)\s/.exec(head);
+  return found && [Number(found[1]), Number(found[2])];
 }
 
 function base64(file) {
