@@ -184,7 +184,7 @@ class Stream:
         elif kind == "theme":
             theme: Theme = "light" if _choice(document, THEMES) == "light" else "dark"
             self.theme = theme
-            self._background(client, asyncio.to_thread(self._stage.set_theme, theme))
+            self._stage.set_theme(theme)  # only posts it, and must not be lost with a page that closes
             self._wake()
         else:
             command = check(document)

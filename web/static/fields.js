@@ -7,6 +7,7 @@ export class Fields {
   constructor(form, change, remove) {
     Object.assign(this, { form, change });
     form.addEventListener("submit", (event) => event.preventDefault());
+    form.addEventListener("input", (event) => (event.target.dataset.typed = "yes"));
     form.addEventListener("change", (event) => this.changed(event.target));
     form.querySelector(".remove").addEventListener("click", remove);
   }
@@ -24,6 +25,7 @@ export class Fields {
     if (!same) rows.replaceChildren(...fields.map((field) => row(field)));
     for (const field of fields) {
       const input = rows.querySelector(`[data-key="${CSS.escape(field.key)}"]`);
+      if (input.dataset.typed) continue; // somebody is typing here: news of the office must not wipe it out
       const value = read(thing.item, field.key);
       if (field.type === "checkbox") input.checked = value ?? (field.key !== "slides");
       else input.value = value ?? DEFAULTS[field.key] ?? "";
@@ -31,6 +33,7 @@ export class Fields {
   }
 
   changed(input) {
+    delete input.dataset.typed;
     const field = THINGS[this.thing.list].fields.find(({ key }) => key === input.dataset.key);
     if (!field || !input.reportValidity()) return;
     const value = field.type === "checkbox" ? input.checked : field.type === "number" ? Number(input.value) : input.value;
