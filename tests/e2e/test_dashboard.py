@@ -22,7 +22,7 @@ STOP_S = 0.3
 
 @pytest.fixture(scope="module")
 def explored(program, browser):
-    """Five minutes of exploring, seen from the start; where the map lies in the office is kept as pairs of places."""
+    """Ten minutes of exploring, seen from the start; where the settled map lies in the office is kept as pairs of places."""
     program.command("pause")
     program.command("reset", seed=5)
     with open_page(browser, program.url) as page:
@@ -33,8 +33,9 @@ def explored(program, browser):
     program.command("set_speed", factor=0)
     program.command("resume")
     pairs = []
-    while (state := program.state())["time_s"] < 300:
-        pairs.append([[state["estimate"]["x"], state["estimate"]["y"]], [state["robot"]["x"], state["robot"]["y"]]])
+    while (state := program.state())["time_s"] < 600:
+        if state["time_s"] > 300:  # before, loops close and bend the map under the pairs
+            pairs.append([[state["estimate"]["x"], state["estimate"]["y"]], [state["robot"]["x"], state["robot"]["y"]]])
         time.sleep(0.02)
     program.command("pause")
     program.pairs = np.array(pairs)
