@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import viser
@@ -48,14 +49,14 @@ class OfficePanel:
         """Builds the switches when the names are new; else sets those that have changed elsewhere."""
         parameters = {p.name: p for p in rows if p.name.startswith("office.")}
         doors, lamps = ((), ()) if layer is None else (layer.door_names[:MOST], layer.lamp_names[:MOST])
-        made = (tuple(parameters), doors, lamps, presets)
-        if made != self._made:
-            self._made = made
-            self._build(presets, list(parameters.values()), doors, lamps)
         now: dict[tuple[str, str], Any] = {("parameter", name): p.value for name, p in parameters.items()}
         if layer is not None:
             now |= {("door", name): bool(on) for name, on in zip(layer.door_names, layer.door_wanted, strict=True)}
             now |= {("lamp", name): bool(on) for name, on in zip(layer.lamp_names, layer.lamp_on, strict=True)}
+        made = (tuple(parameters), doors, lamps, presets)
+        if made != self._made:
+            self._made = made
+            self._build(presets, preset, list(parameters.values()), doors, lamps, now)
         for key, switch in self._switches.items():
             if now[key] != switch.value:
                 switch.value = now[key]
@@ -75,11 +76,14 @@ class OfficePanel:
                 else:
                     self._show_preset()
             elif key in self._switches:
-                switch = self._switches[key]
-                self._submit(client_id, switch.command(value), lambda s=switch: setattr(s.handle, "value", s.value))
+                self._submit(client_id, self._switches[key].command(value), partial(self._show_switch, key))
 
     def _show_preset(self) -> None:
         self._preset.value = self._known_preset or OWN
+
+    def _show_switch(self, key: tuple[str, str]) -> None:
+        if key in self._switches:  # the world may be another one by now
+            self._switches[key].handle.value = self._switches[key].value
 
     def _submit(self, client_id: int, command: Command, take_back: Callable[[], object]) -> None:
         def answered(answer: Answer) -> None:
@@ -92,15 +96,25 @@ class OfficePanel:
     # ------------------------------------------------------------ widgets
 
     def _build(
-        self, presets: tuple[str, ...], parameters: list[Parameter], doors: tuple[str, ...], lamps: tuple[str, ...]
+        self,
+        presets: tuple[str, ...],
+        preset: str,
+        parameters: list[Parameter],
+        doors: tuple[str, ...],
+        lamps: tuple[str, ...],
+        now: dict[tuple[str, str], Any],
     ) -> None:
+        """Every switch is made with its value: one that is made, set and removed within a frame of a slow browser is an
+        error in viser's client, which applies values last."""
         for folder in self._folders:
             folder.remove()
-        self._folders, self._switches, self._preset, self._known_preset = [], {}, None, ""
+        self._folders, self._switches, self._preset, self._known_preset = [], {}, None, preset
         if presets:
             with self._folder("robot"):
                 words = "Sets the robot's sensors and encoders; the Tune tab shows to what."
-                self._preset = self._gui.add_dropdown("preset", (OWN, *presets), initial_value=OWN, hint=words)
+                self._preset = self._gui.add_dropdown(
+                    "preset", (OWN, *presets), initial_value=preset or OWN, hint=words
+                )
                 self._watch(("preset", ""), self._preset)
         with self._folder("what lives"):
             for parameter in parameters:
@@ -110,7 +124,7 @@ class OfficePanel:
                 with self._folder(f"{kind}s"):
                     for name in names:
                         words = "Open or shut; a click on the leaf does the same." if kind == "door" else "On or off."
-                        self._add((kind, name), self._gui.add_checkbox(name, False, hint=words), make(name))
+                        self._add((kind, name), self._gui.add_checkbox(name, now[kind, name], hint=words), make(name))
 
     def _folder(self, words: str) -> viser.GuiFolderHandle:
         with self._tab:
