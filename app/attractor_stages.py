@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core import PoseCellParams
-from ratslam_core.pose_cells import MOST_ITERATIONS, gaussian
+from ratslam_core.pose_cells import gaussian
 
 
 @dataclass(frozen=True)
@@ -25,11 +25,6 @@ class Activity:
     @property
     def total(self) -> float:
         return float(self.values.sum())
-
-
-def iterations(distance_m: float, params: PoseCellParams) -> int:
-    """How often the attractor runs after a way of this length."""
-    return min(max(1, int(np.ceil(abs(distance_m) / params.cell_m - 1e-6))), MOST_ITERATIONS)
 
 
 def excited(activity: Activity, params: PoseCellParams) -> Activity:

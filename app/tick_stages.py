@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.attractor_stages import Activity, excited, inhibited, iterations, normalised
+from app.attractor_stages import Activity, excited, inhibited, normalised
 from app.session import Session
 from ratslam_core import Odometry
 from web.messages import MapLayer, Pose, PoseCellLayer, TickStage, TickWalk
@@ -62,6 +62,7 @@ class TickRecorder:
         self._active = session.brain.experience_map.active
         self._known = len(session.brain.experience_map)
         self._cells: dict[str, Activity] = {"view match": self._activity()}
+        self._iterations = 1
         self._poses = np.zeros((0, 3))
         self._map: dict[str, Any] = {}
         self._residual = (0.0, 0.0)
@@ -70,6 +71,8 @@ class TickRecorder:
         """The engine has done this part of its step; `ratslam_core.slam.STAGES`."""
         if part in ("path integration", "injection", "attractor"):
             self._cells[part] = self._activity()
+            if part == "injection":
+                self._iterations = self._session.brain.pose_cells.iterations_due
         elif part == "experience":
             map_ = self._session.brain.experience_map
             self._poses, self._residual = map_.poses.copy(), map_.residual
@@ -88,7 +91,7 @@ class TickRecorder:
         params, before = self._session.brain.params.pose_cells, self._before
         moved, injected = self._cells["path integration"], self._cells["injection"]
         start = injected
-        for _ in range(iterations(self._odometry().speed * self._odometry().dt, params) - 1):
+        for _ in range(self._iterations - 1):
             start = normalised(inhibited(excited(start, params), params))
         near = excited(start, params)
         left = inhibited(near, params)

@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ratslam_core.kernels import X, Y, _offset
+from ratslam_core.kernels import X, Y, offset
 from ratslam_core.params import GoalMemoryParams
 from ratslam_core.types import Packet, require_finite
 
@@ -112,7 +112,7 @@ class GoalMemory:
         for wider in range(1, WIDER + 1):
             best = _lowest(T, round(x) % n_x, round(y) % n_y, wider * self.params.reach, self._keys)
             if best >= 0:
-                return math.atan2(_offset(best // n_x, y, n_y), _offset(best % n_x, x, n_x))
+                return math.atan2(offset(best // n_x, y, n_y), offset(best % n_x, x, n_x))
         return None
 
     # ------------------------------------------------------------ learning
@@ -166,7 +166,7 @@ class GoalMemory:
 
     def _apart(self, x1: float, y1: float, x2: float, y2: float) -> float:
         """Cells between two places, the shorter way round."""
-        return math.hypot(_offset(x1, x2, self.shape[2]), _offset(y1, y2, self.shape[1]))
+        return math.hypot(offset(x1, x2, self.shape[2]), offset(y1, y2, self.shape[1]))
 
     def _make_room(self, more: int) -> None:
         size = self._keys.size
@@ -236,7 +236,7 @@ def _centre(flats, values, shape):
     peak_x, peak_y = flats[best] % n_x, flats[best] // n_x
     mass = sx = sy = 0.0
     for i in range(flats.size):
-        dx, dy = _offset(flats[i] % n_x, peak_x, n_x), _offset(flats[i] // n_x, peak_y, n_y)
+        dx, dy = offset(flats[i] % n_x, peak_x, n_x), offset(flats[i] // n_x, peak_y, n_y)
         if abs(dx) <= NEAR and abs(dy) <= NEAR:
             mass += values[i]
             sx += values[i] * dx
@@ -276,7 +276,7 @@ def _learn(
             if i == j:
                 continue
             mu = activity_weight * (1.0 - G_i[a] * G_j[b] / (most * most))
-            dx, dy = _offset(j % n_x, xi, n_x), _offset(j // n_x, yi, n_y)
+            dx, dy = offset(j % n_x, xi, n_x), offset(j // n_x, yi, n_y)
             tau = sigma + mu + distance_weight * np.sqrt(dx * dx + dy * dy)
             key = min(i, j) * size + max(i, j)
             at = _find(key, keys)

@@ -11,10 +11,7 @@ import numpy as np
 from numba import njit
 
 X, Y, THETA, FLAT = 0, 1, 2, 3
-MASS, COS, SIN, CARRY = 3, 4, 5, 6  # columns of packet rows after x, y, theta; CARRY is three columns
-ROW = 9
 PATCH = 32
-LEAST_AGREEMENT = 0.25
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -40,7 +37,7 @@ def _wrap(place, size):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _offset(a, b, size):
+def offset(a, b, size):
     """a - b on a ring of this size, the shorter way round."""
     d = a - b
     if 2 * d > size:
@@ -112,8 +109,8 @@ def shift(
         low_x = low_y = middle
         high_x = high_y = middle
         while i < n and cells[i, THETA] == t and owner[i] == p:
-            x = _offset(cells[i, X], first_x, n_x) + middle
-            y = _offset(cells[i, Y], first_y, n_y) + middle
+            x = offset(cells[i, X], first_x, n_x) + middle
+            y = offset(cells[i, Y], first_y, n_y) + middle
             if x < 0 or y < 0 or x > PATCH - 2 or y > PATCH - 2:
                 break
             low_x, high_x, low_y, high_y = min(low_x, x), max(high_x, x), min(low_y, y), max(high_y, y)
@@ -170,11 +167,11 @@ def cluster(cells, values, n, shape, window, radius, owner, peaks, bounds):
         for i in range(n):
             if owner[i] >= 0:
                 continue
-            dy = _offset(cells[i, Y], py, n_y)
+            dy = offset(cells[i, Y], py, n_y)
             if abs(dy) <= wy:
-                dx = _offset(cells[i, X], px, n_x)
+                dx = offset(cells[i, X], px, n_x)
                 if abs(dx) <= wx:
-                    dt = _offset(cells[i, THETA], pt, n_theta)
+                    dt = offset(cells[i, THETA], pt, n_theta)
                     if abs(dt) <= wt:
                         owner[i] = found
                         low_x, low_y, low_t = min(low_x, dx), min(low_y, dy), min(low_t, dt)
@@ -218,9 +215,9 @@ def convolve(
         box_a[:size] = 0.0
         for i in range(n):
             if owner[i] == c:
-                dx = _offset(cells[i, X], px, n_x) - low_x
-                dy = _offset(cells[i, Y], py, n_y) - low_y
-                dt = _offset(cells[i, THETA], pt, n_theta) - low_t
+                dx = offset(cells[i, X], px, n_x) - low_x
+                dy = offset(cells[i, Y], py, n_y) - low_y
+                dt = offset(cells[i, THETA], pt, n_theta) - low_t
                 box_a[(dt * by + dy) * bx + dx] = values[i]
         # The margin of zeros lets each pass run over the box as one long row.
         inner = radius * layer, size - radius * layer
@@ -304,171 +301,3 @@ def inhibit_and_normalise(cells, values, n, slot, phi):
     for i in range(m):
         values[i] = np.float32(values[i] / total)
     return m
-
-
-@njit(cache=True, nogil=True)
-def join_flanks(cells, values, slot, shape, owner, peaks, clusters):
-    """Clusters whose strongest cell has a stronger neighbour are flanks of its cluster: one packet. `slot` indexes P.
-
-    peaks[c] becomes the strongest cell of the packet that cluster c belongs to.
-    """
-    n_theta, n_y, n_x = shape
-    for c in range(1, clusters):
-        peak = peaks[c]
-        best = peak
-        for t in range(cells[peak, THETA] - 1, cells[peak, THETA] + 2):
-            for y in range(cells[peak, Y] - 1, cells[peak, Y] + 2):
-                for x in range(cells[peak, X] - 1, cells[peak, X] + 2):
-                    at = slot[((t % n_theta) * n_y + y % n_y) * n_x + x % n_x] - 1
-                    if at >= 0 and values[at] > values[best]:
-                        best = at
-        if best != peak:
-            peaks[c] = peaks[owner[best]]
-
-
-@njit(cache=True, nogil=True)
-def packet_rows(cells, values, n, shape, owner, peaks, clusters, headings, out):
-    """The packets, heaviest first, and how many; clusters with the same peak are one. `owner` names packets afterwards.
-
-    out rows: x, y, theta (cells, fractions), mass, mean cosine and sine of the headings; the carry is cleared.
-    """
-    n_theta, n_y, n_x = shape
-    rank = np.empty(clusters, np.int64)
-    found = 0
-    for c in range(clusters):
-        rank[c] = found
-        for other in range(c):
-            if peaks[other] == peaks[c]:
-                rank[c] = rank[other]
-                break
-        if rank[c] == found:
-            peaks[found] = peaks[c]
-            found += 1
-    sums = np.zeros((found, 6))
-    for i in range(n):
-        owner[i] = c = rank[owner[i]]
-        peak = peaks[c]
-        v = values[i]
-        sums[c, X] += v * _offset(cells[i, X], cells[peak, X], n_x)
-        sums[c, Y] += v * _offset(cells[i, Y], cells[peak, Y], n_y)
-        sums[c, THETA] += v * _offset(cells[i, THETA], cells[peak, THETA], n_theta)
-        sums[c, MASS] += v
-        sums[c, COS] += v * headings[cells[i, THETA], 0]
-        sums[c, SIN] += v * headings[cells[i, THETA], 1]
-    out[:found] = 0.0
-    for r in range(found):
-        c = 0
-        for other in range(found):
-            if sums[other, MASS] > sums[c, MASS]:
-                c = other
-        rank[c] = r
-        mass = sums[c, MASS]
-        for axis in range(3):
-            out[r, axis] = (cells[peaks[c], axis] + sums[c, axis] / mass) % shape[2 - axis]
-        out[r, MASS] = mass
-        out[r, COS] = sums[c, COS] / mass
-        out[r, SIN] = sums[c, SIN] / mass
-        sums[c, MASS] = -1.0
-    if found > 1:
-        for i in range(n):
-            owner[i] = rank[owner[i]]
-    return found
-
-
-@njit(cache=True, nogil=True)
-def follow(old, old_ids, n_old, new, new_ids, n_new, shape, window, next_id):
-    """Give packets their ids: each old one, heaviest first, goes on as the nearest new one; returns the next free id."""
-    new_ids[:n_new] = 0
-    for p in range(n_old):
-        best, least = -1, np.inf
-        for q in range(n_new):
-            if new_ids[q] == 0:
-                apart = 0.0
-                for axis in range(3):
-                    d = abs(_offset(new[q, axis], old[p, axis], shape[2 - axis]))
-                    apart = apart + d * d if d <= window else np.inf
-                if apart < least:
-                    best, least = q, apart
-        if best >= 0:
-            new_ids[best] = old_ids[p]
-            new[best, CARRY:] = old[p, CARRY:]
-    for q in range(n_new):
-        if new_ids[q] == 0:
-            new_ids[q] = next_id
-            next_id += 1
-    return next_id
-
-
-@njit(cache=True, nogil=True)
-def advance(rows, n, shape, distance, turn, moves, yaws):
-    """Where packets go: rows are moved on, what `shift` needs is written to moves and yaws. cells, rad.
-
-    The way is an arc, so its chord points along the heading in the middle of it. Layers of a packet head differently, which
-    shortens and turns its way by the mean of exp(i theta): the move is divided by that complex number.
-    """
-    unit = 2.0 * np.pi / shape[0]
-    chord = distance * np.sin(turn / 2) / (turn / 2) if turn != 0.0 else distance
-    for p in range(n):
-        row = rows[p]
-        heading = unit * (row[THETA] + row[CARRY + 2]) + turn / 2
-        to_x, to_y = chord * np.cos(heading), chord * np.sin(heading)
-        agreement = max(row[COS] ** 2 + row[SIN] ** 2, LEAST_AGREEMENT**2)
-        moves[p, 0] = (to_x * row[COS] + to_y * row[SIN]) / agreement
-        moves[p, 1] = (to_y * row[COS] - to_x * row[SIN]) / agreement
-        moves[p, 2], moves[p, 3] = row[CARRY], row[CARRY + 1]
-        yaws[p] = turn / unit + row[CARRY + 2]
-        row[X] = (row[X] + to_x + row[CARRY]) % shape[2]
-        row[Y] = (row[Y] + to_y + row[CARRY + 1]) % shape[1]
-        row[THETA] = (row[THETA] + yaws[p]) % shape[0]
-        row[CARRY:] = 0.0
-
-
-@njit(cache=True, nogil=True)
-def _half_way_to_the_next(rows, packets, shape):
-    """Squares of half the distance from each packet to the nearest other: within, no other can be nearer."""
-    own = np.full(packets, np.inf)
-    for p in range(packets):
-        for q in range(p):
-            apart = 0.0
-            for axis in range(3):
-                apart += _offset(rows[p, axis], rows[q, axis], shape[2 - axis]) ** 2
-            own[p], own[q] = min(own[p], apart / 4), min(own[q], apart / 4)
-    return own
-
-
-@njit(cache=True, nogil=True)
-def weigh(cells, values, n, shape, reach, rows, packets, sign):
-    """Add sign times each packet's centre, as the offset from where its row says, to the row's carry.
-
-    A cell counts for the nearest packet, up to `reach` away along each axis: the same cells of the torus before and after the
-    attractor, however packets grow and shrink.
-    """
-    n_theta, n_y, n_x = shape
-    wx, wy, wt = min(reach, (n_x - 1) // 2), min(reach, (n_y - 1) // 2), min(reach, (n_theta - 1) // 2)
-    sums = np.zeros((packets, 4))
-    own = _half_way_to_the_next(rows, packets, shape)
-    mine = -1
-    for i in range(n):
-        before, mine, least = mine, -1, np.inf
-        x = y = t = 0.0
-        for k in range(packets):
-            p = k if before < 0 else (before + k) % packets  # most often the nearest is that of the cell before
-            dx = _offset(cells[i, X], rows[p, X], n_x)
-            dy = _offset(cells[i, Y], rows[p, Y], n_y)
-            dt = _offset(cells[i, THETA], rows[p, THETA], n_theta)
-            apart = dx * dx + dy * dy + dt * dt
-            if apart < least and abs(dx) <= wx and abs(dy) <= wy and abs(dt) <= wt:
-                mine, least = p, apart
-                x, y, t = dx, dy, dt
-                if apart < own[p]:
-                    break
-        if mine >= 0:
-            v = values[i]
-            sums[mine, X] += v * x
-            sums[mine, Y] += v * y
-            sums[mine, THETA] += v * t
-            sums[mine, MASS] += v
-    for p in range(packets):
-        for axis in range(3):
-            if sums[p, MASS] > 0.0:
-                rows[p, CARRY + axis] += sign * sums[p, axis] / sums[p, MASS]

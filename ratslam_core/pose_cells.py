@@ -12,7 +12,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ratslam_core import kernels
+from ratslam_core import kernels, packet_kernels
 from ratslam_core.params import PoseCellParams
 from ratslam_core.types import Packet, require_finite, wrap_angle
 
@@ -36,7 +36,7 @@ class PoseCells:
             np.zeros(ROOM, np.int32), np.zeros(ROOM, np.int32), np.zeros((ROOM, 6), np.int8)
         )  # fmt: skip
         self._spare_owner = self._owner.copy()
-        self._rows, self._ids = np.zeros((MAX_PACKETS, kernels.ROW)), np.zeros(MAX_PACKETS, np.int64)
+        self._rows, self._ids = np.zeros((MAX_PACKETS, packet_kernels.ROW)), np.zeros(MAX_PACKETS, np.int64)
         self._spare_rows, self._spare_ids = self._rows.copy(), self._ids.copy()
         self._moves, self._yaws = np.zeros((MAX_PACKETS, 4)), np.zeros(MAX_PACKETS)
         self._patch = np.zeros((kernels.PATCH, kernels.PATCH), np.float32)
@@ -76,7 +76,7 @@ class PoseCells:
     @property
     def carry(self) -> tuple[float, float, float]:
         """What the attractor swallowed of the winner's last motion: cells in x', y' and layers."""
-        x, y, theta = self._rows[0, kernels.CARRY :].tolist()
+        x, y, theta = self._rows[0, packet_kernels.CARRY :].tolist()
         return x, y, theta
 
     @property
@@ -143,7 +143,7 @@ class PoseCells:
         along = require_finite("distance_m", distance_m) / self.params.cell_m
         require_finite("turn_rad", turn_rad)
         self._way += abs(along)
-        kernels.advance(self._rows, self._found, self.shape, along, turn_rad, self._moves, self._yaws)
+        packet_kernels.advance(self._rows, self._found, self.shape, along, turn_rad, self._moves, self._yaws)
         self._make_room(self._n * 8)
         m = kernels.shift(
             self._cells, self._values, self._n, self._owner, self._moves, self._yaws, self._headings,
@@ -152,15 +152,19 @@ class PoseCells:
         self._owner, self._spare_owner = self._spare_owner, self._owner
         self._swap(m)
 
+    @property
+    def iterations_due(self) -> int:
+        """How often the next `attract` iterates, for the way driven since the last one."""
+        return min(max(1, math.ceil(self._way - 1e-6)), MOST_ITERATIONS)
+
     def attract(self) -> Packet:
         """Excite, inhibit, normalise. ACRA 2004 eqs. 10-12. Returns the winner.
 
         [ours] A way longer than one cell since the last call gets an iteration for each cell (at most MOST_ITERATIONS): layers
         of one packet drift apart as they are driven, and the attractor is what holds them together.
         """
-        iterations = min(max(1, math.ceil(self._way - 1e-6)), MOST_ITERATIONS)
-        self._way = 0.0
-        for _ in range(iterations):
+        due, self._way = self.iterations_due, 0.0
+        for _ in range(due):
             self._iterate()
         return self.winner
 
@@ -217,7 +221,7 @@ class PoseCells:
         """Add the packets' centres to their carry: once before and once, taken away, after the attractor."""
         if self.params.carry:
             reach = 2 * self.params.window
-            kernels.weigh(self._cells, self._values, self._n, self.shape, reach, self._rows, self._found, sign)
+            packet_kernels.weigh(self._cells, self._values, self._n, self.shape, reach, self._rows, self._found, sign)
 
     def _cluster(self, radius: int) -> tuple[int, int]:
         return kernels.cluster(
@@ -262,14 +266,19 @@ class PoseCells:
         """Packets of the activity as it is now, each with the id of the one that was expected there."""
         clusters, _ = self._cluster(0)
         if clusters > len(self._spare_rows):
-            self._spare_rows, self._spare_ids = np.zeros((2 * clusters, kernels.ROW)), np.zeros(2 * clusters, np.int64)
+            self._spare_rows, self._spare_ids = (
+                np.zeros((2 * clusters, packet_kernels.ROW)),
+                np.zeros(2 * clusters, np.int64),
+            )
             self._moves, self._yaws = np.zeros((2 * clusters, 4)), np.zeros(2 * clusters)
-        kernels.join_flanks(self._cells, self._values, self._slot, self.shape, self._owner, self._peaks, clusters)
-        found = kernels.packet_rows(
+        packet_kernels.join_flanks(
+            self._cells, self._values, self._slot, self.shape, self._owner, self._peaks, clusters
+        )
+        found = packet_kernels.packet_rows(
             self._cells, self._values, self._n, self.shape, self._owner, self._peaks, clusters, self._headings,
             self._spare_rows,
         )  # fmt: skip
-        self._next_id = kernels.follow(
+        self._next_id = packet_kernels.follow(
             self._rows, self._ids, self._found, self._spare_rows, self._spare_ids, found, self.shape,
             self.params.window, self._next_id,
         )  # fmt: skip

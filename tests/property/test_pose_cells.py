@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core import PoseCellParams, PoseCells, kernels
+from ratslam_core import PoseCellParams, PoseCells, kernels, packet_kernels
 from tests.unit.ratslam_core import literal
 
 sizes = st.tuples(st.integers(8, 21), st.integers(8, 21), st.integers(8, 21))
@@ -95,7 +95,7 @@ def test_no_place_of_the_torus_is_special(
     here, there = (network(activity, inhibit=0.0, carry=False) for activity in (dense, np.roll(dense, by, (1, 2))))
     for speed, yaw_rate in drives:
         for pose_cells in (here, there):
-            pose_cells._rows[: pose_cells._found, kernels.COS : kernels.CARRY] = (
+            pose_cells._rows[: pose_cells._found, packet_kernels.COS : packet_kernels.CARRY] = (
                 1.0,
                 0.0,
             )  # equal packets may swap names
@@ -117,7 +117,7 @@ def test_a_whole_cell_shift_is_a_roll_and_back_is_the_identity(dense: np.ndarray
 
 def shift(pose_cells: PoseCells, x: float, y: float, theta: float) -> None:
     """The same shift of all layers, as `carry` makes it."""
-    pose_cells._rows[: pose_cells._found, kernels.CARRY :] = x, y, theta
+    pose_cells._rows[: pose_cells._found, packet_kernels.CARRY :] = x, y, theta
     pose_cells.integrate(0.0, 0.0)
 
 
@@ -157,4 +157,4 @@ def test_carry_is_what_the_attractor_took_from_each_packet(
     after = literal.centres(pose_cells.activity.astype(np.float64), places, 6)
     for id_, was, now in zip(ids, before, after, strict=True):
         for row in pose_cells._rows[: pose_cells._found][pose_cells._ids[: pose_cells._found] == id_]:
-            assert row[: kernels.CARRY - 1 : -1] == pytest.approx(was - now, abs=1e-5)
+            assert row[: packet_kernels.CARRY - 1 : -1] == pytest.approx(was - now, abs=1e-5)

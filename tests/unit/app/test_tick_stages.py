@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.attractor_stages import Activity, excited, inhibited, iterations, normalised
+from app.attractor_stages import Activity, excited, inhibited, normalised
 from app.chronicle import Chronicle
 from app.config import Config
 from app.session import PARTS, Session
@@ -57,7 +57,7 @@ def test_the_stages_lead_where_the_engine_went(local_inhibit: float, size: tuple
             rng.choice(len(pose_cells.slot), 40, replace=False).astype(np.int32), np.full(40, 0.004, np.float32)
         )
         now = activity_of(pose_cells)
-        for _ in range(iterations(way * params.cell_m, params)):
+        for _ in range(pose_cells.iterations_due):
             now = normalised(inhibited(excited(now, params), params))
         pose_cells.attract()
         engine = activity_of(pose_cells)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ratslam_core import PoseCellParams, PoseCells, kernels
+from ratslam_core import PoseCellParams, PoseCells, kernels, packet_kernels
 
 from . import literal
 
@@ -374,6 +374,7 @@ def test_interpreted_kernels_do_what_the_compiled_ones_do(
     for interpreted in (False, True):
         if interpreted:
             literal.interpret(kernels, monkeypatch)
+            literal.interpret(packet_kernels, monkeypatch)
         pose_cells = PoseCells(params)
         pose_cells.place(7, 7, 9)
         activity = []
@@ -391,6 +392,7 @@ def test_interpreted_kernels_far_from_everything(monkeypatch: pytest.MonkeyPatch
     for interpreted in (False, True):
         if interpreted:
             literal.interpret(kernels, monkeypatch)
+            literal.interpret(packet_kernels, monkeypatch)
         pose_cells = PoseCells()
         for forwards, row in ((0.4, 0), (0.0, 60), (1.3, 20)):
             flats = (np.array([0, 1, 20, 40, 41], np.int32) + row * 64).astype(np.int32)
