@@ -22,7 +22,7 @@ from web import messages as m
 MOST_UNDOS = 200
 _ONE = {
     "walls": "wall", "starts": "start", "places": "place", "doors": "door", "lamps": "lamp", "boxes": "box",
-    "people": "person", "slow_zones": "slow zone",
+    "people": "person", "slow_zones": "slow zone", "script": "line of the script", "daylight": "daylight",
 }  # fmt: skip
 _DONE = {"add": "drawn", "change": "changed", "delete": "deleted"}
 
@@ -122,7 +122,9 @@ def edited(world: World, steps: Iterable[m.EditStep]) -> World:
 
 
 def _after(world: World, step: m.EditStep) -> World:
-    items: tuple[Any, ...] = getattr(world, step.list)
+    items: tuple[Any, ...] = getattr(world, step.list) or ()
+    if step.list == "daylight" and items:
+        items = (items,)
     number = step.number
     if step.do == "add":
         if number is not None:
@@ -143,7 +145,8 @@ def _after(world: World, step: m.EditStep) -> World:
         raise ValueError(f"item: is missing; must be a {_ONE[step.list]} as in a world file")
     else:
         new = (_thing(step.list, step.item),)
-    return replace(world, **{step.list: (*items[:number], *new, *items[number + 1 :])})
+    items = (*items[:number], *new, *items[number + 1 :])
+    return replace(world, **{step.list: items if step.list != "daylight" else items[0] if items else None})
 
 
 def _thing(kind: str, item: dict[str, Any]) -> Thing:
@@ -168,4 +171,5 @@ def _words(steps: list[m.EditStep]) -> str:
     meant = next((step for step in reversed(steps) if step.do == "add"), steps[-1])
     others = len(steps) - 1
     more = f" and {others} more change{'s' if others > 1 else ''}" if others else ""
-    return f"{_ONE[meant.list]} {_DONE[meant.do]}{more}"
+    done = "added" if meant.do == "add" and meant.list in ("script", "daylight") else _DONE[meant.do]
+    return f"{_ONE[meant.list]} {done}{more}"

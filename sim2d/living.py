@@ -38,6 +38,7 @@ class Living:
         self.walkers = Walkers(world.people, rng, tick_s)
         self._script = sorted(world.script, key=lambda event: event.at_s)
         self._next = 0
+        self._time_s = -math.inf  # of the last step
         self._anything = bool(world.doors or world.boxes or world.people or world.script or world.daylight)
         self.first_box = len(world.doors)
         self.first_person = self.first_box + 4 * len(world.boxes)
@@ -64,7 +65,7 @@ class Living:
         self, time_s: float, robot: tuple[float, float], radius: float, comes: float, params: OfficeParams
     ) -> None:
         """The tick that ends at this time. robot: its place; radius: its own; comes: how far it may come in a tick, metres."""
-        self._lamps_on = params.lamps
+        self._lamps_on, self._time_s = params.lamps, time_s
         if not self._anything:
             return
         while self._next < len(self._script) and self._script[self._next].at_s <= time_s + 1e-9:
@@ -126,7 +127,12 @@ class Living:
         return None
 
     def adopt(self, old: Living) -> None:
-        """After an edit: all that has kept its name and kind goes on as it was."""
+        """After an edit: all that has kept its name and kind goes on as it was.
+
+        [ours] Lines of the script whose time has come are not made up for, and what lines have done stays done; but the
+        daylight follows its curve again when no line is left that has set it
+        (test_living.py::test_an_edited_script_goes_on_from_now).
+        """
         doors, boxes = _by_name(old.world.doors), _by_name(old.world.boxes)
         for i, door in enumerate(self.world.doors):
             k = doors.get(door.name)
@@ -142,9 +148,12 @@ class Living:
         for i, lamp in enumerate(self.world.lamps):
             if lamp.name in lamps:
                 self.lamp_on[i] = old.lamp_on[lamps[lamp.name]]
-        self._level, self._people_on, self.daylight = old._level, old._people_on, old.daylight
-        if self.world.script == old.world.script:
-            self._next = old._next
+        self._people_on, self._time_s = old._people_on, old._time_s
+        self._next = sum(event.at_s <= old._time_s + 1e-9 for event in self._script)
+        if any(event.do == "daylight" for event in self._script[: self._next]):
+            self._level = old._level
+        if self._level is not None or self.world.daylight is not None:
+            self.daylight = old.daylight
         self.walkers.adopt(old.walkers)
         self._show()
 

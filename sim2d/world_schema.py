@@ -12,9 +12,9 @@ from sim2d.texture import TEXTURES
 from sim2d.things import Action, Box, Daylight, Door, Event, Lamp, Person, Rgb, SlowZone
 from sim2d.world import Panel, Place, Start, Wall, World
 
-Thing = Wall | Start | Place | Door | Lamp | Box | Person | SlowZone
+Thing = Wall | Start | Place | Door | Lamp | Box | Person | SlowZone | Event | Daylight
 MOST_WALLS, MOST_PEOPLE, MOST_THINGS, MOST_EVENTS = 10_000, 50, 200, 1000
-MOST = {"walls": MOST_WALLS, "people": MOST_PEOPLE, **dict.fromkeys(
+MOST = {"walls": MOST_WALLS, "people": MOST_PEOPLE, "script": MOST_EVENTS, "daylight": 1, **dict.fromkeys(
     ("starts", "places", "doors", "lamps", "boxes", "slow_zones"), MOST_THINGS
 )}  # fmt: skip
 KINDS = ("wall", "partition", "desk", "door", "window", "screen", "glass")
@@ -167,7 +167,6 @@ class WorldFile(_Item):
 
     def world(self) -> World:
         """What the simulator takes; angles become radians, colours triples."""
-        day = self.daylight
         return World(
             name=self.name,
             title=self.title,
@@ -181,11 +180,11 @@ class WorldFile(_Item):
             ceiling_colour=_rgb(self.ceiling_colour),
             doors=tuple(map(_door, self.doors)),
             lamps=tuple(map(_lamp, self.lamps)),
-            daylight=day and Daylight(tuple(p[0] for p in day.points), tuple(p[1] for p in day.points), day.repeat_s),
+            daylight=self.daylight and _daylight(self.daylight),
             boxes=tuple(map(_box, self.boxes)),
             people=tuple(map(_person, self.people)),
             slow_zones=tuple(map(_zone, self.slow_zones)),
-            script=tuple(Event(e.at_s, e.do, e.name, e.level) for e in self.script),
+            script=tuple(map(_event, self.script)),
         )
 
 
@@ -240,6 +239,14 @@ def _person(item: _PersonItem) -> Person:
     return Person(item.name, path, waits, item.speed, item.loop, item.radius, item.height, _rgb(item.colour))
 
 
+def _daylight(item: _DaylightItem) -> Daylight:
+    return Daylight(tuple(p[0] for p in item.points), tuple(p[1] for p in item.points), item.repeat_s)
+
+
+def _event(item: _EventItem) -> Event:
+    return Event(item.at_s, item.do, item.name, item.level)
+
+
 def _points(points: list[list[float]]) -> tuple[tuple[float, float], ...]:
     return tuple((x, y) for x, y in points)
 
@@ -257,4 +264,6 @@ _MAKERS: dict[str, tuple[type[_Item], Callable[[Any], Thing]]] = {
     "boxes": (_BoxItem, _box),
     "people": (_PersonItem, _person),
     "slow_zones": (_ZoneItem, _zone),
+    "script": (_EventItem, _event),
+    "daylight": (_DaylightItem, _daylight),
 }

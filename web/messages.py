@@ -541,11 +541,16 @@ class Inspect(_Command):
     y: Annotated[int, Field(ge=0)] | None = None
 
 
-OfficeList = Literal["walls", "starts", "places", "doors", "lamps", "boxes", "people", "slow_zones"]
+OfficeList = Literal[
+    "walls", "starts", "places", "doors", "lamps", "boxes", "people", "slow_zones", "script", "daylight"
+]  # fmt: skip
 
 
 class EditStep(_Command):
-    """One item of one list of the world file: added at the end, changed, or deleted. `item` is written as in that file."""
+    """One item of one list of the world file: added at the end, changed, or deleted. `item` is written as in that file.
+
+    `daylight` counts as a list of one item at most.
+    """
 
     do: Literal["add", "change", "delete"]
     list: OfficeList

@@ -27,6 +27,8 @@ ITEMS: dict[str, dict[str, Any]] = {
     "boxes": {"name": "b", "x": 4.0, "y": 1.0, "width": 0.4, "depth": 0.4},
     "people": {"name": "q", "path": [[1.0, 5.0], [5.0, 5.0]]},
     "slow_zones": {"name": "z", "corners": [[1, 1], [2, 1], [2, 2]], "factor": 0.5},
+    "script": {"at_s": 4.0, "do": "daylight", "level": 0.5},
+    "daylight": {"points": [[0.0, 1.0], [60.0, 0.4]], "repeat_s": 120.0},
 }
 
 
@@ -124,10 +126,10 @@ def test_undo_goes_back_to_the_first_world_and_redo_to_the_last(edits: list[Any]
 @pytest.mark.parametrize("kind", ITEMS)
 def test_every_kind_is_added_changed_and_deleted(kind: str) -> None:
     world = office()
-    count = len(getattr(world, kind))
+    count = len(getattr(world, kind) or ())
     added = edited(world, order(("add", kind, None, ITEMS[kind])).steps)
     check_world(added, RADIUS)
-    assert len(getattr(added, kind)) == count + 1
+    assert kind == "daylight" or len(getattr(added, kind)) == count + 1
     assert world_from_json(world_to_json(added), "f") == added
     changed = edited(added, order(("change", kind, count, ITEMS[kind])).steps)
     assert changed == added
@@ -157,6 +159,22 @@ def test_every_kind_is_added_changed_and_deleted(kind: str) -> None:
         ([("add", "walls", None, {"from": [1, 1], "to": [1, 1]})], r"walls\[4\]: no length"),
         ([("add", "doors", None, ITEMS["doors"])] * 2, r"doors\[1\].name: 'd' is taken by doors\[0\]"),
         ([("add", "walls", None, ITEMS["walls"]), ("delete", "walls", 9, None)], r"steps\[1\]: number: got 9"),
+        (
+            [("add", "script", None, {"at_s": -1, "do": "people_on"})],
+            r"line of the script: at_s: got -1; input should be",
+        ),
+        ([("add", "script", None, {"at_s": 1, "do": "sing"})], r"line of the script: do: got 'sing'; input should be"),
+        (
+            [("add", "script", None, {"at_s": 1, "do": "open_door", "name": "x"})],
+            r"script\[0\].name: no doors named 'x'",
+        ),
+        ([("add", "daylight", None, ITEMS["daylight"])] * 2, r"list: there are 1 daylight; at most 1"),
+        (
+            [("add", "daylight", None, {"points": [[9, 1], [3, 1]]})],
+            r"daylight.points\[1\]: is at 3 s; times must grow",
+        ),
+        ([("add", "daylight", None, {"points": [[0, 4]]})], r"daylight.points\[0\]: has level 4; must be from 0 to 3"),
+        ([("change", "daylight", 0, ITEMS["daylight"])], r"number: got 0; there is no such daylight, there are none"),
     ],
 )
 def test_a_bad_edit_says_what_is_wrong_and_changes_nothing(steps: list[Any], reason: str) -> None:
@@ -322,3 +340,28 @@ def test_what_many_steps_did_is_told_by_what_was_drawn() -> None:
         taken,
     )
     assert words == "door drawn and 2 more changes"
+
+
+def test_a_line_of_the_script_is_added_and_fires_in_its_tick_alone() -> None:
+    """Drawn at 1 s, one line is of the past and one to come: the first waits for a restart."""
+    session = Session(office(), 3)
+    for _ in range(10):
+        session.tick()
+    editor, living = WorldEditor(session.world), lambda: session.simulator.living
+    dim, dark = {"at_s": 0.5, "do": "daylight", "level": 0.7}, {"at_s": 1.5, "do": "daylight", "level": 0.2}
+    words = editor.edit(order(("add", "script", None, dark), ("add", "script", None, dim)), RADIUS, session.edit_world)
+    assert words == "line of the script added and 1 more change"
+    levels = []
+    for _ in range(10):
+        session.tick()
+        levels.append(living().daylight)
+    assert levels == [1.0] * 4 + [0.2] * 6
+    again = Session(editor.world, 3)
+    levels = []
+    for _ in range(20):
+        again.tick()
+        levels.append(again.simulator.living.daylight)
+    assert levels == [1.0] * 4 + [0.7] * 10 + [0.2] * 6
+    editor.undo(session.edit_world)  # no line is left that has set it
+    session.tick()
+    assert living().daylight == 1.0

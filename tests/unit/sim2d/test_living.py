@@ -242,6 +242,36 @@ def brightness(simulator: Simulator) -> float:
     return float(run(simulator, STAY, 1).image.mean())
 
 
+def test_an_edited_script_goes_on_from_now() -> None:
+    """Lines of the past are not made up for, one of this very moment is over, and what was done stays done."""
+    shut, dark = Event(1.0, "close_door", "lab"), Event(1.0, "daylight", level=0.3)
+    door, day = replace(DOOR, open=True), Daylight((0.0,), (0.8,))
+    world = living(doors=(door,), script=(shut, dark), daylight=day)
+    simulator = Simulator(world, EXACT)
+    run(simulator, STAY, 20)
+    assert (simulator.living.door_wanted[0], simulator.living.daylight) == (False, 0.3)
+    opens = [Event(at, "open_door", "lab") for at in (0.5, 2.0, 2.5)]
+    simulator.set_world(replace(world, script=(opens[2], opens[1], opens[0], dark)))
+    run(simulator, STAY, 4)
+    assert (simulator.living.door_wanted[0], simulator.living.daylight) == (False, 0.3)
+    run(simulator, STAY, 1)  # 2.5 s
+    assert simulator.living.door_wanted[0]
+    simulator.set_world(replace(world, script=(shut,)))  # nobody has set the daylight any more
+    run(simulator, STAY, 1)
+    assert simulator.living.door_wanted[0]
+    assert simulator.living.daylight == 0.8
+    simulator.set_world(replace(world, script=(), daylight=None))
+    run(simulator, STAY, 1)
+    assert simulator.living.daylight == 1.0
+
+
+def test_a_script_that_is_edited_before_the_first_tick_loses_no_line() -> None:
+    simulator = Simulator(living(doors=(replace(DOOR, open=True),)), EXACT)
+    simulator.set_world(replace(simulator.world, script=(Event(0.0, "close_door", "lab"),)))
+    run(simulator, STAY, 1)
+    assert not simulator.living.door_wanted[0]
+
+
 def test_lamps_and_daylight_change_what_the_camera_sees() -> None:
     lamp = Lamp("ceiling", 3.0, 2.0, 3.0, 0.8, on=False)
     dark = replace(room(), daylight=Daylight((0.0, 10.0), (0.3, 1.0)), lamps=(lamp,))
