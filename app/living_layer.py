@@ -17,9 +17,9 @@ class LivingView:
         self._layer: LivingLayer | None = None
 
     def look(self, simulator: Simulator) -> LivingLayer | None:
-        """The layer of this moment, None when the world has no doors, boxes, people or lamps."""
+        """The layer of this moment, None when nothing lives in the world."""
         world, living = simulator.world, simulator.living
-        if not (world.doors or world.boxes or world.people or world.lamps or world.daylight):
+        if not (world.doors or world.boxes or world.people or world.lamps or world.daylight or world.script):
             return None
         seen = (world, living.state())
         if self._seen is None or self._seen[0] is not world or self._seen[1] != seen[1]:

@@ -1,0 +1,69 @@
+// The office as the engine has it: read again after each change; edits one after the other, undo and redo.
+
+import { sentence } from "./files.js";
+
+export class Office {
+  // `shows()` when it has been read, `wrong(text)` when an edit was refused.
+  constructor(link, shows, wrong) {
+    Object.assign(this, { link, shows, wrong, world: null, edition: null, ours: {}, yours: {} });
+  }
+
+  // What arrives while another answer is under way is asked for once more.
+  async load() {
+    if (this.loading) {
+      this.again = true;
+      return this.loading;
+    }
+    this.loading = this.fetch();
+    await this.loading;
+    this.loading = null;
+    if (this.again) {
+      this.again = false;
+      await this.load();
+    }
+  }
+
+  async fetch() {
+    try {
+      const { world, edition, ours, yours } = await (await fetch("/api/world")).json();
+      if (!world) return;
+      const other = this.world?.name !== world.name;
+      Object.assign(this, { world, edition, ours, yours });
+      this.shows(other);
+    } catch {
+      // the connection is lost, which the page says; it is read again with the next state
+      this.edition = null;
+    }
+  }
+
+  // One edit: the steps that `makes()` gives, or a sentence that says why there are none. Resolves to whether it was done.
+  edit(makes) {
+    return this.send(() => {
+      const steps = makes();
+      if (typeof steps === "string") this.wrong(steps);
+      return typeof steps === "string" || !steps.length ? null : { type: "edit_world", steps, edition: this.edition };
+    });
+  }
+
+  undo() {
+    return this.send(() => ({ type: "undo_edit" }));
+  }
+
+  redo() {
+    return this.send(() => ({ type: "redo_edit" }));
+  }
+
+  async send(command) {
+    const before = this.busy;
+    this.busy = (async () => {
+      await before; // edits that follow each other quickly are made on what the one before left
+      const wish = command();
+      if (!wish) return false;
+      const answer = await this.link.ask(wish, { quiet: true });
+      if (answer.accepted) await this.load();
+      else this.wrong(answer.detail.map((wrong) => sentence(wrong.reason.replace(/^steps\[\d+\]: /, ""))).join(" ") || "The connection is lost; nothing was changed.");
+      return answer.accepted;
+    })();
+    return this.busy;
+  }
+}

@@ -1,0 +1,162 @@
+// What happens when: the lines of the world's script, sorted by time, to add, change and delete; and the daylight below them.
+
+import { DaylightForm } from "./daylight.js";
+import { keepingPlace, labelled, levelInput, make, mark, removeButton, timeInput } from "./elements.js";
+import { ACTIONS, NO_TIME, isLevel, line, namesOf, seconds, time } from "./script.js";
+
+const $ = (id) => document.getElementById(id);
+
+export class TimePanel {
+  // `tell(text, bad)`: a sentence for the status line.
+  constructor(office, tell) {
+    Object.assign(this, { office, tell, box: $("time"), list: $("script-lines"), form: $("script-add"), now_s: 0, level: 1 });
+    this.daylight = new DaylightForm(office, tell);
+    this.now = make("li", { className: "now" });
+    $("edit-time").addEventListener("click", () => this.toggle());
+    $("time-close").addEventListener("click", () => this.toggle(false));
+    this.box.addEventListener("input", ({ target }) => (target.dataset.typed = "yes"));
+    this.box.addEventListener("keydown", (event) => {
+      if (event.key !== "Escape") return;
+      event.stopPropagation();
+      this.toggle(false);
+    });
+    this.list.addEventListener("change", ({ target }) => this.change(target));
+    this.list.addEventListener("click", ({ target }) => {
+      const row = target.closest(".remove")?.closest("li");
+      if (row) this.remove(Number(row.dataset.number));
+    });
+    this.form.addEventListener("change", ({ target }) => target.className === "what" && this.draw(this.draft(target)));
+    this.form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.add();
+    });
+  }
+
+  toggle(on = this.box.hidden) {
+    this.box.hidden = !on;
+    $("edit-time").setAttribute("aria-expanded", String(on));
+    if (!on) return $("edit-time").focus();
+    this.draw({ at_s: Math.ceil((this.now_s + 1) / 10) * 10, do: firstAction(this.office.world) });
+    this.daylight.draw();
+    this.at(this.now_s);
+    this.box.focus({ preventScroll: true }); // no field: a phone would cover it with its keyboard
+  }
+
+  // ---------------------------------------------------------------- what there is
+
+  show(world) {
+    const kinds = ["doors", "lamps", "boxes"].map((list) => namesOf(world, list));
+    const text = JSON.stringify([world.script, kinds]);
+    if (text !== this.shown) {
+      this.shown = text;
+      const rows = (world.script ?? []).map((item, number) => ({ item, number })).sort((a, b) => a.item.at_s - b.item.at_s || a.number - b.number);
+      keepingPlace(this.list, this.form, () => this.list.replaceChildren(...rows.map((row) => this.row(world, row))));
+      $("script-none").hidden = rows.length > 0;
+      if (!this.box.hidden) this.draw(this.draft());
+      this.place = null;
+      this.at(this.now_s);
+    }
+    this.daylight.show(world);
+  }
+
+  row(world, { item, number }) {
+    const row = make("li", {}, ...controls(world, item), removeButton(`Delete the line at ${time(item.at_s)}`));
+    Object.assign(row.dataset, { number, at: item.at_s });
+    return row;
+  }
+
+  // The form for another line, filled in with `item`.
+  draw(item) {
+    const world = this.office.world;
+    if (!world) return;
+    const had = this.form.contains(document.activeElement) ? document.activeElement.classList[0] : null;
+    const [when, ...rest] = controls(world, line(world, item.at_s, item.do, item.name ?? item.level ?? null));
+    if (item.text !== undefined) when.value = item.text;
+    this.form.querySelector(".row").replaceChildren(when, ...rest);
+    if (had) this.form.querySelector(`.${had}`)?.focus();
+  }
+
+  draft(changed = null) {
+    const [when, what, which] = [".when", ".what", ".which, .level"].map((kind) => this.form.querySelector(kind));
+    if (!what) return { at_s: 0, do: firstAction(this.office.world) };
+    const value = changed === what ? undefined : (which?.value ?? undefined);
+    return { at_s: 0, text: when.value, do: what.value, name: value };
+  }
+
+  // Now: lines above it are of the past.
+  at(time_s, level = this.level) {
+    Object.assign(this, { now_s: time_s, level });
+    this.daylight.at(time_s, level);
+    if (this.box.hidden) return;
+    const words = `now ${time(Math.floor(time_s))}`;
+    if (this.now.textContent !== words) this.now.textContent = words;
+    const rows = [...this.list.querySelectorAll("li[data-at]")];
+    const next = rows.findIndex((row) => Number(row.dataset.at) > time_s + 1e-9);
+    if (this.place === next && this.now.isConnected === rows.length > 0) return;
+    this.place = next;
+    rows.forEach((row, k) => row.classList.toggle("past", next < 0 || k < next));
+    if (!rows.length) this.now.remove();
+    else if (next < 0) this.list.append(this.now);
+    else rows[next].before(this.now);
+  }
+
+  // ---------------------------------------------------------------- what is done
+
+  // The line that a row or the form says, or null when it says none.
+  read(place, changed = null) {
+    const [when, what, which] = [".when", ".what", ".which, .level"].map((kind) => place.querySelector(kind));
+    const at_s = seconds(when.value);
+    const noLevel = what.value === "daylight" && changed !== what && which && !isLevel(which.value);
+    mark(when, isNaN(at_s));
+    if (which) mark(which, noLevel);
+    if (isNaN(at_s)) this.tell(NO_TIME(when.value), true);
+    else if (noLevel) this.tell(`“${which.value}” is no level; write a number from 0, which is dark, to 3. 1 is as painted.`, true);
+    else return line(this.office.world, at_s, what.value, changed === what ? null : (which?.value ?? null));
+    return null;
+  }
+
+  async add() {
+    const item = this.read(this.form);
+    if (!item || !(await this.office.edit(() => [{ do: "add", list: "script", item }]))) return;
+    const words = `${time(item.at_s)}: ${ACTIONS[item.do].title.toLowerCase()} ${item.name ?? item.level ?? ""}`.trim();
+    this.tell(item.at_s > this.now_s ? `Added: at ${words}.` : `Added: at ${words}. That is past; it happens after a restart.`, false);
+    this.form.querySelector(".when").focus();
+    this.form.querySelector(".when").select();
+  }
+
+  async change(target) {
+    const row = target.closest("li");
+    delete target.dataset.typed;
+    const item = this.read(row, target);
+    if (!item) return;
+    const done = await this.office.edit(() => [{ do: "change", list: "script", number: Number(row.dataset.number), item }]);
+    if (done) this.tell("Changed. Ctrl+Z takes it back.", false);
+    else mark(target, true);
+  }
+
+  async remove(number) {
+    if (await this.office.edit(() => [{ do: "delete", list: "script", number }])) this.tell("Line deleted. Ctrl+Z brings it back.", false);
+  }
+}
+
+// Time, what, and of what: of a line that is there, or of the one to add.
+function controls(world, item) {
+  const what = labelled("What happens", make("select", { className: "what" }));
+  for (const [action, { title, of }] of Object.entries(ACTIONS)) {
+    const none = of && action !== item.do && !namesOf(world, of).length;
+    what.append(make("option", { value: action, textContent: none ? `${title} (no ${of})` : title, disabled: none }));
+  }
+  what.value = item.do;
+  return [timeInput("Time", time(item.at_s)), what, which(world, item)];
+}
+
+function which(world, item) {
+  const { of } = ACTIONS[item.do];
+  if (item.do === "daylight") return levelInput("Level of the daylight, 1 is as painted", item.level ?? 1);
+  if (!of) return make("span", { className: "nothing" });
+  const select = labelled(`Which of the ${of}`, make("select", { className: "which" }, ...namesOf(world, of).map((name) => new Option(name))));
+  select.value = item.name;
+  return select;
+}
+
+const firstAction = (world) => Object.keys(ACTIONS).find((name) => ACTIONS[name].of && namesOf(world ?? {}, ACTIONS[name].of).length) ?? "daylight";
