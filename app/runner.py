@@ -313,9 +313,9 @@ class Runner:
         editor.follow(session.simulator.world)
         match order:
             case m.EditWorld():
-                radius = session.simulator.params.robot_radius_m
+                radius, free_in = session.simulator.params.robot_radius_m, session.simulator.free_in
                 steps = [step.model_dump(exclude_none=True) for step in order.steps]
-                return self._note("steps", steps, lambda: editor.edit(order, radius, session.edit_world))
+                return self._note("steps", steps, lambda: editor.edit(order, radius, session.edit_world, free_in))
             case m.UndoEdit():
                 return self._note("type", order.type, lambda: editor.undo(session.edit_world))
             case m.RedoEdit():

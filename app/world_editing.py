@@ -12,7 +12,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sim2d import Wall, World
+from sim2d import FreeSpace, Wall, World
 from sim2d.importers.dress import HEIGHT_M, Dresser
 from sim2d.world_check import Fault, check_world
 from sim2d.world_file import fault_words, item_complaint
@@ -58,13 +58,16 @@ class WorldEditor:
         undo, redo = (steps[-1][0] if steps else "" for steps in (self._past, self._future))
         return m.OfficeEdition(self._number, undo, redo, self.world is self.saved)
 
-    def edit(self, order: m.EditWorld, radius: float, take: Callable[[World], None]) -> str:
-        """What was done, in words. radius: of the robot. ValueError says why it cannot be."""
+    def edit(
+        self, order: m.EditWorld, radius: float, take: Callable[[World], None],
+        free_in: Callable[[World], FreeSpace] | None = None,
+    ) -> str:  # fmt: skip
+        """What was done, in words. radius: of the robot; free_in: where it fits. ValueError says why it cannot be."""
         if order.edition is not None and order.edition != self._number:
             raise ValueError("somebody has changed the office since; look at it again and repeat what you did")
         world = edited(self.world, order.steps)
         try:
-            check_world(world, radius)
+            check_world(world, radius, self.world, free_in)
         except Fault as fault:
             raise ValueError(fault_words(fault)) from None
         take(world)

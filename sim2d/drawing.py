@@ -10,12 +10,16 @@ from numpy.typing import NDArray
 from sim2d.texture import panel_mean_rgb
 from sim2d.world import Panel, Wall, World
 
+MOST_PANELS = 5000  # more are specks that nobody can see, and a second of work for each ten thousand
 _OFF_WALL_M = 0.01  # panels stand this far in front of their wall, on their side
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Drawing:
-    """Walls that stand on the floor and all panels. Screens on desks, which stand on no floor, are panels too."""
+    """Walls that stand on the floor and all panels, but for more than MOST_PANELS: then none.
+
+    Screens on desks, which stand on no floor, are panels too, and always there.
+    """
 
     walls: NDArray[np.float32]  # (n, 4): x1 y1 x2 y2
     wall_height_m: NDArray[np.float32]  # (n,)
@@ -26,7 +30,8 @@ class Drawing:
 
 def draw_world(world: World) -> Drawing:
     """Fresh read-only arrays."""
-    standing = [wall for wall in world.walls if wall.stands]
+    standing = [world.walls[i] for i in world.obstacles]
+    crowded = sum(len(wall.panels) for wall in world.walls) > MOST_PANELS
     rows: list[tuple[float, ...]] = []
     colours: list[tuple[int, int, int]] = []
     for wall in world.walls:
@@ -34,12 +39,12 @@ def draw_world(world: World) -> Drawing:
             rows.append((wall.x1, wall.y1, wall.x2, wall.y2, wall.bottom, wall.height))
             colours.append(wall.colour)
             continue
-        for panel in wall.panels:
+        for panel in () if crowded else wall.panels:
             for side in ("left", "right") if panel.side == "both" else (panel.side,):
                 rows.append(_panel_row(wall, panel, side))
                 colours.append(panel_mean_rgb(panel))
     return Drawing(
-        walls=_frozen(np.array([(w.x1, w.y1, w.x2, w.y2) for w in standing], np.float32)),
+        walls=_frozen(world.segments()[list(world.obstacles)].astype(np.float32)),
         wall_height_m=_frozen(np.array([w.height for w in standing], np.float32)),
         wall_kind=tuple(w.kind for w in standing),
         panels=_frozen(np.array(rows, np.float32).reshape(-1, 6)),

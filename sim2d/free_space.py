@@ -7,15 +7,16 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import label
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
 from sim2d.geometry import free_cells, inside_ring, nearest_segment
+from sim2d.reach import reachable
 from sim2d.world import World
 
 CELL_M = 0.05
 MOST_CELLS = 4_000_000  # a larger floor gets larger cells
+_MOST_CHANGES = 64  # with more walls that differ all of the floor is measured anew
 # Eight neighbours and eight knight's moves, one of each opposite pair.
 _MOVES = ((1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (1, 2), (2, -1), (1, -2))
 
@@ -23,7 +24,10 @@ _MOVES = ((1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (1, 2), (2, -1), (1, -2))
 class FreeSpace:
     """The floor on which a disc of `radius` metres can stand and which it can reach from the world's first start."""
 
-    def __init__(self, world: World, radius: float, cell_m: float | None = None) -> None:
+    def __init__(
+        self, world: World, radius: float, cell_m: float | None = None, before: FreeSpace | None = None
+    ) -> None:
+        """before: of a world that may differ in a few walls; only the floor around them is measured anew."""
         x0, y0, x1, y1 = world.bounds
         if cell_m is None:
             cell_m = max(CELL_M, math.sqrt((x1 - x0) * (y1 - y0) / MOST_CELLS))
@@ -34,11 +38,47 @@ class FreeSpace:
         self._ring = world.outline
         self._xs = np.arange(x0 + 0.5 * cell_m, x1, cell_m)
         self._ys = np.arange(y0 + 0.5 * cell_m, y1, cell_m)
-        grid = free_cells(self._segments, self._ring, self._xs, self._ys, radius)
-        numbers = np.zeros(grid.shape, np.int32)
-        label(grid, structure=np.ones((3, 3)), output=numbers)
-        cells = [self._open_cell(numbers > 0, start.x, start.y) for start in world.starts]
-        self._reachable: NDArray[np.bool_] = np.isin(numbers, [numbers[cell] for cell in cells if cell is not None])
+        self._free = self._measured(before)
+        cells = [self._open_cell(self._free, start.x, start.y) for start in world.starts]
+        seeds = np.array([cell for cell in cells if cell is not None], np.int64).reshape(-1, 2)
+        self._reachable = reachable(self._free, seeds)
+
+    def _measured(self, before: FreeSpace | None) -> NDArray[np.bool_]:
+        """(n_y, n_x): cells on which the robot can stand."""
+        if before is not None and (before._radius, before._cell) != (self._radius, self._cell):
+            before = None
+        if before is None or not np.array_equal(before._ring, self._ring):
+            return free_cells(self._segments, self._ring, self._xs, self._ys, self._radius)
+        changes = _differing(before._segments, self._segments)
+        if len(changes) > _MOST_CHANGES:
+            return free_cells(self._segments, self._ring, self._xs, self._ys, self._radius)
+        free = before._free.copy()
+        for x1, y1, x2, y2 in changes:
+            left, right = self._around(self._xs, x1, x2)
+            low, high = self._around(self._ys, y1, y2)
+            xs, ys, far = self._xs[left:right], self._ys[low:high], self._radius + self._cell
+            a, b = self._segments[:, :2], self._segments[:, 2:]
+            ahead, behind = (
+                np.maximum(a, b) >= (xs[0] - far, ys[0] - far),
+                np.minimum(a, b) <= (xs[-1] + far, ys[-1] + far),
+            )
+            near = self._segments[(ahead & behind).all(axis=1)]
+            free[low:high, left:right] = free_cells(near, self._ring, xs, ys, self._radius)
+        return free
+
+    def _around(self, centres: NDArray[np.float64], a: float, b: float) -> tuple[int, int]:
+        """First and last but one of the cells that something from a to b may bear on."""
+        low, high = ((p - centres[0]) / self._cell for p in (min(a, b) - self._radius, max(a, b) + self._radius))
+        return min(max(int(low) - 1, 0), len(centres) - 1), min(max(int(high) + 3, 1), len(centres))
+
+    def holds(self, world: World, radius: float) -> bool:
+        """Whether it is also true of this world."""
+        mine = self._world
+        return radius == self._radius and (world.name, world.starts, world.walls) == (
+            mine.name,
+            mine.starts,
+            mine.walls,
+        )
 
     def is_free(self, x: float, y: float) -> bool:
         """Whether the robot can stand there and could have driven there."""
@@ -128,6 +168,17 @@ class FreeSpace:
         rows, columns = rows + low, columns + left
         k = int(np.argmin((self._xs[columns] - x) ** 2 + (self._ys[rows] - y) ** 2))
         return int(rows[k]), int(columns[k])
+
+
+def _differing(a: NDArray[np.float64], b: NDArray[np.float64]) -> list[tuple[float, ...]]:
+    """The rows that are in one of (n, 4) and (m, 4) alone, in order."""
+    most = min(len(a), len(b))
+    same = np.append((a[:most] == b[:most]).all(axis=1), False)
+    first = int(np.argmin(same))  # what is the same before it and after it need not be compared one by one
+    same = np.append((a[len(a) - most :] == b[len(b) - most :]).all(axis=1)[first:][::-1], False)
+    last = int(np.argmin(same))
+    rows = [set(map(tuple, part[first : len(part) - last].tolist())) for part in (a, b)]
+    return sorted(rows[0] ^ rows[1])
 
 
 def _shifted(nodes: NDArray[np.int32], dx: int, dy: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:

@@ -77,6 +77,7 @@ class Simulator:
         self.world = self._first_world = world
         self.params, self.office = params or SimParams(), office or OfficeParams()
         self._angles = np.array(SONAR_ANGLES_RAD)
+        self._measured: FreeSpace | None = None
         self._measure()
         self._bounds = world.bounds  # of the first world: the numbers of its scenes stay when walls are edited
         refusal = self.free_space.refusal(world.starts[0].x, world.starts[0].y)
@@ -89,8 +90,11 @@ class Simulator:
 
     def _measure(self) -> None:
         """Where the robot fits, and the indices of the walls that sensors meet."""
+        self.free_space = self.free_in(self.world)
+        self._index()
+
+    def _index(self) -> None:
         world = self.world
-        self.free_space = FreeSpace(world, self.params.robot_radius_m)
         segments = world.segments()
         opaque = [i for i in world.obstacles if world.walls[i].kind != "glass"]
         self._all_walls = build_index(segments)
@@ -169,6 +173,12 @@ class Simulator:
         x, y = self.free_space.random_point(self._pose_rng)
         return x, y, wrap_angle(float(self._pose_rng.uniform(-math.pi, math.pi)))
 
+    def free_in(self, world: World) -> FreeSpace:
+        """Where the robot would fit in a world; what that has in common with the last one is not measured again."""
+        if self._measured is None or not self._measured.holds(world, self.params.robot_radius_m):
+            self._measured = FreeSpace(world, self.params.robot_radius_m, before=self._measured)
+        return self._measured
+
     # ------------------------------------------------------------ changes; ValueError says why one cannot be
 
     def set_params(self, params: SimParams) -> None:
@@ -232,18 +242,15 @@ class Simulator:
             raise ValueError(refusal)
         walls_stay = world.walls == self.world.walls
         before, self.world = self.living, world
+        self.free_space = self.free_in(world)
         if not walls_stay:
-            self._measure()
+            self._index()
         self.living = Living(world, np.random.default_rng(self._pose_rng.integers(2**63)), self.params.tick_s)
         self.living.adopt(before)
         self.living.make_way((x, y), radius)
         self._camera.set_world(world, self.living, self._all_walls)
         self._painted = world
-        if walls_stay:
-            self._solids.furnish(self.living)
-        else:
-            self._solids.remove_all()
-            self._solids = Solids(self._space, world, self.living)
+        self._solids.furnish(world, self.living)
         self._begin_here()
 
     def state(self) -> bytes:
@@ -332,10 +339,10 @@ def _covered(world: World, x: float, y: float, radius: float) -> str | None:
     if not inside_ring(world.outline, x, y):
         return f"{at} would be outside of the outer walls; leave it inside"
     radius -= LEANS_M
-    segments = world.segments()
-    for i in world.obstacles:
-        if nearest_segment(segments[i : i + 1], x, y)[1] < radius:
-            return f"walls[{i}] ({world.walls[i].kind}) would cover {at}; keep {radius:.2f} m away from it"
+    nearest, distance = nearest_segment(world.segments()[list(world.obstacles)], x, y)
+    if distance < radius:
+        i = world.obstacles[nearest]
+        return f"walls[{i}] ({world.walls[i].kind}) would cover {at}; keep {radius:.2f} m away from it"
     for box in world.boxes:
         if box.present and distance_to_box(box, x, y) < radius:
             return f"box {box.name!r} would cover {at}; keep {radius:.2f} m away from it"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,6 +42,7 @@ def paint_strip(wall: Wall, side: str, texel_m: float = TEXEL_M) -> _Texels:
     return strip
 
 
+@lru_cache(maxsize=16_384)
 def panel_mean_rgb(panel: Panel) -> Rgb:
     """The panel's mean colour, for whoever draws it as one flat piece."""
     mean = _pattern(panel, max(1, round(panel.width / TEXEL_M)), 32).mean(axis=(0, 1))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +76,7 @@ class Place:
     y: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class World:
     """One office. `walls` begins with the outer wall, a closed ring that runs counter-clockwise."""
 
@@ -97,22 +98,30 @@ class World:
     paper: str = ""
     about: str = ""  # one sentence
 
-    @property
+    @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
         """min x, min y, max x, max y of the outer wall, metres."""
-        ring = self.outline
+        ring = self._ring
         return float(ring[:, 0].min()), float(ring[:, 1].min()), float(ring[:, 0].max()), float(ring[:, 1].max())
 
     @property
     def outline(self) -> NDArray[np.float64]:
         """(k, 2): corners of the outer wall, counter-clockwise, the first not repeated."""
-        return np.array([(w.x1, w.y1) for w in self.walls if w.outer])
+        return self._ring.copy()
 
-    @property
+    @cached_property
     def obstacles(self) -> tuple[int, ...]:
         """Numbers of the walls that stand on the floor."""
         return tuple(i for i, w in enumerate(self.walls) if w.stands)
 
     def segments(self) -> NDArray[np.float64]:
         """(n, 4): x1 y1 x2 y2 of every wall."""
+        return self._segments.copy()
+
+    @cached_property
+    def _ring(self) -> NDArray[np.float64]:
+        return np.array([(w.x1, w.y1) for w in self.walls if w.outer])
+
+    @cached_property
+    def _segments(self) -> NDArray[np.float64]:
         return np.array([(w.x1, w.y1, w.x2, w.y2) for w in self.walls])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import chain, pairwise
 
 import numpy as np
@@ -32,16 +32,25 @@ class Fault(ValueError):  # noqa: N818
         self.where, self.message = where, message
 
 
-def check_world(world: World, radius: float) -> None:
-    """Raises Fault at the first thing that is wrong. radius: of the robot, metres."""
-    for fault in world_faults(world, radius):
+def check_world(
+    world: World, radius: float, before: World | None = None, free_in: Callable[[World], FreeSpace] | None = None
+) -> None:
+    """Raises Fault at the first thing that is wrong. radius: of the robot, metres.
+
+    before: a sound world, whose walls need not be looked at again. free_in: where a robot of that radius fits.
+    """
+    for fault in world_faults(world, radius, before, free_in):
         raise fault
 
 
-def world_faults(world: World, radius: float) -> Iterator[Fault]:
+def world_faults(
+    world: World, radius: float, before: World | None = None, free_in: Callable[[World], FreeSpace] | None = None
+) -> Iterator[Fault]:
     """All that is wrong; what can only be judged of a sound outline comes when nothing else is wrong."""
     sound = True
-    walls = (_wall_faults(("walls", i), wall) for i, wall in enumerate(world.walls))
+    known = set() if before is None else set(map(id, before.walls))
+    new = ((i, wall) for i, wall in enumerate(world.walls) if id(wall) not in known)
+    walls = (_wall_faults(("walls", i), wall) for i, wall in new)
     for fault in chain(chain.from_iterable(walls), _outline_faults(world)):
         sound = False
         yield fault
@@ -51,11 +60,10 @@ def world_faults(world: World, radius: float) -> Iterator[Fault]:
         sound = False
         yield fault
     if sound:
-        yield from _place_faults(world, radius)
+        yield from _place_faults(world, radius, FreeSpace(world, radius) if free_in is None else free_in(world))
 
 
-def _place_faults(world: World, radius: float) -> Iterator[Fault]:
-    free = FreeSpace(world, radius)
+def _place_faults(world: World, radius: float, free: FreeSpace) -> Iterator[Fault]:
     for kind, points in (("starts", world.starts), ("places", world.places)):
         for i, point in enumerate(points):
             refusal = free.refusal(point.x, point.y)
@@ -143,8 +151,9 @@ def _thing_faults(world: World) -> Iterator[Fault]:
         for i, name in enumerate(names[kind]):
             if name in names[kind][:i]:
                 yield Fault((kind, i, "name"), f"{name!r} is taken by {kind}[{names[kind].index(name)}]; use another")
+    ring = world.outline
     for where, what, x, y in _points(world):
-        if not inside_ring(world.outline, x, y):
+        if not inside_ring(ring, x, y):
             x0, y0, x1, y1 = world.bounds
             yield Fault(
                 where,

@@ -14,6 +14,7 @@ from sim2d.world_file import WorldError, load_world, parse_json, world_from_json
 
 YAMLS = (".yaml", ".yml")
 MOST_BYTES = {".json": 1_000_000, ".yaml": 65_536, ".yml": 65_536}  # of what is uploaded
+MOST_WORLD_BYTES = 10_000_000  # a world of 10,000 walls with posters has 7.7 MB
 MOST_PICTURE_BYTES = 16_000_000
 _OCCUPIED, _FREE = 0.65, 0.196  # map_server's own
 
@@ -28,7 +29,7 @@ def import_world(
     Raises WorldError that names file, line or pixel, value and what would be right.
     """
     for given, data in files.items():
-        limit = MOST_BYTES.get(PurePath(given).suffix.lower(), MOST_PICTURE_BYTES)
+        limit = _most_bytes(given, data)
         if len(data) > limit:
             raise WorldError(f"{given}: {len(data)} bytes; at most {limit}")
     return _import(name, files, scale_m, seed, robot_radius_m)
@@ -95,6 +96,14 @@ def _from_json(name: str, text: str, seed: int, radius: float) -> World:
             '"format": 1, or a list of wall segments'
         )
     return world_from_json(text, name, radius)
+
+
+def _most_bytes(name: str, data: bytes) -> int:
+    """How large an uploaded file may be. A world is an object: only what begins like one may be as large as one."""
+    suffix = PurePath(name).suffix.lower()
+    if suffix == ".json" and data[:100].lstrip().startswith(b"{"):
+        return MOST_WORLD_BYTES
+    return MOST_BYTES.get(suffix, MOST_PICTURE_BYTES)
 
 
 def _plain(name: str, scale_m: float | None) -> MapYaml:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from typing import NamedTuple
 
 import numpy as np
 import viser
@@ -59,37 +59,51 @@ def add_floor(
     )
 
 
+class Boxes(NamedTuple):
+    """Boxes that stand on the plate, in its units: ten thousand walls are a few arrays."""
+
+    centre: Array  # (n, 3)
+    size: Array  # (n, 3)
+    turn_rad: Array  # (n,)
+    rgb: NDArray[np.uint8]  # (n, 3)
+
+    def of(self, chosen: NDArray[np.bool_]) -> Boxes:
+        return Boxes(self.centre[chosen], self.size[chosen], self.turn_rad[chosen], self.rgb[chosen])
+
+
 def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: WorldDrawing, fit: OfficeFit) -> None:
     """One batch of boxes for walls and panels, one mesh for the closed outlines."""
     runs = solid_runs(world)
-    closed = {row for rows, _ in runs for row in rows}
-    panes = [row for row in range(len(world.walls)) if world.wall_kind[row] == "glass"]
-    _add_glass(scene, f"{name}_glass", [_wall_box(world, fit, row, palette) for row in panes])
-    closed.update(panes)
-    boxes = [_wall_box(world, fit, row, palette) for row in range(len(world.walls)) if row not in closed]
-    boxes += [_panel_box(world, fit, row) for row in range(len(world.panels))]
+    walls = _wall_boxes(world, fit, palette)
+    glass = np.array([kind == "glass" for kind in world.wall_kind], bool)
+    _add_glass(scene, f"{name}_glass", walls.of(glass))
+    loose = ~glass
+    parts = [_panel_boxes(world, fit)]
     middles = (world.panels[:, :2] + world.panels[:, 2:4]) / 2
     for rows, outline in runs:
-        bare = not any(inside(outline, float(x), float(y)) for x, y in middles)
-        if world.wall_kind[rows[0]] == "desk" and bare:
-            boxes += _screens(fit, outline, palette)
-    boxes = [box for box in boxes if box is not None] or [((0, 0, -50), (1, 1, 1), 0.0, palette.wall)]
-    centres, sizes, turns, colours = zip(*boxes, strict=True)
-    turn = np.array(turns) / 2
+        loose[rows] = False
+        if world.wall_kind[rows[0]] == "desk" and not any(inside(outline, float(x), float(y)) for x, y in middles):
+            parts += _screens(fit, outline, palette)
+    parts.append(walls.of(loose))
+    if not any(len(part.turn_rad) for part in parts):  # viser wants one at least: far below
+        rgb = np.array([palette.wall], np.uint8)
+        parts.append(Boxes(np.full((1, 3), -50.0), np.ones((1, 3)), np.zeros(1), rgb))
+    turn = np.concatenate([part.turn_rad for part in parts])
     scene.add_batched_meshes_simple(
         f"{name}_boxes",
-        *ribbons.sharp(ribbons.UNIT_CUBE),
-        batched_wxyzs=np.column_stack([np.cos(turn), 0 * turn, 0 * turn, np.sin(turn)]).astype(np.float32),
-        batched_positions=np.array(centres, np.float32),
-        batched_scales=np.array(sizes, np.float32),
-        batched_colors=palette.batched(colours),
+        *ribbons.open_cube(),
+        batched_wxyzs=np.column_stack([np.cos(turn / 2), 0 * turn, 0 * turn, np.sin(turn / 2)]).astype(np.float32),
+        batched_positions=np.concatenate([part.centre for part in parts]).astype(np.float32),
+        batched_scales=np.concatenate([part.size for part in parts]).astype(np.float32),
+        batched_colors=palette.batched(np.concatenate([part.rgb for part in parts])),
         lod="off",
         cast_shadow=False,
         receive_shadow=False,
     )
+    heights = _heights(world) * fit.relief
     for kind in ("desk", "other"):
         chosen = [
-            ribbons.extruded(fit.to_plate(outline), 0.0, _height(world, rows[0]) * fit.relief)
+            ribbons.extruded(fit.to_plate(outline), 0.0, float(heights[rows[0]]))
             for rows, outline in runs
             if (world.wall_kind[rows[0]] == "desk") == (kind == "desk") and world.wall_kind[rows[0]] != "glass"
         ]
@@ -97,67 +111,68 @@ def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: Wor
         add_mesh(scene, f"{name}_{kind}", ribbons.joined(*chosen) if chosen else ribbons.NOTHING, colour)
 
 
-def _add_glass(scene: viser.SceneApi, name: str, panes: list[Box]) -> None:
+def _add_glass(scene: viser.SceneApi, name: str, panes: Boxes) -> None:
     """What one sees through: light blue, in one mesh."""
-    solid = [ribbons.turned_box(*pane[:3]) for pane in panes]
+    solid = [
+        ribbons.turned_box(tuple(centre), tuple(size), turn)
+        for centre, size, turn in zip(panes.centre.tolist(), panes.size.tolist(), panes.turn_rad.tolist(), strict=True)
+    ]
     add_mesh(scene, name, ribbons.joined(*solid) if solid else ribbons.NOTHING, GLASS_RGB, opacity=0.35)
 
 
-Box = tuple[tuple[float, float, float], tuple[float, float, float], float, Rgb]  # centre, size, turn, colour
+def _heights(world: WorldDrawing) -> Array:
+    """(n,): of the walls, in units of the plate before its relief."""
+    metres = np.asarray(world.wall_height_m, np.float64)
+    usual = np.array([HEIGHTS.get(kind, 0.0) for kind in world.wall_kind], np.float64)
+    return np.where(usual > 0.0, usual, np.clip(metres * METRE_HIGH, 0.1, 0.62))
 
 
-def _height(world: WorldDrawing, row: int) -> float:
-    kind = world.wall_kind[row]
-    return HEIGHTS.get(kind, min(max(float(world.wall_height_m[row]) * METRE_HIGH, 0.1), 0.62))
-
-
-def _wall_box(world: WorldDrawing, fit: OfficeFit, row: int, palette: Palette) -> Box:
+def _wall_boxes(world: WorldDrawing, fit: OfficeFit, palette: Palette) -> Boxes:
     """Outer walls stand outside the bounds, and the front one is low, so that one can look in."""
-    x1, y1, x2, y2 = (float(v) for v in world.walls[row])
-    side = _outer_side(world, x1, y1, x2, y2)
-    kind = world.wall_kind[row]
-    thick = THICK.get(kind, 0.08) * fit.relief
-    height = (FRONT if side == (0.0, -1.0) else _height(world, row)) * fit.relief
-    (ax, ay), (bx, by) = fit.to_plate(np.array([[x1, y1], [x2, y2]]))
-    centre = ((ax + bx) / 2 + side[0] * thick / 2, (ay + by) / 2 + side[1] * thick / 2, height / 2)
-    length = math.dist((ax, ay), (bx, by)) + (2 * thick if side[1] else 0.0)
-    colour = {"wall": palette.wall, "desk": palette.desk}.get(kind, palette.partition)
-    return centre, (length, thick, height), math.atan2(by - ay, bx - ax), colour
+    ends = np.asarray(world.walls, np.float64).reshape(-1, 4)
+    side = _outer_sides(world, ends)
+    front = (side == (0.0, -1.0)).all(axis=1)
+    thick = np.array([THICK.get(kind, 0.08) for kind in world.wall_kind], np.float64) * fit.relief
+    height = np.where(front, FRONT, _heights(world)) * fit.relief
+    a, b = fit.to_plate(ends[:, :2]), fit.to_plate(ends[:, 2:])
+    along = b - a
+    length = np.hypot(*along.T) + np.where(side[:, 1] != 0.0, 2 * thick, 0.0)
+    colours = {"wall": palette.wall, "desk": palette.desk}
+    rgb = np.array([colours.get(kind, palette.partition) for kind in world.wall_kind], np.uint8).reshape(-1, 3)
+    centre = np.column_stack([(a + b) / 2 + side * thick[:, None] / 2, height / 2])
+    return Boxes(centre, np.column_stack([length, thick, height]), np.arctan2(along[:, 1], along[:, 0]), rgb)
 
 
-def _outer_side(world: WorldDrawing, x1: float, y1: float, x2: float, y2: float) -> tuple[float, float]:
-    """Outwards for a wall that lies on the bounds, else (0, 0)."""
+def _outer_sides(world: WorldDrawing, ends: Array) -> Array:
+    """(n, 2): outwards for each of (n, 4) that lies on the bounds, else (0, 0)."""
     low_x, low_y, high_x, high_y = world.bounds
-    for value, bound, side in ((x1, low_x, (-1.0, 0.0)), (x1, high_x, (1.0, 0.0))):
-        if abs(value - bound) < 0.06 and abs(x2 - x1) < 0.06:
-            return side
-    for value, bound, side in ((y1, low_y, (0.0, -1.0)), (y1, high_y, (0.0, 1.0))):
-        if abs(value - bound) < 0.06 and abs(y2 - y1) < 0.06:
-            return side
-    return 0.0, 0.0
+    x1, y1, x2, y2 = ends.T
+    upright, level = np.abs(x2 - x1) < 0.06, np.abs(y2 - y1) < 0.06
+    on = [upright & (np.abs(x1 - low_x) < 0.06), upright & (np.abs(x1 - high_x) < 0.06)]
+    on += [level & (np.abs(y1 - low_y) < 0.06), level & (np.abs(y1 - high_y) < 0.06)]
+    sides = np.array([(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0), (0.0, 0.0)])
+    return sides[np.select(on, [0, 1, 2, 3], 4)]
 
 
-def _panel_box(world: WorldDrawing, fit: OfficeFit, row: int) -> Box | None:
-    """A poster, door or window: a thin box that stands out from its wall. None on the low front wall."""
-    x1, y1, x2, y2, bottom, top = (float(v) for v in world.panels[row])
-    if _outer_side(world, x1, y1, x2, y2) == (0.0, -1.0):
-        return None
-    low, high = max(bottom * METRE_HIGH, 0.0) * fit.relief, min(top * METRE_HIGH, 0.6) * fit.relief
-    (ax, ay), (bx, by) = fit.to_plate(np.array([[x1, y1], [x2, y2]]))
-    red, green, blue = (int(v) for v in world.panel_rgb[row])
-    return (
-        ((ax + bx) / 2, (ay + by) / 2, (low + high) / 2),
-        (math.dist((ax, ay), (bx, by)), PANEL_THICK * fit.relief, max(high - low, 0.02)),
-        math.atan2(by - ay, bx - ax),
-        (red, green, blue),
-    )
+def _panel_boxes(world: WorldDrawing, fit: OfficeFit) -> Boxes:
+    """Posters, doors and windows: thin boxes that stand out from their walls. None on the low front wall."""
+    panels = np.asarray(world.panels, np.float64).reshape(-1, 6)
+    seen = (_outer_sides(world, panels[:, :4]) != (0.0, -1.0)).any(axis=1)
+    panels, rgb = panels[seen], np.asarray(world.panel_rgb, np.uint8)[: len(seen)][seen]
+    low = np.maximum(panels[:, 4] * METRE_HIGH, 0.0) * fit.relief
+    high = np.minimum(panels[:, 5] * METRE_HIGH, 0.6) * fit.relief
+    a, b = fit.to_plate(panels[:, :2]), fit.to_plate(panels[:, 2:4])
+    along = b - a
+    thick = np.full(len(panels), PANEL_THICK * fit.relief)
+    size = np.column_stack([np.hypot(*along.T), thick, np.maximum(high - low, 0.02)])
+    return Boxes(np.column_stack([(a + b) / 2, (low + high) / 2]), size, np.arctan2(along[:, 1], along[:, 0]), rgb)
 
 
-def _screens(fit: OfficeFit, outline: Array, palette: Palette) -> list[Box]:
+def _screens(fit: OfficeFit, outline: Array, palette: Palette) -> list[Boxes]:
     """A dark screen on each desk, so that desks read as desks."""
     corners = fit.to_plate(outline)
     low, high = corners.min(0), corners.max(0)
     if min(high - low) < 0.3:
         return []
-    x, y = (low + high) / 2
-    return [((float(x), float(y), HEIGHTS["desk"] + 0.02), (0.34, 0.2, 0.04), 0.0, palette.tyre)]
+    centre = np.array([(*((low + high) / 2), HEIGHTS["desk"] + 0.02)])
+    return [Boxes(centre, np.array([(0.34, 0.2, 0.04)]), np.zeros(1), np.array([palette.tyre], np.uint8))]

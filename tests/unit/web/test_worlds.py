@@ -165,6 +165,19 @@ def test_worlds_and_vector_maps_are_opened(server: House) -> None:
     assert (status, answer["size_m"]) == (200, [5.6, 5.6])
 
 
+@pytest.mark.parametrize("most", [1_000_000, 10_000_000])
+def test_a_world_may_be_larger_than_any_other_json(server: House, most: int) -> None:
+    """Both sides of both limits, in bytes; what is there in too many is spaces."""
+    is_world = most > 1_000_000
+    text = world_to_json(OFFICE).encode() if is_world else b"[[0, 0, 5, 0], [5, 0, 5, 5], [5, 5, 0, 5], [0, 5, 0, 0]]"
+    for size, expected in ((most, 200), (most + 1, 422)):
+        status, answer = post(server, "/api/worlds/open", {"files": files(p__json=text + b" " * (size - len(text)))})
+        assert status == expected
+        if status == 422:
+            assert f"p.json: {size} bytes; at most {most}" in why(answer)
+    assert len(server.engine.answer.got) == 1  # type: ignore[union-attr]
+
+
 @pytest.mark.parametrize(
     ("body", "reason"),
     [
@@ -174,6 +187,8 @@ def test_worlds_and_vector_maps_are_opened(server: House) -> None:
         ({"files": files(p__json=b'{"format": 1,\n"name": }')}, "p.json: not JSON: line 2, column 9"),
         ({"files": files(p__txt=b"x")}, "p.txt: cannot be imported; expected .json"),
         ({"files": files(p__json=b" " * 1_000_001)}, "p.json: 1000001 bytes; at most 1000000"),
+        ({"files": files(p__json=b"{" * 9_000_000)}, "p.json: not JSON: line 1, column 2"),
+        ({"files": files(p__json=b'{"a":' * 1_500_000)}, "p.json: not a world: nested too deeply"),
         ({"files": files(a__png=b"1", b__png=b"2")}, "got 2 files, a.png, b.png; drop one plan at a time"),
         ({"files": [{"name": "p.png", "data": "?"}]}, "p.png: data must be base64"),
         ({"files": []}, "files: list should have at least 1 item"),
