@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim2d.texture import TEXEL_M, paint_strip, strip_shape
+from sim2d.texture import ROW_MULTIPLE, TEXEL_M, paint_strip
 from sim2d.world import Wall
 
 LEVELS = 5
@@ -30,34 +30,53 @@ class Atlas:
     first: (2 n, LEVELS) where a strip's level begins. columns, rows: (2 n,) at level 0.
     """
 
-    def __init__(self, walls: tuple[Wall, ...]) -> None:
-        area = sum(wall.length * (wall.height - wall.bottom) for wall in walls)
-        self._walls, self._large = walls, area > MOST_FINE_M2
+    def __init__(self, walls: tuple[Wall, ...], before: Atlas | None = None) -> None:
+        """before: of walls many of which are the same objects; how these look need not be found out again."""
+        self._walls = walls
+        was = {} if before is None else {id(wall): i for i, wall in enumerate(before._walls)}
+        old = np.array([was.get(id(wall), -1) for wall in walls], np.int64)
+        self._sizes = np.zeros((len(walls), 2))  # length and height, metres
+        if before is not None:
+            self._sizes = before._sizes[old]
+        for i in np.flatnonzero(old < 0).tolist():
+            self._sizes[i] = walls[i].length, walls[i].height - walls[i].bottom
+        area = sum((self._sizes[:, 0] * self._sizes[:, 1]).tolist())
+        self._large = area > MOST_FINE_M2
         self._texel_m = TEXEL_M * math.sqrt(area / MOST_FINE_M2) if self._large else TEXEL_M
-        n = 2 * len(walls)
-        self.first = np.zeros((n, LEVELS), np.int64)
-        self.columns, self.rows = np.zeros(n, np.int64), np.zeros(n, np.int64)
-        self._owner = np.zeros(n, np.int64)  # the strip whose texels these are
-        self._painted = np.zeros(n, np.bool_)
-        self._bare = np.zeros(n, np.int64)
-        known: dict[object, int] = {}
-        end = 0
-        for strip in range(n):
-            wall, side = walls[strip // 2], _SIDES[strip % 2]
-            panels = tuple(panel for panel in wall.panels if panel.side in (side, "both"))
-            plain = self._large and not panels  # the same all along: one column will do
-            look = (0.0 if plain else wall.length, wall.kind, wall.height, wall.bottom, wall.colour, panels)
-            owner = self._owner[strip] = known.setdefault(look, strip)
-            if owner != strip:
-                self.first[strip] = self.first[owner]
-                self.columns[strip], self.rows[strip] = self.columns[owner], self.rows[owner]
-                continue
-            columns, rows = strip_shape(wall, self._texel_m)
-            self.columns[strip], self.rows[strip] = 1 if plain else columns, rows
-            for level in range(LEVELS):
-                self.first[strip, level] = end
-                end += int(self.columns[strip] + 1) * (rows >> level) * 3
-        self.texels = np.empty(end, np.float32)  # of what is not painted yet the system keeps no page
+        if before is None or before._large != self._large:
+            self._known: dict[object, int] = {}  # a look's number
+            self._looks, self._plain = np.zeros((len(walls), 2), np.int64), np.zeros((len(walls), 2), np.bool_)
+            old[:] = -1
+        else:
+            self._known, self._looks, self._plain = before._known, before._looks[old], before._plain[old]
+        for i in np.flatnonzero(old < 0).tolist():
+            for k, side in enumerate(_SIDES):
+                self._looks[i, k], self._plain[i, k] = self._look(walls[i], side)
+        self._lay_out()
+        self._painted, self._bare = np.zeros(2 * len(walls), np.bool_), np.zeros(2 * len(walls), np.int64)
+
+    def _look(self, wall: Wall, side: str) -> tuple[int, bool]:
+        """The number of what a side looks like, and whether it is the same all along: one column will do."""
+        panels = tuple(panel for panel in wall.panels if panel.side in (side, "both"))
+        plain = self._large and not panels
+        look = (0.0 if plain else wall.length, wall.kind, wall.height, wall.bottom, wall.colour, panels)
+        return self._known.setdefault(look, len(self._known)), plain
+
+    def _lay_out(self) -> None:
+        """Where the texels of each strip are: first, columns, rows and their owner, the first strip that looks so."""
+        _, owners, number = np.unique(self._looks.ravel(), return_index=True, return_inverse=True)
+        self._owner = owner = owners[number.ravel()]
+        columns = np.maximum(1, np.rint(self._sizes[:, 0] / self._texel_m).astype(np.int64))  # as `strip_shape`
+        rows = ROW_MULTIPLE * np.maximum(1, np.rint(self._sizes[:, 1] / self._texel_m / ROW_MULTIPLE).astype(np.int64))
+        self.columns = np.where(self._plain, 1, columns[:, None]).ravel()[owner]
+        self.rows = np.repeat(rows, 2)[owner]
+        own = np.flatnonzero(owner == np.arange(owner.size))
+        sizes = 3 * (self.columns[own] + 1)[:, None] * (self.rows[own][:, None] >> np.arange(LEVELS))
+        ends = np.cumsum(sizes.ravel())
+        first = np.zeros((owner.size, LEVELS), np.int64)
+        first[own] = (ends - sizes.ravel()).reshape(sizes.shape)
+        self.first = first[owner]
+        self.texels = np.empty(ends[-1], np.float32)  # of what is not painted yet the system keeps no page
 
     def paint_seen(
         self, counts: NDArray[np.int64], walls: NDArray[np.int64], mirrored: NDArray[np.int64] | None = None

@@ -48,12 +48,12 @@ class Camera:
         self._full[self._walls_end :] = False  # they move: none is sure to hide what is behind
         self._glass = np.array([w.kind == "glass" for w in walls])
         self._has_glass = bool(self._glass.any())
-        self._atlas = atlas = Atlas(walls)
+        self._atlas = atlas = Atlas(walls, getattr(self, "_atlas", None))
         self._strips = Strips(
             atlas.texels, atlas.first, atlas.columns, atlas.rows, np.array([w.bottom for w in walls]), tops,
             _shades(self._segments), np.array([w.reflection if w.kind == "glass" else -1.0 for w in walls]),
         )  # fmt: skip
-        self._lights = Lights(world, index)
+        self._lights = Lights(world, index, getattr(self, "_lights", None))
         self._marks = np.zeros(self._walls_end, np.int64)
         self._mark = 0
         self._chosen = np.zeros(len(walls), np.int64)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from sim2d.geometry import free_cells, inside_ring, nearest_segment
+from sim2d.geometry import differing, free_cells, inside_ring, nearest_segment
 from sim2d.reach import reachable
 from sim2d.world import World
 
@@ -49,7 +49,7 @@ class FreeSpace:
             before = None
         if before is None or not np.array_equal(before._ring, self._ring):
             return free_cells(self._segments, self._ring, self._xs, self._ys, self._radius)
-        changes = _differing(before._segments, self._segments)
+        changes = differing(before._segments, self._segments)
         if len(changes) > _MOST_CHANGES:
             return free_cells(self._segments, self._ring, self._xs, self._ys, self._radius)
         free = before._free.copy()
@@ -168,17 +168,6 @@ class FreeSpace:
         rows, columns = rows + low, columns + left
         k = int(np.argmin((self._xs[columns] - x) ** 2 + (self._ys[rows] - y) ** 2))
         return int(rows[k]), int(columns[k])
-
-
-def _differing(a: NDArray[np.float64], b: NDArray[np.float64]) -> list[tuple[float, ...]]:
-    """The rows that are in one of (n, 4) and (m, 4) alone, in order."""
-    most = min(len(a), len(b))
-    same = np.append((a[:most] == b[:most]).all(axis=1), False)
-    first = int(np.argmin(same))  # what is the same before it and after it need not be compared one by one
-    same = np.append((a[len(a) - most :] == b[len(b) - most :]).all(axis=1)[first:][::-1], False)
-    last = int(np.argmin(same))
-    rows = [set(map(tuple, part[first : len(part) - last].tolist())) for part in (a, b)]
-    return sorted(rows[0] ^ rows[1])
 
 
 def _shifted(nodes: NDArray[np.int32], dx: int, dy: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:

@@ -1,4 +1,4 @@
-"""Distances in the plane, compiled: from a point to segments, along a ray to segments, inside a ring."""
+"""Distances in the plane, compiled: from a point to segments, along a ray to segments, inside a ring. And what an edit moved."""
 
 from __future__ import annotations
 
@@ -117,3 +117,14 @@ def _fill_ring(
             while passed < n and row[passed] <= xs[k]:
                 passed += 1
             out[j, k] = (n - passed) % 2 == 1
+
+
+def differing(a: NDArray[np.float64], b: NDArray[np.float64]) -> list[tuple[float, ...]]:
+    """The rows that are in one of two lists of segments, (n, 4) and (m, 4), and not in the other; in order."""
+    most = min(len(a), len(b))
+    same = np.append((a[:most] == b[:most]).all(axis=1), False)
+    first = int(np.argmin(same))  # what is the same before it and after it need not be compared one by one
+    same = np.append((a[len(a) - most :] == b[len(b) - most :]).all(axis=1)[first:][::-1], False)
+    last = int(np.argmin(same))
+    rows = [set(map(tuple, part[first : len(part) - last].tolist())) for part in (a, b)]
+    return sorted(rows[0] ^ rows[1])

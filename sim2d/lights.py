@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from sim2d.geometry import differing
 from sim2d.things import Lamp
 from sim2d.wall_index import WallIndex, first_wall
 from sim2d.world import World
@@ -16,17 +17,22 @@ _CELL_M = 0.25
 _MOST_CELLS = 1_000_000
 _STEP_BACK_M = 0.15  # light on a wall is that of the floor before it
 
+Spot = tuple[slice, slice, NDArray[np.float64]]  # rows and columns of the grid, and the light there
+
 
 class Lights:
     """The lamps of one world over a grid of its floor. Without lamps there is no grid and nothing to compute."""
 
-    def __init__(self, world: World, index: WallIndex) -> None:
+    def __init__(self, world: World, index: WallIndex, before: Lights | None = None) -> None:
+        """before: of a world that may differ in a few walls; light that none of them is near to stays as it was."""
         x0, y0, x1, y1 = world.bounds
         self._lamps = world.lamps
         self._cell = max(_CELL_M, math.sqrt((x1 - x0) * (y1 - y0) / _MOST_CELLS))
         self._corner = (x0, y0)
         self._shape = (int((y1 - y0) / self._cell) + 2, int((x1 - x0) / self._cell) + 2) if world.lamps else (0, 0)
-        self._spots = [self._spot(lamp, index) for lamp in world.lamps]
+        self._segments = index.segments
+        known = {} if before is None else self._unchanged(before)
+        self._spots = [known.get(lamp) or self._spot(lamp, index) for lamp in world.lamps]
         self._on: tuple[bool, ...] = ()
         self._total = np.zeros(self._shape)
 
@@ -53,7 +59,21 @@ class Lights:
                     self._total[rows, columns] += light
         _glow(self._total, *self._corner, self._cell, daylight, *eye, rays, counts, hits, out)
 
-    def _spot(self, lamp: Lamp, index: WallIndex) -> tuple[slice, slice, NDArray[np.float64]]:
+    def _unchanged(self, before: Lights) -> dict[Lamp, Spot]:
+        """The light of those lamps within whose reach all walls are still the same."""
+        if (before._cell, before._corner, before._shape) != (self._cell, self._corner, self._shape):
+            return {}
+        changed = np.array(differing(before._segments, self._segments)).reshape(-1, 2, 2)
+        low, high = changed.min(axis=1), changed.max(axis=1)
+        return {
+            lamp: spot
+            for lamp, spot in zip(before._lamps, before._spots, strict=True)
+            if not ((low <= np.add((lamp.x, lamp.y), lamp.reach)) & (high >= np.subtract((lamp.x, lamp.y), lamp.reach)))
+            .all(axis=1)
+            .any()
+        }
+
+    def _spot(self, lamp: Lamp, index: WallIndex) -> Spot:
         """The part of the grid that a lamp reaches, and its light there: b (1 - (d / reach)^2)^2, no light through walls."""
         x0, y0 = self._corner
         left, low = (max(0, int((p - lamp.reach - q) / self._cell)) for p, q in ((lamp.x, x0), (lamp.y, y0)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import zlib
+from functools import lru_cache
 
 from sim2d.things import Box, Door, Person, Rgb
 from sim2d.walkers import PERSON_SIDES
@@ -15,10 +16,16 @@ _HAIR: tuple[Rgb, ...] = ((40, 32, 28), (96, 64, 40), (170, 140, 90), (150, 150,
 
 def thing_walls(world: World) -> tuple[Wall, ...]:
     """A wall of the right size for each row of `Living.segments`, in its order; where it stands is not looked at."""
-    walls = [_leaf(door) for door in world.doors]
-    for box in world.boxes:
+    return _walls(world.doors, world.boxes, world.people)
+
+
+@lru_cache(maxsize=8)
+def _walls(doors: tuple[Door, ...], boxes: tuple[Box, ...], people: tuple[Person, ...]) -> tuple[Wall, ...]:
+    """The same objects for the same things: an edit of something else leaves their looks alone."""
+    walls = [_leaf(door) for door in doors]
+    for box in boxes:
         walls += _sides(box)
-    for person in world.people:
+    for person in people:
         walls += _figure(person)
     return tuple(walls)
 

@@ -13,6 +13,7 @@ from scipy.ndimage import label
 from sim2d import (
     Drive,
     FreeSpace,
+    Lamp,
     OfficeParams,
     Panel,
     SensorFrame,
@@ -129,7 +130,9 @@ def edit_all(simulator: Simulator, worlds: list[World]) -> None:
 @settings(max_examples=40, deadline=None)
 @given(some_history(), st.integers(0, 999))
 def test_all_senses_and_the_drive_after_edits(worlds: list[World], seed: int) -> None:
-    edited = Simulator(room(side=SIDE), EXACT, 1, STILL)
+    lamps = (Lamp("a", 1.2, 1.0, 1.5, 0.6), Lamp("b", 4.0, 4.2, 2.5, 0.4))
+    worlds = [replace(world, lamps=lamps) for world in worlds]
+    edited = Simulator(replace(room(side=SIDE), lamps=lamps), EXACT, 1, STILL)
     edited.step(Drive(0.0, 0.0))  # its camera has painted what it sees
     edit_all(edited, worlds)
     anew = Simulator(world_from_json(world_to_json(edited.world), "written.json"), EXACT, 1, STILL)
