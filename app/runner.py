@@ -46,6 +46,7 @@ class Runner:
     ) -> None:
         self.latest: Latest[m.Snapshot] = Latest()
         self._own_worlds = {world.name: world}
+        self._deleted: set[str] = set()  # their files are gone; the one that is open stays until another is
         self._titles = dict(world_names()) | dict(own_worlds.names())
         self._titles.setdefault(world.name, world.title)
         self._editor = WorldEditor(world)
@@ -98,6 +99,7 @@ class Runner:
     def _begin(self, world: World, seed: int, config: Config, brain: RatSlam | None = None) -> None:
         """Another run, or none of it: what fails leaves the old one as it is."""
         session = Session(world, seed, config, brain)
+        self._forget(self._deleted - {world.name})
         chronicle = Chronicle(session)
         snapshots = Snapshots(session, chronicle, self._run + 1, tuple(self._titles.items()))
         if brain is not None:  # a foreign one has to be such that it can be shown
@@ -187,6 +189,8 @@ class Runner:
                 return m.Accepted(self.session.tick_count, (self._editor.world, self._editor.edition))
             case m.OpenWorld() | m.WorldSaved():
                 return self._receive(errand)
+            case m.WorldDeleted() | m.WorldRestored():
+                return self._file(errand)
 
     def _use(self, brain: object) -> m.Accepted | m.Refused:
         """A new run with a foreign brain in the same world; the old run goes on when that cannot be."""
@@ -212,12 +216,34 @@ class Runner:
             except ValueError as error:
                 return m.Refused("world", world.name, str(error))
             self._running = self._running or was_faulty
+            if not delivery.filed:
+                self._editor.unfiled(world.name)
         else:
             self._editor.named(delivery.was, world, self.session.edit_world)
         self._own_worlds[world.name] = world
+        self._deleted.discard(world.name)
         self._titles[world.name] = world.title
         self._snapshots.worlds = tuple(self._titles.items())
         return m.Accepted(self.session.tick_count, world.name)
+
+    def _file(self, news: m.WorldDeleted | m.WorldRestored) -> m.Accepted:
+        """A saved world's file has gone, or is there again."""
+        if isinstance(news, m.WorldDeleted):
+            self._editor.unfiled(news.name)
+            self._deleted.add(news.name)
+            self._forget({news.name} - {self.session.world.name})
+        else:
+            self._editor.filed(news.name)
+            self._deleted.discard(news.name)
+            self._titles[news.name] = news.title
+        self._snapshots.worlds = tuple(self._titles.items())
+        return m.Accepted(self.session.tick_count)
+
+    def _forget(self, names: set[str]) -> None:
+        for name in names:
+            self._titles.pop(name, None)
+            self._own_worlds.pop(name, None)
+        self._deleted -= names
 
     def _new_name(self, world: World) -> World:
         """The same with a name that no other world has: plan, plan-2, plan-3."""

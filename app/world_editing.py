@@ -34,7 +34,10 @@ class WorldEditor:
     """
 
     def __init__(self, world: World) -> None:
-        self.world = self.saved = world
+        self.world = world
+        self.saved: World | None = world  # as it is in its file, or was opened; None: in no file
+        self._lost: World | None = None  # what `saved` was when its file was deleted
+        self._unfiled: set[str] = set()
         self._past: list[tuple[str, World]] = []
         self._future: list[tuple[str, World]] = []
         self._number = 1
@@ -45,7 +48,9 @@ class WorldEditor:
             return
         been = [k for k, (_, before) in enumerate(self._past) if before is world]
         self._past, self._future = self._past[: been[-1]] if been else [], []
-        self.world, self.saved = world, self.saved if been else world
+        self.world = world
+        if not been:
+            self.saved, self._lost = None if world.name in self._unfiled else world, None
         self._number += 1
 
     def follow(self, world: World) -> None:
@@ -88,8 +93,23 @@ class WorldEditor:
         if (world.name, world.title) != (was.name, was.title):
             take(world)
             self.world = world
+            for steps in (self._past, self._future):  # who takes an edit back keeps the name
+                steps[:] = [(words, replace(other, name=world.name, title=world.title)) for words, other in steps]
             self._number += 1
         self.saved = self.world
+        self._unfiled.discard(world.name)
+
+    def unfiled(self, name: str) -> None:
+        """No file holds the world of this name: it was never saved, or has been deleted."""
+        self._unfiled.add(name)
+        if name == self.world.name:
+            self.saved, self._lost = None, self.saved
+
+    def filed(self, name: str) -> None:
+        """A deleted file is there again."""
+        self._unfiled.discard(name)
+        if name == self.world.name and self.saved is None:
+            self.saved = self._lost
 
     def _do(self, words: str, world: World) -> None:
         self._past = [*self._past, (words, self.world)][-MOST_UNDOS:]

@@ -55,6 +55,42 @@ def save(name: str, text: str) -> Path:
     return path
 
 
+def delete(name: str) -> Path:
+    """Take a saved world out of the folder's list; its file is kept as `NAME.json.deleted`. ValueError says why it cannot be."""
+    path = _existing(name)
+    try:
+        path.replace(_deleted(path))
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be deleted: {error.strerror or error}") from None
+    return _deleted(path)
+
+
+def restore(name: str) -> str:
+    """The world of this name that was deleted last is there again; its title. ValueError says why it cannot be."""
+    path = path_of(name)
+    if path is None or not _deleted(path).is_file():
+        raise ValueError(f"no world {name!r} has been deleted")
+    if path.exists():
+        raise ValueError(f"there is another world {name!r} by now; delete it or save it under another name first")
+    try:
+        _deleted(path).replace(path)
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be written: {error.strerror or error}") from None
+    return _title(path)
+
+
+def _existing(name: str) -> Path:
+    path = path_of(name)
+    if path is None or not path.is_file():
+        known = ", ".join(known for known, _ in names()) or "none, since nothing has been saved"
+        raise ValueError(f"no saved world {name!r}; expected one of: {known}")
+    return path
+
+
+def _deleted(path: Path) -> Path:
+    return path.with_name(f"{path.name}.deleted")
+
+
 def _title(path: Path) -> str:
     try:
         return str(json.loads(path.read_text("utf-8"))["title"])

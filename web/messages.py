@@ -629,6 +629,7 @@ class OpenWorld:
     """Begin anew in this world, which has been checked. The answer's `result` is the name that it got."""
 
     world: World
+    filed: bool = True  # False: it is in no file yet, and would be lost
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -639,8 +640,23 @@ class WorldSaved:
     world: World
 
 
+@dataclass(frozen=True, slots=True)
+class WorldDeleted:
+    """The saved world of this name is in no file any more. Where it is open, it stays until another is opened."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class WorldRestored:
+    """It is in its file again."""
+
+    name: str
+    title: str
+
+
 Errand = (
-    ReadExperience | ReadBrain | UseBrain | ReadWorld | OpenWorld | WorldSaved
+    ReadExperience | ReadBrain | UseBrain | ReadWorld | OpenWorld | WorldSaved | WorldDeleted | WorldRestored
 )  # what no command can hold; goes the same way
 
 

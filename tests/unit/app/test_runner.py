@@ -14,7 +14,7 @@ from app.runner import Runner
 from app.session import PARTS, Session
 from ratslam_core import RatSlam
 from ratslam_core.brain_snapshot import restore_snapshot
-from sim2d import SONAR_ANGLES_RAD, load_world
+from sim2d import SONAR_ANGLES_RAD, load_world, own_worlds, world_to_json
 from web import messages as m
 
 from .worlds import room
@@ -552,6 +552,46 @@ def test_a_saved_world_bears_its_name(start: Callable[..., Runner]) -> None:
     assert (after.world.name, after.office.saved, after.tick) == ("mine", True, 0)
     assert ("mine", "Mine") in after.worlds
     assert len(after.world.walls) == 5
+
+
+def test_a_world_in_no_file_counts_as_unsaved(start: Callable[..., Runner]) -> None:
+    runner = start()
+    assert do(runner, m.OpenWorld(room(start=(2.0, 2.0, 0.0)), filed=False)).result == "room"
+    assert not snapshot(runner).office.saved
+    assert accept(runner, m.Reset(type="reset", world="office")).office.saved
+    assert not accept(runner, m.Reset(type="reset", world="room")).office.saved  # come back to
+    world, _ = do(runner, m.ReadWorld()).result
+    do(runner, m.WorldSaved(world, world))
+    assert snapshot(runner).office.saved
+
+
+def test_a_deleted_world_goes_on_until_another_is_opened(
+    start: Callable[..., Runner], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("RATSLAM_WORLDS", str(tmp_path))
+    mine = room(start=(2.0, 2.0, 0.0))
+    for name in ("mine", "other"):
+        own_worlds.save(name, world_to_json(replace(mine, name=name)))
+    runner = start()
+    do(runner, m.Reset(type="reset", world="mine"))
+    own_worlds.delete("other")
+    do(runner, m.WorldDeleted("other"))
+    assert "other" not in dict(snapshot(runner).worlds)
+    assert snapshot(runner).office.saved
+    own_worlds.delete("mine")
+    do(runner, m.WorldDeleted("mine"))
+    now = snapshot(runner)
+    assert (now.world.name, now.office.saved, "mine" in dict(now.worlds)) == ("mine", False, True)
+    assert accept(runner, m.Reset(type="reset")).world.name == "mine"
+    assert "mine" not in dict(accept(runner, m.Reset(type="reset", world="loop")).worlds)
+    assert refuse(runner, m.Reset(type="reset", world="mine")).field == "world"
+    own_worlds.restore("mine")
+    do(runner, m.WorldRestored("mine", "A room"))
+    back = accept(runner, m.Reset(type="reset", world="mine"))
+    assert (back.world.name, back.office.saved) == ("mine", True)
+    do(runner, m.WorldDeleted("mine"))
+    do(runner, m.WorldRestored("mine", "A room"))
+    assert snapshot(runner).office.saved
 
 
 def test_a_saved_world_that_is_spoilt_is_refused(

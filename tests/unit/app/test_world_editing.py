@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -314,6 +315,37 @@ def test_saving_gives_the_world_its_name() -> None:
     assert not editor.edition.saved
     editor.named(was, named, taken)  # it was edited again while it was written
     assert not editor.edition.saved
+
+
+def test_who_takes_an_edit_back_keeps_the_name() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    first = editor.world
+    editor.edit(order(("add", "places", None, ITEMS["places"])), RADIUS, taken)
+    editor.named(editor.world, replace(editor.world, name="mine", title="Mine"), taken)
+    saved = editor.world
+    editor.undo(taken)
+    assert editor.world == replace(first, name="mine", title="Mine")
+    editor.redo(taken)
+    assert editor.world is saved
+    assert editor.edition.saved
+
+
+def test_what_is_in_no_file_counts_as_unsaved() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    other = room(start=(2.0, 2.0, 0.0))
+    editor.unfiled("room")  # deleted
+    assert not editor.edition.saved
+    editor.filed("room")  # brought back
+    assert editor.edition.saved
+    editor.unfiled("room")
+    editor.begin(replace(other, name="else"))
+    assert editor.edition.saved
+    editor.begin(replace(other, name="room"))
+    assert not editor.edition.saved
+    editor.filed("room")
+    assert not editor.edition.saved  # what came back is another one
+    editor.named(editor.world, editor.world, taken)
+    assert editor.edition.saved
 
 
 def test_undo_reaches_a_long_way_back_but_not_for_ever() -> None:

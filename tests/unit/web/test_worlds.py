@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 
 from sim2d import World, load_world, own_worlds, world_from_json, world_to_json
+from sim2d.world_check import check_world
 from tests.unit.web.doubles import House, house
-from web.messages import Accepted, OfficeEdition, OpenWorld, ReadWorld, Refused, WorldSaved
+from web.messages import Accepted, OfficeEdition, OpenWorld, ReadWorld, Refused, WorldDeleted, WorldRestored, WorldSaved
 from web.security import Limits
 
 OFFICE = load_world("office")
@@ -37,7 +38,7 @@ class Engine:
         match request:
             case ReadWorld():
                 return Accepted(5, (self.world, EDITION))
-            case OpenWorld(world):
+            case OpenWorld(world, _):
                 return Accepted(5, world.name)
             case WorldSaved(_, world):
                 self.world = world
@@ -120,6 +121,91 @@ def test_worlds_that_are_there_are_not_lost(server: House) -> None:
     assert status == 422
     assert "there is a world 'mine' already; replace it or choose another name" in why(answer)
     assert post(server, "/api/worlds/save", {"name": "mine", "replace": True})[0] == 200
+
+
+def test_an_empty_world_is_begun(server: House) -> None:
+    body = {"name": "hall", "title": "Hall", "width_m": 12.5, "depth_m": 6}
+    status, answer = post(server, "/api/worlds/new", body)
+    assert (status, answer) == (200, {"name": "hall", "title": "Hall", "walls": 4, "starts": 1, "size_m": [12.5, 6.0]})
+    (opened,) = server.engine.answer.got  # type: ignore[union-attr]
+    assert opened.filed is False
+    world = opened.world
+    check_world(world, 0.2)
+    assert world_from_json(world_to_json(world), "f") == world
+    assert all(wall.outer and len(wall.panels) > 3 for wall in world.walls)
+    assert (world.starts[0].x, world.starts[0].y, len(world.lamps)) == (6.25, 3.0, 1)
+    assert not own_worlds.folder().exists()
+    assert post(server, "/api/worlds/new", {"name": "other", "width_m": 12.5, "depth_m": 6})[1]["title"] == "other"
+    other = server.engine.answer.got[-1].world  # type: ignore[union-attr]
+    assert other.walls != world.walls  # looks of its own
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"name": "office"}, "office comes with the program and stays as it is; choose another name"),
+        ({"name": "mine"}, "there is a world 'mine' already; choose another name"),
+        ({"name": "../evil"}, "a name has 1 to 40 letters"),
+        ({"width_m": 1.9}, "width: got 1.9 m; must be from 2 to 200 m"),
+        ({"depth_m": 201}, "depth: got 201 m; must be from 2 to 200 m"),
+        ({"depth_m": "x"}, "depth_m: input should be a valid number"),
+        ({"title": ""}, "title: string should have at least 1 character"),
+    ],
+)
+def test_an_empty_world_that_cannot_be_says_why(server: House, change: Any, reason: str) -> None:
+    own_worlds.save("mine", world_to_json(replace(OFFICE, name="mine")))
+    status, answer = post(server, "/api/worlds/new", {"name": "hall", "width_m": 9, "depth_m": 9, **change})
+    assert (status, reason in why(answer)) == (422, True)
+    assert server.engine.answer.got == []  # type: ignore[union-attr]
+
+
+def test_a_deleted_world_can_be_brought_back(server: House) -> None:
+    path = own_worlds.save("mine", world_to_json(replace(OFFICE, name="mine", title="Mine")))
+    text = path.read_text("utf-8")
+    assert server.client.get("/api/worlds").json()["yours"] == {"mine": "Mine"}
+    status, answer = post(server, "/api/worlds/delete", {"name": "mine"})
+    assert (status, answer["file"]) == (200, f"{path}.deleted")
+    assert server.client.get("/api/worlds").json()["yours"] == {}
+    assert not path.exists()
+    status, answer = post(server, "/api/worlds/delete", {"name": "mine"})
+    assert (status, why(answer)) == (422, "no saved world 'mine'; expected one of: none, since nothing has been saved")
+    assert post(server, "/api/worlds/restore", {"name": "mine"}) == (200, {"name": "mine", "title": "Mine"})
+    assert path.read_text("utf-8") == text
+    assert server.engine.answer.got == [WorldDeleted("mine"), WorldRestored("mine", "Mine")]  # type: ignore[union-attr]
+    status, answer = post(server, "/api/worlds/restore", {"name": "mine"})
+    assert (status, why(answer)) == (422, "no world 'mine' has been deleted")
+    post(server, "/api/worlds/delete", {"name": "mine"})
+    own_worlds.save("mine", world_to_json(replace(OFFICE, name="mine", title="Second")))
+    status, answer = post(server, "/api/worlds/restore", {"name": "mine"})
+    assert (status, "there is another world 'mine' by now" in why(answer)) == (422, True)
+    assert own_worlds.names() == (("mine", "Second"),)
+
+
+@pytest.mark.parametrize("name", ["office", "../outside", "outside", "..", "mine.json", "x" * 41, "sub/mine"])
+def test_only_ones_own_worlds_are_deleted(server: House, name: str) -> None:
+    own_worlds.save("mine", world_to_json(replace(OFFICE, name="mine")))
+    folder = own_worlds.folder()
+    (folder / "sub").mkdir()
+    for other in (folder.parent / "outside.json", folder / "sub" / "mine.json"):
+        other.write_text("{}")
+    there = sorted(folder.parent.rglob("*"))
+    for what in ("delete", "restore"):
+        assert post(server, f"/api/worlds/{what}", {"name": name})[0] == 422
+    assert sorted(folder.parent.rglob("*")) == there
+    assert load_world("office") == OFFICE
+    assert all(isinstance(request, ReadWorld) for request in server.engine.answer.got)  # type: ignore[union-attr]
+
+
+def test_saving_under_another_name_can_rename(server: House) -> None:
+    post(server, "/api/worlds/save", {"name": "mine"})
+    assert post(server, "/api/worlds/save", {"name": "yours", "rename": True})[0] == 200
+    assert own_worlds.names() == (("yours", "yours"),)
+    assert server.engine.answer.got[-1] == WorldDeleted("mine")  # type: ignore[union-attr]
+    status, answer = post(server, "/api/worlds/save", {"name": "yours", "rename": True})
+    assert (status, why(answer)) == (422, "'yours' is no other world that you have saved; leave rename away")
+    server.engine.answer.world = OFFICE  # type: ignore[union-attr]
+    assert post(server, "/api/worlds/save", {"name": "third", "rename": True})[0] == 422
+    assert own_worlds.names() == (("yours", "yours"),)
 
 
 def test_a_folder_that_cannot_be_written_is_told(
@@ -230,8 +316,14 @@ def test_uploads_may_be_larger_than_commands_but_not_endless(server: House) -> N
     assert server.client.post("/api/worlds/open", content=parts(), headers=kind).status_code == 413
 
 
+CHANGES = [f"/api/worlds/{what}" for what in ("open", "new", "save", "delete", "restore")]
+
+
 def test_only_json_from_our_own_pages(server: House) -> None:
-    for path in ("/api/worlds/open", "/api/worlds/save"):
+    for path in CHANGES:
+        assert server.client.get(path).status_code == 405
+        cross_site = {"Content-Type": "application/json", "Sec-Fetch-Site": "cross-site"}
+        assert server.client.post(path, content=b"{}", headers=cross_site).status_code == 403
         assert server.client.post(path, content=b"{}", headers={"Content-Type": "text/plain"}).status_code == 415
         foreign = {"Content-Type": "application/json", "Origin": "http://evil.example"}
         assert server.client.post(path, content=b"{}", headers=foreign).status_code == 403
@@ -239,7 +331,8 @@ def test_only_json_from_our_own_pages(server: House) -> None:
 
 def test_too_many_wishes_are_429(server: House, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Limits, "refusal", lambda _self, _kind: "wait a moment")
-    for path, body in (("/api/worlds/open", {"files": files(x__json=b"[]")}), ("/api/worlds/save", {"name": "mine"})):
+    bodies = ({"files": files(x__json=b"[]")}, {"name": "hall", "width_m": 9, "depth_m": 9}, *[{"name": "mine"}] * 3)
+    for path, body in zip(CHANGES, bodies, strict=True):
         status, answer = post(server, path, body)
         assert (status, why(answer)) == (429, "wait a moment")
     assert server.engine.answer.got == []  # type: ignore[union-attr]
