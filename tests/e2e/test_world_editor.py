@@ -133,8 +133,10 @@ def test_a_wall_is_drawn_undone_redone_saved_and_downloaded(program, browser, ow
         walls_are(page, count + 2)
         until(page, "() => document.getElementById('edit-redo').disabled")
 
+        page.click("#edit-menu summary")
         with page.expect_download() as download:
             page.click("#edit-download")
+        assert page.is_hidden("#edit-download")
         assert download.value.suggested_filename == "office.json"
         kept = Path(download.value.path()).read_text("utf-8")
         assert len(world_from_json(kept, "kept").walls) == count + 2

@@ -2,6 +2,7 @@
 // the engine's world is the only one, and is read again after each change.
 
 import { Fields } from "./fields.js";
+import { closeMenu } from "./menus.js";
 import { Office } from "./office.js";
 import { Plan } from "./plan.js";
 import { Pointer } from "./pointer.js";
@@ -14,8 +15,8 @@ import { TOOLS } from "./tools.js";
 const $ = (id) => document.getElementById(id);
 
 export class Editor {
-  // `link`: to the engine; `files`: opens worlds.
-  constructor(link, files) {
+  // `link`: to the engine; `open()` and `begin()` ask for another world.
+  constructor(link, { open, begin }) {
     Object.assign(this, { points: [], tool: "select", chosen: null });
     this.box = $("editor");
     this.office = new Office(link, (other) => this.show(other), (text) => this.wrong(text));
@@ -34,7 +35,9 @@ export class Editor {
     click("edit-closer", () => this.plan.zoom(1.4));
     click("edit-farther", () => this.plan.zoom(1 / 1.4));
     click("edit-finish", () => this.finish());
-    click("edit-open", () => files.open());
+    click("edit-open", open);
+    click("edit-new", begin);
+    $("edit-menu").addEventListener("click", ({ target }) => target.closest("button, a") && closeMenu($("edit-menu")), true); // first: a dialog gives the focus back
     click("edit-save", () => this.saving.ask());
     window.addEventListener("keydown", (event) => this.history(event), true);
     this.use("select");

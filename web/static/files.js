@@ -8,9 +8,9 @@ const MOST_BYTES = 16_000_000;
 const MOST_FILES = 4;
 
 export class Files {
-  // `isSaved()`: whether nothing would be lost by leaving the office as it is now.
-  constructor(isSaved) {
-    this.isSaved = isSaved;
+  // `isSaved()`: whether nothing would be lost by leaving the office as it is now; `own`: the list of saved worlds.
+  constructor(isSaved, own) {
+    Object.assign(this, { isSaved, own });
     this.dialog = $("open-dialog");
     this.depth = 0;
     this.catchDrops(window);
@@ -53,7 +53,9 @@ export class Files {
   // The dialog, to choose a file.
   open() {
     this.say("choose");
-    if (!this.dialog.open) this.dialog.showModal();
+    if (this.dialog.open) return;
+    this.own.show();
+    this.dialog.showModal();
   }
 
   async offer(files) {

@@ -7,6 +7,9 @@ import { Header } from "./header.js";
 import { setIcon } from "./icons.js";
 import { Keys } from "./keys.js";
 import { Link } from "./link.js";
+import { closeOpenMenu } from "./menus.js";
+import { NewWorld } from "./new_world.js";
+import { OwnWorlds } from "./own_worlds.js";
 import { Stage, VIEWS } from "./stage.js";
 import { Timeline } from "./timeline.js";
 import { toast } from "./toasts.js";
@@ -22,8 +25,13 @@ const keys = new Keys({ drive: (name, down) => drive.key(name, down), act, allUp
 const stage = new Stage(link, keys);
 let state = null;
 let office = null;
-const files = new Files(() => office?.saved ?? true);
-const editor = new Editor(link, files);
+const isSaved = () => office?.saved ?? true;
+const own = new OwnWorlds(() => state?.world, async (name, title) => {
+  if (await command({ type: "reset", world: name }, `Started anew in ${title}.`)) $("open-dialog").close();
+});
+const files = new Files(isSaved, own);
+const fresh = new NewWorld(isSaved, () => editor.toggle(true));
+const editor = new Editor(link, { open: () => files.open(), begin: () => fresh.ask() });
 stage.addEventListener("inside", ({ detail }) => files.catchDrops(detail));
 
 // ---------------------------------------------------------------- what arrives
@@ -119,6 +127,10 @@ on("open-world", () => {
   $("restart").open = false;
   files.open();
 });
+on("new-world", () => {
+  $("restart").open = false;
+  fresh.ask();
+});
 on("panels", () => stage.showPanels(!stage.panels));
 on("more", () => {
   const open = document.querySelector("header").classList.toggle("open");
@@ -136,13 +148,12 @@ $("world").addEventListener("change", async ({ target }) => {
 
 // Whether what has been drawn and not saved may be left behind.
 function mayLeave() {
-  if (office?.saved ?? true) return true;
+  if (isSaved()) return true;
   const dialog = $("leave-dialog");
   dialog.returnValue = "stay";
   dialog.showModal();
   return new Promise((resolve) => dialog.addEventListener("close", () => resolve(dialog.returnValue === "leave"), { once: true }));
 }
-window.addEventListener("click", ({ target }) => $("restart").contains(target) || ($("restart").open = false));
 $("help-dialog").addEventListener("click", ({ target }) => target === $("help-dialog") && toggleHelp());
 
 // True when the key meant something.
@@ -158,8 +169,7 @@ function act(name) {
   else if (name === "t") toggleTheme();
   else if (name === "o") editor.toggle();
   else if (name === "?") toggleHelp();
-  else if (name === "Escape" && $("restart").open) $("restart").open = false;
-  else return false;
+  else return name === "Escape" && closeOpenMenu();
   return true;
 }
 

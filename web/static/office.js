@@ -5,30 +5,28 @@ import { sentence } from "./files.js";
 export class Office {
   // `shows()` when it has been read, `wrong(text)` when an edit was refused.
   constructor(link, shows, wrong) {
-    Object.assign(this, { link, shows, wrong, world: null, edition: null, ours: {}, yours: {} });
+    Object.assign(this, { link, shows, wrong, world: null, edition: null });
   }
 
-  // What arrives while another answer is under way is asked for once more.
-  async load() {
-    if (this.loading) {
-      this.again = true;
-      return this.loading;
-    }
-    this.loading = this.fetch();
-    await this.loading;
-    this.loading = null;
-    if (this.again) {
-      this.again = false;
-      await this.load();
-    }
+  // Resolves when it has been read as it is now: who asks while an answer is under way waits for one more.
+  load() {
+    this.again = true;
+    this.loading ??= (async () => {
+      while (this.again) {
+        this.again = false;
+        await this.fetch();
+      }
+      this.loading = null;
+    })();
+    return this.loading;
   }
 
   async fetch() {
     try {
-      const { world, edition, ours, yours } = await (await fetch("/api/world")).json();
+      const { world, edition } = await (await fetch("/api/world")).json();
       if (!world) return;
       const other = this.world?.name !== world.name;
-      Object.assign(this, { world, edition, ours, yours });
+      Object.assign(this, { world, edition });
       this.shows(other);
     } catch {
       // the connection is lost, which the page says; it is read again with the next state

@@ -1,50 +1,55 @@
 // The dialog that saves the office under a name.
 
-import { sentence } from "./files.js";
+import { post, worlds } from "./post.js";
 import { toast } from "./toasts.js";
 
 const $ = (id) => document.getElementById(id);
 
 export class SaveDialog {
   constructor(office) {
-    this.office = office;
+    Object.assign(this, { office, yours: {} });
     $("save-form").addEventListener("submit", (event) => {
       event.preventDefault();
       this.save();
     });
+    $("save-name").addEventListener("input", () => this.showRename());
     $("save-close").addEventListener("click", () => $("save-dialog").close());
   }
 
-  ask() {
-    const { world, ours } = this.office;
+  async ask() {
+    const { world } = this.office;
     if (!world) return;
+    const { yours, ours } = await worlds();
+    this.yours = yours;
     $("save-name").value = world.name in ours ? `my-${world.name}` : world.name;
     $("save-title").value = world.title;
     $("save-wrong").hidden = true;
+    for (const flag of ["replace", "rename"]) $(`save-${flag}`).checked = false;
     $("save-replace-row").hidden = true;
-    $("save-replace").checked = false;
+    this.showRename();
     $("save-dialog").showModal();
     $("save-name").select();
   }
 
+  showRename() {
+    const { name, title } = this.office.world;
+    const other = name in this.yours && $("save-name").value.trim() !== name;
+    $("save-rename-row").hidden = !other;
+    $("save-rename-words").textContent = `Rename: “${title}”, saved as ${name}, goes`;
+  }
+
   async save() {
-    const body = { name: $("save-name").value.trim(), title: $("save-title").value.trim() || null, replace: $("save-replace").checked };
-    let told;
-    try {
-      const answer = await fetch("/api/worlds/save", {
-        method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body),
-      });
-      told = await answer.json();
-    } catch {
-      told = { detail: [{ reason: "the connection is lost; nothing was saved" }] };
-    }
-    if (told.file) {
+    const told = await post("/api/worlds/save", {
+      name: $("save-name").value.trim(), title: $("save-title").value.trim() || null, replace: $("save-replace").checked,
+      rename: $("save-rename").checked && !$("save-rename-row").hidden,
+    });
+    if (!told.wrong) {
       $("save-dialog").close();
       toast(`Saved as ${told.file}`);
       return;
     }
-    $("save-wrong").textContent = told.detail.map((wrong) => sentence(wrong.reason)).join(" ");
+    $("save-wrong").textContent = told.wrong;
     $("save-wrong").hidden = false;
-    $("save-replace-row").hidden = told.detail[0].field !== "replace";
+    $("save-replace-row").hidden = told.field !== "replace";
   }
 }

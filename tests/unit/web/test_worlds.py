@@ -133,7 +133,7 @@ def test_an_empty_world_is_begun(server: House) -> None:
     check_world(world, 0.2)
     assert world_from_json(world_to_json(world), "f") == world
     assert all(wall.outer and len(wall.panels) > 3 for wall in world.walls)
-    assert (world.starts[0].x, world.starts[0].y, len(world.lamps)) == (6.25, 3.0, 1)
+    assert [(k.x, k.y) for k in (*world.starts, *world.lamps)] == [(3.125, 3.0), (6.25, 3.0)]
     assert not own_worlds.folder().exists()
     assert post(server, "/api/worlds/new", {"name": "other", "width_m": 12.5, "depth_m": 6})[1]["title"] == "other"
     other = server.engine.answer.got[-1].world  # type: ignore[union-attr]

@@ -1,0 +1,180 @@
+"""Worlds of one's own in a real Chromium: begun empty, saved, renamed, deleted and brought back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page
+
+from sim2d import load_world, world_from_json, world_to_json
+from tests.e2e.browser import open_page, until
+from tests.e2e.program import Program
+from tests.e2e.test_accessibility import findings
+from tests.e2e.test_world_editor import edit, walls_are, world
+
+
+@pytest.fixture(scope="module")
+def own(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with two saved worlds."""
+    folder = tmp_path_factory.mktemp("own")
+    for name, title in (("lab", "My laboratory"), ("school", "A school whose name is long enough for two lines")):
+        (folder / f"{name}.json").write_text(world_to_json(replace(load_world("office"), name=name, title=title)))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def started(own: Path) -> Iterator[Program]:
+    with pytest.MonkeyPatch.context() as environment:
+        environment.setenv("RATSLAM_WORLDS", str(own))
+        made = Program("--port", "0", "--seed", "5", "--paused")
+    yield made
+    assert made.stop() == 0
+
+
+@pytest.fixture
+def program(started: Program) -> Program:
+    started.command("reset", world="loop")
+    return started
+
+
+def menu(page: Page, item: str) -> None:
+    page.click("#edit-menu summary")
+    page.click(item)
+
+
+def listed(page: Page) -> list[str]:
+    return page.eval_on_selector_all("#world option", "all => all.map((o) => o.value)")
+
+
+def test_an_empty_world_is_begun_drawn_in_and_saved(program, browser, own):
+    with open_page(browser, program.url, 1440, 900, refused=True) as page:
+        page.click("#restart summary")
+        page.click("#new-world")
+        page.fill("#new-name", "office")
+        page.click("#new-form .go")
+        until(page, "() => document.getElementById('new-wrong').textContent.includes('choose another name')")
+        page.fill("#new-name", "gym")
+        page.fill("#new-title", "The gym")
+        page.fill("#new-width", "1")
+        page.click("#new-form .go")  # the browser itself says what is wrong
+        assert page.is_visible("#new-dialog")
+        page.fill("#new-width", "12")
+        page.fill("#new-depth", "6.5")
+        page.click("#new-form .go")
+        until(page, "() => document.getElementById('edit-name').textContent === 'The gym'")  # in the editor, to draw
+        assert page.is_hidden("#new-dialog")
+        assert page.is_visible("#edit-unsaved")
+        state = program.state()
+        assert (state["world"], state["tick"]) == ("gym", 0)
+        now = world(page)
+        assert [wall["to"] for wall in now["walls"]] == [[12, 0], [12, 6.5], [0, 6.5], [0, 0]]
+        assert (len(now["starts"]), len(now["lamps"])) == (1, 1)
+        assert not (own / "gym.json").exists()
+
+        page.keyboard.press("w")
+        page.keyboard.press("Enter")
+        page.keyboard.press("Shift+ArrowUp")
+        page.keyboard.press("Enter")
+        walls_are(page, 5)
+        page.click("#edit-save")
+        page.click("#save-form .go")
+        until(page, "() => document.getElementById('edit-unsaved').hidden")
+        assert len(world_from_json((own / "gym.json").read_text("utf-8"), "gym").walls) == 5
+        menu(page, "#edit-new")
+        page.wait_for_selector("#new-dialog[open]")
+        assert page.input_value("#new-name") == "my-world"
+        assert page.is_hidden("#new-unsaved")
+        page.click("#new-close")
+        assert page.evaluate("() => document.activeElement.closest('#edit-menu') !== null")
+
+
+def test_saving_under_another_name_can_rename(program, browser, own):
+    with open_page(browser, program.url, 1440, 900, refused=True) as page:
+        program.command("edit_world", steps=[{"do": "add", "list": "places", "item": {"name": "p", "x": 0.9, "y": 2}}])
+        edit(page)
+        page.click("#edit-save")
+        assert page.is_hidden("#save-rename-row")  # it comes with the program
+        page.fill("#save-name", "second")
+        page.fill("#save-title", "Second")
+        page.click("#save-form .go")
+        until(page, "() => document.getElementById('edit-name').textContent === 'Second'")
+        page.click("#edit-save")
+        assert page.is_hidden("#save-rename-row")
+        page.fill("#save-name", "third")
+        page.check("#save-rename")
+        assert "“Second”, saved as second, goes" in (page.text_content("#save-rename-row") or "")
+        page.click("#save-form .go")
+        until(page, "() => [...document.querySelectorAll('#world option')].some((o) => o.value === 'third')")
+        until(page, "() => ![...document.querySelectorAll('#world option')].some((o) => o.value === 'second')")
+        assert not (own / "second.json").exists()
+        assert (own / "third.json").exists()
+        page.click("#edit-undo")  # an older office, under the name that it has now
+        places = "((await (await fetch('/api/world')).json()).world.places ?? [])"
+        until(page, f"async () => !{places}.some((place) => place.name === 'p')")
+        assert program.state()["world"] == "third"
+
+
+def test_a_saved_world_is_opened_deleted_and_brought_back(program, browser, own):
+    with open_page(browser, program.url, 1440, 900) as page:
+        edit(page)
+        menu(page, "#edit-open")
+        page.click("#own-list [aria-label='Open My laboratory']")
+        assert program.wait(lambda state: state["world"] == "lab", 10)["tick"] == 0
+        until(page, "() => document.getElementById('edit-name').textContent === 'My laboratory'")
+
+        menu(page, "#edit-open")
+        lab = page.locator("#own-list li", has_text="My laboratory")
+        assert "open now" in (lab.text_content() or "")
+        lab.locator("[aria-label='Delete My laboratory']").click()
+        assert page.is_visible("#delete-open")
+        page.click("#delete-dialog [value=keep]")
+        assert (own / "lab.json").exists()
+        lab.locator("[aria-label='Delete My laboratory']").click()
+        page.click("#delete-dialog [value=delete]")
+        until(page, "() => document.activeElement.getAttribute('aria-label') === 'Bring My laboratory back'")
+        assert not (own / "lab.json").exists()
+        until(page, "() => !document.getElementById('edit-unsaved').hidden")  # it goes on, in no file
+        assert program.state()["world"] == "lab"
+        page.keyboard.press("Enter")
+        until(page, "() => document.getElementById('edit-unsaved').hidden")
+        assert (own / "lab.json").exists()
+
+        page.click("#own-list [aria-label='Delete My laboratory']")
+        page.click("#delete-dialog [value=delete]")
+        until(page, "() => !document.getElementById('edit-unsaved').hidden")
+        page.click("#open-close")
+        page.select_option("#world", "loop")
+        page.click("#leave-dialog [value=leave]")
+        program.wait(lambda state: state["world"] == "loop", 10)
+        until(page, "() => ![...document.querySelectorAll('#world option')].some((o) => o.value === 'lab')")
+        assert "school" in listed(page)
+
+
+@pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
+def test_axe_finds_nothing_and_it_fits(program, browser, size):
+    fits = "(id) => { const d = document.getElementById(id); return d.scrollWidth <= d.clientWidth; }"
+    program.command("edit_world", steps=[{"do": "add", "list": "places", "item": {"name": "p", "x": 0.9, "y": 2}}])
+    with open_page(browser, program.url, *size) as page:
+        page.evaluate("() => document.getElementById('edit').click()")
+        until(page, "() => document.querySelector('#plan .outer') !== null")
+        for _ in range(2):
+            page.wait_for_timeout(300)
+            page.click("#edit-menu summary")
+            assert findings(page) == []
+            page.click("#edit-new")
+            page.wait_for_selector("#new-unsaved", state="visible")
+            assert findings(page) == []
+            assert page.evaluate(fits, "new-dialog")
+            page.click("#new-close")
+            menu(page, "#edit-open")
+            page.click("#own-list [aria-label^='Delete A school']")
+            assert findings(page) == []
+            page.click("#delete-dialog [value=keep]")
+            assert page.evaluate(fits, "open-dialog")
+            assert findings(page) == []
+            page.click("#open-close")
+            assert page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
+            page.evaluate("() => document.getElementById('theme').click()")
