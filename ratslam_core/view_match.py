@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 
-import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -37,35 +36,46 @@ class Matcher:
         known: (n, 96); with none known (-1, inf, 0). Shifts from -most to most columns are tried; of equals the first shift
         and then the first view wins.
         """
-        best, least, at = -1, math.inf, 0
         if len(known) == 0:
-            return best, least, at
-        shifts = range(-most, most + 1)
-        for shift in shifts:
-            here, there, width = overlap(shift)
-            self._shifted[shift + COLUMNS - 1, there : there + width] = new[here : here + width]
-        rows = slice(COLUMNS - 1 - most, COLUMNS + most)
-        _nearest(known, self._shifted[rows], self._masks[rows], self._least, self._at)
-        for row, shift in enumerate(shifts):
-            mean = int(self._least[row]) / overlap(shift)[2]
-            if mean < least:
-                best, least, at = int(self._at[row]), mean, shift
-        return best, least, at
+            return -1, math.inf, 0
+        return _nearest(known, new, most, self._shifted, self._masks, self._least, self._at)
 
 
-def overlap(shift: int) -> tuple[int, int, int]:
+@njit(cache=True, nogil=True)
+def overlap(shift):
     """Where the columns that overlap begin in the new and in the stored view, and how many bytes they hold."""
     return max(shift, 0) * ROWS, max(-shift, 0) * ROWS, (COLUMNS - abs(shift)) * ROWS
 
 
-def difference(new: Features, stored: Features, shift: int) -> float:
+@njit(cache=True, nogil=True)
+def difference(new, stored, shift):
     """Mean absolute difference of two views over the columns that overlap."""
     here, there, width = overlap(shift)
-    return float(cv2.norm(new[here : here + width], stored[there : there + width], cv2.NORM_L1)) / width
+    total = 0
+    for k in range(width):
+        total += abs(np.int64(new[here + k]) - np.int64(stored[there + k]))
+    return total / width
 
 
 @njit(cache=True, nogil=True)
-def _nearest(known, shifted, masks, least, at):
+def _nearest(known, new, most, shifted, masks, least, at):
+    first = COLUMNS - 1 - most
+    for row in range(first, COLUMNS + most):
+        here, there, width = overlap(row - COLUMNS + 1)
+        for k in range(width):
+            shifted[row, there + k] = new[here + k]
+    rows = slice(first, COLUMNS + most)
+    _least_sums(known, shifted[rows], masks[rows], least, at)
+    best, smallest, by = -1, np.inf, 0
+    for row in range(2 * most + 1):
+        mean = least[row] / overlap(row - most)[2]
+        if mean < smallest:
+            best, smallest, by = at[row], mean, row - most
+    return best, smallest, by
+
+
+@njit(cache=True, nogil=True)
+def _least_sums(known, shifted, masks, least, at):
     """Per shift the least sum of absolute differences and the first view that has it.
 
     int32 arithmetic (np.add, np.subtract keep it) over a fixed number of bytes is what LLVM turns into one instruction for

@@ -45,10 +45,16 @@ def sonar_ranges(
         if shortest < farthest:
             shortest = min(max(shortest + errors[i], 0.0), farthest)
         out[i] = shortest
-    touches = nearest_within(index, x, y, touch) < touch
-    for i in range(near.shape[0]):
-        touches = touches or squared_distance(near, i, x, y) < touch * touch
-    return out, touches
+    return out, not is_clear(index, near, x, y, touch)
+
+
+@njit(cache=True, nogil=True)
+def is_clear(index: WallIndex, things: _Array, x: float, y: float, reach: float) -> bool:
+    """Whether nothing, be it a wall of the index or one of (m, 4) things, is nearer than `reach` metres to (x, y)."""
+    for i in range(things.shape[0]):
+        if squared_distance(things, i, x, y) < reach * reach:
+            return False
+    return nearest_within(index, x, y, reach) >= reach
 
 
 @njit(cache=True, nogil=True)

@@ -1,7 +1,8 @@
 """The robot's body: a disc on two driven wheels, in pymunk.
 
 A kinematic body moves as the wheels are told; a pivot and a gear with bounded force drag the disc along. Against a wall
-the force gives way and the disc stops there. Setting the disc's velocity would press it 10 cm into the wall.
+the force gives way and the disc stops there. Setting the disc's velocity would press it 10 cm into the wall. On free floor
+there is nothing to give way to: the disc goes where the wheels roll, and pymunk is not asked.
 """
 
 from __future__ import annotations
@@ -52,11 +53,12 @@ class Robot:
         self.speed = self.yaw_rate = 0.0
 
     def drive(
-        self, space: pymunk.Space, speed: float, yaw_rate: float, params: SimParams, slowness: float = 1.0
+        self, space: pymunk.Space, speed: float, yaw_rate: float, params: SimParams, slowness: float, is_free: bool
     ) -> None:
         """One tick towards these velocities (m/s, rad/s), as fast as the motors can change them.
 
-        slowness: the share of them that the floor lets through; of both, so that curves keep their shape.
+        slowness: the share of them that the floor lets through; of both, so that curves keep their shape. is_free: nothing
+        is so near that the disc could touch it in this tick.
         """
         speed = slowness * min(max(speed, -params.max_speed), params.max_speed)
         yaw_rate = slowness * min(max(yaw_rate, -params.max_yaw_rate), params.max_yaw_rate)
@@ -64,13 +66,27 @@ class Robot:
         period = _STEPS_PER_COMMAND * dt
         change, turn_change = params.max_acceleration * period, params.max_yaw_acceleration * period
         body, wheels = self.body, self._wheels
+        (x, y), angle = body.position, body.angle
         v, w = self.speed, self.yaw_rate
-        for k in range(params.substeps):
-            if k % _STEPS_PER_COMMAND == 0:
-                v += min(max(speed - v, -change), change)
-                w += min(max(yaw_rate - w, -turn_change), turn_change)
-                middle = body.angle + 0.5 * w * period  # the chord's direction: exact to 3e-5 at full turn
-                wheels.velocity = (v * math.cos(middle), v * math.sin(middle))
-                wheels.angular_velocity = w
-            space.step(dt)
+        for first in range(0, params.substeps, _STEPS_PER_COMMAND):
+            steps = min(_STEPS_PER_COMMAND, params.substeps - first)
+            v += min(max(speed - v, -change), change)
+            w += min(max(yaw_rate - w, -turn_change), turn_change)
+            middle = angle + 0.5 * w * period  # the chord's direction: exact to 3e-5 at full turn
+            if is_free:
+                x, y = x + v * math.cos(middle) * steps * dt, y + v * math.sin(middle) * steps * dt
+                angle += w * steps * dt
+                continue
+            wheels.velocity, wheels.angular_velocity = (v * math.cos(middle), v * math.sin(middle)), w
+            for _ in range(steps):
+                space.step(dt)
+            angle = body.angle
+        if is_free:
+            body.position, body.angle = (x, y), angle
+            body.velocity = wheels.velocity = (v * math.cos(angle), v * math.sin(angle))
+            body.angular_velocity = wheels.angular_velocity = w
         self.speed, self.yaw_rate = v, w
+
+    def reach(self, params: SimParams) -> float:
+        """How far (m) from its middle the disc may come within a tick."""
+        return params.robot_radius_m + max(params.max_speed, abs(self.speed)) * params.tick_s

@@ -16,7 +16,7 @@ from sim2d.geometry import inside_ring, nearest_segment
 from sim2d.living import Living
 from sim2d.odometer import report, true_motion, wrap_angle
 from sim2d.params import OfficeParams, SimParams
-from sim2d.ranges import SONAR_ANGLES_RAD, laser_ranges, sonar_ranges
+from sim2d.ranges import SONAR_ANGLES_RAD, is_clear, laser_ranges, sonar_ranges
 from sim2d.robot import Robot
 from sim2d.scenes import scene_number
 from sim2d.solids import Solids
@@ -27,6 +27,7 @@ from sim2d.world_check import distance_to_box
 
 BUMPER_M = 0.005  # travel of the contact ring around the robot
 LEANS_M = 0.01  # so far the robot may press into something
+FREE_M = 0.02  # what is farther away than the robot can come in a tick, and this, is out of its way
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +148,8 @@ class Simulator:
         self._tick += 1
         self.living.step(self._time_s, here, params.robot_radius_m, params.max_speed * params.tick_s, self.office)
         self._solids.follow(here)
-        self._robot.drive(self._space, drive.speed, drive.yaw_rate, params, self._slowness(*here))
+        is_free = self._is_clear(*here, self._robot.reach(params) + FREE_M)
+        self._robot.drive(self._space, drive.speed, drive.yaw_rate, params, self._slowness(*here), is_free)
         self._motion = true_motion(before, self._pose(), self.params.tick_s)
         self._frame = self._sense(*report(*self._motion, self.params, self._odometry_rng))
         return self._frame
@@ -287,6 +289,12 @@ class Simulator:
         self.living.begin(self.office)
         self.living.make_way((x, y), self.params.robot_radius_m)
         self._solids.follow((x, y))
+
+    def _is_clear(self, x: float, y: float, reach: float) -> bool:
+        """Whether no wall, thing or person is within `reach`."""
+        living = self.living
+        things = living.segments[living.present]
+        return is_clear(self._obstacles, things, x, y, reach) and not living.walkers.touch(x, y, reach)
 
     def _slowness(self, x: float, y: float) -> float:
         """The share of the wheels' speed that the floor lets through: the slowest of the zones that (x, y) is in."""
