@@ -127,7 +127,7 @@ class Evaluation:
         return rmse(mapped, truth), rmse(odometry, truth)
 
     def _judge(self, time_s: float, truth: Truth, experiences: ExperienceMap, local: Pose2, way_m: float) -> None:
-        made = self._made_at[experiences.active]
+        made = self._made_at[experiences.active].tolist()
         c, s = math.cos(made[2]), math.sin(made[2])
         believed = made[0] + c * local.x - s * local.y, made[1] + s * local.x + c * local.y
         off = math.hypot(believed[0] - truth.x, believed[1] - truth.y)

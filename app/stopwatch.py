@@ -16,7 +16,7 @@ class Stopwatch:
         self.parts = parts
         self._row = {part: k for k, part in enumerate(parts)}
         self._kept_s = np.zeros((KEPT, len(parts)))
-        self._now_s = np.zeros(len(parts))
+        self._now_s = [0.0] * len(parts)
         self._ticks = 0
         self._then = time.perf_counter()
 
@@ -32,7 +32,7 @@ class Stopwatch:
     def finish(self) -> None:
         """The tick ends."""
         self._kept_s[self._ticks % KEPT] = self._now_s
-        self._now_s[:] = 0.0
+        self._now_s = [0.0] * len(self.parts)
         self._ticks += 1
 
     @property

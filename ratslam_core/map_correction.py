@@ -132,7 +132,10 @@ def solve(
         ),
         (n, n),
     ).tocsc()[1:, 1:]
-    factor = splu(laplacian, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    factor = splu(  # single columns: a map is a net of chains, where panels hold nothing but zeros
+        laplacian, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, relax=1, panel_size=1,
+        options={"SymmetricMode": True},
+    )  # fmt: skip
     seconds = np.zeros(len(links)) if turning_s is None else turning_s
     drift = np.zeros(n)  # headings that a unit of bias would bend the map to
     drift[1:] = factor.solve(_divergence(n, i, j, weights * seconds))

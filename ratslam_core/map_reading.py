@@ -49,8 +49,7 @@ class MapReading:
 
     def pose(self, experience: int) -> Pose2:
         """An experience's place in the map."""
-        x, y, heading = self.poses[self._require(experience)]
-        return Pose2(float(x), float(y), float(heading))
+        return Pose2(*self._experiences.pose[self._require(experience)].tolist())
 
     def cell_state(self, experience: int) -> tuple[float, float, float, int]:
         """x', y' (cells), theta' (layers) and the scene of one experience."""

@@ -167,9 +167,17 @@ def _ranges(ranges_m: NDArray[np.float32], angles: NDArray[np.float64]) -> NDArr
     ranges = np.asarray(ranges_m, np.float64)
     if ranges.shape != angles.shape:
         raise ValueError(f"ranges_m must have shape {angles.shape}, one for each sonar, got {ranges.shape}")
-    if not (ranges >= 0).all():
+    if not _none_negative(ranges):
         raise ValueError(f"ranges_m must be 0 m or more, got {ranges.tolist()}")
     return ranges
+
+
+@njit(cache=True, nogil=True)
+def _none_negative(ranges):
+    bad = 0
+    for r in ranges:
+        bad += not r >= 0.0  # which no number is neither
+    return bad == 0
 
 
 @njit(cache=True, nogil=True)
@@ -209,8 +217,13 @@ def _scan(log_odds, x, y, heading, angles, ranges, cell_m, farthest, half_beam, 
         y_low = int(np.ceil(y + (min(0.0, far * s) - wide) / cell_m))
         y_high = int(np.floor(y + (max(0.0, far * s) + wide) / cell_m))
         for at_y in range(y_low, y_high + 1):
-            for at_x in range(x_low, x_high + 1):
-                dx, dy = (at_x - x) * cell_m, (at_y - y) * cell_m
+            dy = (at_y - y) * cell_m
+            first, last = x_low, x_high
+            if abs(s) > 0.01:  # of a row, only where the beam crosses it
+                middle, aside = x + c * dy / s / cell_m, wide / abs(s) / cell_m
+                first, last = max(first, int(np.ceil(middle - aside))), min(last, int(np.floor(middle + aside)))
+            for at_x in range(first, last + 1):
+                dx = (at_x - x) * cell_m
                 d = np.sqrt(dx * dx + dy * dy)
                 across = c * dy - s * dx
                 if d >= far or abs(across) > d * sine + half:  # the second spares most cells the angle below

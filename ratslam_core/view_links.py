@@ -79,7 +79,7 @@ class ViewLinks:
             self._blocks = np.concatenate([self._blocks, np.zeros_like(self._blocks)])
         if more > len(self._seen):
             self._seen = np.zeros(2 * more, np.bool_)
-        start, used, room = (int(v) for v in self._blocks[view])
+        start, used, room = self._blocks[view].tolist()
         if used + more <= room:
             return
         wanted = max(2 * room, used + more)

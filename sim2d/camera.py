@@ -78,7 +78,7 @@ class Camera:
         self._glow = np.ones((self._width, MAX_HITS + 1))
         self._panes, self._mirror_strips = np.full(self._width, -1), np.full(self._width, -1)
         self._mirror_hits = np.zeros((self._width, 3))
-        self._canvas = np.zeros((self._width, self._height, 3), np.float32)
+        self._canvas = np.zeros((self._width, 3 * self._height), np.float32)
 
     def new_noise(self, rng: np.random.Generator) -> None:
         """Draw the noise of all images to come: 9216 deviates an image would take longer than the image."""
@@ -157,10 +157,10 @@ def _shades(segments: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _background(world: World, height: int, focal: float, eye: float) -> NDArray[np.float32]:
-    """(height, 3): floor and ceiling, row by row, darker with distance."""
+    """(3 height,): floor and ceiling, row by row, darker with distance."""
     ceiling = max(w.height for w in world.walls) - eye
     down = np.arange(height) + 0.5 - 0.5 * height
     flat = np.where(np.abs(down) < 0.25, 0.25, down)
     depth = np.where(flat > 0, eye, -ceiling) * focal / flat
     colour = np.where(flat[:, None] > 0, world.floor_colour, world.ceiling_colour)
-    return (colour / (1.0 + depth / FADE_M)[:, None]).astype(np.float32)
+    return (colour / (1.0 + depth / FADE_M)[:, None]).astype(np.float32).ravel()

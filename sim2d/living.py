@@ -22,7 +22,8 @@ CLEARANCE_M = 0.01  # a leaf, a box that appears and a person who comes back sta
 
 
 class Living:
-    """State of all living things of one world. `segments` are their sides as rays and camera meet them, doors first."""
+    """State of all living things of one world. `segments` are their sides as rays and camera meet them, doors first;
+    `there`, (m, 4), those that are present."""
 
     def __init__(self, world: World, rng: np.random.Generator, tick_s: float) -> None:
         self.world, self._tick_s = world, tick_s
@@ -232,6 +233,7 @@ class Living:
         self.present[self.first_box : self.first_person] = np.repeat(self.box_present, 4)
         self.segments[self.first_person :] = self.walkers.sides()
         self.present[self.first_person :] = np.repeat(self.walkers.present, PERSON_SIDES)
+        self.there = self.segments[self.present]
 
     def _distances(self, x: float, y: float) -> list[float]:
         return [

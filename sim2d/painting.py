@@ -14,6 +14,7 @@ from sim2d.column_hits import MAX_HITS
 
 FADE_M = 14.0  # brightness falls as 1 / (1 + depth / FADE_M): far corners are darker
 _MAX_ROWS = 1024
+ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)  # what is unsigned needs no look at whether it is negative
 
 
 class Strips(NamedTuple):
@@ -44,22 +45,21 @@ def paint_columns(
     mirror_hits: NDArray[np.float64],
     canvas: NDArray[np.float32],
 ) -> None:
-    """Fill canvas (w, h, 3) from the hits of `column_hits`, far to near; edges are blended by the share they cover.
+    """Fill canvas (w, 3 h), column by column red, green, blue from the top down, from the hits of `column_hits`, far to near; edges are blended by the share they cover.
 
     glow: (w, k + 1) brightness of each hit, and of floor and ceiling. panes, mirror_...: from `mirror.mirrored`.
     """
     texels, first, columns, rows = strips.texels, strips.first, strips.columns, strips.rows
     bottoms, tops, shades, reflection = strips.bottoms, strips.tops, strips.shades, strips.reflection
-    height = canvas.shape[1]
+    height = canvas.shape[1] // 3
     stretch = np.empty(3 * _MAX_ROWS, np.float32)
     ends = np.empty(MAX_HITS, np.int64)
-    reflected = np.empty((height, 3), np.float32)
+    reflected = np.empty(3 * height, np.float32)
     for c in range(canvas.shape[0]):
         image = canvas[c]
         around = np.float32(glow[c, glow.shape[1] - 1])
-        image[:] = background
-        if around != np.float32(1.0):
-            image *= around
+        for n in range(image.size):
+            image[n] = background[n] * around
         # Of two walls that stand on the floor the nearer one hides all of the other below its own top.
         hidden = height
         for k in range(counts[c]):
@@ -72,12 +72,14 @@ def paint_columns(
             share, glass_top, target = reflection[strip >> 1], 0.0, image
             if share >= 0.0:  # glass: what it mirrors, or its own colour, goes over what is behind
                 target = reflected
-                target[:] = background
+                by = np.float32(1.0)
                 glass_top = 0.5 * height - (tops[strip >> 1] - eye) * focal * inverse
                 if panes[c] == k and mirror_strips[c] >= 0:
                     strip, end = mirror_strips[c], height
                     inverse, u0, u1 = mirror_hits[c, 0], mirror_hits[c, 1], mirror_hits[c, 2]
-                    target *= around
+                    by = around
+                for n in range(target.size):
+                    target[n] = background[n] * by
             scale = focal * inverse  # pixels a metre
             top = 0.5 * height - (tops[strip >> 1] - eye) * scale
             bottom = 0.5 * height - (bottoms[strip >> 1] - eye) * scale
@@ -98,9 +100,8 @@ def paint_columns(
                 _paint_rows(target, stretch, begin, end, top, bottom, per_row, low, n_rows - 1)
             if share >= 0.0:
                 part = np.float32(share)
-                for r in range(max(0, math.floor(glass_top)), ends[k]):
-                    for channel in range(3):
-                        image[r, channel] += part * (reflected[r, channel] - image[r, channel])
+                for n in range(3 * max(0, math.floor(glass_top)), 3 * ends[k]):
+                    image[n] += part * (reflected[n] - image[n])
 
 
 @njit(cache=True, nogil=True)
@@ -116,22 +117,46 @@ def _paint_rows(
     last: int,
 ) -> None:
     """Rows begin to end of one column from a stretch of texels that starts at texel row `low`; linear in height."""
-    for r in range(begin, end):
+    whole, beyond = begin + (begin < top), end - (end > bottom)  # the rows that the wall covers from edge to edge
+    if whole > begin:
+        _blend(image[3 * begin :], stretch, begin, top, bottom, per_row, low, last)
+    if beyond < end and end - 1 > begin - (whole == begin):
+        _blend(image[3 * (end - 1) :], stretch, end - 1, top, bottom, per_row, low, last)
+    out = image[3 * whole : 3 * max(whole, beyond)]
+    at = np.uint64(0)
+    for r in range(whole, beyond):
         v = min(max((r + 0.5 - top) * per_row - 0.5, 0.0), float(last))
         j = int(v)
         f = np.float32(v - j)
-        j0 = 3 * (j - low)
-        j1 = j0 + 3 if j < last else j0
-        red = stretch[j0] + f * (stretch[j1] - stretch[j0])
-        green = stretch[j0 + 1] + f * (stretch[j1 + 1] - stretch[j0 + 1])
-        blue = stretch[j0 + 2] + f * (stretch[j1 + 2] - stretch[j0 + 2])
-        if r < top or r + 1 > bottom:
-            cover = np.float32(min(r + 1.0, bottom) - max(float(r), top))
-            image[r, 0] += cover * (red - image[r, 0])
-            image[r, 1] += cover * (green - image[r, 1])
-            image[r, 2] += cover * (blue - image[r, 2])
-        else:
-            image[r, 0], image[r, 1], image[r, 2] = red, green, blue
+        j0 = np.uint64(3 * (j - low))
+        j1 = j0 + THREE if j < last else j0
+        out[at] = stretch[j0] + f * (stretch[j1] - stretch[j0])
+        out[at + ONE] = stretch[j0 + ONE] + f * (stretch[j1 + ONE] - stretch[j0 + ONE])
+        out[at + TWO] = stretch[j0 + TWO] + f * (stretch[j1 + TWO] - stretch[j0 + TWO])
+        at += THREE
+
+
+@njit(cache=True, nogil=True)
+def _blend(
+    pixel: NDArray[np.float32],
+    stretch: NDArray[np.float32],
+    r: int,
+    top: float,
+    bottom: float,
+    per_row: float,
+    low: int,
+    last: int,
+) -> None:
+    """Row r, where the wall begins or ends: over what is behind by the share that it covers."""
+    v = min(max((r + 0.5 - top) * per_row - 0.5, 0.0), float(last))
+    j = int(v)
+    f = np.float32(v - j)
+    j0 = 3 * (j - low)
+    j1 = j0 + 3 if j < last else j0
+    cover = np.float32(min(r + 1.0, bottom) - max(float(r), top))
+    for channel in range(3):
+        colour = stretch[j0 + channel] + f * (stretch[j1 + channel] - stretch[j0 + channel])
+        pixel[channel] += cover * (colour - pixel[channel])
 
 
 @njit(cache=True, nogil=True)
@@ -171,13 +196,17 @@ def expose(
     start: int,
     out: NDArray[np.uint8],
 ) -> None:
-    """Canvas (w, h, 3) to image (h, w, 3): times light, plus noise from the bank, rounded into 0-255."""
-    width, height = canvas.shape[0], canvas.shape[1]
+    """Canvas (w, 3 h) to image (h, w, 3): times light, plus noise from the bank, rounded into 0-255."""
+    width, height = canvas.shape[0], canvas.shape[1] // 3
     gain, sigma, half = np.float32(light), np.float32(noise), np.float32(0.5)
-    n = start
+    row = np.empty(3 * width, np.float32)
+    flat = out.reshape(height, 3 * width)
     for r in range(height):
-        for c in range(width):
+        for c in range(width):  # turned over first, so that the compiler sees plain vectors below
             for channel in range(3):
-                value = canvas[c, r, channel] * gain + bank[n] * sigma + half
-                out[r, c, channel] = np.uint8(min(max(value, np.float32(0.0)), np.float32(255.0)))
-                n += 1
+                row[3 * c + channel] = canvas[c, 3 * r + channel]
+        first = start + 3 * width * r
+        errors, line = bank[first : first + 3 * width], flat[r]
+        for k in range(3 * width):
+            value = row[k] * gain + errors[k] * sigma + half
+            line[k] = np.uint8(min(max(value, np.float32(0.0)), np.float32(255.0)))

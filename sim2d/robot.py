@@ -83,8 +83,7 @@ class Robot:
             angle = body.angle
         if is_free:
             body.position, body.angle = (x, y), angle
-            body.velocity = wheels.velocity = (v * math.cos(angle), v * math.sin(angle))
-            body.angular_velocity = wheels.angular_velocity = w
+            body.velocity, body.angular_velocity = (v * math.cos(angle), v * math.sin(angle)), w
         self.speed, self.yaw_rate = v, w
 
     def reach(self, params: SimParams) -> float:

@@ -150,7 +150,7 @@ class Simulator:
         self._solids.follow(here)
         is_free = self._is_clear(*here, self._robot.reach(params) + FREE_M)
         self._robot.drive(self._space, drive.speed, drive.yaw_rate, params, self._slowness(*here), is_free)
-        self._motion = true_motion(before, self._pose(), self.params.tick_s)
+        self._motion = true_motion(before, self._pose(), params.tick_s)
         self._frame = self._sense(*report(*self._motion, self.params, self._odometry_rng))
         return self._frame
 
@@ -292,9 +292,8 @@ class Simulator:
 
     def _is_clear(self, x: float, y: float, reach: float) -> bool:
         """Whether no wall, thing or person is within `reach`."""
-        living = self.living
-        things = living.segments[living.present]
-        return is_clear(self._obstacles, things, x, y, reach) and not living.walkers.touch(x, y, reach)
+        clear = is_clear(self._obstacles, self.living.there, x, y, reach)
+        return clear and not self.living.walkers.touch(x, y, reach)
 
     def _slowness(self, x: float, y: float) -> float:
         """The share of the wheels' speed that the floor lets through: the slowest of the zones that (x, y) is in."""
@@ -308,14 +307,13 @@ class Simulator:
         x, y, heading = self._pose()
         gain, noise = params.light * params.exposure_gain, params.image_noise * params.exposure_gain
         image = self._camera.image(x, y, heading, gain, noise, self._image_rng, self.office.reflections)
-        things = living.segments[living.present]
-        ranges, bumped = self._sonar(things, x, y, heading)
+        ranges, bumped = self._sonar(living.there, x, y, heading)
         bumped = bumped or living.walkers.touch(x, y, params.robot_radius_m + BUMPER_M)
         scan = np.zeros(0, np.float32)
         if params.laser_beams:
             errors = self._laser_rng.standard_normal(params.laser_beams) * params.laser_noise_m
             pose = (x, y, heading)
-            scan = laser_ranges(self._opaque, things, *pose, params.laser_fov_rad, params.laser_range_m, errors)
+            scan = laser_ranges(self._opaque, living.there, *pose, params.laser_fov_rad, params.laser_range_m, errors)
         for array in (image, ranges, scan):
             array.setflags(write=False)
         scene = scene_number(x, y, heading, self._bounds, params.scene_cell_m, params.scene_sector_rad)

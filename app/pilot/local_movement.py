@@ -16,6 +16,8 @@ from ratslam_core import Odometry
 MEMORY_TICKS = 30
 FARTHEST_M = 1.6  # echoes beyond this are of no concern for the next second
 HORIZON_S = 1.2
+STEPS = 8  # of an arc
+MOST_LEFT = 6  # arcs to the left, and as many to the right
 NARROW_M = 0.15  # beyond the clearance an echo costs the less the farther it is, up to here
 
 
@@ -77,23 +79,22 @@ def _best_arc(echoes, x, y, speed, turn_rate, clearance):
     best, best_v, best_w = np.inf, 0.0, 0.0
     bearing = math.atan2(y, x)
     echoes = _within(echoes, speed * HORIZON_S + clearance + NARROW_M + 0.01)
+    facing = _facing(turn_rate)
     for vi in range(4):
         v = speed * (1.0, 0.6, 0.3, 0.0)[vi]
-        for wi in range(-6, 7):
-            w = turn_rate * wi / 6.0
+        for wi in range(-MOST_LEFT, MOST_LEFT + 1):
+            w = turn_rate * wi / MOST_LEFT
             if v == 0.0 and abs(wi) < 3:
                 continue
-            px = py = heading = 0.0
+            px = py = 0.0
+            heading = w * (HORIZON_S if v > 0.0 else 0.6)
             nearest = 9.0
             free = True
-            steps = 8
             if v > 0.0:
-                dt = HORIZON_S / steps
-                for _ in range(steps):
-                    heading += w * dt / 2
-                    px += v * dt * math.cos(heading)
-                    py += v * dt * math.sin(heading)
-                    heading += w * dt / 2
+                dt = HORIZON_S / STEPS
+                for k in range(STEPS):
+                    px += v * dt * facing[wi + MOST_LEFT, k, 0]
+                    py += v * dt * facing[wi + MOST_LEFT, k, 1]
                     for e in range(echoes.shape[0]):
                         ex, ey = echoes[e, 0] - px, echoes[e, 1] - py
                         d = ex * ex + ey * ey
@@ -105,8 +106,6 @@ def _best_arc(echoes, x, y, speed, turn_rate, clearance):
                             nearest = d
                     if not free:
                         break
-            else:
-                heading = w * 0.6
             if not free:
                 continue
             left = math.hypot(x - px, y - py)
@@ -116,6 +115,17 @@ def _best_arc(echoes, x, y, speed, turn_rate, clearance):
             if cost < best:
                 best, best_v, best_w = cost, v, w
     return best_v, best_w
+
+
+@njit(cache=True, nogil=True)
+def _facing(turn_rate):
+    """Cosine and sine of the heading in the middle of each step of each arc."""
+    out = np.empty((2 * MOST_LEFT + 1, STEPS, 2))
+    for wi in range(-MOST_LEFT, MOST_LEFT + 1):
+        for k in range(STEPS):
+            heading = turn_rate * wi / MOST_LEFT * (k + 0.5) * HORIZON_S / STEPS
+            out[wi + MOST_LEFT, k, 0], out[wi + MOST_LEFT, k, 1] = math.cos(heading), math.sin(heading)
+    return out
 
 
 @njit(cache=True, nogil=True)
