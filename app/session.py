@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
-import scipy.sparse.linalg  # noqa: F401 - the engine imports it when a loop closes; not while the robot drives
 
 from app.config import Config, Value
 from app.evaluation import Evaluation

@@ -10,11 +10,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ratslam_core.adjacency import Adjacency
+from ratslam_core.laplacian import eliminate
 
 RAD_PER_M = 0.7  # a link that is off by a metre is off by so much in heading
 CHAIN_GIVES = 5.0  # standard deviations at which odometry lets go
 LOOK_GIVES = 1.0  # standard deviations from which a look pulls no harder
-WORK_AN_EXPERIENCE = 300.0
+WORK_AN_EXPERIENCE = 90.0
 LEAST_STRENGTH = 1e-9  # below it no loop tells the bias from a bent way
 
 
@@ -121,24 +122,10 @@ def solve(
     n = len(poses)
     if n < 2 or len(links) == 0:
         return Solution(0.0, 0.0)
-    from scipy.sparse import coo_matrix  # slow to import, and no first step needs it
-    from scipy.sparse.linalg import splu
-
     i, j = links[:, 0], links[:, 1]
-    laplacian = coo_matrix(
-        (
-            np.concatenate([weights, weights, -weights, -weights]),
-            (np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i])),
-        ),
-        (n, n),
-    ).tocsc()[1:, 1:]
-    factor = splu(  # single columns: a map is a net of chains, where panels hold nothing but zeros
-        laplacian, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, relax=1, panel_size=1,
-        options={"SymmetricMode": True},
-    )  # fmt: skip
+    net = eliminate(n, links, weights)
     seconds = np.zeros(len(links)) if turning_s is None else turning_s
-    drift = np.zeros(n)  # headings that a unit of bias would bend the map to
-    drift[1:] = factor.solve(_divergence(n, i, j, weights * seconds))
+    drift = net.solve(_asked(n, links, weights * seconds))  # headings that a unit of bias would bend the map to
     unexplained = seconds - drift[j] + drift[i]
     strength = float(np.sum(weights * seconds * unexplained))
     bias = 0.0
@@ -147,28 +134,24 @@ def solve(
         error -= 2 * math.pi * np.round(error / (2 * math.pi))
         more = float(np.sum(weights * unexplained * error)) / strength if strength > LEAST_STRENGTH else 0.0
         bias += more
-        poses[1:, 2] += factor.solve(_divergence(n, i, j, weights * (error - more * seconds)))
+        poses[:, 2] += net.solve(_asked(n, links, weights * (error - more * seconds)))
     poses[:, 2] -= 2 * math.pi * np.round(poses[:, 2] / (2 * math.pi))
-    c, s = np.cos(poses[i, 2]), np.sin(poses[i, 2])
-    ex = poses[i, 0] + c * moves[:, 0] - s * moves[:, 1] - poses[j, 0]
-    ey = poses[i, 1] + s * moves[:, 0] + c * moves[:, 1] - poses[j, 1]
-    poses[1:, :2] += factor.solve(
-        np.stack([_divergence(n, i, j, weights * ex), _divergence(n, i, j, weights * ey)], axis=1)
-    )
-    return Solution(bias, factor.nnz**2 / n + WORK_AN_EXPERIENCE * n)
+    off = weights[:, None] * disagreement(poses, links, moves)[:, :2]
+    poses[:, :2] += net.solve(np.stack([_asked(n, links, off[:, 0]), _asked(n, links, off[:, 1])], axis=1))
+    return Solution(bias, net.work + WORK_AN_EXPERIENCE * n)
 
 
-def disagreement(
-    poses: NDArray[np.float64], links: NDArray[np.int64], moves: NDArray[np.float64]
-) -> NDArray[np.float64]:
+@njit(cache=True, nogil=True)
+def disagreement(poses, links, moves):
     """Where each link says its end is, less where the map has it: dx, dy (m) in the map's frame and angle (rad), shape (m, 3)."""
-    i, j = links[:, 0], links[:, 1]
-    c, s = np.cos(poses[i, 2]), np.sin(poses[i, 2])
-    ex = poses[i, 0] + c * moves[:, 0] - s * moves[:, 1] - poses[j, 0]
-    ey = poses[i, 1] + s * moves[:, 0] + c * moves[:, 1] - poses[j, 1]
-    turn = poses[i, 2] + moves[:, 2] - poses[j, 2]
-    turn -= 2 * math.pi * np.round(turn / (2 * math.pi))
-    return np.stack([ex, ey, turn], axis=1)
+    out = np.empty((len(links), 3))
+    for row in range(len(links)):
+        i, j = links[row]
+        c, s = math.cos(poses[i, 2]), math.sin(poses[i, 2])
+        out[row, 0] = poses[i, 0] + c * moves[row, 0] - s * moves[row, 1] - poses[j, 0]
+        out[row, 1] = poses[i, 1] + s * moves[row, 0] + c * moves[row, 1] - poses[j, 1]
+        out[row, 2] = _wrapped(poses[i, 2] + moves[row, 2] - poses[j, 2])
+    return out
 
 
 def trust(
@@ -190,6 +173,11 @@ def trust(
     return np.where(chain, 1 / (1 + (chi / CHAIN_GIVES) ** 2), np.minimum(1, LOOK_GIVES / np.maximum(chi, LOOK_GIVES)))
 
 
-def _divergence(n: int, i: NDArray[np.int64], j: NDArray[np.int64], error: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What each node but the first is asked to move in sum."""
-    return np.asarray(np.bincount(j, error, n) - np.bincount(i, error, n), np.float64)[1:]
+@njit(cache=True, nogil=True)
+def _asked(n, links, errors):
+    """What each experience is asked to move in sum, when every link asks its end to follow and its beginning to come back."""
+    asked = np.zeros(n)
+    for row in range(len(links)):
+        asked[links[row, 0]] -= errors[row]
+        asked[links[row, 1]] += errors[row]
+    return asked

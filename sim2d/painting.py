@@ -45,9 +45,10 @@ def paint_columns(
     mirror_hits: NDArray[np.float64],
     canvas: NDArray[np.float32],
 ) -> None:
-    """Fill canvas (w, 3 h), column by column red, green, blue from the top down, from the hits of `column_hits`, far to near; edges are blended by the share they cover.
+    """Fill canvas (w, 3 h) from the hits of `column_hits`, far to near; edges are blended by the share they cover.
 
-    glow: (w, k + 1) brightness of each hit, and of floor and ceiling. panes, mirror_...: from `mirror.mirrored`.
+    A column holds red, green and blue of each pixel from the top down. glow: (w, k + 1) brightness of each hit, and of
+    floor and ceiling. panes, mirror_...: from `mirror.mirrored`.
     """
     texels, first, columns, rows = strips.texels, strips.first, strips.columns, strips.rows
     bottoms, tops, shades, reflection = strips.bottoms, strips.tops, strips.shades, strips.reflection

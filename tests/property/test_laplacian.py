@@ -1,0 +1,87 @@
+"""Laws of the exact solution of nets: it is that of the dense equations, whatever the net."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ratslam_core import laplacian
+from ratslam_core.laplacian import eliminate
+from tests.unit.ratslam_core import literal
+
+EXAMPLES = settings(max_examples=60, deadline=None)
+
+
+def net(seed: int, nodes: int, links: int) -> tuple[np.ndarray, np.ndarray]:
+    """A tree and so many links more, some of them loops of one node, some repeated, weights over six decades."""
+    rng = np.random.default_rng(seed)
+    tree = [(int(rng.integers(v)), v) for v in range(1, nodes)]
+    more = rng.integers(0, nodes, (links, 2)).tolist()
+    pairs = np.array([*tree, *more, *more[: links // 3]], np.int64).reshape(-1, 2)
+    return pairs, 10 ** rng.uniform(-3, 3, len(pairs))
+
+
+def dense(nodes: int, links: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    matrix = np.zeros((nodes, nodes))
+    for (i, j), w in zip(links, weights, strict=True):
+        matrix[i, i] += w
+        matrix[j, j] += w
+        matrix[i, j] -= w
+        matrix[j, i] -= w
+    return matrix
+
+
+@EXAMPLES
+@given(st.integers(0, 2**32 - 1), st.integers(1, 40), st.integers(0, 120))
+def test_the_solution_is_that_of_the_dense_equations(seed: int, nodes: int, links: int) -> None:
+    pairs, weights = net(seed, nodes, links)
+    asked = np.random.default_rng(seed + 1).normal(size=(nodes, 2))
+    found = eliminate(nodes, pairs, weights).solve(asked)
+    matrix = dense(nodes, pairs, weights)
+    assert found[0].tolist() == [0.0, 0.0]
+    assert (matrix @ found)[1:] == pytest.approx(asked[1:], abs=1e-6 * max(1.0, float(np.abs(matrix).max())))
+    assert found[1:] == pytest.approx(np.linalg.solve(matrix[1:, 1:], asked[1:]), rel=1e-6, abs=1e-6)
+
+
+@EXAMPLES
+@given(st.integers(0, 2**32 - 1), st.integers(2, 30), st.integers(0, 60))
+def test_each_node_is_taken_out_once_and_the_order_of_links_is_no_matter(seed: int, nodes: int, links: int) -> None:
+    pairs, weights = net(seed, nodes, links)
+    one = eliminate(nodes, pairs, weights)
+    assert sorted(one.order) == list(range(1, nodes))
+    asked = np.random.default_rng(seed + 1).normal(size=nodes)
+    other = eliminate(nodes, pairs[::-1, ::-1].copy(), weights[::-1].copy())
+    assert other.solve(asked) == pytest.approx(one.solve(asked), rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_a_net_that_fills_up(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows outgrow their room, and the arena its own."""
+    if interpreted:
+        literal.interpret(laplacian, monkeypatch)
+    pairs, weights = net(3, 120, 400)
+    asked = np.random.default_rng(4).normal(size=120)
+    expected = np.linalg.solve(dense(120, pairs, weights)[1:, 1:], asked[1:])
+    made = eliminate(120, pairs, weights)
+    assert made.solve(asked)[1:] == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    assert made.work == sum(int(count) ** 2 for count in made.used[1:])
+
+
+def test_a_chain_costs_no_more_than_its_length() -> None:
+    chain = np.stack([np.arange(999), np.arange(1, 1000)], axis=1)
+    assert eliminate(1000, chain, np.ones(999)).work == 999
+
+
+def test_links_of_no_weight_hold_nothing() -> None:
+    """Nodes 2 and 3 hang together but on nothing else: they stay, and the rest is as if they were not there."""
+    pairs = np.array([(0, 1), (1, 2), (2, 3)])
+    found = eliminate(4, pairs, np.array([2.0, 0.0, 1.0])).solve(np.array([0.0, 3.0, 1.0, -1.0]))
+    assert found[:2].tolist() == [0.0, 1.5]
+    assert np.isfinite(found).all()
+
+
+def test_one_node_alone() -> None:
+    made = eliminate(1, np.zeros((0, 2), np.int64), np.zeros(0))
+    assert made.solve(np.array([5.0])).tolist() == [0.0]
