@@ -58,8 +58,10 @@ class LivingLayer:
     doors: NDArray[np.float32]  # (d, 4): x1 y1 x2 y2 of each leaf, its hinge first
     door_wanted: NDArray[np.bool_]  # (d,) open, or on its way to be
     door_opening: NDArray[np.float32]  # (d,) 0 = shut, 1 = open
+    box_names: tuple[str, ...]
     boxes: NDArray[np.float32]  # (b, 6): x y width depth height angle of those that are there
     box_rgb: NDArray[np.uint8]  # (b, 3)
+    person_names: tuple[str, ...]
     people: NDArray[np.float32]  # (p, 5): x y heading radius height of those who are there
     people_rgb: NDArray[np.uint8]  # (p, 3)
     lamp_names: tuple[str, ...]

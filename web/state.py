@@ -77,6 +77,7 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
         "office": None if snapshot.office is None else office_fields(snapshot.office),
         "inspected": None if snapshot.inspected is None else _inspected(snapshot.inspected),
         "walk": None if snapshot.walk is None else _walk(snapshot.walk),
+        "moving": None if snapshot.living is None else _moving(snapshot.living),
     }
 
 
@@ -191,6 +192,12 @@ def _living(layer: LivingLayer) -> dict[str, Any]:
         "boxes": len(layer.boxes),
         "daylight": layer.daylight,
     }
+
+
+def _moving(layer: LivingLayer) -> dict[str, Any]:
+    """Where people are (x, y, heading) by name, and the names of the boxes that are there."""
+    places = layer.people[:, :3].round(3).tolist()
+    return {"walkers": dict(zip(layer.person_names, places, strict=True)), "boxes": layer.box_names}
 
 
 def _goal(goal: Goal) -> dict[str, Any]:

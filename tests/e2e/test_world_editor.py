@@ -266,6 +266,34 @@ def test_edits_of_two_pages_meet(program, browser):
         until(page, "() => [...document.querySelectorAll('#plan .name')].some((t) => t.textContent === 'somewhere')")
 
 
+def test_people_boxes_and_lamps_are_drawn_as_they_are_now(program, browser):
+    program.command("reset", world="living")
+    people = program.state()["living"]["people"]
+    where = "() => [...document.querySelectorAll('#plan .head')].map((c) => [c.cx.baseVal.value, c.cy.baseVal.value])"
+    with open_page(browser, program.url, 1440, 900) as page:
+        edit(page)
+        until(page, "(n) => document.querySelectorAll('#plan .head').length === n", argument=people)
+        assert page.locator("#plan .box.away").count() == 1  # the trolley, which comes at 5:00
+        before, still = page.evaluate(where), page.locator("#plan .body").get_attribute("cx")
+        program.command("step", ticks=30)
+        until(page, "(was) => document.querySelector('#plan .body').getAttribute('cx') !== was", argument=still)
+        moved = [abs(a[0] - b[0]) + abs(a[1] - b[1]) > 10 for a, b in zip(before, page.evaluate(where), strict=True)]
+        assert any(moved)
+        head = page.locator("#plan .head").nth(moved.index(True))
+        name = head.locator("title").evaluate("(title) => title.textContent")
+        box = head.bounding_box()
+        page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        until(page, "() => document.querySelector('#fields h2').textContent === 'Person'")
+        assert page.input_value("#fields [data-key=name]") == name
+
+        program.command("set_lamp", name="hall east", on=False)
+        until(page, "() => document.querySelector('#plan .bulb.off title')?.textContent === 'hall east, off'")
+        program.command("set_parameter", name="office.people", value=False)
+        program.command("step", ticks=1)
+        until(page, "() => document.querySelectorAll('#plan .head').length === 0")
+        program.command("set_parameter", name="office.people", value=True)
+
+
 def test_a_dropped_picture_becomes_a_world(program, browser):
     with open_page(browser, program.url, 1280, 800) as page:
         drop(page, ("plan.pgm", cv2.imencode(".pgm", np.zeros((7, 8), np.uint8))[1].tobytes()))

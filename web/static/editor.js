@@ -70,7 +70,7 @@ export class Editor {
     $("edit-redo").title = redo ? `Redo: ${redo} (Ctrl+Shift+Z)` : "Nothing to redo";
     $("edit-name").textContent = page.title;
     $("edit-unsaved").hidden = saved !== false;
-    this.plan.showDoors(state.living?.doors);
+    this.plan.showLive({ doors: state.living?.doors, lamps: state.living?.lamps, ...page.moving });
     this.plan.drawRobot(state.robot);
     this.time.at(state.time_s, state.living?.daylight ?? 1);
     if (page.office && edition !== this.office.edition) this.office.load();

@@ -1,21 +1,28 @@
-// The office from above, drawn as SVG: metres to pixels, the things of a world, the robot, what is being drawn.
+// The office from above: the things of a world, what moves in it, the robot, and what is being drawn.
 
 import { svg } from "./icons.js";
+import { Sheet } from "./sheet.js";
 import { THINGS, away, corners, hinge, tip } from "./things.js";
 
-const LEAST_GRID_PX = 7;
 const NEAR_PX = 12; // a click within this distance means a thing
-const [LEAST, MOST] = [2, 2000]; // pixels a metre
-const LAYERS = ["zones", "grid", "lamps", "people", "walls", "boxes", "doors", "marks", "robot", "chosen", "draft", "cursor"];
+const LAYERS = ["zones", "grid", "lamps", "people", "walls", "boxes", "doors", "marks", "walkers", "robot", "chosen", "draft", "cursor"];
 
-export class Plan {
+// What changes while it runs, by its layer: from which list of the world, by which of the methods below.
+const KINDS = {
+  lamps: { draws: "lamp" },
+  boxes: { draws: "box" },
+  doors: { draws: "door" },
+  walkers: { list: "people", draws: "person" },
+};
+
+export class Plan extends Sheet {
   constructor(place) {
-    this.place = place;
-    this.layers = Object.fromEntries(LAYERS.map((name) => [name, svg("g", { class: name })]));
-    place.append(...Object.values(this.layers));
-    this.scale = 0; // pixels a metre; 0: not shown yet
-    this.origin = [0, 0]; // where (0, 0) is on the plan, pixels
-    new ResizeObserver(() => this.resized()).observe(place);
+    super(place, LAYERS);
+    this.live = {}; // doors (0 shut to 1), lamps (lit), boxes (there), walkers: by name, as the engine said last
+  }
+
+  get ring() {
+    return this.world?.walls.filter((wall) => wall.outer).map((wall) => wall.from);
   }
 
   show(world) {
@@ -25,63 +32,14 @@ export class Plan {
     else this.draw();
   }
 
-  resized() {
-    if (!this.world || !this.place.clientWidth) return;
-    if (this.moved) this.draw();
-    else this.fit();
-  }
-
-  // The whole outline on the plan.
-  fit() {
-    const { clientWidth: width, clientHeight: height } = this.place;
-    if (!width || !this.world) return;
-    this.moved = false; // by hand: until then a plan of another size shows all of it, too
-    const ring = this.world.walls.filter((wall) => wall.outer).map((wall) => wall.from);
-    const [xs, ys] = [ring.map((p) => p[0]), ring.map((p) => p[1])];
-    const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    this.scale = Math.max(LEAST, Math.min(MOST, Math.min((width - 72) / (x1 - x0), (height - 72) / (y1 - y0))));
-    this.origin = [width / 2 - (this.scale * (x0 + x1)) / 2, height / 2 + (this.scale * (y0 + y1)) / 2];
-    this.draw();
-  }
-
-  pan(dx, dy) {
-    this.moved = true;
-    this.origin = [this.origin[0] + dx, this.origin[1] + dy];
-    this.draw();
-  }
-
-  // Larger by `factor`; the pixel `around` stays where it is.
-  zoom(factor, around = [this.place.clientWidth / 2, this.place.clientHeight / 2]) {
-    const to = Math.max(LEAST, Math.min(MOST, this.scale * factor));
-    this.moved = true;
-    this.origin = this.origin.map((o, k) => around[k] + ((o - around[k]) * to) / this.scale);
-    this.scale = to;
-    this.draw();
-  }
-
-  pixel([x, y]) {
-    return [this.origin[0] + x * this.scale, this.origin[1] - y * this.scale];
-  }
-
-  metres([u, v]) {
-    return [(u - this.origin[0]) / this.scale, (this.origin[1] - v) / this.scale];
-  }
-
-  // Bring a point into sight.
-  reveal(p) {
-    const [u, v] = this.pixel(p);
-    const { clientWidth: width, clientHeight: height } = this.place;
-    const push = (at, size) => (at < 24 ? 24 - at : at > size - 24 ? size - 24 - at : 0);
-    if (push(u, width) || push(v, height)) this.pan(push(u, width), push(v, height));
-  }
-
   // The thing at a point, the small ones first: {list, number}, or null.
   thingAt(p) {
     const near = NEAR_PX / this.scale;
     for (const list of ["places", "starts", "doors", "boxes", "lamps", "people", "walls", "slow_zones"]) {
       let best = null;
       (this.world[list] ?? []).forEach((item, number) => {
-        const far = THINGS[list].far(item, p);
+        const walker = list === "people" ? this.live.walkers?.[item.name] : null;
+        const far = Math.min(THINGS[list].far(item, p), walker ? away(walker, p) - (item.radius ?? 0.22) : Infinity);
         if (far <= near && (best === null || far < best.far)) best = { list, number, far };
       });
       if (best) return { list, number: best.number };
@@ -114,55 +72,14 @@ export class Plan {
     const world = this.world;
     this.fill("zones", (world.slow_zones ?? []).map((zone) => this.path("zone", zone.corners, true, `${zone.name}, ${Math.round(zone.factor * 100)} %`)));
     this.drawGrid();
-    this.fill("lamps", (world.lamps ?? []).flatMap((lamp) => this.lamp(lamp)));
-    this.fill("people", (world.people ?? []).flatMap((person) => this.person(person)));
+    this.fill("people", (world.people ?? []).flatMap((person) => this.way(person)));
     this.drawWalls();
-    this.fill("boxes", (world.boxes ?? []).map((box) => this.path("box", corners(box), true, box.name)));
-    this.fill("doors", (world.doors ?? []).flatMap((door) => this.door(door)));
+    for (const kind of Object.keys(KINDS)) this.drawKind(kind);
     this.fill("marks", [...world.starts.flatMap((start, k) => this.start(start, k)), ...(world.places ?? []).flatMap((p) => this.named(p))]);
     this.drawRobot(this.robot);
     this.choose(this.chosen);
     this.draft(this.drafted ?? [], this.tool);
     this.cursor(this.crosshair);
-  }
-
-  fill(layer, parts) {
-    this.layers[layer].replaceChildren(...parts);
-  }
-
-  path(kind, points, closed = false, title = "") {
-    const d = `M${points.map((p) => this.pixel(p).map((u) => u.toFixed(1)).join(" ")).join("L")}${closed ? "Z" : ""}`;
-    const made = svg("path", { d, class: kind });
-    if (title) made.append(svg("title", {}, title));
-    return made;
-  }
-
-  circle(kind, p, r, title = "") {
-    const [cx, cy] = this.pixel(p);
-    const made = svg("circle", { cx, cy, r, class: kind });
-    if (title) made.append(svg("title", {}, title));
-    return made;
-  }
-
-  text(kind, p, words, dy = -10) {
-    const [x, y] = this.pixel(p);
-    return svg("text", { x, y: y + dy, class: kind, "text-anchor": "middle" }, words);
-  }
-
-  drawGrid() {
-    const { clientWidth: width, clientHeight: height } = this.place;
-    let step = this.grid || 0.25;
-    while (step * this.scale < LEAST_GRID_PX) step *= step < 1 && step * 4 >= 1 ? 1 / step : 5;
-    const lines = (every) => {
-      const [x0, y1] = this.metres([0, 0]);
-      const [x1, y0] = this.metres([width, height]);
-      let d = "";
-      for (let k = Math.ceil(x0 / every); k * every <= x1; k++) d += `M${this.pixel([k * every, 0])[0].toFixed(1)} 0V${height}`;
-      for (let k = Math.ceil(y0 / every); k * every <= y1; k++) d += `M0 ${this.pixel([0, k * every])[1].toFixed(1)}H${width}`;
-      return d;
-    };
-    const coarse = step < 1 ? 1 : step * 5;
-    this.fill("grid", [svg("path", { d: lines(step), class: "fine" }), svg("path", { d: lines(coarse), class: "coarse" })]);
   }
 
   // One path for each kind, so that ten thousand walls are a few elements.
@@ -178,17 +95,33 @@ export class Plan {
 
   lamp(lamp) {
     const p = [lamp.x, lamp.y];
+    if (!(this.live.lamps?.[lamp.name] ?? lamp.on ?? true)) return [this.circle("bulb off", p, 6, `${lamp.name}, off`)];
     return [this.circle("glow", p, lamp.reach * this.scale), this.circle("bulb", p, 6, lamp.name)];
   }
 
-  person(person) {
+  way(person) {
     const walk = person.path.length > 1 ? [this.path("way", person.path, person.loop ?? true)] : [];
     const stops = person.path.slice(1).map((p) => this.circle("stop", p, 3));
-    return [...walk, ...stops, this.circle("head", person.path[0], Math.max(5, (person.radius ?? 0.22) * this.scale), person.name)];
+    return [...walk, ...stops, this.circle("home", person.path[0], 6, `${person.name} begins here`)];
+  }
+
+  // Somebody where they are now; nobody while they are away.
+  person(person) {
+    const now = this.live.walkers?.[person.name];
+    if (!now) return [];
+    const [x, y, heading] = now;
+    const r = person.radius ?? 0.22;
+    const nose = [x + r * Math.cos(heading), y + r * Math.sin(heading)];
+    return [this.circle("head", [x, y], Math.max(5, r * this.scale), person.name), this.path("face", [[x, y], nose])];
+  }
+
+  box(box) {
+    const there = this.live.boxes ? this.live.boxes.includes(box.name) : (box.present ?? true);
+    return [this.path(there ? "box" : "box away", corners(box), true, there ? box.name : `${box.name}, not there now`)];
   }
 
   door(door) {
-    const opening = this.openings?.[door.name] ?? (door.open ?? true ? 1 : 0);
+    const opening = this.live.doors?.[door.name] ?? (door.open ?? true ? 1 : 0);
     const r = (door.width * this.scale).toFixed(1);
     const [shut, open] = [tip(door), tip(door, 1)].map((p) => this.pixel(p).map((u) => u.toFixed(1)).join(" "));
     const sweep = (door.swing_deg ?? 90) > 0 ? 0 : 1;
@@ -219,12 +152,16 @@ export class Plan {
     this.fill("robot", [body, this.path("nose", [p, nose])]);
   }
 
-  showDoors(openings) {
-    const text = JSON.stringify(openings ?? {});
-    if (text === this.doorsShown) return;
-    this.doorsShown = text;
-    this.openings = openings;
-    if (this.world && this.scale) this.fill("doors", (this.world.doors ?? []).flatMap((door) => this.door(door)));
+  // What moves, as it is now. Only what has changed is drawn again.
+  showLive(live) {
+    const before = this.live;
+    this.live = live;
+    for (const kind of Object.keys(KINDS)) if (JSON.stringify(live[kind]) !== JSON.stringify(before[kind])) this.drawKind(kind);
+  }
+
+  drawKind(kind) {
+    const { list = kind, draws } = KINDS[kind];
+    if (this.world && this.scale) this.fill(kind, (this.world[list] ?? []).flatMap((item) => this[draws](item)));
   }
 
   // Mark a thing and show its grips. chosen: {list, item} or null.

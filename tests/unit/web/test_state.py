@@ -10,6 +10,7 @@ import orjson
 import pytest
 
 from tests.fake_snapshots import fake_reports, fake_snapshot, fake_walk
+from tests.unit.web.test_office_stage import living
 from web.state import StateText, page_fields, state, to_json
 
 
@@ -70,6 +71,12 @@ def test_each_text_is_made_once_per_snapshot(snapshot):
     before = text.light(snapshot)
     assert text.light(replace(snapshot, tick=501)) != before
     assert text.full(snapshot) == text.full(snapshot)
+
+
+def test_the_page_is_told_where_people_are_and_which_boxes(snapshot):
+    assert page_fields(replace(snapshot, living=None))["moving"] is None
+    moving = orjson.loads(to_json(page_fields(replace(snapshot, living=living()))))["moving"]
+    assert moving == {"walkers": {"ann": [1.0, 1.0, 0.0], "bob": [6.0, 1.0, 1.0]}, "boxes": ["crate"]}
 
 
 def test_the_page_is_told_of_the_walk_and_of_what_is_inspected(snapshot):
