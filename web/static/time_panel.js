@@ -155,7 +155,7 @@ function which(world, item) {
   if (item.do === "daylight") return levelInput("Level of the daylight, 1 is as painted", item.level ?? 1);
   if (!of) return make("span", { className: "nothing" });
   const select = labelled(`Which of the ${of}`, make("select", { className: "which" }, ...namesOf(world, of).map((name) => new Option(name))));
-  select.value = item.name;
+  select.value = select.title = item.name; // which may be too long for its place
   return select;
 }
 
