@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from web.messages import LivingLayer
 from web.stage import ribbons
+from web.stage.crowd import Crowd
 from web.stage.furniture import METRE_HIGH
 from web.stage.office_fit import OfficeFit
 from web.stage.palette import Palette, Rgb, mix
@@ -26,7 +27,6 @@ POOL_Z, DARK_Z = 0.026, 0.022  # just above the floor
 LATE = np.array(
     (0.0, -20.0, 16.0), np.float32
 )  # see-through meshes are drawn by their origin: near the viewer comes last
-HEAD = (0.62, 0.8, 1.0)  # of a person's height: shoulders, chin, top
 DOOR_RGB: Rgb = (150, 104, 62)
 REACH = 0.35  # plate units: a click so near to a leaf means the door
 
@@ -36,7 +36,8 @@ class LivingThings:
 
     def __init__(self, scene: viser.SceneApi, palette: Palette, root: str) -> None:
         self._scene, self._palette, self._root = scene, palette, root
-        self._handles: dict[str, list[_Thing]] = {"door": [], "box": [], "person": [], "lamp": []}
+        self._handles: dict[str, list[_Thing]] = {"door": [], "box": [], "lamp": []}
+        self._crowd = Crowd(scene, palette, f"{root}/people")
         self._pools = add_mesh(
             scene, f"{root}/pools", ribbons.NOTHING, LIT, opacity=0.16, position=tuple(LATE.tolist()), visible=False
         )
@@ -58,16 +59,15 @@ class LivingThings:
         doors, boxes, people, lamps = (
             _NO_ROWS if layer is None else (layer.doors, layer.boxes, layer.people, layer.lamps)
         )
+        self._crowd.show(people, np.zeros((0, 3), np.uint8) if layer is None else layer.people_rgb, fit)
         for i, leaf in enumerate(doors):
             self._door(self._handle("door", i, DOOR_RGB), leaf, fit)
         for i, box in enumerate(boxes):
             self._box(self._handle("box", i, _rgb(layer.box_rgb[i]) if layer else DOOR_RGB), box, fit)
-        for i, person in enumerate(people):
-            self._person(self._handle("person", i, _rgb(layer.people_rgb[i]) if layer else DOOR_RGB), person, fit)
         for i, (x, y, _, on) in enumerate(lamps):
             handle = self._handle("lamp", i, LIT if on else mix(self._palette.slab, self._palette.text_2, 0.3))
             self._move(handle, fit, float(x), float(y), LAMP_Z * fit.relief, 0.0, (LAMP_RADIUS, LAMP_RADIUS, 0.02))
-        for kind, count in zip(self._handles, map(len, (doors, boxes, people, lamps)), strict=True):
+        for kind, count in zip(self._handles, map(len, (doors, boxes, lamps)), strict=True):
             for thing in self._handles[kind][count:]:
                 self._hide(thing)
         self._shine(np.asarray(lamps, np.float64), fit)
@@ -128,11 +128,6 @@ class LivingThings:
         size = (width * fit.scale, depth * fit.scale, height * METRE_HIGH * fit.relief)
         self._move(thing, fit, x, y, 0.0, angle, size)
 
-    def _person(self, thing: _Thing, person: NDArray[np.floating], fit: OfficeFit) -> None:
-        x, y, heading, radius, height = (float(v) for v in person)
-        wide = max(radius * fit.scale, 0.07)
-        self._move(thing, fit, x, y, 0.0, heading, (wide, wide, height * METRE_HIGH * max(fit.relief, 0.5)))
-
     # ------------------------------------------------------------ handles
 
     def _handle(self, kind: str, i: int, colour: Rgb) -> _Thing:
@@ -175,27 +170,10 @@ def _rgb(row: NDArray[np.uint8]) -> Rgb:
     return int(row[0]), int(row[1]), int(row[2])
 
 
-def _figure() -> ribbons.Mesh:
-    """A person of radius and height 1 who looks along +x."""
-    circle = ribbons.circle(1.0)
-    parts = [
-        ribbons.extruded(circle * (0.7, 1.0), 0.0, HEAD[0]),
-        ribbons.extruded(circle * 0.5, HEAD[0] + 0.02, HEAD[2]),
-        ribbons.extruded(
-            ribbons.rounded_rectangle(0.2, 0.3, 0.08, 4, centre=(0.55, 0.0)), HEAD[1] - 0.06, HEAD[1] + 0.06
-        ),
-    ]
-    vertices = np.concatenate([mesh[0] for mesh in parts])
-    offsets = np.cumsum([0, *(len(mesh[0]) for mesh in parts[:-1])])
-    faces = np.concatenate([mesh[1] + offset for mesh, offset in zip(parts, offsets, strict=True)])
-    return vertices, faces
-
-
 _SQUARE = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
 _MESHES = {
     "door": ribbons.extruded(_SQUARE, 0.0, 1.0),
     "box": ribbons.extruded(_SQUARE, 0.0, 1.0),
-    "person": _figure(),
     "lamp": ribbons.extruded(ribbons.circle(1.0), 0.0, 1.0),
 }
 _NO_ROWS = (np.zeros((0, 4)), np.zeros((0, 6)), np.zeros((0, 5)), np.zeros((0, 4)))

@@ -2,6 +2,7 @@
 
 import { svg } from "./icons.js";
 import { Sheet } from "./sheet.js";
+import { Walls } from "./walls.js";
 import { THINGS, away, corners, hinge, tip } from "./things.js";
 
 const NEAR_PX = 12; // a click within this distance means a thing
@@ -18,6 +19,7 @@ const KINDS = {
 export class Plan extends Sheet {
   constructor(place) {
     super(place, LAYERS);
+    this.walls = new Walls(place, this.layers.walls);
     this.live = {}; // doors (0 shut to 1), lamps (lit), boxes (there), walkers: by name, as the engine said last
   }
 
@@ -73,24 +75,13 @@ export class Plan extends Sheet {
     this.fill("zones", (world.slow_zones ?? []).map((zone) => this.path("zone", zone.corners, true, `${zone.name}, ${Math.round(zone.factor * 100)} %`)));
     this.drawGrid();
     this.fill("people", (world.people ?? []).flatMap((person) => this.way(person)));
-    this.drawWalls();
+    this.walls.draw(world.walls, (p) => this.pixel(p));
     for (const kind of Object.keys(KINDS)) this.drawKind(kind);
     this.fill("marks", [...world.starts.flatMap((start, k) => this.start(start, k)), ...(world.places ?? []).flatMap((p) => this.named(p))]);
     this.drawRobot(this.robot);
     this.choose(this.chosen);
     this.draft(this.drafted ?? [], this.tool);
     this.cursor(this.crosshair);
-  }
-
-  // One path for each kind, so that ten thousand walls are a few elements.
-  drawWalls() {
-    const paths = new Map();
-    for (const wall of this.world.walls) {
-      const kind = wall.outer ? "outer" : wall.bottom ? "high" : wall.kind === "glass" ? "glass" : wall.kind === "wall" ? "wall" : "low";
-      const [[a, b], [c, d]] = [this.pixel(wall.from), this.pixel(wall.to)];
-      paths.set(kind, `${paths.get(kind) ?? ""}M${a.toFixed(1)} ${b.toFixed(1)}L${c.toFixed(1)} ${d.toFixed(1)}`);
-    }
-    this.fill("walls", [...paths].map(([kind, d]) => svg("path", { d, class: kind })));
   }
 
   lamp(lamp) {

@@ -3,7 +3,7 @@
 import { svg } from "./icons.js";
 
 const LEAST_GRID_PX = 7;
-const [LEAST, MOST] = [2, 2000]; // pixels a metre
+const [LEAST, MOST] = [0.1, 2000]; // pixels a metre
 
 // `draw()` and `ring`, the corners of all that is on it, are the heir's.
 export class Sheet {

@@ -113,14 +113,20 @@ def office() -> Iterator[Office]:
 
 
 def shown(office: Office) -> dict[str, int]:
-    return {kind: sum(t.handle.visible for t in things) for kind, things in office.things._handles.items()}
+    counts = {kind: sum(t.handle.visible for t in things) for kind, things in office.things._handles.items()}
+    return counts | {"person": len(standing(office))}
+
+
+def standing(office: Office) -> Any:
+    """(n, 3): where people are on the plate."""
+    crowd = office.things._crowd._handle
+    return crowd.batched_positions[crowd.batched_positions[:, 2] > -1.0] if crowd.visible else []
 
 
 def test_every_living_thing_stands_on_the_plate(office: Office) -> None:
     assert shown(office) == {"door": 2, "box": 1, "person": 2, "lamp": 1}
     fit = office.stage._scenery.office.fit
-    ada = office.things._handles["person"][0].handle
-    assert ada.position[:2] == pytest.approx(fit.to_plate(np.array([[1.0, 1.0]]))[0])
+    assert standing(office)[:, :2] == pytest.approx(fit.to_plate(np.array([[1.0, 1.0], [6.0, 1.0]])))
     assert office.things._pools.visible
     assert not office.things._dark.visible
     office.show(living(people=living().people[:1], people_rgb=living().people_rgb[1:], boxes=np.zeros((0, 6))))
@@ -133,14 +139,20 @@ def test_every_living_thing_stands_on_the_plate(office: Office) -> None:
 def test_who_walks_is_moved_and_who_stands_sends_nothing(office: Office) -> None:
     snapshot = living()
     office.show(snapshot)
-    ada, alan = (thing.handle for thing in office.things._handles["person"])
-    before, stays = ada.position.copy(), alan.position.copy()
+    crowd, before = office.things._crowd._handle, standing(office).copy()
+    still = office.show(replace(snapshot, people=snapshot.people.copy()))
     walked = snapshot.people.copy()
     walked[0, 0] += 0.5
-    office.show(replace(snapshot, people=walked))
-    assert ada.position[0] > before[0]
-    assert np.array_equal(alan.position, stays)
-    assert ada is office.things._handles["person"][0].handle
+    assert office.show(replace(snapshot, people=walked)) == still + 1  # their places, and nothing else
+    after = standing(office)
+    assert after[0, 0] > before[0, 0]
+    assert np.array_equal(after[1], before[1])
+    more = np.vstack([walked, walked + np.float32([1, 1, 0, 0, 0])])
+    office.show(replace(snapshot, people=more, people_rgb=np.tile(snapshot.people_rgb, (2, 1))))
+    assert shown(office)["person"] == 4
+    assert crowd is not office.things._crowd._handle  # there was no place for them
+    office.show(snapshot)
+    assert np.array_equal(standing(office), before)
 
 
 def test_lamps_and_daylight_change_the_floor(office: Office) -> None:

@@ -1,0 +1,68 @@
+// The walls of the plan. A few are SVG as all else; thousands are painted on a sheet beneath, once: whenever the robot moves the
+// browser paints all of the SVG anew, which takes seconds with ten thousand walls in it and no graphics card.
+
+import { svg } from "./icons.js";
+
+const MANY = 1000;
+const AT_ONCE = 100; // the more lines there are in one stroke, the longer each of them takes
+const LOOKS = { outer: ["--outer", 4, []], wall: ["--wall", 3, []], low: ["--low", 2.5, []], high: ["--low", 1.5, [3, 4]], glass: ["--glass", 3, [8, 5]] };
+
+const kindOf = (wall) => wall.outer ? "outer" : wall.bottom ? "high" : wall.kind === "glass" ? "glass" : wall.kind === "wall" ? "wall" : "low";
+
+export class Walls {
+  constructor(place, layer) {
+    this.layer = layer;
+    this.place = place;
+    this.canvas = document.createElement("canvas");
+    this.canvas.className = "painted";
+    place.before(this.canvas);
+    this.paper = this.canvas.getContext("2d", { willReadFrequently: true }); // in memory: quicker than a graphics card that is none
+    new MutationObserver(() => this.again?.()).observe(document.documentElement, { attributeFilter: ["data-theme"] });
+  }
+
+  // pixel: from metres to pixels of the plan.
+  draw(walls, pixel) {
+    const many = walls.length > MANY;
+    this.canvas.hidden = !many;
+    this.again = many ? () => this.paint(walls, pixel) : null;
+    this.again?.();
+    if (many) return this.layer.replaceChildren();
+    const paths = new Map();
+    for (const wall of walls) {
+      const [[a, b], [c, d]] = [pixel(wall.from), pixel(wall.to)];
+      paths.set(kindOf(wall), `${paths.get(kindOf(wall)) ?? ""}M${a.toFixed(1)} ${b.toFixed(1)}L${c.toFixed(1)} ${d.toFixed(1)}`);
+    }
+    this.layer.replaceChildren(...[...paths].map(([kind, d]) => svg("path", { d, class: kind })));
+  }
+
+  // Those in sight.
+  paint(walls, pixel) {
+    const { clientWidth: width, clientHeight: height } = this.place;
+    const [{ paper, canvas }, sharp, style] = [this, window.devicePixelRatio || 1, getComputedStyle(this.place)];
+    [canvas.width, canvas.height] = [Math.round(width * sharp), Math.round(height * sharp)];
+    paper.scale(sharp, sharp);
+    paper.lineCap = "round";
+    const begun = Object.fromEntries(Object.keys(LOOKS).map((kind) => [kind, []]));
+    for (const wall of walls) {
+      const [[a, b], [c, d]] = [pixel(wall.from), pixel(wall.to)];
+      if (Math.max(a, c) < -9 || Math.min(a, c) > width + 9 || Math.max(b, d) < -9 || Math.min(b, d) > height + 9) continue;
+      const lines = begun[kindOf(wall)];
+      lines.push(a, b, c, d);
+      if (lines.length >= 4 * AT_ONCE) this.stroke(kindOf(wall), lines.splice(0), style);
+    }
+    for (const kind of Object.keys(LOOKS)) this.stroke(kind, begun[kind], style);
+  }
+
+  stroke(kind, lines, style) {
+    const [colour, width, dashes] = LOOKS[kind];
+    const { paper } = this;
+    [paper.strokeStyle, paper.lineWidth] = [style.getPropertyValue(colour), width];
+    paper.setLineDash(dashes);
+    paper.beginPath();
+    for (let k = 0; k < lines.length; k += 4) {
+      paper.moveTo(lines[k], lines[k + 1]);
+      paper.lineTo(lines[k + 2], lines[k + 3]);
+    }
+    paper.stroke();
+  }
+}
