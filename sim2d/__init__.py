@@ -9,7 +9,7 @@ from sim2d.things import Box, Daylight, Door, Event, Lamp, Person, SlowZone
 from sim2d.world import Panel, Place, Start, Wall, World
 from sim2d.world_file import DEFAULT_WORLD, WorldError, load_world, world_from_json, world_names
 from sim2d.world_schema import WorldFile
-from sim2d.world_writer import world_to_json
+from sim2d.world_writer import WorldText, world_to_json
 
 __all__ = [
     "DEFAULT_WORLD",
@@ -36,6 +36,7 @@ __all__ = [
     "World",
     "WorldError",
     "WorldFile",
+    "WorldText",
     "draw_world",
     "load_world",
     "world_from_json",

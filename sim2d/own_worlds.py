@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import tempfile
+from functools import lru_cache
 from pathlib import Path
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,39}")
@@ -93,6 +94,13 @@ def _deleted(path: Path) -> Path:
 
 def _title(path: Path) -> str:
     try:
-        return str(json.loads(path.read_text("utf-8"))["title"])
+        about = path.stat()
+        return _title_in(path, about.st_mtime_ns, about.st_size, about.st_ino)
     except (OSError, ValueError, KeyError, TypeError):
         return f"{path.stem} (cannot be read)"
+
+
+@lru_cache(maxsize=256)
+def _title_in(path: Path, *_changed: int) -> str:
+    """Read once for as long as the file is the same: all are asked for whenever the editor reads the office."""
+    return str(json.loads(path.read_text("utf-8"))["title"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,7 @@ class WorldError(ValueError):
     """A world file that cannot be used, and why."""
 
 
+@cache
 def world_names() -> tuple[tuple[str, str], ...]:
     """(name, title) of the worlds that come with the package, the default first."""
     names = sorted(

@@ -15,7 +15,7 @@ from fastapi import FastAPI, Request
 from fastapi.responses import Response
 from pydantic import BaseModel, Field
 
-from sim2d import World, WorldError, own_worlds, world_names, world_to_json
+from sim2d import World, WorldError, WorldText, own_worlds, world_names
 from sim2d.empty_room import empty_room
 from sim2d.importers import import_world
 from web.commands import Malformed, Problem, problem, wrong
@@ -63,13 +63,13 @@ class Opened(BaseModel):
 
 
 def add_worlds(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
-    limits, importing = Limits(), asyncio.Lock()
+    limits, importing, text = Limits(), asyncio.Lock(), WorldText()
     add_saved_worlds(app, submit, limits)
 
     @app.get("/api/world", tags=["worlds"], responses={503: {"model": Problem}})
     async def world() -> Response:
         """The office as it is now, as a world file, and which edition of it that is."""
-        return await answered(_read(submit))
+        return await answered(_read(submit, text))
 
     @app.get("/api/world/file", tags=["worlds"], responses={503: {"model": Problem}})
     async def world_file() -> Response:
@@ -78,10 +78,10 @@ def add_worlds(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
             now, _ = await world_now(submit)
         except NoAnswer as error:
             return json_response(problem(str(error)), error.status)
-        text = await asyncio.to_thread(world_to_json, now)
+        written = await asyncio.to_thread(text.of, now)
         safe = "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "-" for c in now.name)
         headers = {"Content-Disposition": f'attachment; filename="{safe}.json"', "Cache-Control": "no-store"}
-        return Response(text, headers=headers, media_type="application/json")
+        return Response(written, headers=headers, media_type="application/json")
 
     @app.post(PLAN_PATH, tags=["worlds"], openapi_extra=takes(OpenFiles),
               responses={200: {"model": Opened}, **ERRORS})  # fmt: skip
@@ -99,11 +99,11 @@ def add_worlds(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
         return await answered(_new(request, submit, limits))
 
 
-async def _read(submit: Submit) -> bytes:
+async def _read(submit: Submit, text: WorldText) -> bytes:
     now, edition = await world_now(submit)
-    text = await asyncio.to_thread(world_to_json, now)
+    written = await asyncio.to_thread(text.of, now)
     head = to_json({**office_fields(edition), "yours": dict(own_worlds.names()), "ours": dict(world_names())})
-    return head[:-1] + b',"world":' + text.encode() + b"}"
+    return head[:-1] + b',"world":' + written.encode() + b"}"
 
 
 async def _open(request: Request, latest: Latest[Snapshot], submit: Submit, limits: Limits) -> bytes:

@@ -32,7 +32,7 @@ class Crowd:
             return
         n, rows = len(people), np.asarray(people, np.float64).reshape(-1, 5)
         at, sizes, turns = (
-            np.tile(np.float32(AWAY), (self._places, 1)),
+            np.tile(np.array(AWAY, np.float32), (self._places, 1)),
             np.ones((self._places, 3)),
             np.zeros(self._places),
         )
@@ -59,8 +59,8 @@ class Crowd:
         self._handle = self._scene.add_batched_meshes_simple(
             self._name,
             *_figure(),
-            batched_wxyzs=np.tile(np.float32((1, 0, 0, 0)), (places, 1)),
-            batched_positions=np.tile(np.float32(AWAY), (places, 1)),
+            batched_wxyzs=np.tile(np.array((1, 0, 0, 0), np.float32), (places, 1)),
+            batched_positions=np.tile(np.array(AWAY, np.float32), (places, 1)),
             batched_scales=np.ones((places, 3), np.float32),
             batched_colors=np.zeros((places, 3), np.uint8),
             lod="off",

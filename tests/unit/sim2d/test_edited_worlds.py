@@ -21,6 +21,7 @@ from sim2d import (
     Simulator,
     Wall,
     World,
+    WorldText,
     load_world,
     world_from_json,
     world_to_json,
@@ -125,6 +126,14 @@ def edit_all(simulator: Simulator, worlds: list[World]) -> None:
             simulator.set_world(world)
         except (Fault, ValueError):
             continue
+
+
+@settings(max_examples=60, deadline=None)
+@given(some_history())
+def test_the_text_after_edits(worlds: list[World]) -> None:
+    text = WorldText()
+    for world in worlds:
+        assert text.of(world) == world_to_json(world)
 
 
 @settings(max_examples=40, deadline=None)
