@@ -140,7 +140,8 @@ class ExperienceMap(MapReading):
         self._belief.move(moved, self.params.odometry_drift * abs(step))
 
     def _most_energetic(self, packet: Packet, view: int) -> int:
-        return self._experiences.most_energetic(packet, view, self.params, self.robot)
+        robot = self.robot if view < 0 else IDENTITY  # who sees something is not asked where it is in the map
+        return self._experiences.most_energetic(packet, view, self.params, robot)
 
     def _look(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
         """Where the robot is in the frame of an experience: it may enter the zone beside the centre."""

@@ -50,11 +50,11 @@ class OccupancyGrid:
         """That something stands in a cell, shape (n_y, n_x); 0.5 where nothing is known. A copy."""
         return _probability(self._log_odds)
 
-    def require(self, ranges_m: NDArray[np.float32]) -> None:
-        """ValueError when this cannot be a scan."""
-        _ranges(ranges_m, self._angles)
+    def require(self, ranges_m: NDArray[np.floating]) -> NDArray[np.float64]:
+        """The scan as numbers of double precision; ValueError when it cannot be one."""
+        return _ranges(ranges_m, self._angles)
 
-    def update(self, packet: Packet, ranges_m: NDArray[np.float32]) -> None:
+    def update(self, packet: Packet, ranges_m: NDArray[np.floating]) -> None:
         """One scan, shape (n_sonars,), m from the robot's middle, taken at the packet's place. No echo: farthest_m or more."""
         ranges = _ranges(ranges_m, self._angles)
         x, y = require_finite("packet.x", packet.x), require_finite("packet.y", packet.y)
@@ -92,7 +92,7 @@ class MapGrid:
     def memory_bytes(self) -> int:
         return self._scans.nbytes + self._count.nbytes
 
-    def add(self, experience: int, local: Pose2, ranges_m: NDArray[np.float32]) -> None:
+    def add(self, experience: int, local: Pose2, ranges_m: NDArray[np.floating]) -> None:
         """Keep one scan. local: the robot in the frame of this experience (`ExperienceMap.local_pose`)."""
         if experience < 0:
             raise ValueError(f"experience must be 0 or more, got {experience!r}")
@@ -163,7 +163,7 @@ def _angles(sonar_angles_rad: Sequence[float] | NDArray[np.float64]) -> NDArray[
     return angles
 
 
-def _ranges(ranges_m: NDArray[np.float32], angles: NDArray[np.float64]) -> NDArray[np.float64]:
+def _ranges(ranges_m: NDArray[np.floating], angles: NDArray[np.float64]) -> NDArray[np.float64]:
     ranges = np.asarray(ranges_m, np.float64)
     if ranges.shape != angles.shape:
         raise ValueError(f"ranges_m must have shape {angles.shape}, one for each sonar, got {ranges.shape}")

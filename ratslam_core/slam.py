@@ -63,7 +63,7 @@ class RatSlam:
         *,
         scene: int | None = None,
         behaviour: int = 0,
-        ranges_m: NDArray[np.float32] | None = None,
+        ranges_m: NDArray[np.floating] | None = None,
         watch: Callable[[str], None] | None = None,
     ) -> Estimate:
         """One iteration at the end of a movement: `odometry` is what the wheels report of it, `image` what is seen then.
@@ -77,7 +77,7 @@ class RatSlam:
         """
         require_behaviour(behaviour)
         if ranges_m is not None:
-            self._require_sonars(ranges_m)
+            ranges_m = self._require_sonars(ranges_m)
         watch = watch or _nobody
         recognition = self.local_view.observe(image, scene)
         watch("view match")
@@ -193,10 +193,10 @@ class RatSlam:
             self._under_way_s += odometry.dt
             self.goal_memory.learn(*self.pose_cells.active, self._under_way_s)
 
-    def _require_sonars(self, ranges_m: NDArray[np.float32]) -> None:
+    def _require_sonars(self, ranges_m: NDArray[np.floating]) -> NDArray[np.float64]:
         if self.occupancy is None:
             raise ValueError("ranges_m needs a RatSlam that was made with sonar_angles_rad")
-        self.occupancy.require(ranges_m)
+        return self.occupancy.require(ranges_m)
 
 
 def _nobody(_stage: str) -> None:

@@ -34,6 +34,7 @@ class Robot:
         pivot.max_bias = gear.max_bias = 0.0  # only velocities are passed on, never positions
         pivot.max_force, gear.max_force = _GRIP_N, _GRIP_NM
         space.add(self.body, disc, self._wheels, pivot, gear)
+        self.pose = (x, y, heading_rad)  # the body's, as of the last tick; its heading is not wrapped
         self.speed = 0.0  # what the wheels do now, m/s
         self.yaw_rate = 0.0  # rad/s
         self.place(x, y, heading_rad)
@@ -51,6 +52,7 @@ class Robot:
         self.body.velocity = self._wheels.velocity = (0.0, 0.0)
         self.body.angular_velocity = self._wheels.angular_velocity = 0.0
         self.speed = self.yaw_rate = 0.0
+        self.pose = (float(x), float(y), float(heading_rad))
 
     def drive(
         self, space: pymunk.Space, speed: float, yaw_rate: float, params: SimParams, slowness: float, is_free: bool
@@ -66,7 +68,7 @@ class Robot:
         period = _STEPS_PER_COMMAND * dt
         change, turn_change = params.max_acceleration * period, params.max_yaw_acceleration * period
         body, wheels = self.body, self._wheels
-        (x, y), angle = body.position, body.angle
+        x, y, angle = self.pose
         v, w = self.speed, self.yaw_rate
         for first in range(0, params.substeps, _STEPS_PER_COMMAND):
             steps = min(_STEPS_PER_COMMAND, params.substeps - first)
@@ -84,6 +86,9 @@ class Robot:
         if is_free:
             body.position, body.angle = (x, y), angle
             body.velocity, body.angular_velocity = (v * math.cos(angle), v * math.sin(angle)), w
+        else:
+            x, y = body.position
+        self.pose = (x, y, angle)
         self.speed, self.yaw_rate = v, w
 
     def reach(self, params: SimParams) -> float:

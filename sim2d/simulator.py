@@ -134,7 +134,7 @@ class Simulator:
     @property
     def truth(self) -> Truth:
         """The true pose and motion."""
-        x, y, heading = self._pose()
+        x, y, heading = self._robot.pose
         return Truth(x, y, wrap_angle(heading), *self._motion)
 
     def observe(self) -> SensorFrame:
@@ -143,14 +143,14 @@ class Simulator:
 
     def step(self, drive: Drive) -> SensorFrame:
         """Drive for one tick, then sense."""
-        before, params = self._pose(), self.params
+        before, params = self._robot.pose, self.params
         here = before[:2]
         self._tick += 1
         self.living.step(self._time_s, here, params.robot_radius_m, params.max_speed * params.tick_s, self.office)
         self._solids.follow(here)
         is_free = self._is_clear(*here, self._robot.reach(params) + FREE_M)
         self._robot.drive(self._space, drive.speed, drive.yaw_rate, params, self._slowness(*here), is_free)
-        self._motion = true_motion(before, self._pose(), params.tick_s)
+        self._motion = true_motion(before, self._robot.pose, params.tick_s)
         self._frame = self._sense(*report(*self._motion, self.params, self._odometry_rng))
         return self._frame
 
@@ -199,7 +199,7 @@ class Simulator:
             self._camera.set_lens(params)
 
     def _require_room(self, radius: float) -> None:
-        x, y, _ = self._pose()
+        x, y, _ = self._robot.pose
         refusal = _covered(self.world, x, y, radius) or self.living.refusal(x, y, radius - LEANS_M)
         if refusal is not None:
             raise ValueError(f"robot_radius_m cannot become {radius:g} here: {refusal}")
@@ -237,7 +237,7 @@ class Simulator:
 
         world: as `check_world` lets it pass. Refused when a wall or thing would cover the robot or leave it outside.
         """
-        x, y, _ = self._pose()
+        x, y, _ = self._robot.pose
         radius = self.params.robot_radius_m
         refusal = _covered(world, x, y, radius) or self.living.leaf_on(world.doors, x, y, radius - LEANS_M)
         if refusal is not None:
@@ -258,7 +258,7 @@ class Simulator:
     def state(self) -> bytes:
         """Digest of everything that decides the future: equal histories give equal digests."""
         body = self._robot.body
-        numbers = [*self._pose(), *body.velocity, body.angular_velocity, self._robot.speed, self._robot.yaw_rate]
+        numbers = [*self._robot.pose, *body.velocity, body.angular_velocity, self._robot.speed, self._robot.yaw_rate]
         digest = hashlib.sha256(np.array([self._tick, self._time_s, *self._motion, *numbers], np.float64).tobytes())
         generators = (
             self._image_rng,
@@ -280,12 +280,8 @@ class Simulator:
         tick, time_s = self._clock
         return time_s + (self._tick - tick) / self.params.sensor_rate_hz
 
-    def _pose(self) -> tuple[float, float, float]:
-        x, y = self._robot.body.position
-        return x, y, self._robot.body.angle
-
     def _begin_here(self) -> None:
-        x, y, _ = self._pose()
+        x, y, _ = self._robot.pose
         self.living.begin(self.office)
         self.living.make_way((x, y), self.params.robot_radius_m)
         self._solids.follow((x, y))
@@ -304,7 +300,7 @@ class Simulator:
 
     def _sense(self, speed: float, yaw_rate: float) -> SensorFrame:
         params, living = self.params, self.living
-        x, y, heading = self._pose()
+        x, y, heading = self._robot.pose
         gain, noise = params.light * params.exposure_gain, params.image_noise * params.exposure_gain
         image = self._camera.image(x, y, heading, gain, noise, self._image_rng, self.office.reflections)
         ranges, bumped = self._sonar(living.there, x, y, heading)
