@@ -131,6 +131,7 @@ def test_what_is_no_time_or_level_is_refused_with_the_reason(program, browser):
             "Box goes (no boxes)",
         ]
         add_line(page, "9", "Lamp off", "desk lamp")
+        says(page, "Added: at 0:09")
         lines_are(page, (9, "lamp_off", "desk lamp"))
         row(page, 0).locator(".when").fill("x")
         row(page, 0).locator(".when").press("Enter")

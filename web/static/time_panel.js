@@ -36,15 +36,15 @@ export class TimePanel {
     this.box.hidden = !on;
     $("edit-time").setAttribute("aria-expanded", String(on));
     if (!on) return $("edit-time").focus();
+    this.show(this.office.world);
     this.draw({ at_s: Math.ceil((this.now_s + 1) / 10) * 10, do: firstAction(this.office.world) });
-    this.daylight.draw();
-    this.at(this.now_s);
     this.box.focus({ preventScroll: true }); // no field: a phone would cover it with its keyboard
   }
 
   // ---------------------------------------------------------------- what there is
 
   show(world) {
+    if (this.box.hidden || !world) return; // a thousand lines take their time
     const kinds = ["doors", "lamps", "boxes"].map((list) => namesOf(world, list));
     const text = JSON.stringify([world.script, kinds]);
     if (text !== this.shown) {
@@ -52,11 +52,11 @@ export class TimePanel {
       const rows = (world.script ?? []).map((item, number) => ({ item, number })).sort((a, b) => a.item.at_s - b.item.at_s || a.number - b.number);
       keepingPlace(this.list, this.form, () => this.list.replaceChildren(...rows.map((row) => this.row(world, row))));
       $("script-none").hidden = rows.length > 0;
-      if (!this.box.hidden) this.draw(this.draft());
+      this.draw(this.draft());
       this.place = null;
-      this.at(this.now_s);
     }
     this.daylight.show(world);
+    this.at(this.now_s);
   }
 
   row(world, { item, number }) {
