@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 import pymunk
+from numba import njit
 from pymunk.constraints import GearJoint, PivotJoint
 
 from sim2d.params import SimParams
@@ -66,31 +67,54 @@ class Robot:
         yaw_rate = slowness * min(max(yaw_rate, -params.max_yaw_rate), params.max_yaw_rate)
         dt = 1.0 / params.physics_rate_hz
         period = _STEPS_PER_COMMAND * dt
-        change, turn_change = params.max_acceleration * period, params.max_yaw_acceleration * period
+        motors = speed, yaw_rate, params.max_acceleration * period, params.max_yaw_acceleration * period
         body, wheels = self.body, self._wheels
-        x, y, angle = self.pose
-        v, w = self.speed, self.yaw_rate
-        for first in range(0, params.substeps, _STEPS_PER_COMMAND):
-            steps = min(_STEPS_PER_COMMAND, params.substeps - first)
-            v += min(max(speed - v, -change), change)
-            w += min(max(yaw_rate - w, -turn_change), turn_change)
-            middle = angle + 0.5 * w * period  # the chord's direction: exact to 3e-5 at full turn
-            if is_free:
-                x, y = x + v * math.cos(middle) * steps * dt, y + v * math.sin(middle) * steps * dt
-                angle += w * steps * dt
-                continue
-            wheels.velocity, wheels.angular_velocity = (v * math.cos(middle), v * math.sin(middle)), w
-            for _ in range(steps):
-                space.step(dt)
-            angle = body.angle
         if is_free:
+            x, y, angle, v, w = _rolled(*self.pose, self.speed, self.yaw_rate, *motors, params.substeps, dt)
             body.position, body.angle = (x, y), angle
             body.velocity, body.angular_velocity = (v * math.cos(angle), v * math.sin(angle)), w
         else:
-            x, y = body.position
-        self.pose = (x, y, angle)
-        self.speed, self.yaw_rate = v, w
+            v, w = self.speed, self.yaw_rate
+            for first in range(0, params.substeps, _STEPS_PER_COMMAND):
+                v, w = _commanded(v, w, *motors)
+                middle = body.angle + 0.5 * w * period
+                wheels.velocity, wheels.angular_velocity = (v * math.cos(middle), v * math.sin(middle)), w
+                for _ in range(first, min(first + _STEPS_PER_COMMAND, params.substeps)):
+                    space.step(dt)
+            (x, y), angle = body.position, body.angle
+        self.pose, self.speed, self.yaw_rate = (x, y, angle), v, w
 
     def reach(self, params: SimParams) -> float:
         """How far (m) from its middle the disc may come within a tick."""
         return params.robot_radius_m + max(params.max_speed, abs(self.speed)) * params.tick_s
+
+
+@njit(cache=True, nogil=True)
+def _commanded(
+    v: float, w: float, speed: float, yaw_rate: float, change: float, turn_change: float
+) -> tuple[float, float]:
+    """What the motors make of the wheels' speeds with one command."""
+    return v + min(max(speed - v, -change), change), w + min(max(yaw_rate - w, -turn_change), turn_change)
+
+
+@njit(cache=True, nogil=True)
+def _rolled(
+    x: float,
+    y: float,
+    angle: float,
+    v: float,
+    w: float,
+    speed: float,
+    yaw_rate: float,
+    change: float,
+    turn_change: float,
+    substeps: int,
+    dt: float,
+) -> tuple[float, float, float, float, float]:
+    """Where the wheels roll within a tick with nothing in their way, and how fast they turn then."""
+    for first in range(0, substeps, _STEPS_PER_COMMAND):
+        v, w = _commanded(v, w, speed, yaw_rate, change, turn_change)
+        seconds = min(_STEPS_PER_COMMAND, substeps - first) * dt
+        middle = angle + 0.5 * w * seconds  # the chord's direction: exact to 3e-5 at full turn
+        x, y, angle = x + v * seconds * math.cos(middle), y + v * seconds * math.sin(middle), angle + w * seconds
+    return x, y, angle, v, w
