@@ -13,7 +13,8 @@ export class OwnWorlds {
   }
 
   async show() {
-    $("own-wrong").hidden = true;
+    $("own").hidden = $("own-wrong").hidden = true; // what was listed before may be over
+    this.list.replaceChildren();
     const { yours } = await worlds();
     $("own").hidden = !Object.keys(yours).length;
     this.list.replaceChildren(...Object.entries(yours).map(([name, title]) => this.row(name, title)));
