@@ -22,6 +22,7 @@ FRONT = 0.18
 METRE_HIGH = 0.62 / 2.5  # plate units of height for a metre of any other thing, or of a panel
 PANEL_THICK = 0.11  # stands out from a wall on its own side
 THICK = {"wall": 0.1, "partition": 0.07, "glass": 0.03}
+MANY = 3000  # boxes; of more their narrow ends are too small to be seen, and left out
 GLASS_RGB: Rgb = (150, 200, 225)
 
 
@@ -91,7 +92,7 @@ def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: Wor
     turn = np.concatenate([part.turn_rad for part in parts])
     scene.add_batched_meshes_simple(
         f"{name}_boxes",
-        *ribbons.open_cube(),
+        *ribbons.open_cube(ends=len(turn) <= MANY),
         batched_wxyzs=np.column_stack([np.cos(turn / 2), 0 * turn, 0 * turn, np.sin(turn / 2)]).astype(np.float32),
         batched_positions=np.concatenate([part.centre for part in parts]).astype(np.float32),
         batched_scales=np.concatenate([part.size for part in parts]).astype(np.float32),

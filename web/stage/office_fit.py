@@ -14,7 +14,8 @@ class OfficeFit:
         self.size_m = (max(high_x - low_x, 1e-3), max(high_y - low_y, 1e-3))
         self.low = np.array([low_x, low_y])
         self.scale = min(WIDTH / self.size_m[0], DEPTH / self.size_m[1])
-        self.relief = min(1.0, max(1.5 * self.scale, 0.3))  # heights and thicknesses: low where rooms are small
+        low = min(0.3, 140 * self.scale**2)  # beyond 200 m walls as high as before would hide the rooms between them
+        self.relief = min(1.0, max(1.5 * self.scale, low))  # heights and thicknesses: low where rooms are small
         self._centre = self.low + np.array(self.size_m) / 2
 
     def to_plate(self, xy: NDArray[np.floating]) -> NDArray[np.float64]:

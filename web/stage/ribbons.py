@@ -23,12 +23,13 @@ UNIT_CUBE: Mesh = (
 )
 
 
-def open_cube() -> Mesh:
-    """`UNIT_CUBE` as it is seen on a floor: no bottom, sharp edges, four corners a face."""
+def open_cube(ends: bool = True) -> Mesh:
+    """`UNIT_CUBE` as it is seen on a floor: no bottom, sharp edges, four corners a face. ends: those along x."""
     corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
     quads = [[(x, y, 0.5) for x, y in corners]]
     for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1], strict=True):
-        quads.append([(ax, ay, -0.5), (bx, by, -0.5), (bx, by, 0.5), (ax, ay, 0.5)])
+        if ends or ay == by:
+            quads.append([(ax, ay, -0.5), (bx, by, -0.5), (bx, by, 0.5), (ax, ay, 0.5)])
     first = 4 * np.arange(len(quads), dtype=np.uint32)[:, None]
     faces = np.hstack([first, first + 1, first + 2, first, first + 2, first + 3]).reshape(-1, 3)
     return np.array(quads, np.float32).reshape(-1, 3), faces
