@@ -41,6 +41,7 @@ export class DaylightForm {
     keepingPlace(this.list, this.form, () => this.list.replaceChildren(...rows));
     const repeat = $("daylight-repeat");
     $("daylight-again").hidden = !this.day;
+    $("daylight-none").hidden = this.day !== null;
     mark(repeat, false);
     if (!repeat.dataset.typed) repeat.value = this.day?.repeat_s ? time(this.day.repeat_s) : "";
     const scripted = (world.script ?? []).filter((item) => item.do === "daylight").map((item) => item.at_s);
