@@ -29,7 +29,7 @@ class LocalView:
         self.front_end: FrontEnd = front_end(self.params)
         self.features = np.zeros(SIZE, np.uint8)  # of what is seen now
         self.recognition = Recognition(NOTHING, False, NOTHING, math.inf)
-        self.surprised = False  # the image is so unlike the one before that the robot cannot have driven here
+        self.surprise = 0.0  # how far the image is from what driving could make of the one before; above 1 none could
         self.false_positives = 0  # so far
         self._templates = np.zeros((1024, SIZE), np.uint8)
         self._count = 0
@@ -76,7 +76,7 @@ class LocalView:
         everywhere. test_local_view.py::test_a_bland_view_shows_nothing. With vision off nothing does.
         """
         features = self.front_end.look(image, scene)
-        self.surprised = self._jumped(features)
+        self.surprise = self._jump(features)
         self.features = self._last = features
         most = self.params.shift if self.front_end.shifts else 0
         best, apart, shift = self._matcher.nearest(self.templates, features, most)
@@ -107,13 +107,16 @@ class LocalView:
             return None
         return self._sub_column(view, shift) * self.params.field_of_view / COLUMNS
 
-    def _jumped(self, features: Features) -> bool:
-        """Whether no turn within one tick makes the last image look like this one."""
+    def _jump(self, features: Features) -> float:
+        """How much the last image, turned as it may be within one tick, differs from this one, as a share of the limit."""
         limit = self.front_end.surprise(self.params)
         if self._last is None or not self.params.enabled or math.isinf(limit):
-            return False
+            return 0.0
         turns = TURNS if self.front_end.shifts else (0,)
-        return all(self.front_end.scale * difference(features, self._last, turn) > limit for turn in turns)
+        least = self.front_end.scale * min(difference(features, self._last, turn) for turn in turns)
+        if limit == 0:
+            return math.inf if least > 0 else 0.0
+        return least / limit
 
     def _sub_column(self, view: int, shift: int) -> float:
         """The shift in fractions of a column: where the two flanks of the difference around its least value meet."""

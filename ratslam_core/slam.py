@@ -13,6 +13,7 @@ from ratslam_core.local_view import NOTHING, LocalView
 from ratslam_core.occupancy_grid import MapGrid, OccupancyGrid
 from ratslam_core.params import RatSlamParams
 from ratslam_core.pose_cells import PoseCells
+from ratslam_core.range_jump import RangeJump
 from ratslam_core.transitions import require_behaviour
 from ratslam_core.types import Estimate, Odometry, Recognition
 from ratslam_core.view_links import ViewLinks
@@ -49,6 +50,7 @@ class RatSlam:
                 self.params.occupancy, self.pose_cells.shape, self.params.pose_cells.cell_m, sonar_angles_rad
             )
             self.map_grid = MapGrid(self.params.occupancy, sonar_angles_rad)
+        self._range_jump = RangeJump()
         self.relocalisations = 0
         self.learning_rate = 0.0  # of the last association
         self._time_s = self._under_way_s = 0.0
@@ -70,8 +72,8 @@ class RatSlam:
 
         image: (h, w) or (h, w, 3) uint8; scene: its number, for the front end "scene numbers", which looks
         at no image; behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: what the
-        sonars say, shape (n_sonars,), for the occupancy only; watch: called after each of STAGES with its name, to look
-        and not to touch. ValueError when one of them cannot be; then nothing has changed.
+        sonars say, shape (n_sonars,), for the occupancy and to notice a kidnap; watch: called after each of STAGES with its
+        name, to look and not to touch. ValueError when one of them cannot be; then nothing has changed.
 
         The papers' four stages; path integration comes first because the image belongs to the end of the movement [ours].
         """
@@ -83,7 +85,8 @@ class RatSlam:
         watch("view match")
         self._time_s += odometry.dt
         odometry = self._calibrated(odometry)
-        if self.local_view.surprised:
+        jumped = self.local_view.surprise + self.params.local_view.range_surprise * self._range_jump.observe(ranges_m)
+        if jumped > 1:
             self.lose_track()
         self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
         watch("path integration")
@@ -133,9 +136,9 @@ class RatSlam:
         self.params = params
 
     def lose_track(self) -> None:
-        """[ours] The robot was moved and knows it: because the image jumped though the wheels did not, or is told so.
+        """[ours] The robot was moved and knows it: image and sonars jumped though the wheels did not, or it is told so.
 
-        test_slam.py::test_a_kidnap_is_noticed_and_survived.
+        test_slam.py::{test_a_kidnap_is_noticed_and_survived, test_sonars_help_to_notice_a_kidnap}.
         """
         self.lost, self._known_before, self._agreed = True, len(self.experience_map), 0
         self.experience_map.lose_track()
