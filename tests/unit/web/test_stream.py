@@ -61,6 +61,7 @@ def test_greets_then_tells_the_state_and_the_events(server):
             "office",
             "inspected",
             "walk",
+            "moving",
         }
         assert until(socket, "events")["fresh"]
 
