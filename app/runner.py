@@ -98,7 +98,7 @@ class Runner:
 
     def _begin(self, world: World, seed: int, config: Config, brain: RatSlam | None = None) -> None:
         """Another run, or none of it: what fails leaves the old one as it is."""
-        session = Session(world, seed, config, brain)
+        session = Session(world, seed, config, brain, getattr(self, "session", None))
         self._forget(self._deleted - {world.name})
         chronicle = Chronicle(session)
         snapshots = Snapshots(session, chronicle, self._run + 1, tuple(self._titles.items()))

@@ -26,11 +26,18 @@ PARTS = ("pilot", "office and senses", *STAGES, "judging")  # of a tick; the jud
 class Session:
     """One robot in one world with one brain."""
 
-    def __init__(self, world: World, seed: int = 0, config: Config | None = None, brain: RatSlam | None = None) -> None:
-        """brain: one that knows places already; it wakes up somewhere and has to find out where."""
+    def __init__(
+        self, world: World, seed: int = 0, config: Config | None = None, brain: RatSlam | None = None,
+        before: Session | None = None,
+    ) -> None:  # fmt: skip
+        """brain: one that knows places already; it wakes up somewhere and has to find out where.
+
+        before: another session, so that the same walls need not be measured and painted again. It changes nothing.
+        """
         self.world, self.seed, self.config = world, seed, config or Config()
         brain_seed, pilot_seed = np.random.SeedSequence([seed, 1]).spawn(2)
-        self.simulator = Simulator(world, self.config.robot, seed, self.config.office)
+        same = None if before is None else before.simulator
+        self.simulator = Simulator(world, self.config.robot, seed, self.config.office, same)
         if brain is None:
             brain = RatSlam(self.config.engine, np.random.default_rng(brain_seed), sonar_angles_rad=SONAR_ANGLES_RAD)
         else:

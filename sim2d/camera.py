@@ -27,17 +27,22 @@ class Camera:
     """Draws what is seen from a pose. Owns buffers; nothing of it depends on earlier images."""
 
     def __init__(
-        self, world: World, params: SimParams, living: Living | None = None, index: WallIndex | None = None
-    ) -> None:
-        """living: of the same world, anew when left out. index: of all its walls, as `build_index` makes it."""
+        self, world: World, params: SimParams, living: Living | None = None, index: WallIndex | None = None,
+        before: Camera | None = None,
+    ) -> None:  # fmt: skip
+        """living: of the same world, anew when left out. index: of all its walls, as `build_index` makes it.
+
+        before: another camera, whose knowledge of the looks of the same walls is taken over.
+        """
         self._noise = np.zeros(_NOISE_BANK + _MOST_NOISE, np.float32)
         if living is None:
             living = Living(world, np.random.default_rng(0), params.tick_s)
-        self.set_world(world, living, build_index(world.segments()) if index is None else index)
+        self.set_world(world, living, build_index(world.segments()) if index is None else index, before)
         self.set_lens(params)
 
-    def set_world(self, world: World, living: Living, index: WallIndex) -> None:
+    def set_world(self, world: World, living: Living, index: WallIndex, before: Camera | None = None) -> None:
         """Paint another world, or the same after an edit."""
+        before = before or self
         walls = (*world.walls, *thing_walls(world))
         self._world, self._living, self._index = world, living, index
         self._segments = np.concatenate([index.segments, living.segments])
@@ -48,12 +53,12 @@ class Camera:
         self._full[self._walls_end :] = False  # they move: none is sure to hide what is behind
         self._glass = np.array([w.kind == "glass" for w in walls])
         self._has_glass = bool(self._glass.any())
-        self._atlas = atlas = Atlas(walls, getattr(self, "_atlas", None))
+        self._atlas = atlas = Atlas(walls, getattr(before, "_atlas", None))
         self._strips = Strips(
             atlas.texels, atlas.first, atlas.columns, atlas.rows, np.array([w.bottom for w in walls]), tops,
             _shades(self._segments), np.array([w.reflection if w.kind == "glass" else -1.0 for w in walls]),
         )  # fmt: skip
-        self._lights = Lights(world, index, getattr(self, "_lights", None))
+        self._lights = Lights(world, index, getattr(before, "_lights", None))
         self._marks = np.zeros(self._walls_end, np.int64)
         self._mark = 0
         self._chosen = np.zeros(len(walls), np.int64)

@@ -73,19 +73,21 @@ class Simulator:
     """One robot in one world; the only owner of its pymunk.Space. Use it from one thread."""
 
     def __init__(
-        self, world: World, params: SimParams | None = None, seed: int = 0, office: OfficeParams | None = None
-    ) -> None:
+        self, world: World, params: SimParams | None = None, seed: int = 0, office: OfficeParams | None = None,
+        before: Simulator | None = None,
+    ) -> None:  # fmt: skip
+        """before: another one, whose work on the same walls need not be done again; nothing else of it is looked at."""
         self.world = self._first_world = world
         self.params, self.office = params or SimParams(), office or OfficeParams()
         self._angles = np.array(SONAR_ANGLES_RAD)
-        self._measured: FreeSpace | None = None
+        self._measured: FreeSpace | None = None if before is None else before._measured
         self._measure()
         self._bounds = world.bounds  # of the first world: the numbers of its scenes stay when walls are edited
         refusal = self.free_space.refusal(world.starts[0].x, world.starts[0].y)
         if refusal is not None:
             raise ValueError(f"{world.name}: the robot cannot start at {world.starts[0].name}: {refusal}")
         living = Living(world, np.random.default_rng(0), self.params.tick_s)
-        self._camera = Camera(world, self.params, living, self._all_walls)
+        self._camera = Camera(world, self.params, living, self._all_walls, None if before is None else before._camera)
         self._painted = world
         self.reset(seed)
 

@@ -170,3 +170,8 @@ def test_edits_of_a_large_and_of_a_living_world(name: str) -> None:
     for _ in range(12):
         anew.step(Drive(0.1, 0.3))
     drive_both(edited, anew, 5, 100)
+    for other in (edited.world, world):  # another run in it, and in what it was: what is taken over changes nothing
+        again, anew = Simulator(other, EXACT, 2, before=edited), Simulator(other, EXACT, 2)
+        assert again.state() == anew.state()
+        drive_both(again, anew, 7, 60)
+        assert again.state() == anew.state()
