@@ -48,7 +48,7 @@ class Camera:
         self._segments = np.concatenate([index.segments, living.segments])
         self._walls_end = len(index.segments)
         tops = np.array([w.height for w in walls])
-        highest = max(w.height for w in world.walls)
+        highest = world.highest
         self._full = np.array([w.stands and w.height >= highest and w.kind != "glass" for w in walls])
         self._full[self._walls_end :] = False  # they move: none is sure to hide what is behind
         self._glass = np.array([w.kind == "glass" for w in walls])
@@ -163,7 +163,7 @@ def _shades(segments: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _background(world: World, height: int, focal: float, eye: float) -> NDArray[np.float32]:
     """(3 height,): floor and ceiling, row by row, darker with distance."""
-    ceiling = max(w.height for w in world.walls) - eye
+    ceiling = world.highest - eye
     down = np.arange(height) + 0.5 - 0.5 * height
     flat = np.where(np.abs(down) < 0.25, 0.25, down)
     depth = np.where(flat > 0, eye, -ceiling) * focal / flat

@@ -104,6 +104,11 @@ class World:
         ring = self._ring
         return float(ring[:, 0].min()), float(ring[:, 1].min()), float(ring[:, 0].max()), float(ring[:, 1].max())
 
+    @cached_property
+    def highest(self) -> float:
+        """Metres: of the highest wall, which is where the ceiling is."""
+        return max(w.height for w in self.walls)
+
     @property
     def outline(self) -> NDArray[np.float64]:
         """(k, 2): corners of the outer wall, counter-clockwise, the first not repeated."""

@@ -139,7 +139,8 @@ def _size_faults(world: World) -> Iterator[Fault]:
         yield Fault(("walls",), f"the outline spans {x1 - x0:g} by {y1 - y0:g} m; at most {MOST_M:g} m each way")
     if (x1 - x0) * (y1 - y0) > MOST_FLOOR_M2:
         yield Fault(("walls",), f"{(x1 - x0) * (y1 - y0):.0f} m^2 of floor in all; at most {MOST_FLOOR_M2:g}")
-    area = sum(wall.length * (wall.height - wall.bottom) for wall in world.walls)
+    ends, upright = world.segments(), np.array([wall.height - wall.bottom for wall in world.walls])
+    area = float(np.hypot(ends[:, 2] - ends[:, 0], ends[:, 3] - ends[:, 1]) @ upright)
     if area > MOST_WALL_M2:
         yield Fault(("walls",), f"{area:.0f} m^2 of wall in all; at most {MOST_WALL_M2:g}")
 
