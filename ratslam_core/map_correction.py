@@ -16,6 +16,7 @@ RAD_PER_M = 0.7  # a link that is off by a metre is off by so much in heading
 CHAIN_GIVES = 5.0  # standard deviations at which odometry lets go
 LOOK_GIVES = 1.0  # standard deviations from which a look pulls no harder
 WORK_AN_EXPERIENCE = 90.0
+ENTANGLED = 1e9  # work, so that it is long until somebody tries again
 LEAST_STRENGTH = 1e-9  # below it no loop tells the bias from a bent way
 
 
@@ -116,14 +117,16 @@ def solve(
 ) -> Solution:
     """The fixed point of the sweeps, in place: headings, then positions, each a sparse Laplacian with the first node fixed.
 
-    Every experience must be linked, over others, to the first. Headings are linear once their residuals are wrapped;
-    `rounds` lets the wrapping settle.
+    A map that is too entangled for that is left to the sweeps. Every experience must be linked, over others, to the first.
+    Headings are linear once their residuals are wrapped; `rounds` lets the wrapping settle.
     """
     n = len(poses)
     if n < 2 or len(links) == 0:
         return Solution(0.0, 0.0)
     i, j = links[:, 0], links[:, 1]
     net = eliminate(n, links, weights)
+    if net is None:
+        return Solution(0.0, ENTANGLED)
     seconds = np.zeros(len(links)) if turning_s is None else turning_s
     drift = net.solve(_asked(n, links, weights * seconds))  # headings that a unit of bias would bend the map to
     unexplained = seconds - drift[j] + drift[i]

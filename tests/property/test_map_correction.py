@@ -295,7 +295,10 @@ def carried_chain(looks: int) -> tuple[np.ndarray, np.ndarray]:
     return poses[:, 0] - true_x, trust
 
 
-def test_many_looks_tear_the_link_of_a_kidnap() -> None:
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_many_looks_tear_the_link_of_a_kidnap(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if interpreted:
+        literal.interpret(map_correction, monkeypatch)
     off, trust = carried_chain(looks=20)
     torn = np.flatnonzero(trust[:39] < 0.5)
     assert len(torn) >= 1

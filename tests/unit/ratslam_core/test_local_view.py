@@ -176,6 +176,16 @@ def test_surprise_is_a_matter_of_degree(jump: int) -> None:
         assert (local_view.surprise > 1) is surprised
 
 
+def test_with_no_limit_left_every_change_is_a_surprise() -> None:
+    scene = panorama(7)
+    local_view = LocalView(LocalViewParams(surprise=0.0))
+    found = []
+    for column in (20, 20, 40):
+        local_view.observe(look(scene, column))
+        found.append(local_view.surprise)
+    assert found == [0.0, 0.0, math.inf]
+
+
 def test_a_camera_image_becomes_the_mean_of_its_areas() -> None:
     rng = np.random.default_rng(0)
     grey = rng.integers(0, 256, (48, 60)).astype(np.uint8)

@@ -209,7 +209,7 @@ def test_interpreted_it_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
         torus, grid = OccupancyGrid(None, SHAPE, CELL_M, SONARS), MapGrid(None, SONARS)
         for k, range_m in enumerate((0.1, 2.0, 5.0)):
             ranges = np.full(8, range_m, np.float32)
-            torus.update(Packet(63.4, 0.3 + k, 0.2 * k, 1.0), ranges)
+            torus.update(Packet(63.4, 0.3 + k, 0.2 * k - SONARS[1], 1.0), ranges)  # one beam along a row of cells
             grid.add(k, Pose2(0.1 * k, 0.0, 0.0), ranges)
         return [torus.probability, grid.draw(np.eye(3)).probability]
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core import view_match
-from ratslam_core.view_match import Matcher, difference
+from ratslam_core.view_match import Matcher
 
 from . import literal
 
@@ -62,7 +62,10 @@ def test_a_look_leaves_nothing_behind() -> None:
         assert used.nearest(known, new, most) == Matcher().nearest(known, new, most)
 
 
-def test_the_difference_of_two_views_under_a_shift() -> None:
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_the_difference_of_two_views_under_a_shift(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if interpreted:
+        literal.interpret(view_match, monkeypatch)
     rng = np.random.default_rng(7)
     a, b = rng.integers(0, 256, (2, 96)).astype(np.uint8)
     for shift in range(-5, 6):
@@ -72,4 +75,4 @@ def test_the_difference_of_two_views_under_a_shift() -> None:
             if 0 <= c + shift < 12
             for r in range(8)
         ]
-        assert difference(a, b, shift) == sum(expected) / len(expected)
+        assert view_match.difference(a, b, shift) == sum(expected) / len(expected)
