@@ -45,6 +45,7 @@ export class Stage extends EventTarget {
     if (!paper || inside.location.href === "about:blank") return;
     // viser reconnects only while its own frame has the focus; the person looks at the page as a whole.
     paper.hasFocus = () => !document.hidden;
+    restBeneathTheEditor(inside);
     this.keys.listen(inside);
     this.dispatchEvent(new CustomEvent("inside", { detail: inside }));
     // viser prevents the default of a press on a draggable thing in a passive listener: without effect, but the
@@ -126,6 +127,25 @@ const COLOURS = `
     --mantine-color-text: #1b2430 !important; --mantine-color-dimmed: #566477 !important;
     --mantine-color-default-border: #c9d2dc !important;
   }`;
+
+// The editor covers the stage. Without a graphics card a frame of it takes a second that the editor needs: its endless round of
+// frames, known by being asked for again and again, goes once in two seconds meanwhile. All else in the frame goes on as before.
+function restBeneathTheEditor(inside) {
+  const [editor, asked, held] = [document.getElementById("editor"), new WeakMap(), new Map()];
+  const [next, drop] = [inside.requestAnimationFrame.bind(inside), inside.cancelAnimationFrame.bind(inside)];
+  inside.requestAnimationFrame = (step) => {
+    asked.set(step, (asked.get(step) ?? 0) + 1);
+    if (editor.hidden || asked.get(step) < 20) return next(step);
+    const id = -inside.setTimeout(() => held.delete(id) && next(step), 2000);
+    held.set(id, step);
+    return id;
+  };
+  inside.cancelAnimationFrame = (id) => (held.delete(id) ? inside.clearTimeout(-id) : drop(id));
+  new MutationObserver(() => {
+    for (const step of editor.hidden ? held.values() : []) next(step);
+    if (editor.hidden) held.clear();
+  }).observe(editor, { attributeFilter: ["hidden"] });
+}
 
 // viser says for good that there is no graphics card, over our view buttons; a short sentence is enough.
 function dismissSlowNotice(paper) {
