@@ -1,0 +1,220 @@
+"""What people tell the engine: pydantic models, strict and closed. Their names and docstrings are the HTTP API's."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class _Command(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class SetGoal(_Command):
+    """Go to the experience nearest to this place of the map (metres, map frame)."""
+
+    type: Literal["set_goal"]
+    x: Finite
+    y: Finite
+
+
+class CancelGoal(_Command):
+    type: Literal["cancel_goal"]
+
+
+class SetMode(_Command):
+    type: Literal["set_mode"]
+    mode: Literal["explore", "manual", "goal"]
+
+
+class Drive(_Command):
+    """Drive by hand; expires 0.3 s after the last one. m/s forwards, rad/s counter-clockwise."""
+
+    type: Literal["drive"]
+    speed: Annotated[float, Field(ge=-0.5, le=0.5)]
+    yaw_rate: Annotated[float, Field(ge=-1.6, le=1.6)]
+
+
+class Kidnap(_Command):
+    """Put the robot elsewhere (office frame) without telling it. Without a place: a free one by chance."""
+
+    type: Literal["kidnap"]
+    x: Finite | None = None
+    y: Finite | None = None
+    heading_rad: Finite | None = None
+
+
+class Pause(_Command):
+    type: Literal["pause"]
+
+
+class Resume(_Command):
+    type: Literal["resume"]
+
+
+class Step(_Command):
+    """Pause and advance by so many ticks of 0.1 s."""
+
+    type: Literal["step"]
+    ticks: Annotated[int, Field(ge=1, le=1000)] = 1
+
+
+class SetSpeed(_Command):
+    """Simulated seconds per second; 0 = as fast as possible."""
+
+    type: Literal["set_speed"]
+    factor: Annotated[float, Field(ge=0.0, le=1000.0)]
+
+
+class Reset(_Command):
+    """Start anew; what is left out stays as it is."""
+
+    type: Literal["reset"]
+    world: Annotated[str, Field(max_length=64)] | None = None
+    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] | None = None
+
+
+class SetParameter(_Command):
+    type: Literal["set_parameter"]
+    name: Annotated[str, Field(max_length=64)]
+    value: float | int | bool | Annotated[str, Field(max_length=64)]
+
+
+_Name = Annotated[str, Field(min_length=1, max_length=40)]
+_Size = Annotated[float, Field(ge=0.05, le=20.0)]
+
+
+class SetDoor(_Command):
+    """Open or shut a door of the office; it moves from the next tick on, and waits for who stands in it."""
+
+    type: Literal["set_door"]
+    name: _Name
+    open: bool
+
+
+class SetLamp(_Command):
+    type: Literal["set_lamp"]
+    name: _Name
+    on: bool
+
+
+class PutBox(_Command):
+    """Put a box down (office frame, metres); refused where it would cover the robot. A reset takes it away."""
+
+    type: Literal["put_box"]
+    name: _Name
+    x: Finite
+    y: Finite
+    width: _Size = 0.5
+    depth: _Size = 0.5
+    height: _Size = 0.6
+    angle_rad: Finite = 0.0
+
+
+class RemoveBox(_Command):
+    type: Literal["remove_box"]
+    name: _Name
+
+
+class UsePreset(_Command):
+    """Set the robot's sensors and encoders to a preset: "Pioneer 2DXE 2004" or "ideal"."""
+
+    type: Literal["use_preset"]
+    name: _Name
+
+
+class StepStage(_Command):
+    """Pause and show the next stage of a tick, or the one before; after the last stage the next tick begins."""
+
+    type: Literal["step_stage"]
+    back: bool = False
+
+
+class InjectPacket(_Command):
+    """Add a packet of activity at a place of the pose cells (cells and radians), to watch it compete: no sense says it.
+
+    share: of all activity afterwards.
+    """
+
+    type: Literal["inject_packet"]
+    x: Annotated[int, Field(ge=0)]
+    y: Annotated[int, Field(ge=0)]
+    heading_rad: Finite = 0.0
+    share: Annotated[float, Field(ge=0.01, le=0.95)] = 0.45
+
+
+class Inspect(_Command):
+    """Choose what everybody looks at: an experience, a view, or the pose cells at x', y'; nothing of it: nothing.
+
+    Changes nothing in the robot.
+    """
+
+    type: Literal["inspect"]
+    experience: Annotated[int, Field(ge=0)] | None = None
+    view: Annotated[int, Field(ge=0)] | None = None
+    x: Annotated[int, Field(ge=0)] | None = None
+    y: Annotated[int, Field(ge=0)] | None = None
+
+
+OfficeList = Literal[
+    "walls", "starts", "places", "doors", "lamps", "boxes", "people", "slow_zones", "script", "daylight"
+]  # fmt: skip
+
+
+class EditStep(_Command):
+    """One item of one list of the world file: added at the end, changed, or deleted. `item` is written as in that file.
+
+    `daylight` counts as a list of one item at most.
+    """
+
+    do: Literal["add", "change", "delete"]
+    list: OfficeList
+    number: Annotated[int, Field(ge=0, le=100_000)] | None = None  # of the item to change or delete, from 0
+    item: dict[str, Any] | None = None  # to add, or to change into; a wall without a colour gets looks of its own
+
+
+class EditWorld(_Command):
+    """Change the office under the running robot, all steps or none. Refused when the world would not be sound, when the
+    robot would be covered, or when the office is no longer the edition that the editor saw. Undone as one."""
+
+    type: Literal["edit_world"]
+    steps: Annotated[list[EditStep], Field(min_length=1, max_length=200)]
+    edition: int | None = None
+
+
+class UndoEdit(_Command):
+    """Take the last change of the office back."""
+
+    type: Literal["undo_edit"]
+
+
+class RedoEdit(_Command):
+    """Do again what was taken back last."""
+
+    type: Literal["redo_edit"]
+
+
+EditOrder = EditWorld | UndoEdit | RedoEdit
+OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
+LookOrder = Inspect | StepStage | InjectPacket
+Command = Annotated[
+    SetGoal
+    | CancelGoal
+    | SetMode
+    | Drive
+    | Kidnap
+    | Pause
+    | Resume
+    | Step
+    | SetSpeed
+    | Reset
+    | SetParameter
+    | OfficeOrder
+    | EditOrder
+    | LookOrder,
+    Field(discriminator="type"),
+]

@@ -1,0 +1,97 @@
+"""What an inspector shows: an experience with its links, a view, a pose cell. Parts of a snapshot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from web.messages.snapshot import Packet, Pose
+
+
+@dataclass(frozen=True, slots=True)
+class LinkReport:
+    """One transition of the experience map. ACRA 2005 4.2, ACRA 2006 3.2."""
+
+    start: int  # experience where it begins
+    end: int
+    distance_m: float
+    bearing_rad: float  # to the end, relative to the start's facing
+    facing_rad: float  # change of facing
+    time_s: float  # mean over the passages
+    behaviour: str  # under which it was learnt
+    passages: int
+    trials: int
+    confidence: float  # share of the trials in which the robot arrived
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """When something was there, seconds since the reset; None: not in this run."""
+
+    first_s: float | None
+    last_s: float | None
+    visits: int  # how often it became active
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HebbianReport:
+    """What a view is linked to. ACRA 2004 eqs. 2-4."""
+
+    count: int  # links to pose cells
+    cells: NDArray[np.int32]  # (k, 3) theta, y, x of the strongest, strongest first, k <= 300
+    strength: NDArray[np.float32]  # (k,)
+    saturation: float  # a link injects no more than this
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ExperienceReport:
+    """One experience and all that hangs on it."""
+
+    id: int
+    cell: tuple[float, float, float]  # x', y' (cells), theta' (layers)
+    view: int  # -1: made where there was nothing to see
+    picture: NDArray[np.uint8] | None  # (h, w) or (h, w, 3) its stored view
+    pose: Pose  # map frame
+    zone_xy: float  # radius of its zone of influence, cells
+    zone_theta: float  # layers
+    energy: float  # how well the present state fits it, at most 2
+    active: bool
+    links: tuple[LinkReport, ...]  # that begin here, then that end here
+    hebbian: HebbianReport  # of its view
+    times: Times
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ViewReport:
+    """One local view cell: what it stands for, beside what is seen now."""
+
+    id: int
+    picture: NDArray[np.uint8]  # (h, w) or (h, w, 3) as it is stored
+    now: NDArray[np.uint8]  # the same of what is seen now
+    camera: NDArray[np.uint8]  # (h, w, 3) the image that it was made of
+    difference: float  # between the two at the best shift, as in Senses
+    threshold: float
+    active: bool
+    experiences: tuple[int, ...]  # that were made with it
+    hebbian: HebbianReport
+    times: Times
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CellReport:
+    """All pose cells above one x', y'."""
+
+    x: int
+    y: int
+    by_heading: NDArray[np.float32]  # (n_theta,) activity
+    packet: Packet | None  # to which most of it belongs; None: nothing is active here
+    views: tuple[tuple[int, float], ...]  # linked here, with the sum of their links, strongest first, at most 24
+    view_count: int  # how many are linked here
+    experiences: tuple[int, ...]  # whose zone of influence this is in
+
+
+Report = ExperienceReport | ViewReport | CellReport
