@@ -19,7 +19,7 @@ const KINDS = {
 export class Plan extends Sheet {
   constructor(place) {
     super(place, LAYERS);
-    this.walls = new Walls(place, this.layers.walls);
+    this.walls = new Walls(place, this.layers.walls, this.layers.grid);
     this.live = {}; // doors (0 shut to 1), lamps (lit), boxes (there), walkers: by name, as the engine said last
   }
 

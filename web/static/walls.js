@@ -10,9 +10,9 @@ const LOOKS = { outer: ["--outer", 4, []], wall: ["--wall", 3, []], low: ["--low
 const kindOf = (wall) => wall.outer ? "outer" : wall.bottom ? "high" : wall.kind === "glass" ? "glass" : wall.kind === "wall" ? "wall" : "low";
 
 export class Walls {
-  constructor(place, layer) {
-    this.layer = layer;
-    this.place = place;
+  // grid: the layer of the plan's grid, which has to lie beneath the walls wherever they are.
+  constructor(place, layer, grid) {
+    Object.assign(this, { layer, grid, place });
     this.canvas = document.createElement("canvas");
     this.canvas.className = "painted";
     place.before(this.canvas);
@@ -24,7 +24,9 @@ export class Walls {
   draw(walls, pixel) {
     const many = walls.length > MANY;
     this.canvas.hidden = !many;
-    this.again = many ? () => this.paint(walls, pixel) : null;
+    const lines = many ? [...this.grid.children].map((path) => [path.getAttribute("class"), path.getAttribute("d")]) : [];
+    if (many) this.grid.replaceChildren();
+    this.again = many ? () => this.paint(walls, pixel, lines) : null;
     this.again?.();
     if (many) return this.layer.replaceChildren();
     const paths = new Map();
@@ -36,11 +38,15 @@ export class Walls {
   }
 
   // Those in sight.
-  paint(walls, pixel) {
+  paint(walls, pixel, grid) {
     const { clientWidth: width, clientHeight: height } = this.place;
     const [{ paper, canvas }, sharp, style] = [this, window.devicePixelRatio || 1, getComputedStyle(this.place)];
     [canvas.width, canvas.height] = [Math.round(width * sharp), Math.round(height * sharp)];
     paper.scale(sharp, sharp);
+    for (const [kind, d] of grid) {
+      paper.strokeStyle = style.getPropertyValue(kind === "fine" ? "--grid" : "--coarse");
+      paper.stroke(new Path2D(d));
+    }
     paper.lineCap = "round";
     const begun = Object.fromEntries(Object.keys(LOOKS).map((kind) => [kind, []]));
     for (const wall of walls) {
