@@ -168,11 +168,11 @@ class LocalViewParams:
         20.0, unit="levels", low=0.0, high=255.0, meaning="the same for hue and saturation", source="ours"
     )
     range_surprise: float = param(
-        0.6,
+        1.5,
         unit="1/m",
         low=0.0,
         high=10.0,
-        meaning="what a metre of change in half of the sonars adds to the surprise, of which 1 is a kidnap",
+        meaning="what half of the sonars add to the surprise, a metre of change beyond 0.17 m; 1 is a kidnap",
         source="ours",
     )
     lost_injection: float = param(
