@@ -19,6 +19,7 @@ from ratslam_core.types import Estimate, Odometry, Recognition
 from ratslam_core.view_links import ViewLinks
 
 FOUND_AGAIN = 8  # steps
+HALF_SURPRISED = 0.5  # of what the image alone needs to tell of a kidnap
 # In the order in which `RatSlam.step` does them.
 STAGES = ("view match", "path integration", "injection", "attractor", "experience", "correction", "memories")
 
@@ -85,8 +86,7 @@ class RatSlam:
         watch("view match")
         self._time_s += odometry.dt
         odometry = self._calibrated(odometry)
-        jumped = self.local_view.surprise + self.params.local_view.range_surprise * self._range_jump.observe(ranges_m)
-        if jumped > 1:
+        if self._carried(self.local_view.surprise, self._range_jump.observe(ranges_m)):
             self.lose_track()
         self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
         watch("path integration")
@@ -150,6 +150,14 @@ class RatSlam:
         known = not created and self.experience_map.active < self._known_before
         self._agreed = self._agreed + 1 if known else 0
         self.lost = self._agreed < FOUND_AGAIN
+
+    def _carried(self, seen: float, heard_m: float) -> bool:
+        """[ours] Whether image and sonars say that the robot was carried away. Sonars alone do not: a robot that turns
+        between two walls has all of them jump.
+
+        test_slam.py::test_sonars_help_to_notice_a_kidnap.
+        """
+        return seen > HALF_SURPRISED and seen + self.params.local_view.range_surprise * heard_m > 1
 
     def _calibrated(self, odometry: Odometry) -> Odometry:
         """[ours] Odometry without the yaw bias that the map has learnt; wheels that stand have none."""

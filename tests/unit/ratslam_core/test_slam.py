@@ -64,19 +64,22 @@ def test_a_kidnap_is_noticed_and_survived(seed: int) -> None:
     assert np.hypot(*(after - map_before)[:, :2].T).max() < 0.3  # the map is what it was
 
 
-@pytest.mark.parametrize(("others_m", "noticed"), [(2.0, True), (1.0, False)])
-def test_sonars_help_to_notice_a_kidnap(others_m: float, noticed: bool) -> None:
-    """Places that look alike: the image alone is seven tenths of what is needed."""
+@pytest.mark.parametrize(
+    ("alike", "others_m", "noticed"),
+    [(0.7, 2.0, True), (0.7, 1.0, False), (1.2, 1.4, True), (1.2, 1.0, False), (0.4, 2.0, False)],
+)
+def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: bool) -> None:
+    """alike: how much the image changes, of what is needed without sonars. Sonars alone tell nothing."""
     near = np.full(8, 1.0)
     circle, brain = Circle(0), RatSlam(sonar_angles_rad=np.linspace(-1.5, 1.5, 8).tolist())
     still = Odometry(0.0, 0.0, 0.1)
     brain.step(circle.image, still, ranges_m=near)
     circle.angle += 2.6
     params = brain.params.local_view
-    alike = replace(params, surprise=brain.local_view.params.surprise * _unlikeness(circle) / 0.7)
-    brain.set_params(replace(brain.params, local_view=alike))
+    changed = replace(params, surprise=brain.local_view.params.surprise * _unlikeness(circle) / alike)
+    brain.set_params(replace(brain.params, local_view=changed))
     brain.step(circle.image, still, ranges_m=np.array([1.0, 1.0, 1.0, *[others_m] * 5]))
-    assert brain.local_view.surprise == pytest.approx(0.7)
+    assert brain.local_view.surprise == pytest.approx(alike)
     assert brain.lost is noticed
 
 
