@@ -73,11 +73,11 @@ def test_it_is_alive(program, browser):
         assert len(colours) > 20_000  # an empty canvas packs into far less
         assert page.locator("#status span").inner_text() in ("exploring", "lost: 2 packets compete")
         page.keyboard.press("Space")
-        program.wait(lambda state: not state["running"], 3)
+        program.wait(lambda state: not state["running"], 10)
         page.wait_for_selector("#play[aria-label=Play]", timeout=10_000)
         tick = program.state()["tick"]
         page.keyboard.press(".")
-        program.wait(lambda state: state["tick"] == tick + 1, 3)
+        program.wait(lambda state: state["tick"] == tick + 1, 10)
 
 
 def test_a_click_on_a_far_node_brings_the_robot_there(explored, browser):
@@ -100,7 +100,7 @@ def test_a_click_on_a_far_node_brings_the_robot_there(explored, browser):
         assert math.dist((arrived["robot"]["x"], arrived["robot"]["y"]), there) < 1.5
         until(page, "() => document.querySelector('#goal .what').textContent === 'arrived'")
         page.click("#cancel")
-        explored.wait(lambda state: state["goal"] is None, 3)
+        explored.wait(lambda state: state["goal"] is None, 10)
     explored.command("set_speed", factor=1)
 
 
@@ -112,7 +112,7 @@ def test_a_held_key_drives_and_letting_go_stops(program, browser, where):
         if where == "stage":
             page.mouse.click(640, 400)  # the focus is in viser's frame now
         page.keyboard.down("ArrowLeft")
-        before = program.wait(lambda state: state["mode"] == "manual", 3)
+        before = program.wait(lambda state: state["mode"] == "manual", 10)
         heading = before["robot"]["heading_rad"]
         program.wait(lambda state: abs(math.remainder(state["robot"]["heading_rad"] - heading, math.tau)) > 0.2, 5)
         page.keyboard.up("ArrowLeft")
@@ -121,13 +121,18 @@ def test_a_held_key_drives_and_letting_go_stops(program, browser, where):
 
 
 def assert_still(program) -> None:
+    """Soon: what a page says last, software rendering may hold up."""
     time.sleep(STOP_S)
-    first = program.state()
-    time.sleep(0.4)
-    second = program.state()
-    assert second["tick"] > first["tick"]
-    for name in ("x", "y", "heading_rad"):
-        assert second["robot"][name] == pytest.approx(first["robot"][name], abs=0.01)
+    deadline = time.monotonic() + 3.0
+    while True:
+        first = program.state()
+        time.sleep(0.4)
+        second = program.state()
+        assert second["tick"] > first["tick"]
+        places = [[state["robot"][name] for name in ("x", "y", "heading_rad")] for state in (first, second)]
+        if places[1] == pytest.approx(places[0], abs=0.01):
+            return
+        assert time.monotonic() < deadline, f"still moving: {places}"
 
 
 LEAVE = """async (end) => {
@@ -142,7 +147,7 @@ def test_the_robot_stops_when_the_page_cannot_hold_it(program, browser, end):
     program.command("resume")
     with open_page(browser, program.url) as page:
         page.keyboard.down("d")
-        program.wait(lambda state: state["mode"] == "manual", 3)
+        program.wait(lambda state: state["mode"] == "manual", 10)
         time.sleep(0.3)
         if end == "gone":
             page.goto("about:blank")
@@ -201,7 +206,7 @@ def test_speed_and_restart(program, browser):
     with open_page(browser, program.url) as page:
         for speed in (4, 0, 1):
             page.select_option("#speed", str(speed))
-            program.wait(lambda state, wanted=speed: state["speed"] == wanted, 3)
+            program.wait(lambda state, wanted=speed: state["speed"] == wanted, 10)
         page.click("#restart summary")
         page.click("#restart-same")
         again = program.wait(lambda state: state["time_s"] < 5, 5)
@@ -249,7 +254,7 @@ def test_the_page_comes_back_after_the_server(browser):
             for path in ("/api/stream", "/viser/ws/"):  # the stage has come back as well
                 assert any(path in socket.url and not socket.is_closed() for socket in sockets), path
             page.keyboard.press("Space")
-            second.wait(lambda state: not state["running"], 3)
+            second.wait(lambda state: not state["running"], 10)
         finally:
             assert second.stop() == 0
 
