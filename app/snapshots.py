@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
+import scipy.sparse.csgraph  # noqa: F401 - the goal memory imports it for its first goal; not while the robot drives
 from numpy.typing import NDArray
 
 from app.chronicle import Chronicle
