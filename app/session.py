@@ -15,22 +15,25 @@ from app.config import Config, Value
 from app.evaluation import Evaluation
 from app.pilot import Mode, Pilot
 from app.stopwatch import Stopwatch
+from disk import encode, kind
 from ratslam_core import Estimate, Odometry, RatSlam
 from ratslam_core.slam import STAGES
-from sim2d import SONAR_ANGLES_RAD, Drive, SensorFrame, Simulator, World
+from sim2d import SONAR_ANGLES_RAD, Drive, SensorFrame, Simulator, World, WorldText
 
-OFF_THE_MAP_M = 1.5  # a goal farther than this from every experience is refused
 PARTS = ("pilot", "office and senses", *STAGES, "judging")  # of a tick; the judges compare with the truth
 
 
+@kind("session/1")
 class Session:
     """One robot in one world with one brain."""
+
+    CACHES = ("world", "stopwatch", "frame", "_text")
 
     def __init__(
         self, world: World, seed: int = 0, config: Config | None = None, brain: RatSlam | None = None,
         before: Session | None = None,
     ) -> None:  # fmt: skip
-        """brain: one that knows places already; it wakes up somewhere and has to find out where.
+        """brain: one that knows places already and has to find out where it woke up, or a new one of parts of one's own.
 
         before: another session, so that the same walls need not be measured and painted again. It changes nothing.
         """
@@ -42,14 +45,25 @@ class Session:
             brain = RatSlam(self.config.engine, np.random.default_rng(brain_seed), sonar_angles_rad=SONAR_ANGLES_RAD)
         else:
             brain.set_params(self.config.engine)
-            brain.lose_track()
+            if len(brain.experience_map) > 0:  # else there is nothing to find again
+                brain.declare_kidnapped()
         self.brain = brain
         self.pilot = Pilot(self.config.pilot, np.array(SONAR_ANGLES_RAD), np.random.default_rng(pilot_seed))
         self.evaluation = Evaluation(len(brain.experience_map))
-        self.stopwatch = Stopwatch(PARTS)
-        self.frame: SensorFrame = self.simulator.observe()
+        self._look()
         self.odometry = self._odometry()  # what the brain was told in its last step
         self.estimate: Estimate = self._think(self.stopwatch.lap)
+
+    def settle(self, world: World) -> None:
+        """All that follows from a world: for one that came back from a state (session_snapshot.py)."""
+        self.world = world
+        self.simulator.settle(world)
+        self._look()
+
+    def _look(self) -> None:
+        self.stopwatch = Stopwatch(PARTS)
+        self.frame: SensorFrame = self.simulator.observe()
+        self._text = WorldText()
 
     @property
     def tick_count(self) -> int:
@@ -87,10 +101,11 @@ class Session:
         poses = self.brain.experience_map.poses
         away = np.hypot(poses[:, 0] - x, poses[:, 1] - y)
         nearest = int(np.argmin(away))
-        if not away[nearest] <= OFF_THE_MAP_M:  # not a number is nowhere
+        reach = self.pilot.params.goal_reach_m
+        if not away[nearest] <= reach:  # not a number is nowhere
             raise ValueError(
                 f"({x:g}, {y:g}) is off the map: the nearest experience is {away[nearest]:.1f} m away, "
-                f"at ({poses[nearest, 0]:.1f}, {poses[nearest, 1]:.1f}); choose a place within {OFF_THE_MAP_M:g} m of one"
+                f"at ({poses[nearest, 0]:.1f}, {poses[nearest, 1]:.1f}); choose a place within {reach:g} m of one"
             )
         self.pilot.set_goal(nearest)
         return nearest
@@ -121,7 +136,7 @@ class Session:
         for name, value in values.items():
             config = config.with_value(name, value)
         changes: dict[str, dict[str, Value]] = {"robot": {}}  # first: it alone may have no room for what is asked
-        waiting = []
+        waiting: list[str] = []
         for (dotted, item, old), (_, _, new) in zip(self.config.items(), config.items(), strict=True):
             section, key = dotted.split(".")
             if old != new and item.metadata["live"]:
@@ -140,8 +155,14 @@ class Session:
         self.world = world
 
     def state_hash(self) -> str:
-        """Digest of everything that decides the future: equal for equal runs."""
-        return hashlib.sha256(self.simulator.state() + self.pilot.digest() + self.brain.digest()).hexdigest()
+        """Digest of everything that decides the future, and what will be judged: equal for equal runs."""
+        parts = self.world_text, self.seed, self.config, self.simulator, self.pilot, self.brain, self.evaluation
+        return hashlib.sha256("".join(encode(part).digest() for part in parts).encode()).hexdigest()
+
+    @property
+    def world_text(self) -> str:
+        """The world as it is now, as its file would say it."""
+        return self._text.of(self.world)
 
     # ------------------------------------------------------------ inside
 
@@ -157,7 +178,7 @@ class Session:
             self.frame.image,
             odometry,
             scene=self.frame.scene if numbers else None,
-            behaviour=self.pilot.behaviour,
+            behaviour=self.pilot.behaviour.number,
             ranges_m=self.frame.ranges_m,
             watch=watch,
         )

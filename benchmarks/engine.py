@@ -32,7 +32,7 @@ from ratslam_core import (
     Recognition,
     ViewLinks,
 )
-from ratslam_core.pose_cells import gaussian
+from ratslam_core.pose_cells.attractor_kernels import gaussian
 
 Row = dict[str, Any]
 SEEN = Recognition(0, False, 0, 2.0)
@@ -95,7 +95,7 @@ def _settled(n: int, packets: int) -> PoseCells:
     for _ in range(20):
         cells.step(speed=0.3, yaw_rate=0.1, dt=0.1)
     if packets > 1:
-        rows, values = (a.copy() for a in cells.active)
+        rows, values = cells.active[0].copy(), cells.active[1].copy()
         for k in range(1, packets):
             y, x = (rows[:, 1] + 30 * (k % 5)) % n, (rows[:, 0] + 60 * (k // 5) + 20) % n
             cells.inject(((rows[:, 2] * n + y) * n + x).astype(np.int32), values)
@@ -105,7 +105,7 @@ def _settled(n: int, packets: int) -> PoseCells:
 
 def _ten_packets(cells: PoseCells) -> float:
     """Median of first iterations after all ten packets were put back: in the long run one of them wins."""
-    rows, values = (a.copy() for a in cells.active)
+    rows, values = cells.active[0].copy(), cells.active[1].copy()
     times = []
     for _ in range(100):
         now, _ = cells.active
@@ -230,7 +230,7 @@ def _whole_step(views: int, bar: float) -> Row:
     brain.experience_map = made
     brain.local_view._templates = rng.integers(0, 256, (views + 4096, 96), dtype=np.uint8)
     brain.local_view._count = views
-    brain._learnt_s = [0.0] * views
+    brain.association._learnt_s = [0.0] * views
     images = rng.integers(0, 256, (50, 48, 64), dtype=np.uint8)
     number = iter(range(10**9))
     ms = _median(lambda: brain.step(images[next(number) % 50], Odometry(0.3, 0.1, 0.1)), 200)

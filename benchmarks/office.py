@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from app.session import Session
-from app.snapshots import world_drawing
-from app.world_editing import WorldEditor
+from app.views.world_drawing import world_drawing
+from app.world_editor import WorldEditor
 from sim2d import Drive, Person, Place, Simulator, Start, Wall, World, load_world, world_to_json
 from sim2d.importers.dress import Dresser
 from web.messages import EditWorld
@@ -66,7 +66,7 @@ def rooms(walls: int, people: int = 0, seed: int = 0) -> World:
 def tick_ms(simulator: Simulator, seed: int = 0) -> float:
     """Median of a tick of physics, camera 64 x 48, sonar and encoders while the robot drives about at random."""
     rng = np.random.default_rng(seed)
-    times = []
+    times, drive = [], Drive(0.0, 0.0)
     for tick in range(WARM_TICKS + TICKS):
         if tick % 20 == 0:
             drive = Drive(float(rng.uniform(-0.2, 0.5)), float(rng.uniform(-1.2, 1.2)))
@@ -116,11 +116,12 @@ def _largest() -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "large.json"
         file.write_text(world_to_json(rooms(10_000, 50)), encoding="utf-8")
-        ms = math.inf
+        loads: list[tuple[float, Session]] = []
         for _ in range(3):
             began = time.perf_counter()
             session = Session(load_world(file), 1)
-            ms = min(ms, 1e3 * (time.perf_counter() - began))
+            loads.append((1e3 * (time.perf_counter() - began), session))
+        ms, session = min(loads[0][0], loads[1][0], loads[2][0]), loads[2][1]
     yield _row("office: loading a world", size, ms, "3000 ms", ms <= 3000)
     times = []
     for _ in range(600):

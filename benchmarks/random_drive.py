@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sim2d import Drive, FreeSpace, Person, SimParams, Simulator, World, world_names
-from sim2d.geometry import nearest_segment
+from sim2d.geometry.segments import nearest_segment
+from sim2d.geometry.wall_index import build_index, nearest_within
 from sim2d.importers import open_world
-from sim2d.wall_index import build_index, nearest_within
 
 BAR_M = 0.01
 PEOPLE = 12
@@ -72,7 +72,7 @@ def drive(world: World, hours: float, seed: int) -> Deepest:
                 simulator.set_door(world.doors[int(rng.integers(len(world.doors)))].name, bool(rng.random() < 0.5))
         hold -= 1
         simulator.step(now)
-        x, y = simulator._robot.body.position
+        x, y, _ = simulator._robot.pose
         wall = radius - nearest_within(walls, x, y, SIGHT_M)
         thing = _into_things(simulator, x, y, radius)
         if wall > deepest.wall_m or thing > deepest.thing_m:
@@ -90,7 +90,7 @@ def _go_elsewhere(simulator: Simulator) -> None:
 
 
 def _into_things(simulator: Simulator, x: float, y: float, radius: float) -> float:
-    living = simulator.living
+    living = simulator.actors
     deepest = radius - SIGHT_M
     walkers = living.walkers
     if len(walkers.xy):

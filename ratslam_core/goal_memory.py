@@ -13,11 +13,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from ratslam_core.kernels import X, Y, offset
+from disk import kind
+from ratslam_core import goal_links
 from ratslam_core.params import GoalMemoryParams
+from ratslam_core.pose_cells.activity_kernels import offset
 from ratslam_core.types import Packet, require_finite
 
 if TYPE_CHECKING:
@@ -25,12 +26,9 @@ if TYPE_CHECKING:
 
 ROOM = 4096  # links there is room for at first; doubles when half full
 MOST_CELLS = 2**20  # in the plane, so that keys stay below 2^40 and their hash below 2^63
-FREE = -1  # key of an empty place in the table
-NEAR = 3  # cells around the strongest one that say where the packet is
-ARRIVED = 1.0  # cells
-WIDER = 3  # times `reach` is looked for a way when there is none nearer
 
 
+@kind("goal memory/1")
 class GoalMemory:
     """tau_ij between the cells of the (x', y') plane. `learn` in every iteration, `times_to` once a goal is chosen."""
 
@@ -47,7 +45,7 @@ class GoalMemory:
         self.params = params or GoalMemoryParams()
         self.shape, self.cell_m = shape, cell_m
         self._place = np.zeros(shape[1] * shape[2], np.int32)
-        self._keys = np.full(ROOM, FREE, np.int64)
+        self._keys = np.full(ROOM, goal_links.FREE, np.int64)
         self._times = np.zeros(ROOM, np.float32)
         self._used = 0
         self._last: _Iteration | None = None
@@ -67,7 +65,7 @@ class GoalMemory:
     @property
     def links(self) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
         """Pairs of cells y * n_x + x, shape (m, 2), the smaller first, and tau in s, shape (m,). In no order; copies."""
-        used = self._keys != FREE
+        used = self._keys != goal_links.FREE
         keys = self._keys[used]
         return np.stack([keys // self._place.size, keys % self._place.size], axis=1), self._times[used]
 
@@ -98,7 +96,7 @@ class GoalMemory:
 
         [ours] Of the cells in reach only those count that the packet's own cell is linked to: the robot has been driving
         from here to there, while what is near may lie behind a wall. Links are longer than `reach`, so when none in reach
-        is lower, WIDER reaches are tried. The next cell of the quickest way is linked and lower, so there is no local
+        is lower, `wider` reaches are tried. The next cell of the quickest way is linked and lower, so there is no local
         minimum, but for places whose only way is a leap of the packet: there is no direction to drive then.
         test_goal_memory.py::test_it_does_not_point_through_a_wall, ::test_there_are_no_local_minima.
         """
@@ -107,10 +105,10 @@ class GoalMemory:
             raise ValueError(f"T must have shape {(n_y, n_x)}, as times_to gives it, got {T.shape}")
         x, y = require_finite("packet.x", packet.x), require_finite("packet.y", packet.y)
         goal = int(np.argmin(T))
-        if self._apart(x, y, goal % n_x, goal // n_x) <= ARRIVED:
+        if self._apart(x, y, goal % n_x, goal // n_x) <= self.params.arrived:
             return None
-        for wider in range(1, WIDER + 1):
-            best = _lowest(T, round(x) % n_x, round(y) % n_y, wider * self.params.reach, self._keys)
+        for wider in range(1, self.params.wider + 1):
+            best = goal_links.lowest(T, round(x) % n_x, round(y) % n_y, wider * self.params.reach, self._keys)
             if best >= 0:
                 return math.atan2(offset(best // n_x, y, n_y), offset(best % n_x, x, n_x))
         return None
@@ -141,7 +139,7 @@ class GoalMemory:
             return
         self._make_room(last.flats.size * now.flats.size)
         p = self.params
-        self._used = _learn(
+        self._used = goal_links.learn(
             last.flats, last.activity, now.flats, now.activity, self._keys, self._times, self._used, self.shape,
             time_s - last.time_s, p.time_weight, p.activity_weight, p.distance_weight, p.rate,
         )  # fmt: skip
@@ -157,12 +155,14 @@ class GoalMemory:
         if cells.ndim != 2 or cells.shape[1] != 4 or activity.shape != cells.shape[:1]:
             raise ValueError(f"cells must have shape (n, 4) and activity (n,), got {cells.shape} and {activity.shape}")
         n_y, n_x = self.shape[1:]
-        flats, values, wrong = _project(cells, activity, self.shape, self.params.share, self._place)
+        flats, values, wrong = goal_links.project(cells, activity, self.shape, self.params.share, self._place)
         if wrong >= 0:
             raise ValueError(f"cells must lie in 0..{n_x - 1}, 0..{n_y - 1}, got {cells[wrong, :2].tolist()}")
         if flats.size == 0:
             raise ValueError(f"activity must be positive somewhere, got {activity!r}")
-        return _Iteration(flats, values, *_centre(flats, values, self.shape), time_s, time_s)
+        return _Iteration(
+            flats, values, *goal_links.centre(flats, values, self.shape, self.params.centre), time_s, time_s
+        )
 
     def _apart(self, x1: float, y1: float, x2: float, y2: float) -> float:
         """Cells between two places, the shorter way round."""
@@ -173,11 +173,12 @@ class GoalMemory:
         while 2 * (self._used + more) > size:
             size *= 2
         if size > self._keys.size:
-            keys, times = np.full(size, FREE, np.int64), np.zeros(size, np.float32)
-            _move(self._keys, self._times, keys, times)
+            keys, times = np.full(size, goal_links.FREE, np.int64), np.zeros(size, np.float32)
+            goal_links.move(self._keys, self._times, keys, times)
             self._keys, self._times = keys, times
 
 
+@kind("iteration/1")
 @dataclass(slots=True)
 class _Iteration:
     """What was active when."""
@@ -188,135 +189,3 @@ class _Iteration:
     y: float
     time_s: float
     latest_s: float  # time of the latest iteration since
-
-
-@njit(cache=True, nogil=True)
-def _project(cells, activity, shape, share, place):
-    """G_xy = sum over theta of P, where it is above share * G_max. IROS 2005 eq. 1.
-
-    Returns the cells of the plane, their G, and the first row that lies outside of it (-1: none). `place`: scratch, zero.
-    """
-    n_y, n_x = shape[1], shape[2]
-    flats = np.empty(len(cells), np.int64)
-    values = np.empty(len(cells), np.float64)
-    n = 0
-    wrong = -1
-    for i in range(len(cells)):
-        x, y = cells[i, X], cells[i, Y]
-        if not (0 <= x < n_x and 0 <= y < n_y):
-            wrong = i
-            break
-        flat = y * n_x + x
-        at = place[flat]
-        if at == 0:
-            flats[n] = flat
-            values[n] = activity[i]
-            n += 1
-            place[flat] = n
-        else:
-            values[at - 1] += activity[i]
-    most = 0.0
-    for i in range(n):
-        place[flats[i]] = 0
-        most = max(most, values[i])
-    kept = 0
-    for i in range(n):
-        if values[i] > share * most:
-            flats[kept] = flats[i]
-            values[kept] = values[i]
-            kept += 1
-    return flats[:kept], values[:kept], wrong
-
-
-@njit(cache=True, nogil=True)
-def _centre(flats, values, shape):
-    """Centre of the activity within NEAR cells of the strongest, in cells."""
-    n_y, n_x = shape[1], shape[2]
-    best = np.argmax(values)
-    peak_x, peak_y = flats[best] % n_x, flats[best] // n_x
-    mass = sx = sy = 0.0
-    for i in range(flats.size):
-        dx, dy = offset(flats[i] % n_x, peak_x, n_x), offset(flats[i] // n_x, peak_y, n_y)
-        if abs(dx) <= NEAR and abs(dy) <= NEAR:
-            mass += values[i]
-            sx += values[i] * dx
-            sy += values[i] * dy
-    return (peak_x + sx / mass) % n_x, (peak_y + sy / mass) % n_y
-
-
-@njit(cache=True, nogil=True)
-def _find(key, keys):
-    """Where a key is in the table, or the free place where it belongs. The table is never full."""
-    mask = keys.size - 1
-    mixed = key * 5_872_781
-    at = (mixed ^ (mixed >> 21)) & mask
-    while keys[at] != key and keys[at] != FREE:
-        at = (at + 1) & mask
-    return at
-
-
-@njit(cache=True, nogil=True)
-def _learn(
-    flats_i, G_i, flats_j, G_j, keys, times, used, shape, elapsed, time_weight, activity_weight, distance_weight, rate
-):
-    """tau_ij = tau_ji <- moving average of a dt + b (1 - G_i G_j / G_max^2) + g |i - j|. IROS 2005 eqs. 2-5.
-
-    i: active in the iteration before; j: active now. The first value replaces the large one that a link starts with.
-    Returns how many links there are.
-    """
-    n_y, n_x = shape[1], shape[2]
-    size = n_y * n_x
-    most = max(np.max(G_i), np.max(G_j))
-    sigma = time_weight * elapsed
-    for a in range(flats_i.size):
-        i = flats_i[a]
-        xi, yi = i % n_x, i // n_x
-        for b in range(flats_j.size):
-            j = flats_j[b]
-            if i == j:
-                continue
-            mu = activity_weight * (1.0 - G_i[a] * G_j[b] / (most * most))
-            dx, dy = offset(j % n_x, xi, n_x), offset(j // n_x, yi, n_y)
-            tau = sigma + mu + distance_weight * np.sqrt(dx * dx + dy * dy)
-            key = min(i, j) * size + max(i, j)
-            at = _find(key, keys)
-            if keys[at] == FREE:
-                keys[at] = key
-                times[at] = tau
-                used += 1
-            else:
-                times[at] += rate * (tau - times[at])
-    return used
-
-
-@njit(cache=True, nogil=True)
-def _move(keys, times, new_keys, new_times):
-    """All links into a larger table."""
-    for k in range(keys.size):
-        if keys[k] != FREE:
-            at = _find(keys[k], new_keys)
-            new_keys[at] = keys[k]
-            new_times[at] = times[k]
-
-
-@njit(cache=True, nogil=True)
-def _lowest(T, x, y, reach, keys):
-    """The cell with the lowest T below that of (x, y), among those within `reach` that it is linked to; -1 when there is none.
-
-    Where nothing was learnt yet (T is inf) any known cell in reach will do.
-    """
-    n_y, n_x = T.shape
-    here = y * n_x + x
-    best, lowest = -1, T[y, x]
-    unknown = not np.isfinite(lowest)
-    for dy in range(-reach, reach + 1):
-        for dx in range(-reach, reach + 1):
-            if dx * dx + dy * dy > reach * reach:
-                continue
-            there_x, there_y = (x + dx) % n_x, (y + dy) % n_y
-            if T[there_y, there_x] < lowest:
-                there = there_y * n_x + there_x
-                key = min(here, there) * (n_y * n_x) + max(here, there)
-                if unknown or keys[_find(key, keys)] == key:
-                    best, lowest = there, T[there_y, there_x]
-    return best

@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from disk import kind
 from ratslam_core.params import OccupancyParams
 from ratslam_core.types import Packet, Pose2, require_finite, wrap_angle
 
@@ -22,6 +23,7 @@ SAME_PLACE_M = 0.1  # a scan as near as this to the newest of its experience, an
 SAME_FACING_RAD = math.radians(10)  # facing as it does, takes its place
 
 
+@kind("occupancy grid/1")
 class OccupancyGrid:
     """The picture in the frame of the pose cells: it wraps as they do and jumps when they relocalise."""
 
@@ -71,6 +73,7 @@ class MetricPicture:
     cell_m: float
 
 
+@kind("map grid/1")
 class MapGrid:
     """[ours] The picture that bends with the experience map: scans are kept with the experience that they were made from, in
     its own frame, and drawn where it is now. test_occupancy_grid.py::test_the_picture_bends_with_the_map.

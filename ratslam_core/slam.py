@@ -3,29 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ratslam_core.experience_map import ExperienceMap
+from disk import encode, kind
+from ratslam_core.experience_map.experience_map import ExperienceMap
+from ratslam_core.experience_map.transitions import require_behaviour
 from ratslam_core.goal_memory import GoalMemory
-from ratslam_core.local_view import NOTHING, LocalView
+from ratslam_core.local_view.recogniser import NOTHING, LocalView
+from ratslam_core.local_view.view_links import ViewLinks
 from ratslam_core.occupancy_grid import MapGrid, OccupancyGrid
 from ratslam_core.params import RatSlamParams
-from ratslam_core.pose_cells import PoseCells
-from ratslam_core.range_jump import RangeJump
-from ratslam_core.transitions import require_behaviour
+from ratslam_core.parts import ExperienceMapPart, KidnapDetectorPart, LocalViewPart, Optimiser, PoseCellsPart
+from ratslam_core.pose_cells.network import PoseCells
+from ratslam_core.standard_parts import StandardParts
 from ratslam_core.types import Estimate, Odometry, Recognition
-from ratslam_core.view_links import ViewLinks
+from ratslam_core.visual_association import VisualAssociation
 
-FOUND_AGAIN = 8  # steps
-HALF_SURPRISED = 0.5  # of what the image alone needs to tell of a kidnap
-# In the order in which `RatSlam.step` does them.
+# Of `RatSlam.step`; in the papers' own order the second and the third change places (`pose_cells.move_first`).
 STAGES = ("view match", "path integration", "injection", "attractor", "experience", "correction", "memories")
 
 
+@kind("ratslam/2")
 class RatSlam:
-    """The whole engine: local view, pose cells, experience map, and beside them goal memory and occupancy."""
+    """The whole engine: local view, pose cells, experience map, and beside them goal memory and occupancy.
+
+    Any part may be handed in (`parts.py`); what is not is made from the parameters.
+    """
 
     def __init__(
         self,
@@ -33,31 +39,33 @@ class RatSlam:
         rng: np.random.Generator | None = None,
         *,
         sonar_angles_rad: Sequence[float] = (),
+        local_view: LocalViewPart | None = None,
+        pose_cells: PoseCellsPart | None = None,
+        experience_map: ExperienceMapPart | None = None,
+        optimiser: Optimiser | None = None,
+        kidnap_detector: KidnapDetectorPart | None = None,
     ) -> None:
         """sonar_angles_rad: of each sonar from straight ahead, left is positive; without sonars there is no occupancy."""
-        self.params = params or RatSlamParams()
+        self.params = p = params or RatSlamParams()
         self.rng = rng or np.random.default_rng(0)
-        self.local_view = LocalView(self.params.local_view, self.rng.spawn(1)[0])
-        self.view_links = ViewLinks(self.params.local_view)
-        self.pose_cells = PoseCells(self.params.pose_cells)
-        self.experience_map = ExperienceMap(
-            self.pose_cells.shape, self.params.pose_cells.cell_m, self.params.experience_map
-        )
-        self.goal_memory = GoalMemory(self.params.goal_memory, self.pose_cells.shape, self.params.pose_cells.cell_m)
+        ours = StandardParts(p, self.rng)
+        # A part that was handed in does what `parts.py` says; who asks it for more has to know its class.
+        self.local_view = ours.local_view() if local_view is None else cast(LocalView, local_view)
+        self.pose_cells = ours.pose_cells() if pose_cells is None else cast(PoseCells, pose_cells)
+        shape, cell_m = self.pose_cells.shape, p.pose_cells.cell_m
+        if experience_map is None:
+            experience_map = ours.experience_map(shape, optimiser)
+        self.experience_map = cast(ExperienceMap, experience_map)
+        self.kidnap_detector = ours.kidnap_detector() if kidnap_detector is None else kidnap_detector
+        self.association = VisualAssociation(p.local_view)
+        self.goal_memory = GoalMemory(p.goal_memory, shape, cell_m)
         self.occupancy: OccupancyGrid | None = None
         self.map_grid: MapGrid | None = None
         if len(sonar_angles_rad) > 0:
-            self.occupancy = OccupancyGrid(
-                self.params.occupancy, self.pose_cells.shape, self.params.pose_cells.cell_m, sonar_angles_rad
-            )
-            self.map_grid = MapGrid(self.params.occupancy, sonar_angles_rad)
-        self._range_jump = RangeJump()
+            self.occupancy = OccupancyGrid(p.occupancy, shape, cell_m, sonar_angles_rad)
+            self.map_grid = MapGrid(p.occupancy, sonar_angles_rad)
         self.relocalisations = 0
-        self.learning_rate = 0.0  # of the last association
-        self._time_s = self._under_way_s = 0.0
-        self.lost = False
-        self._known_before = self._agreed = 0
-        self._learnt_s: list[float] = []  # when each view was recruited
+        self._under_way_s = 0.0
 
     def step(
         self,
@@ -75,51 +83,52 @@ class RatSlam:
         at no image; behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: what the
         sonars say, shape (n_sonars,), for the occupancy and to notice a kidnap; watch: called after each of STAGES with its
         name, to look and not to touch. ValueError when one of them cannot be; then nothing has changed.
-
-        The papers' four stages; path integration comes first because the image belongs to the end of the movement [ours].
         """
         require_behaviour(behaviour)
-        if ranges_m is not None:
-            ranges_m = self._require_sonars(ranges_m)
+        scan = None if ranges_m is None else self._require_sonars(ranges_m)
         watch = watch or _nobody
-        recognition = self.local_view.observe(image, scene)
+        seen = self.local_view.observe(image, scene)
         watch("view match")
-        self._time_s += odometry.dt
-        odometry = self._calibrated(odometry)
-        if self._carried(self.local_view.surprise, self._range_jump.observe(ranges_m)):
-            self.lose_track()
-        self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
-        watch("path integration")
-        expected = self.pose_cells.winner
-        if recognition.recruited:
-            self._learnt_s.append(self._time_s)
-        if recognition.view != NOTHING:
-            self._associate(recognition)
-        watch("injection")
-        packet = self.pose_cells.attract()
+        odometry = self.experience_map.calibrated(odometry)
+        if self.kidnap_detector.observe(self.local_view.image_change, scan):
+            self.declare_kidnapped()
+        for stage, do in self._cell_stages():
+            do(seen, odometry)
+            watch(stage)
+        expected, packet = self.pose_cells.winner, self.pose_cells.attract()
         watch("attractor")
         jump = self.pose_cells.cells_apart(expected.x, expected.y, packet.x, packet.y)
         relocalised = jump > self.params.pose_cells.snap_cells
         self.relocalisations += relocalised
-        created = self.experience_map.step(packet, recognition, odometry, behaviour)
-        self._find_again(created, recognition.view)
+        created = self.experience_map.step(packet, seen, odometry, behaviour)
+        known = NOTHING if created or seen.view == NOTHING else self.experience_map.active
+        self.kidnap_detector.settle(self.experience_map.agrees, known)
         watch("experience")
         self.experience_map.correct()
         watch("correction")
-        self._remember_ways(odometry, relocalised)
-        if ranges_m is not None and self.occupancy is not None and self.map_grid is not None:
-            self.occupancy.update(packet, ranges_m)
-            self.map_grid.add(self.experience_map.active, self.experience_map.local_pose, ranges_m)
+        self._remember(odometry, scan, relocalised)
         watch("memories")
-        return Estimate(
-            self.experience_map.active, created, self.experience_map.robot, packet, recognition, relocalised
-        )
+        active, robot = self.experience_map.active, self.experience_map.robot
+        return Estimate(active, created, robot, packet, seen, relocalised)
+
+    @property
+    def view_links(self) -> ViewLinks:
+        return self.association.links
+
+    @property
+    def lost(self) -> bool:
+        """Whether the robot knows that it was carried away and has not found itself again."""
+        return self.kidnap_detector.kidnapped
+
+    def declare_kidnapped(self) -> None:
+        """[ours] The robot was moved and knows it: image and sonars jumped though the wheels did not, or it is told so."""
+        self.kidnap_detector.declare(len(self.experience_map))
+        if self.lost:
+            self.experience_map.declare_kidnapped()
 
     def digest(self) -> bytes:
         """SHA-256 of all that decides what the engine will do: equal for equal histories."""
-        from ratslam_core.brain_snapshot import take_snapshot  # it knows this class
-
-        return bytes.fromhex(take_snapshot(self).digest())
+        return bytes.fromhex(encode(self).digest())
 
     def set_params(self, params: RatSlamParams) -> None:
         """Take new live parameters while running; ValueError when the size of the pose cells or the front end would change."""
@@ -127,82 +136,45 @@ class RatSlam:
         if now != then:
             raise ValueError(f"front_end is fixed at {now!r} until a reset, got {then!r}")
         self.pose_cells.set_params(params.pose_cells)
-        self.local_view.params = self.view_links.params = params.local_view
-        self.experience_map.params = params.experience_map
+        self.local_view.params = params.local_view
+        self.association.set_params(params.local_view)
+        self.experience_map.set_params(params.experience_map, params.pose_filter, params.solver)
+        self.kidnap_detector.params, self.kidnap_detector.view_params = params.kidnap, params.local_view
         self.goal_memory.params = params.goal_memory
         for grid in (self.occupancy, self.map_grid):
             if grid is not None:
                 grid.params = params.occupancy
         self.params = params
 
-    def lose_track(self) -> None:
-        """[ours] The robot was moved and knows it: image and sonars jumped though the wheels did not, or it is told so.
+    # ------------------------------------------------------------ inside
 
-        test_slam.py::{test_a_kidnap_is_noticed_and_survived, test_sonars_help_to_notice_a_kidnap}.
+    def _cell_stages(self) -> list[tuple[str, Callable[[Recognition, Odometry], None]]]:
+        """[ours] The image belongs to the end of the movement, so that path integration comes first: else every view is linked
+        one step behind. ACRA 2004 section 4 associates first. test_papers.py.
         """
-        self.lost, self._known_before, self._agreed = True, len(self.experience_map), 0
-        self.experience_map.lose_track()
+        stages = [("path integration", self._integrate), ("injection", self._associate)]
+        return stages if self.params.pose_cells.move_first else stages[::-1]
 
-    def _find_again(self, created: bool, view: int) -> None:
-        """Lost no more once experiences from before the kidnap have been recognised FOUND_AGAIN times in a row."""
-        if not self.lost or view == NOTHING:
-            return
-        known = not created and self.experience_map.active < self._known_before
-        self._agreed = self._agreed + 1 if known else 0
-        self.lost = self._agreed < FOUND_AGAIN
+    def _integrate(self, _seen: Recognition, odometry: Odometry) -> None:
+        self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
 
-    def _carried(self, seen: float, heard_m: float) -> bool:
-        """[ours] Whether image and sonars say that the robot was carried away. Sonars alone do not: a robot that turns
-        between two walls has all of them jump.
+    def _associate(self, seen: Recognition, odometry: Odometry) -> None:
+        strength = self.local_view.strength(seen) if seen.view != NOTHING else 0.0
+        self.association.step(seen, strength, odometry.dt, self.pose_cells, self.lost)
 
-        test_slam.py::test_sonars_help_to_notice_a_kidnap.
+    def _remember(self, odometry: Odometry, scan: NDArray[np.float64] | None, relocalised: bool) -> None:
+        """Goal memory learns while the robot drives, the occupancy pictures always.
+
+        [ours] A packet that jumped has not driven: nothing is linked over it. test_slam.py::test_a_leap_of_the_packet_is_no_way.
         """
-        return seen > HALF_SURPRISED and seen + self.params.local_view.range_surprise * heard_m > 1
-
-    def _calibrated(self, odometry: Odometry) -> Odometry:
-        """[ours] Odometry without the yaw bias that the map has learnt; wheels that stand have none."""
-        bias = self.experience_map.yaw_bias
-        if bias == 0.0 or (odometry.speed == 0 and odometry.yaw_rate == 0):
-            return odometry
-        return Odometry(odometry.speed, odometry.yaw_rate - bias, odometry.dt)
-
-    def _associate(self, seen: Recognition) -> None:
-        """Visual calibration by what the view is linked to, then association with where the packet is."""
-        cells, activity = self.pose_cells.active
-        rate = self.learning_rate = self._rate(seen)
-        if seen.recruited:
-            self.view_links.learn(seen.view, cells, activity, self.pose_cells.slot, rate)
-        if self._time_s - self._learnt_s[seen.view] < self.params.local_view.rest:
-            return
-        linked, injection = self.view_links.recall(seen.view, self.lost)
-        linked = linked.copy()
-        self.view_links.learn(seen.view, cells, activity, self.pose_cells.slot, rate)
-        self.pose_cells.inject(linked, injection)
-
-    def _rate(self, seen: Recognition) -> float:
-        """The Hebbian learning rate of this step: fixed, or adaptive.
-
-        [ours] Adaptive, which ACRA 2004 section 6.3 names as future work: twice the rate x strength of vision (1 for a view
-        like the one known, 0 at the threshold) x confidence (the winning packet's share of all activity, 0 while lost).
-        What is hardly recognised, or seen while hypotheses compete, is hardly learnt; a clear sight at a sure place is
-        learnt twice as fast. test_slam.py::test_the_adaptive_rate_follows_vision_and_confidence.
-        """
-        p = self.params.local_view
-        if not p.adaptive:
-            return p.learning_rate
-        strength = self.local_view.strength(seen)
-        return 2 * p.learning_rate * strength * (0.0 if self.lost else min(1.0, self.pose_cells.winner.mass))
-
-    def _remember_ways(self, odometry: Odometry, relocalised: bool) -> None:
-        """Goal memory learns while the robot drives. [ours] A packet that jumped has not driven: nothing is linked over it.
-
-        test_slam.py::test_a_leap_of_the_packet_is_no_way.
-        """
-        if relocalised or self.lost:
+        if (relocalised or self.lost) and not self.params.goal_memory.over_jumps:
             self.goal_memory.interrupt()
         if odometry.speed != 0 or odometry.yaw_rate != 0:
             self._under_way_s += odometry.dt
             self.goal_memory.learn(*self.pose_cells.active, self._under_way_s)
+        if scan is not None and self.occupancy is not None and self.map_grid is not None:
+            self.occupancy.update(self.pose_cells.winner, scan)
+            self.map_grid.add(self.experience_map.active, self.experience_map.local_pose, scan)
 
     def _require_sonars(self, ranges_m: NDArray[np.floating]) -> NDArray[np.float64]:
         if self.occupancy is None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from disk import kind
+
 
 def wrap_angle(angle_rad: float) -> float:
     """The same direction in (-pi, pi]."""
@@ -20,6 +22,7 @@ def require_finite(name: str, value: float) -> float:
     return number
 
 
+@kind("odometry/1")
 @dataclass(frozen=True, slots=True)
 class Odometry:
     """What the wheels report for one step: forward speed (m/s), yaw rate (rad/s), duration (s)."""
@@ -35,6 +38,7 @@ class Odometry:
             raise ValueError(f"odometry.dt must be a positive number of seconds, got {self.dt!r}")
 
 
+@kind("pose/1")
 @dataclass(frozen=True, slots=True)
 class Pose2:
     """A planar pose: metres and a heading in (-pi, pi]. Composes like SE(2)."""
@@ -60,6 +64,7 @@ class Pose2:
 IDENTITY = Pose2(0.0, 0.0, 0.0)
 
 
+@kind("packet/1")
 @dataclass(frozen=True, slots=True)
 class Packet:
     """A packet of pose-cell activity: centre in cells (fractions), heading, share of all activity, id (0 = not tracked)."""
@@ -71,6 +76,7 @@ class Packet:
     id: int = 0
 
 
+@kind("recognition/1")
 @dataclass(frozen=True, slots=True)
 class Recognition:
     """What the local view says of one image."""
@@ -83,6 +89,7 @@ class Recognition:
     false_positive: bool = False  # the active view was put in the place of `best_view`, which was the right one
 
 
+@kind("estimate/1")
 @dataclass(frozen=True, slots=True)
 class Estimate:
     """What the engine believes after one step."""

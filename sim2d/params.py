@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, field, fields
 from typing import Any
 
+from disk import kind
+
 
 def _number(
     default: float,
@@ -45,6 +47,7 @@ def _about(
     }
 
 
+@kind("parameters of robot/1")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimParams:
     """Robot, camera, sonar and odometry of one simulation. A number out of its range raises ValueError."""
@@ -151,6 +154,7 @@ class SimParams:
         return self.physics_rate_hz // self.sensor_rate_hz
 
 
+@kind("parameters of office/1")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OfficeParams:
     """Which parts of the office live."""

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
+from sim2d import FreeSpace, Start, Wall, World
+from sim2d.world.robot_fit import RobotFit
 from web.messages import (
     CellReport,
     Event,
@@ -104,6 +106,7 @@ def fake_snapshot(tick: int, goal: bool = True, *, nodes: int = NODES, run: int 
         timings=tuple(Timing(part, 0.1 * k + 0.05, 0.3 * k + 0.1) for k, part in enumerate(PARTS)),
         events=_events(snap_count, goal),
         parameters=_parameters(),
+        no_room=_fit().refusal,
         occupancy=_occupancy(tick // 20),
         goal_memory=_goal_memory(tick // 5, goal),
     )
@@ -147,6 +150,18 @@ def _world() -> WorldDrawing:
         camera_fov_rad=FOV_RAD,
         sonar_angles_rad=_frozen(SONAR_RAD.copy()),
     )
+
+
+@lru_cache(maxsize=1)
+def _fit() -> RobotFit:
+    """The same authority as a real session's, over the same walls."""
+    drawn = _world()
+    walls = [
+        Wall(*map(float, row), kind, float(height), (0, 0, 0), outer=i < 4)
+        for i, (row, kind, height) in enumerate(zip(drawn.walls, drawn.wall_kind, drawn.wall_height_m, strict=True))
+    ]
+    start = Start("here", 5.0, 0.8, 0.0)
+    return RobotFit(FreeSpace(World("office", drawn.title, "", tuple(walls), (start,), ()), drawn.robot_radius_m))
 
 
 @lru_cache(maxsize=1)

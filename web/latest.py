@@ -15,6 +15,7 @@ class Latest(Generic[T]):
         self._changed = threading.Condition()
         self._value: T | None = None
         self._version = 0
+        self.waking = "starting"  # what goes on until the first value is there, for people
 
     def put(self, value: T) -> None:
         with self._changed:

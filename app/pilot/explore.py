@@ -9,21 +9,30 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from app.pilot.behaviours import Behaviour
 from app.pilot.local_movement import LocalMovement
 from app.pilot.params import PilotParams
-from ratslam_core import Odometry, wrap_angle
+from disk import kind
+from ratslam_core import Odometry
 
-LOOK_BACK_M = 1.0
+_DOING = {
+    "follow": Behaviour.FOLLOWING_THE_WALL,
+    "cross": Behaviour.CROSSING,
+    "look": Behaviour.LOOKING_BACK,
+}
 
 
+@kind("turn/1")
 @dataclass(slots=True)
-class _Turn:
+class Turn:
     """Turn on the spot until so many radians are left."""
 
     left: float
 
 
+@kind("explorer/1")
 class Explorer:
     """Proposes (speed, yaw rate) for each tick and says what it is doing."""
 
@@ -31,31 +40,29 @@ class Explorer:
         self._rng = rng
         self._begin_following()
         self._way = 0.0
-        self._clock = 0.0
+        self._back = 0.0  # of the way back while it looks, m
         self._cross_in_s = math.inf  # of wall following; looking back does not put it off
 
     @property
-    def doing(self) -> str:
-        return {"follow": "following the wall", "cross": "crossing", "look": "turning back to look"}[self._state]
+    def doing(self) -> Behaviour:
+        return _DOING[self._state]
 
-    def digest(self) -> bytes:
-        turn = self._turn.left if self._turn else math.nan
-        return repr((self._state, turn, self._stage, self._way, self._clock, self._until, self._cross_in_s)).encode()
-
-    def begin_crossing(self) -> None:
+    def begin_crossing(self, p: PilotParams) -> None:
         """Turn to a random direction and go."""
-        self._state, self._turn, self._stage = "cross", _Turn(float(self._rng.uniform(-math.pi, math.pi))), 0
-        self._clock, self._until = 0.0, float(self._rng.uniform(6.0, 20.0))
+        self._state, self._turn, self._stage = "cross", Turn(float(self._rng.uniform(-math.pi, math.pi))), 0
+        self._clock, self._until = 0.0, float(self._rng.uniform(p.cross_least_s, p.cross_most_s))
         self._cross_in_s = math.inf
 
-    def step(self, ranges_m, odometry: Odometry, local: LocalMovement, p: PilotParams) -> tuple[float, float]:
+    def step(
+        self, ranges_m: NDArray[np.float32], odometry: Odometry, local: LocalMovement, p: PilotParams
+    ) -> tuple[float, float]:
         """ranges_m: (8,) sonars from left to right."""
         moved, turned = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
         self._clock += odometry.dt
         self._way += abs(moved)
         if self._turn is not None:
             self._turn.left -= turned
-            if abs(self._turn.left) > 0.15 and self._clock < 12.0:
+            if abs(self._turn.left) > p.turned_to_rad and self._clock < p.turn_patience_s:
                 return 0.0, math.copysign(p.turn_rate, self._turn.left)
             self._turn, self._clock = None, 0.0
         if self._state == "look":
@@ -68,40 +75,51 @@ class Explorer:
         self._state, self._turn, self._stage = "follow", None, 0
         self._clock, self._until = 0.0, math.inf
 
-    def _follow(self, ranges_m, dt: float, local: LocalMovement, p: PilotParams) -> tuple[float, float]:
+    def _follow(
+        self, ranges_m: NDArray[np.float32], dt: float, local: LocalMovement, p: PilotParams
+    ) -> tuple[float, float]:
         if self._cross_in_s == math.inf:
-            self._cross_in_s = p.cross_after_s * float(self._rng.uniform(0.75, 1.25))
+            self._cross_in_s = p.cross_after_s * float(self._rng.uniform(1 - p.cross_spread, 1 + p.cross_spread))
         self._cross_in_s -= dt
         if self._way > p.look_back_after_m:
-            self._way, self._state, self._stage, self._clock = 0.0, "look", 0, 0.0
-            self._turn = _Turn(math.pi)
-            self._back = LOOK_BACK_M
+            self._begin_looking_back(p)
             return 0.0, p.turn_rate
         if self._cross_in_s <= 0:
-            self.begin_crossing()
+            self.begin_crossing(p)
             return 0.0, 0.0
+        return self._along_the_wall(ranges_m, local, p)
+
+    def _begin_looking_back(self, p: PilotParams) -> None:
+        self._way, self._state, self._stage, self._clock = 0.0, "look", 0, 0.0
+        self._turn = Turn(p.look_turn_rad)
+        self._back = p.look_back_m
+
+    def _along_the_wall(
+        self, ranges_m: NDArray[np.float32], local: LocalMovement, p: PilotParams
+    ) -> tuple[float, float]:
         left, ahead_left, front = float(ranges_m[0]), float(ranges_m[1]), float(min(ranges_m[2:6]))
-        if front < p.wall_distance + 0.15:
-            return local.towards(0.3, -0.6, p.cruise_speed, p.turn_rate, p.clearance)
-        if left > 2 * p.wall_distance and ahead_left > 2 * p.wall_distance:
-            return local.towards(0.5, 0.45, p.cruise_speed, p.turn_rate, p.clearance)
-        wall = min(left, ahead_left * math.cos(math.radians(40)))
-        aside = max(-0.5, min(0.5, wall - p.wall_distance))
-        return local.towards(0.8, aside, p.cruise_speed, p.turn_rate, p.clearance)
+        if front < p.wall_distance + p.blocked_ahead_m:
+            return local.towards(p.blocked_turn_ahead_m, -p.blocked_turn_aside_m, p)
+        gone = p.corner_share * p.wall_distance
+        if left > gone and ahead_left > gone:
+            return local.towards(p.corner_ahead_m, p.corner_aside_m, p)
+        wall = min(left, ahead_left * local.aslant)
+        aside = max(-p.follow_aside_m, min(p.follow_aside_m, wall - p.wall_distance))
+        return local.towards(p.follow_ahead_m, aside, p)
 
     def _cross(self, local: LocalMovement, p: PilotParams) -> tuple[float, float]:
-        if self._clock > self._until or local.free_way(0.0, p.clearance) < 0.35:
+        if self._clock > self._until or local.free_way(0.0, p) < p.cross_stop_m:
             self._begin_following()
             return 0.0, 0.0
-        return local.towards(1.2, 0.0, p.cruise_speed, p.turn_rate, p.clearance)
+        return local.towards(p.cross_ahead_m, 0.0, p)
 
     def _look(self, moved: float, local: LocalMovement, p: PilotParams) -> tuple[float, float]:
         """Back along the way for a metre, then round again and on."""
         if self._stage == 0:
             self._back -= moved
-            if self._back > 0 and self._clock < 8.0 and local.free_way(0.0, p.clearance) > 0.15:
-                return local.towards(0.8, 0.0, p.cruise_speed, p.turn_rate, p.clearance)
-            self._stage, self._turn, self._clock = 1, _Turn(wrap_angle(math.pi - 1e-3)), 0.0
+            if self._back > 0 and self._clock < p.look_back_s and local.free_way(0.0, p) > p.look_stop_m:
+                return local.towards(p.follow_ahead_m, 0.0, p)
+            self._stage, self._turn, self._clock = 1, Turn(p.look_return_rad), 0.0
             return 0.0, 0.0
         self._begin_following()
         return 0.0, 0.0

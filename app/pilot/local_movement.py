@@ -6,65 +6,100 @@ Obstacles are the sonar echoes of the last seconds, carried along by odometry, s
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from app.pilot.params import DrivingParams
+from disk import kind
 from ratslam_core import Odometry
 
-MEMORY_TICKS = 30
-FARTHEST_M = 1.6  # echoes beyond this are of no concern for the next second
-HORIZON_S = 1.2
-STEPS = 8  # of an arc
-MOST_LEFT = 6  # arcs to the left, and as many to the right
-NARROW_M = 0.15  # beyond the clearance an echo costs the less the farther it is, up to here
+_Array = NDArray[np.float64]  # (n, 2): places in the robot's frame
 
 
+class _Choice(NamedTuple):
+    """What compiled code is told of the parameters."""
+
+    speed: float
+    turn_rate: float
+    clearance: float
+    arc_s: float
+    steps: int
+    arcs: int
+    medium: float
+    slow: float
+    spot: float
+    spot_s: float
+    turn_cost: float
+    bearing_m: float
+    narrow_m: float
+    narrow_cost: float
+    escape_m2: float
+
+
+@kind("local movement/1")
 class LocalMovement:
     """Remembers echoes around the robot and chooses (speed, yaw rate)."""
 
-    def __init__(self, sonar_angles_rad: NDArray[np.float64]) -> None:
+    CACHES = ("_choice",)
+
+    def __init__(self, sonar_angles_rad: NDArray[np.float64], ticks: int) -> None:
+        """ticks: how long echoes are remembered."""
         self._angles = np.asarray(sonar_angles_rad, np.float64)
-        self._echoes = np.full((MEMORY_TICKS * len(self._angles), 2), np.inf)  # in the robot's frame now
+        self._ticks = ticks
+        self._echoes = np.full((ticks * len(self._angles), 2), np.inf)  # in the robot's frame now
         self._tick = 0
+        self._choice: tuple[DrivingParams, _Choice] | None = None
 
     def forget(self) -> None:
         self._echoes[:] = np.inf
 
-    def sense(self, ranges_m: NDArray[np.float32], odometry: Odometry) -> None:
+    @property
+    def aslant(self) -> float:
+        """An echo of the second sonar from the left, times this, is as far as a wall on the left would be."""
+        return math.cos(self._angles[0] - self._angles[1])
+
+    def sense(self, ranges_m: NDArray[np.float32], odometry: Odometry, p: DrivingParams) -> None:
         """Carry the old echoes along and add the new ones. ranges_m: (8,) from the robot's middle."""
         n = len(self._angles)
-        start = self._tick % MEMORY_TICKS * n
+        start = self._tick % self._ticks * n
         self._tick += 1
         _carry(self._echoes, odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
-        _place(self._echoes, start, ranges_m, self._angles, FARTHEST_M)
+        _place(self._echoes, start, ranges_m, self._angles, p.echo_range_m)
 
-    def towards(self, x: float, y: float, speed: float, turn_rate: float, clearance: float) -> tuple[float, float]:
+    def towards(self, x: float, y: float, p: DrivingParams) -> tuple[float, float]:
         """Speed and yaw rate of the free arc that serves best to reach (x, y), metres in the robot's frame."""
-        return _best_arc(self._echoes, x, y, speed, turn_rate, clearance)
+        return _best_arc(self._echoes, x, y, self._chosen_by(p))
 
-    def free_way(self, bearing: float, clearance: float) -> float:
-        """How far the robot could go straight in this direction, up to FARTHEST_M."""
-        return _free_way(self._echoes, bearing, clearance, FARTHEST_M)
+    def free_way(self, bearing: float, p: DrivingParams) -> float:
+        """How far the robot could go straight in this direction, as far as it remembers echoes."""
+        return _free_way(self._echoes, bearing, p.clearance, p.echo_range_m)
 
-    def digest(self) -> bytes:
-        return self._echoes.tobytes()
+    def _chosen_by(self, p: DrivingParams) -> _Choice:
+        """The same object for the same parameters: it is asked for in every tick."""
+        if self._choice is None or self._choice[0] is not p:
+            self._choice = p, _Choice(
+                p.cruise_speed, p.turn_rate, p.clearance, p.arc_s, p.arc_steps, p.arcs_a_side, p.medium_share, p.slow_share,
+                p.spot_share, p.spot_s, p.turn_cost, p.bearing_m, p.narrow_m, p.narrow_cost, p.escape_m2,
+            )  # fmt: skip
+        return self._choice[1]
 
 
 @njit(cache=True, nogil=True)
-def _carry(echoes, step, turn):
+def _carry(echoes: _Array, step: float, turn: float) -> None:
     c, s = math.cos(turn), math.sin(turn)
     dx, dy = step * math.cos(turn / 2), step * math.sin(turn / 2)
     for k in range(echoes.shape[0]):
         x, y = echoes[k, 0] - dx, echoes[k, 1] - dy
-        if x < 1e9:
+        if x < np.inf:
             echoes[k, 0] = c * x + s * y
             echoes[k, 1] = -s * x + c * y
 
 
 @njit(cache=True, nogil=True)
-def _place(echoes, start, ranges, angles, farthest):
+def _place(echoes: _Array, start: int, ranges: NDArray[np.float32], angles: _Array, farthest: float) -> None:
     for k in range(angles.size):
         if ranges[k] < farthest:
             echoes[start + k, 0] = ranges[k] * math.cos(angles[k])
@@ -74,74 +109,81 @@ def _place(echoes, start, ranges, angles, farthest):
 
 
 @njit(cache=True, nogil=True)
-def _best_arc(echoes, x, y, speed, turn_rate, clearance):
-    """Least (distance left + share of the turn left) over arcs that keep clear; turning on the spot is always free."""
+def _best_arc(echoes: _Array, x: float, y: float, p: _Choice) -> tuple[float, float]:
+    """Speed and yaw rate of the cheapest arc that keeps clear; turning on the spot is always free."""
     best, best_v, best_w = np.inf, 0.0, 0.0
-    bearing = math.atan2(y, x)
-    echoes = _within(echoes, speed * HORIZON_S + clearance + NARROW_M + 0.01)
-    facing = _facing(turn_rate)
-    for vi in range(4):
-        v = speed * (1.0, 0.6, 0.3, 0.0)[vi]
-        for wi in range(-MOST_LEFT, MOST_LEFT + 1):
-            w = turn_rate * wi / MOST_LEFT
-            if v == 0.0 and abs(wi) < 3:
+    echoes = _within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m)  # with room to spare
+    facing = _facing(p)
+    for share in (1.0, p.medium, p.slow, 0.0):
+        v = p.speed * share
+        for wi in range(-p.arcs, p.arcs + 1):
+            if v == 0.0 and abs(wi) < p.spot * p.arcs:
                 continue
-            px = py = 0.0
-            heading = w * (HORIZON_S if v > 0.0 else 0.6)
-            nearest = 9.0
-            free = True
+            w = p.turn_rate * wi / p.arcs
+            px, py, nearest, free = 0.0, 0.0, np.inf, True
             if v > 0.0:
-                dt = HORIZON_S / STEPS
-                for k in range(STEPS):
-                    px += v * dt * facing[wi + MOST_LEFT, k, 0]
-                    py += v * dt * facing[wi + MOST_LEFT, k, 1]
-                    for e in range(echoes.shape[0]):
-                        ex, ey = echoes[e, 0] - px, echoes[e, 1] - py
-                        d = ex * ex + ey * ey
-                        # an echo that is too close already does not forbid to move away from it
-                        if d < clearance * clearance and d < echoes[e, 0] ** 2 + echoes[e, 1] ** 2 - 1e-4:
-                            free = False
-                            break
-                        if d < nearest:
-                            nearest = d
-                    if not free:
-                        break
-            if not free:
-                continue
-            left = math.hypot(x - px, y - py)
-            aim = math.atan2(y - py, x - px) - heading if left > 0.15 else bearing - heading
-            aim = abs(aim - 2 * math.pi * np.round(aim / (2 * math.pi)))
-            cost = left + 0.25 * aim + 0.15 * max(0.0, clearance + NARROW_M - math.sqrt(nearest)) / NARROW_M
-            if cost < best:
-                best, best_v, best_w = cost, v, w
+                px, py, nearest, free = _along(echoes, v * (p.arc_s / p.steps), facing[wi + p.arcs], p)
+            if free:
+                cost = _cost(x, y, px, py, w * (p.arc_s if v > 0.0 else p.spot_s), nearest, p)
+                if cost < best:
+                    best, best_v, best_w = cost, v, w
     return best_v, best_w
 
 
 @njit(cache=True, nogil=True)
-def _facing(turn_rate):
+def _along(echoes: _Array, step: float, facing: _Array, p: _Choice) -> tuple[float, float, float, bool]:
+    """Where an arc ends, the square of how close it comes to an echo, and whether it keeps clear of all."""
+    px = py = 0.0
+    nearest = np.inf
+    for k in range(p.steps):
+        px += step * facing[k, 0]
+        py += step * facing[k, 1]
+        for e in range(echoes.shape[0]):
+            ex, ey = echoes[e, 0] - px, echoes[e, 1] - py
+            d = ex * ex + ey * ey
+            # an echo that is too close already does not forbid to move away from it
+            if d < p.clearance * p.clearance and d < echoes[e, 0] ** 2 + echoes[e, 1] ** 2 - p.escape_m2:
+                return px, py, nearest, False
+            if d < nearest:
+                nearest = d
+    return px, py, nearest, True
+
+
+@njit(cache=True, nogil=True)
+def _cost(x: float, y: float, px: float, py: float, heading: float, nearest: float, p: _Choice) -> float:
+    """In metres: what is left to (x, y) from the arc's end, to turn there, and for passing close by."""
+    left = math.hypot(x - px, y - py)
+    aim = math.atan2(y - py, x - px) - heading if left > p.bearing_m else math.atan2(y, x) - heading
+    aim = abs(aim - 2 * math.pi * np.round(aim / (2 * math.pi)))
+    close = max(0.0, p.clearance + p.narrow_m - math.sqrt(nearest)) / p.narrow_m
+    return left + p.turn_cost * aim + p.narrow_cost * close
+
+
+@njit(cache=True, nogil=True)
+def _facing(p: _Choice) -> _Array:
     """Cosine and sine of the heading in the middle of each step of each arc."""
-    out = np.empty((2 * MOST_LEFT + 1, STEPS, 2))
-    for wi in range(-MOST_LEFT, MOST_LEFT + 1):
-        for k in range(STEPS):
-            heading = turn_rate * wi / MOST_LEFT * (k + 0.5) * HORIZON_S / STEPS
-            out[wi + MOST_LEFT, k, 0], out[wi + MOST_LEFT, k, 1] = math.cos(heading), math.sin(heading)
+    out = np.empty((2 * p.arcs + 1, p.steps, 2))
+    for wi in range(-p.arcs, p.arcs + 1):
+        for k in range(p.steps):
+            heading = p.turn_rate * wi / p.arcs * (k + 0.5) * p.arc_s / p.steps
+            out[wi + p.arcs, k, 0], out[wi + p.arcs, k, 1] = math.cos(heading), math.sin(heading)
     return out
 
 
 @njit(cache=True, nogil=True)
-def _within(echoes, reach):
+def _within(echoes: _Array, reach: float) -> _Array:
     """Those at most so far away, in their order: no other can matter to an arc."""
     out = np.empty_like(echoes)
     n = 0
     for e in range(echoes.shape[0]):
         if echoes[e, 0] * echoes[e, 0] + echoes[e, 1] * echoes[e, 1] <= reach * reach:
-            out[n] = echoes[e]
+            out[n, 0], out[n, 1] = echoes[e, 0], echoes[e, 1]
             n += 1
     return out[:n]
 
 
 @njit(cache=True, nogil=True)
-def _free_way(echoes, bearing, clearance, farthest):
+def _free_way(echoes: _Array, bearing: float, clearance: float, farthest: float) -> float:
     c, s = math.cos(bearing), math.sin(bearing)
     way = farthest
     for e in range(echoes.shape[0]):

@@ -9,18 +9,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from app.pilot.params import PilotParams
+from app.pilot.params import RouteParams
+from disk import kind
 from ratslam_core import ExperienceMap, Pose2, Route
+from web.messages import GoalState
 
-REPLAN_S = 1.0
-NEAR_M = 0.6  # [ours] links that are only thought of, from the robot to experiences so near
-LOST_S = 25.0
-CLOSE_ENOUGH_S = 5.0
-NO_HEADWAY_S = 25.0  # [ours] a robot that does not get along its route for so long looks around instead ...
-LOOK_AROUND_S = 15.0  # ... for so long: what the map takes for a way may be a wall
-TRIAL_S = 3.0  # [ours] no headway for so long is a failed trial of the ways that lead across a bar ...
-BAR_AHEAD_M = 0.4  # ... so far ahead
-BAR_M = 1.4
+_Points = NDArray[np.float64]  # (..., 2)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,19 +22,20 @@ class Progress:
     """Where the pilot is on its way to the goal."""
 
     experience: int
-    state: str  # tracking, coasting, exploring, arrived, unreachable
+    state: GoalState
     eta_s: float | None
     remaining_m: float | None
     route: NDArray[np.int64]  # experiences
     arrival_s: NDArray[np.float64]  # seconds from now
 
 
+@kind("route follower/1")
 class RouteFollower:
     """Keeps the quickest route to one goal and says where to head for."""
 
     def __init__(self, goal: int) -> None:
         self.goal = goal
-        self.state = "tracking"
+        self.state: GoalState = "tracking"
         self._route: Route | None = None
         self._age_s = math.inf  # of the route
         self._plan_in_s = 0.0
@@ -52,7 +47,7 @@ class RouteFollower:
         self._failed_trials = 0  # since it last got along
         self._bars: list[NDArray[np.float64]] = []  # where it did not get through, (2, 2) each, map frame
 
-    def step(self, experiences: ExperienceMap, dt: float, p: PilotParams) -> tuple[float, float] | None:
+    def step(self, experiences: ExperienceMap, dt: float, p: RouteParams) -> tuple[float, float] | None:
         """The next point to head for, metres in the robot's frame; None when there, or when no route is known."""
         if self.state == "arrived":
             return None
@@ -65,18 +60,19 @@ class RouteFollower:
             return None
         self._watch_headway(experiences, dt, p)
         if self._plan_in_s <= 0:
-            self._plan_in_s = REPLAN_S
-            self._plan(experiences)
+            self._plan_in_s = p.replan_s
+            self._plan(experiences, p)
+        self.state = self._state_on_the_way(dt, p)
+        return self._aim(experiences, p.lookahead_m) if self.state in ("tracking", "coasting") else None
+
+    def _state_on_the_way(self, dt: float, p: RouteParams) -> GoalState:
         if self._route is None or self._age_s > p.coast_s:
             self._no_route_s += dt
-            self.state = "unreachable" if self._no_route_s > LOST_S else "exploring"
-            return None
+            return "unreachable" if self._no_route_s > p.lost_s else "exploring"
         self._no_route_s = 0.0
         if self._look_around_s > 0:
-            self.state = "exploring"
-            return None
-        self.state = "tracking" if self._age_s <= REPLAN_S + dt else "coasting"
-        return self._aim(experiences, p.lookahead_m)
+            return "exploring"
+        return "tracking" if self._age_s <= p.replan_s + dt else "coasting"
 
     def progress(self, experiences: ExperienceMap) -> Progress:
         nothing = np.zeros(0, np.int64), np.zeros(0)
@@ -93,10 +89,10 @@ class RouteFollower:
         remaining = first + float(np.hypot(*np.diff(xy, axis=0).T).sum())
         return Progress(self.goal, self.state, float(arrival[-1]), remaining, nodes, arrival)
 
-    def _watch_headway(self, experiences: ExperienceMap, dt: float, p: PilotParams) -> None:
+    def _watch_headway(self, experiences: ExperienceMap, dt: float, p: RouteParams) -> None:
         """Getting nowhere on the route is a failed trial of the ways ahead, and later a reason to look around.
 
-        test_pilot.py::{test_a_blocked_way_is_left, test_a_door_that_was_shut_is_given_up}.
+        test_routes.py::{test_a_blocked_way_is_left, test_a_door_that_was_shut_is_given_up}.
         """
         if self._look_around_s > 0:
             self._look_around_s -= dt
@@ -105,28 +101,24 @@ class RouteFollower:
             return
         left_s = float(self._route.arrival_s[-1])
         self._since_headway_s += dt
-        if left_s < self._least_left_s - 0.5:
+        if left_s < self._least_left_s - p.headway_s:
             self._least_left_s, self._since_headway_s, self._failed_trials = left_s, 0.0, 0
-        if self._since_headway_s > TRIAL_S * (self._failed_trials + 1):
+        if self._since_headway_s > p.trial_s * (self._failed_trials + 1):
             self._failed_trials += 1
             self._fail(experiences, p)
-        if self._since_headway_s > NO_HEADWAY_S:
+        if self._since_headway_s > p.no_headway_s:
             self._begin_anew()
-            self._look_around_s = LOOK_AROUND_S
+            self._look_around_s = p.look_around_s
 
     def _begin_anew(self) -> None:
         self._least_left_s, self._since_headway_s, self._failed_trials = math.inf, 0.0, 0
 
-    def _fail(self, experiences: ExperienceMap, p: PilotParams) -> None:
+    def _fail(self, experiences: ExperienceMap, p: RouteParams) -> None:
         """The robot did not get across a bar ahead of it: a failed trial of every way that does. ACRA 2006 3.4.
 
         [ours] All of them, not only the route's own: a place has many experiences, and the robot would try one by one.
         """
-        x, y = self._aim(experiences, p.lookahead_m)
-        robot = experiences.robot
-        ahead = robot.compose(Pose2(0.0, 0.0, math.atan2(y, x))).compose(Pose2(BAR_AHEAD_M, 0.0, 0.0))
-        left, right = (ahead.compose(Pose2(0.0, side * BAR_M / 2, 0.0)) for side in (1, -1))
-        bar = np.array([(left.x, left.y), (right.x, right.y)])
+        bar = _bar_ahead(experiences.robot, math.atan2(*self._aim(experiences, p.lookahead_m)[::-1]), p)
         self._bars.append(bar)
         links, xy = experiences.links, experiences.poses[:, :2]
         across = links[crosses(bar, xy[links[:, 0]], xy[links[:, 1]])]
@@ -136,36 +128,37 @@ class RouteFollower:
             self._route, self._plan_in_s = None, 0.0
             self._begin_anew()
 
-    def _there(self, away: float, dt: float, p: PilotParams) -> bool:
+    def _there(self, away: float, dt: float, p: RouteParams) -> bool:
         """Near enough; or close by and not getting nearer, as at a goal in a corner where the robot just does not fit."""
-        self._since_nearer_s = 0.0 if away < self._nearest_m - 0.02 else self._since_nearer_s + dt
+        self._since_nearer_s = 0.0 if away < self._nearest_m - p.nearer_m else self._since_nearer_s + dt
         self._nearest_m = min(self._nearest_m, away)
-        return away < p.arrival_m or (away < 2 * p.arrival_m and self._since_nearer_s > CLOSE_ENOUGH_S)
+        return away < p.arrival_m or (away < p.close_by_share * p.arrival_m and self._since_nearer_s > p.close_by_s)
 
-    def _plan(self, experiences: ExperienceMap) -> None:
+    def _plan(self, experiences: ExperienceMap, p: RouteParams) -> None:
         """The quickest route, started at the active experience or, by links only thought of, at one close by."""
-        self._succeed(experiences)
-        ways = experiences.temporal_map
+        self._succeed(experiences, p)
+        ways, robot, poses = experiences.temporal_map, experiences.robot, experiences.poses
         times = ways.times_to(self.goal)
-        robot = experiences.robot
-        poses = experiences.poses
         away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
-        near = np.flatnonzero(away < NEAR_M)
-        for bar in self._bars:
-            near = near[~crosses(bar, np.array([[robot.x, robot.y]]), poses[near, :2])]
-        if experiences.active not in near:
-            near = np.append(near, experiences.active)
+        near = self._near(experiences, away, p)
         turn = np.abs(np.remainder(poses[near, 2] - robot.heading_rad + np.pi, 2 * np.pi) - np.pi)
-        cost = times[near] + away[near] / 0.3 + 0.3 * turn
+        cost = times[near] + away[near] / p.near_speed + p.near_turn_cost * turn
         start = int(near[np.argmin(cost)])
         if not np.isfinite(times[start]):
             return
         self._route = ways.route(start, self.goal)
         self._age_s = 0.0
 
-    def _succeed(self, experiences: ExperienceMap) -> None:
+    def _near(self, experiences: ExperienceMap, away: NDArray[np.float64], p: RouteParams) -> NDArray[np.intp]:
+        """Experiences that a route may start at: the active one, and those close by that no bar lies before."""
+        robot, near = experiences.robot, np.flatnonzero(away < p.near_m)
+        for bar in self._bars:
+            near = near[~crosses(bar, np.array([[robot.x, robot.y]]), experiences.poses[near, :2])]
+        return near if experiences.active in near else np.append(near, experiences.active)
+
+    def _succeed(self, experiences: ExperienceMap, p: RouteParams) -> None:
         """What of the route was driven since the last plan was a trial, too."""
-        if self._route is None or self._age_s > 2 * REPLAN_S:
+        if self._route is None or self._age_s > p.credited_plans * p.replan_s:
             return
         for i, j in pairwise(self._route.experiences[: self._nearest(experiences) + 1]):
             experiences.tried(int(i), int(j), True)
@@ -194,10 +187,17 @@ class RouteFollower:
         return c * dx + s * dy, -s * dx + c * dy
 
 
+def _bar_ahead(robot: Pose2, bearing: float, p: RouteParams) -> NDArray[np.float64]:
+    """Both ends (2, 2) of a bar across the way in this direction (rad, robot's frame), map frame."""
+    ahead = robot.compose(Pose2(0.0, 0.0, bearing)).compose(Pose2(p.bar_ahead_m, 0.0, 0.0))
+    left, right = (ahead.compose(Pose2(0.0, side * p.bar_m / 2, 0.0)) for side in (1, -1))
+    return np.array([(left.x, left.y), (right.x, right.y)])
+
+
 def crosses(bar: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which of the lines from a to b, (n, 2) each, cross the bar, (2, 2)."""
 
-    def side(start, end, point):
+    def side(start: _Points, end: _Points, point: _Points) -> _Points:
         along, to = end - start, point - start
         return along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0]
 

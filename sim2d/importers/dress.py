@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from sim2d.world import Panel, Rgb, Wall
+from sim2d.world.world import Panel, Rgb, Wall
 
 Point = tuple[float, float]
 Side = Literal["left", "right", "both", "each"]  # both: the same on either side; each: two of its own

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim2d.world_file import WorldError
+from sim2d.world.world_file import WorldError
 
 STARTS = 4
 _AMPLE_M = 0.6  # from the nearest wall to a start
@@ -32,7 +32,7 @@ def choose_floor(name: str, free: NDArray[np.bool_], scale_m: float, radius_m: f
     """
     clear = cv2.distanceTransform(np.pad(free, 1).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
     clear_m = (clear - 1.5) * scale_m  # to the pixel's edge, and a pixel for walls that are simplified
-    count, rooms = cv2.connectedComponents((clear_m >= radius_m).astype(np.uint8), connectivity=8)
+    count, rooms = _components(clear_m >= radius_m, 8)
     if count == 1:
         raise WorldError(
             f"{name}: no place where a robot of {radius_m:g} m radius fits: the widest is {2 * clear.max() * scale_m:.2f} m "
@@ -40,16 +40,22 @@ def choose_floor(name: str, free: NDArray[np.bool_], scale_m: float, radius_m: f
         )
     sizes = np.bincount(rooms.ravel(), minlength=count)
     sizes[0] = 0
-    _, parts = cv2.connectedComponents(free.astype(np.uint8), connectivity=4)
+    _, parts = _components(free, 4)
     rim = np.concatenate([parts[0], parts[-1], parts[:, 0], parts[:, -1]])
     room = int(np.argmax(sizes))
-    paper = parts[rooms == room][0]
+    paper = int(parts[rooms == room][0])
     if (rim == paper).mean() > 0.5:
         others = np.where(np.isin(np.arange(count), rooms[parts == paper]), 0, sizes)
         if others.max() * 10 >= sizes[room]:
             room = int(np.argmax(others))
-    part = parts[rooms == room][0]
+    part = int(parts[rooms == room][0])
     return Floor(parts == part, _starts(free, rooms == room, clear_m, scale_m))
+
+
+def _components(cells: NDArray[np.bool_], connectivity: int) -> tuple[int, NDArray[np.int32]]:
+    """How many parts hang together, 0 being what is in none, and the part of each cell."""
+    count, parts = cv2.connectedComponents(cells.astype(np.uint8), connectivity=connectivity)
+    return count, np.asarray(parts, np.int32)
 
 
 def _starts(
@@ -72,7 +78,7 @@ def _longest(free: NDArray[np.bool_], column: int, row: int) -> float:
     best, best_way = 0.0, -1
     for k in range(_TURNS):
         angle = 2 * math.pi * k / _TURNS
-        ways = np.arange(1, max(free.shape))
+        ways = np.arange(1, int(max(free.shape)))
         x = np.rint(column + ways * math.cos(angle)).astype(int)
         y = np.rint(row + ways * math.sin(angle)).astype(int)
         inside = (x >= 0) & (y >= 0) & (x < free.shape[1]) & (y < free.shape[0])

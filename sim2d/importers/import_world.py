@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path, PurePath
+from typing import cast
 
 from sim2d.importers.map_yaml import SCALES_M, MapYaml, read_map_yaml
 from sim2d.importers.picture import PICTURES
 from sim2d.importers.picture_map import picture_world
 from sim2d.importers.vector_map import vector_world
 from sim2d.params import SimParams
-from sim2d.world import World
-from sim2d.world_file import WorldError, load_world, parse_json, world_from_json, world_names
+from sim2d.world.world import World
+from sim2d.world.world_file import WorldError, load_world, parse_json, world_from_json, world_names
 
 YAMLS = (".yaml", ".yml")
 MOST_BYTES = {".json": 1_000_000, ".yaml": 65_536, ".yml": 65_536}  # of what is uploaded
@@ -87,12 +88,13 @@ def _import(name: str, files: dict[str, bytes], scale_m: float | None, seed: int
 
 
 def _from_json(name: str, text: str, seed: int, radius: float) -> World:
-    raw = parse_json(text, name)
+    raw: object = parse_json(text, name)
     if isinstance(raw, list):
-        return vector_world(name, text, raw, seed, radius)
+        return vector_world(name, text, cast("list[object]", raw), seed, radius)
     if isinstance(raw, dict) and "format" not in raw:
+        keys = [*cast("dict[str, object]", raw)]
         raise WorldError(
-            f"{name}: an object with keys {', '.join(list(raw)[:6]) or 'none'}; expected a world file, which has "
+            f"{name}: an object with keys {', '.join(keys[:6]) or 'none'}; expected a world file, which has "
             '"format": 1, or a list of wall segments'
         )
     return world_from_json(text, name, radius)

@@ -6,7 +6,7 @@ import math
 import re
 from dataclasses import dataclass
 
-from sim2d.world_file import WorldError
+from sim2d.world.world_file import WorldError
 
 _KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 _NEEDED = _KEYS[:6]

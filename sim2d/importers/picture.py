@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
-from sim2d.world_file import WorldError
+from sim2d.world.world_file import WorldError
 
 PICTURES = (".pgm", ".png", ".bmp", ".jpg", ".jpeg", ".ppm", ".pbm")
 MOST_PIXELS = 16_000_000

@@ -14,8 +14,8 @@ from sim2d.importers.map_yaml import MapYaml
 from sim2d.importers.picture import read_picture
 from sim2d.importers.plan import plan_world
 from sim2d.importers.trace import ring_area, simplify, trace
-from sim2d.world import Wall, World
-from sim2d.world_file import WorldError
+from sim2d.world.world import Wall, World
+from sim2d.world.world_file import WorldError
 
 SPECK_PX = 9  # smaller obstacles are noise
 _SLIVER_PX = 3  # floor narrower than this is a gap between echoes ...

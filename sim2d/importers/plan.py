@@ -9,9 +9,9 @@ from pathlib import PurePath
 import numpy as np
 from numpy.typing import NDArray
 
-from sim2d.world import Start, Wall, World
-from sim2d.world_check import Fault, check_world
-from sim2d.world_file import WorldError
+from sim2d.world.world import Start, Wall, World
+from sim2d.world.world_check import Fault, check_world
+from sim2d.world.world_file import WorldError
 
 
 def plan_world(name: str, walls: tuple[Wall, ...], starts: NDArray[np.float64], what: str, radius_m: float) -> World:

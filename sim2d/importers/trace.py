@@ -46,11 +46,7 @@ def _follow(floor: NDArray[np.bool_]) -> tuple[NDArray[np.int32], NDArray[np.int
     """All rings of a padded picture, one after the other, and where each ends. Every ring has an edge that heads for +x."""
     rows, columns = floor.shape
     walked = np.zeros((rows, columns), np.bool_)  # edges below a pixel, heading for +x
-    edges = 0
-    for j in range(1, rows - 1):
-        for i in range(1, columns - 1):
-            if floor[j, i]:
-                edges += 4 - floor[j - 1, i] - floor[j + 1, i] - floor[j, i - 1] - floor[j, i + 1]
+    edges = _edges(floor)
     points = np.empty((edges, 2), np.int32)
     ends = np.empty(edges // 4 + 1, np.int64)
     n = rings = 0
@@ -78,6 +74,17 @@ def _follow(floor: NDArray[np.bool_]) -> tuple[NDArray[np.int32], NDArray[np.int
             ends[rings] = n
             rings += 1
     return points[:n], ends[:rings]
+
+
+@njit(cache=True, nogil=True)
+def _edges(floor: NDArray[np.bool_]) -> int:
+    """How many sides of pixels lie between floor and none."""
+    edges = 0
+    for j in range(1, floor.shape[0] - 1):
+        for i in range(1, floor.shape[1] - 1):
+            if floor[j, i]:
+                edges += 4 - floor[j - 1, i] - floor[j + 1, i] - floor[j, i - 1] - floor[j, i + 1]
+    return edges
 
 
 @njit(cache=True, nogil=True, inline="always")

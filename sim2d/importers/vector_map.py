@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, cast
 
 import cv2
 import numpy as np
@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from sim2d.importers.dress import Dresser
 from sim2d.importers.floor import choose_floor
 from sim2d.importers.plan import plan_world
-from sim2d.json_lines import line_of
-from sim2d.world import World
-from sim2d.world_check import MOST_M
-from sim2d.world_file import WorldError
-from sim2d.world_schema import MOST_WALLS
+from sim2d.world.json_lines import line_of
+from sim2d.world.world import World
+from sim2d.world.world_check import MOST_M
+from sim2d.world.world_file import WorldError
+from sim2d.world.world_schema import MOST_WALLS
 
 MARGIN_M = 0.3  # around the outermost walls: too narrow for the robot to get behind them
 _LEAST_M = 0.01  # shorter segments are left out; files of this kind have some of length 0
@@ -47,14 +47,24 @@ def vector_world(name: str, text: str, items: list[Any], seed: int, radius_m: fl
     return plan_world(name, tuple(walls), starts, "a vector map", radius_m)
 
 
+def _numbers(item: Any) -> list[Any] | None:
+    """What may be the two ends of a segment, in one of three forms; None: nothing of the kind."""
+    if isinstance(item, dict):
+        ends: list[Any] = [cast("dict[str, Any]", item).get(end) for end in ("p0", "p1")]
+        return (
+            [end.get(axis) for end in ends for axis in ("x", "y")] if all(isinstance(e, dict) for e in ends) else None
+        )
+    if not isinstance(item, list):
+        return None
+    parts = cast("list[Any]", item)
+    if len(parts) == 2 and all(isinstance(end, list) for end in parts):
+        return [*parts[0], *parts[1]]
+    return parts
+
+
 def _segment(name: str, text: str, i: int, item: Any) -> tuple[float, ...]:
-    numbers: Any = item
-    if isinstance(item, dict) and all(isinstance(item.get(end), dict) for end in ("p0", "p1")):
-        numbers = [item[end].get(axis) for end in ("p0", "p1") for axis in ("x", "y")]
-    elif isinstance(item, list) and len(item) == 2 and all(isinstance(end, list) for end in item):
-        numbers = [*item[0], *item[1]]
-    fine = isinstance(numbers, list) and len(numbers) == 4
-    if not fine or not all(type(n) in (int, float) and math.isfinite(n) and abs(n) < 10_000 for n in numbers):
+    numbers = _numbers(item)
+    if numbers is None or len(numbers) != 4 or not all(type(n) in (int, float) and abs(n) < 10_000 for n in numbers):
         raise WorldError(
             f"{name}: [{i}]: got {str(item)[:80]}; must be "
             '{"p0": {"x": 0, "y": 0}, "p1": {"x": 1, "y": 0}}, [x1, y1, x2, y2] or [[x1, y1], [x2, y2]]: finite, in metres '

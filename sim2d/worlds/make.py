@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from sim2d.importers.dress import Dresser, Point
-from sim2d.things import Box, Daylight, Door, Event, Lamp, Person, SlowZone
-from sim2d.world import Panel, Place, Start, Wall, World
-from sim2d.world_writer import world_to_json
+from sim2d.world.elements import Box, Daylight, Door, Event, Lamp, Person, SlowZone
+from sim2d.world.world import Panel, Place, Start, Wall, World
+from sim2d.world.world_writer import world_to_json
 
 DOOR_M = 1.2
 

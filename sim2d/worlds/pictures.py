@@ -13,11 +13,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim2d.drawing import draw_world
-from sim2d.living import leaf
-from sim2d.things import Rgb
-from sim2d.world import World
-from sim2d.world_file import load_world, world_names
+from sim2d.world.drawing import draw_world
+from sim2d.world.elements import Rgb
+from sim2d.world.world import World
+from sim2d.world.world_file import load_world, world_names
 
 _SIDE_PX = 1000  # of the longer side
 _RIM_PX = 16
@@ -32,33 +31,60 @@ _DOOR, _LAMP = (62, 104, 150), (90, 210, 250)
 _HOME, _PLACE, _SLOW = (40, 40, 220), (30, 140, 30), (200, 225, 255)
 
 
+class _Sheet:
+    """A picture of a world's size, and where a place of it is there."""
+
+    def __init__(self, world: World) -> None:
+        x0, y0, x1, y1 = world.bounds
+        self.scale = (_SIDE_PX - 2 * _RIM_PX) / max(x1 - x0, y1 - y0)
+        self._corner, self._rows = (x0, y0), round((y1 - y0) * self.scale) + 2 * _RIM_PX
+        self.image = np.full((self._rows, _SIDE_PX, 3), 255, np.uint8)
+
+    def at(self, points: object) -> NDArray[np.int32]:
+        xy = (np.asarray(points, float).reshape(-1, 2) - self._corner) * self.scale + _RIM_PX
+        return np.rint(np.column_stack([xy[:, 0], self._rows - xy[:, 1]]) * (1 << _FINE)).astype(np.int32)
+
+    def line(self, ends: object, colour: Rgb, width: int) -> None:
+        a, b = self.at(ends).tolist()
+        cv2.line(self.image, a, b, colour, width, cv2.LINE_AA, _FINE)
+
+
 def picture_of(world: World) -> NDArray[np.uint8]:
     """(rows, columns, 3) BGR: walls, what hangs on them, slow floor, what lives, starts (red) and named places (green)."""
-    x0, y0, x1, y1 = world.bounds
-    scale = (_SIDE_PX - 2 * _RIM_PX) / max(x1 - x0, y1 - y0)
-    rows = round((y1 - y0) * scale) + 2 * _RIM_PX
-    image = np.full((rows, _SIDE_PX, 3), 255, np.uint8)
+    sheet = _Sheet(world)
+    _draw_walls(sheet, world)
+    _draw_elements(sheet, world)
+    for place in world.places:
+        at = sheet.at([(place.x, place.y)])[0]
+        _dot(sheet.image, at.tolist(), _PLACE)
+        _label(sheet.image, at >> _FINE, place.name)
+    for start in world.starts:
+        long, heading = 16 / sheet.scale, start.heading_rad
+        tip = (start.x + long * math.cos(heading), start.y + long * math.sin(heading))
+        _dot(sheet.image, sheet.at([(start.x, start.y)])[0].tolist(), _HOME)
+        sheet.line([(start.x, start.y), tip], _HOME, 3)
+    return sheet.image
 
-    def at(points: object) -> NDArray[np.int32]:
-        xy = (np.asarray(points, float).reshape(-1, 2) - (x0, y0)) * scale + _RIM_PX
-        return np.rint(np.column_stack([xy[:, 0], rows - xy[:, 1]]) * (1 << _FINE)).astype(np.int32)
 
-    cv2.fillPoly(image, [at(world.outline)], (238, 240, 242), cv2.LINE_AA, _FINE)
+def _draw_walls(sheet: _Sheet, world: World) -> None:
+    cv2.fillPoly(sheet.image, [sheet.at(world.outline)], (238, 240, 242), cv2.LINE_AA, _FINE)
     for zone in world.slow_zones:
-        cv2.fillPoly(image, [at(zone.corners)], _SLOW, cv2.LINE_AA, _FINE)
+        cv2.fillPoly(sheet.image, [sheet.at(zone.corners)], _SLOW, cv2.LINE_AA, _FINE)
+    is_large = sheet.scale > 12
     for wall in world.walls:
         if wall.stands:
             colour, width = _KINDS.get(wall.kind, _KINDS["wall"])
-            a, b = at([(wall.x1, wall.y1), (wall.x2, wall.y2)]).tolist()
-            cv2.line(image, a, b, colour, width if scale > 12 else 1, cv2.LINE_AA, _FINE)
-    if scale > 12:  # else they would be specks
+            sheet.line([(wall.x1, wall.y1), (wall.x2, wall.y2)], colour, width if is_large else 1)
+    if is_large:  # else they would be specks
         drawing = draw_world(world)
         for panel, rgb in zip(drawing.panels, drawing.panel_rgb.tolist(), strict=True):
-            a, b = at(panel[:4]).tolist()
-            cv2.line(image, a, b, rgb[::-1], 2, cv2.LINE_AA, _FINE)
+            sheet.line(panel[:4], rgb[::-1], 2)
+
+
+def _draw_elements(sheet: _Sheet, world: World) -> None:
+    image, at = sheet.image, sheet.at
     for door in world.doors:
-        a, b = at(leaf(door, 0.0)).tolist()
-        cv2.line(image, a, b, _DOOR, 3, cv2.LINE_AA, _FINE)
+        sheet.line(door.leaf(0.0), _DOOR, 3)
     for lamp in world.lamps:
         cv2.circle(image, at([(lamp.x, lamp.y)])[0].tolist(), 9 << _FINE, _LAMP, -1, cv2.LINE_AA, _FINE)
     for box in world.boxes:
@@ -66,15 +92,6 @@ def picture_of(world: World) -> NDArray[np.uint8]:
     for person in world.people:
         cv2.polylines(image, [at(person.path)], person.loop, _bgr(person.colour), 1, cv2.LINE_AA, _FINE)
         _dot(image, at([person.path[0]])[0].tolist(), _bgr(person.colour))
-    for place in world.places:
-        _dot(image, at([(place.x, place.y)])[0].tolist(), _PLACE)
-        _label(image, at([(place.x, place.y)])[0] >> _FINE, place.name)
-    for start in world.starts:
-        tip = (start.x + 16 / scale * math.cos(start.heading_rad), start.y + 16 / scale * math.sin(start.heading_rad))
-        a, b = at([(start.x, start.y), tip]).tolist()
-        _dot(image, a, _HOME)
-        cv2.line(image, a, b, _HOME, 3, cv2.LINE_AA, _FINE)
-    return image
 
 
 def _bgr(colour: Rgb) -> Rgb:

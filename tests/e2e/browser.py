@@ -6,20 +6,33 @@ import contextlib
 import math
 import shutil
 import time
+import weakref
 from collections.abc import Iterator
+from typing import Any
 
+import msgspec
 import numpy as np
-from playwright.sync_api import Browser, Page, Playwright
+from playwright.sync_api import Browser, Page, Playwright, WebSocket, expect
 
-from web.stage.camera_views import View, camera_for
+from tests.patience import PATIENCE_S
+from web.viewer.camera_views import View, camera_for
 
 ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
 ARGUMENTS += ["--disable-background-networking"]
+PATIENCE_MS = 1000 * PATIENCE_S
+expect.set_options(timeout=PATIENCE_MS)
+# Toasts go after some seconds, in which a burdened machine may not have looked.
+KEEP_TOASTS = """if (window === top) {
+    window.toasted = new Set();
+    const look = () => document.querySelectorAll(".toast").forEach((toast) => toasted.add(toast.textContent));
+    new MutationObserver(look).observe(document, { subtree: true, childList: true, characterData: true });
+}"""
+_told_camera: weakref.WeakKeyDictionary[Page, dict[str, Any]] = weakref.WeakKeyDictionary()
 
 
 def launch(playwright: Playwright) -> Browser:
     """Debian's Chromium where there is one, else playwright's own."""
-    return playwright.chromium.launch(executable_path=shutil.which("chromium"), args=ARGUMENTS)
+    return playwright.chromium.launch(executable_path=shutil.which("chromium"), args=ARGUMENTS, timeout=PATIENCE_MS)
 
 
 @contextlib.contextmanager
@@ -32,15 +45,18 @@ def open_page(
     light: bool = False,
     gone: bool = False,
     refused: bool = False,
+    stage: bool = True,
 ) -> Iterator[Page]:
     """The page, awake and alive; afterwards: no error in its console and no request that left its origin.
 
     `gone`: the server goes away meanwhile, so that connections may be refused. `refused`: the server has a reason to refuse
-    an upload, which Chromium notes.
+    an upload, which Chromium notes. `stage`: without it the page is there in a tenth of the time, for what is around it.
     """
     context = browser.new_context(
         viewport={"width": width, "height": height}, color_scheme="light" if light else "dark", has_touch=width < 500
     )
+    context.set_default_timeout(PATIENCE_MS)
+    context.add_init_script(KEEP_TOASTS)
     page = context.new_page()
     faults: list[str] = []
     page.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
@@ -48,10 +64,14 @@ def open_page(
     own = (url, url.replace("http://", "ws://"), "data:", "blob:")
     page.on("request", lambda request: None if request.url.startswith(own) else faults.append(request.url))
     page.on("websocket", lambda socket: None if socket.url.startswith(own) else faults.append(socket.url))
+    page.on("websocket", lambda socket: _hear_camera(page, socket))
+    if not stage:
+        page.route("**/viser/**", lambda route: route.fulfill(content_type="text/html", body="<!doctype html>"))
     try:
         page.goto(url)
-        page.wait_for_selector("#stage.awake", timeout=60_000)
-        page.wait_for_selector("body[data-alive]", timeout=30_000)
+        if stage:
+            page.wait_for_selector("#stage.awake")
+        page.wait_for_selector("body[data-alive]")
         yield page
         expected = ("ERR_CONNECTION_REFUSED",) * gone + ("status of 422",) * refused
         left = [text for text in faults if not any(words in text for words in expected)]
@@ -60,18 +80,70 @@ def open_page(
         context.close()
 
 
-def until(page: Page, condition: str, timeout_s: float = 10.0, argument: object = None) -> None:
+def until(page: Page, condition: str, *, argument: object = None) -> None:
     """Wait until a JavaScript function says yes. Playwright's own wait is refused by the page's security policy."""
-    deadline = time.monotonic() + timeout_s
+    end = time.monotonic() + PATIENCE_S
     while not page.evaluate(condition, argument):
-        assert time.monotonic() < deadline, f"not within {timeout_s} s: {condition}"
+        assert time.monotonic() < end, f"not within {PATIENCE_S:g} s: {condition}"
         page.wait_for_timeout(30)
 
 
+def told(page: Page, words: str) -> None:
+    """Wait until a toast has said this, though it may have gone again."""
+    until(page, "(words) => [...toasted].some((said) => said.includes(words))", argument=words)
+
+
+def _hear_camera(page: Page, socket: WebSocket) -> None:
+    """Keep the newest camera that viser's client has told of."""
+
+    def sent(frame: bytes | str) -> None:
+        if isinstance(frame, bytes) and b"ViewerCameraMessage" in frame:
+            _told_camera[page] = msgspec.msgpack.decode(frame)
+
+    if "/viser/" in socket.url:
+        socket.on("framesent", sent)
+
+
 def show(page: Page, view: View) -> None:
-    """Press a view button and wait until the camera is there, however slowly it is drawn."""
+    """Press a view button and wait until the camera is there and two frames are drawn, however slowly."""
     page.click(f"[data-view={view}]")
-    page.wait_for_timeout(3500)
+    end = time.monotonic() + PATIENCE_S
+    while not _stands_at(page, view):
+        assert time.monotonic() < end, f"the camera is not at {view} within {PATIENCE_S:g} s: {_told_camera.get(page)}"
+        page.wait_for_timeout(50)
+    page.evaluate("() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
+    page.wait_for_timeout(300)
+
+
+def eye_of(page: Page) -> np.ndarray:
+    """Where the camera of the page's stage was last."""
+    return np.array(_told_camera[page]["position"])
+
+
+def _stands_at(page: Page, view: View) -> bool:
+    told, canvas = _told_camera.get(page), page.frame_locator("#stage").locator("canvas").first.bounding_box()
+    if told is None or canvas is None:
+        return False
+    camera = camera_for(view, canvas["width"] / canvas["height"])
+    is_there = np.allclose([*told["position"], *told["look_at"]], [*camera.position, *camera.look_at], atol=0.01)
+    return bool(is_there) and abs(told["fov"] - camera.fov_rad) < 1e-4
+
+
+def calm(page: Page) -> None:
+    """Wait until no change of colour or place is under way; what turns for ever may go on."""
+    until(
+        page,
+        """() => document.getAnimations().every(
+        (moving) => moving.playState !== "running" || moving.effect.getComputedTiming().endTime === Infinity)""",
+    )
+
+
+def turn_theme(page: Page) -> None:
+    """Dark becomes light, or light dark."""
+    was = page.get_attribute("html", "data-theme")
+    page.evaluate("() => document.getElementById('theme').click()")
+    until(page, "(was) => document.documentElement.dataset.theme !== was", argument=was)
+    calm(page)
 
 
 def on_screen(page: Page, view: View, at: tuple[float, float, float]) -> tuple[float, float]:

@@ -6,20 +6,27 @@ Answers commands the way the engine would, on made-up snapshots; test material o
 from __future__ import annotations
 
 import argparse
+import contextlib
 import math
 import queue
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from dataclasses import replace
-
-import viser
+from typing import Any
 
 from tests.fake_snapshots import fake_snapshot
+from tests.patience import PATIENCE_S
+from web.http.server import Dashboard
 from web.latest import Latest
 from web.messages import Accepted, Command, Event, Pose, Refused, Request, Snapshot
-from web.server import Dashboard
+from web.switches import Switches
+from web.themes import Theme
+from web.viewer.camera_views import Camera
+from web.viewer.viser_server import guarded_server
+
+BOXES = 50  # `WHOLE` of waking.js, and some more
 
 
 class FakeEngine(threading.Thread):
@@ -35,6 +42,8 @@ class FakeEngine(threading.Thread):
         self.drive_until_s = 0.0
         self.drive = (0.0, 0.0)
         self.events: list[Event] = []
+        self.shown: dict[str, Any] = {}  # fields of the snapshot that a test has chosen
+        self.over = threading.Event()
 
     def submit(self, command: Command) -> Future[Accepted | Refused]:
         request = Request(command, Future())
@@ -42,7 +51,7 @@ class FakeEngine(threading.Thread):
         return request.answer
 
     def run(self) -> None:
-        while True:
+        while not self.over.is_set():
             while not self.requests.empty():
                 request = self.requests.get()
                 request.answer.set_result(self._take(request.command))
@@ -72,7 +81,7 @@ class FakeEngine(threading.Thread):
                 if command.x is not None and abs(command.x) > 50:
                     return Refused("x", command.x, "there is no free floor there")
                 self.offset = (self.offset[0] + 0.5, self.offset[1])
-                self._note("kidnap", "moved by hand")
+                self.note("kidnap", "moved by hand")
             case "reset":
                 self.seed = self.seed if command.seed is None else command.seed
                 self.tick, self.run_number, self.events = 1, self.run_number + 1, []
@@ -80,7 +89,7 @@ class FakeEngine(threading.Thread):
                 return Refused("name", command.name, "there is no such setting")
         return Accepted(self.tick)
 
-    def _note(self, kind: str, text: str) -> None:
+    def note(self, kind: str, text: str) -> None:
         self.events.append(Event(10_000 + len(self.events), self.tick * 0.1, kind, text))
 
     def _snapshot(self) -> Snapshot:
@@ -88,49 +97,73 @@ class FakeEngine(threading.Thread):
         where = Pose(plain.truth.x + self.offset[0], plain.truth.y + self.offset[1], plain.truth.heading_rad)
         events = tuple(sorted((*plain.events, *self.events), key=lambda event: event.number))
         speed = math.inf if self.speed == 0 else self.speed
-        fields = {"running": self.running, "speed": speed, "seed": self.seed, "mode": self.mode}
-        return replace(plain, truth=where, events=events, **fields)
+        fields = {"truth": where, "events": events, "seed": self.seed, "mode": self.mode}
+        return replace(plain, **{**fields, "running": self.running, "speed": speed, **self.shown})
 
 
-class FakeStage:
-    """A box where the stage will be."""
+class FakeViewer:
+    """Boxes where the stage will be, in the dark for everybody: as many as the page takes for a whole frame."""
 
     def __init__(self) -> None:
         self.on_connect: Callable[[int], None] | None = None
+        self.on_complaint: Callable[[int, str], None] | None = None
         self.flights: list[tuple[int, str]] = []
-        self.port = 0
+        self.port, self.secret, self.switches = 0, "", Switches()
 
     def start(self) -> None:
-        self.server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+        self.server, self.secret = guarded_server()
         self.port = self.server.get_port()
-        self.server.scene.add_box("/box")
-        self.server.gui.add_slider("Something", 0.0, 1.0, 0.1, 0.5)
+        for k in range(BOXES):
+            self.server.scene.add_box(f"/box/{k}", dimensions=(0.02, 0.02, 0.02), position=(0.05 * k, 0.0, 0.0))
         self.server.on_client_connect(lambda client: self.on_connect and self.on_connect(client.client_id))
-        self.set_theme("dark")
+        self.server.gui.configure_theme(dark_mode=True)
 
     def stop(self) -> None:
         self.server.stop()
 
-    def fly(self, client_id: int, view: str) -> None:
+    def fly(self, client_id: int, view: str, at_once: bool = False, turned: Camera | None = None) -> None:  # noqa: ARG002
         self.flights.append((client_id, view))
 
-    def set_theme(self, theme: str) -> None:
-        self.server.gui.configure_theme(dark_mode=theme == "dark")
+    def turned(self, _client_id: int) -> Camera | None:
+        return None
+
+    def of(self, _theme: Theme) -> FakeViewer:
+        return self
+
+
+@contextlib.contextmanager
+def fake_program() -> Iterator[tuple[FakeEngine, str]]:
+    """The engine and the address of its page, for as long as a test wants it."""
+    engine, ready, urls = FakeEngine(), threading.Event(), []
+    dashboard = Dashboard(
+        engine.latest, engine.submit, FakeViewer(), port=0, on_ready=lambda url: (urls.append(url), ready.set())
+    )
+    server = threading.Thread(target=dashboard.run)
+    engine.start()
+    server.start()
+    try:
+        assert ready.wait(PATIENCE_S)
+        yield engine, urls[0]
+    finally:
+        dashboard.stop()
+        engine.over.set()
+        for thread in (server, engine):
+            thread.join()
 
 
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--port", type=int, default=0)
-    parser.add_argument("--real-stage", action="store_true")
+    parser.add_argument("--real-stage", action="store_true", help="viser draws the plates, not boxes")
     parser.add_argument("--tick", type=int, default=1)
     options = parser.parse_args()
     engine = FakeEngine()
     engine.tick = options.tick
-    stage = FakeStage()
+    stage = FakeViewer()
     if options.real_stage:
-        from web.stage.stage import Stage
+        from web.viewer.viewers import Viewers
 
-        stage = Stage(engine.latest, engine.submit)
+        stage = Viewers(engine.latest, engine.submit)
     engine.start()
     ready = "RatSLAM is alive at {}"
     Dashboard(

@@ -7,62 +7,94 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
+import threading
 import time
+import urllib.error
 import urllib.request
 from collections.abc import Callable
 from typing import Any
 
 import orjson
 
-START = "from app.cli import main; raise SystemExit(main())"
+from tests.patience import PATIENCE_S
+
+# The engine may take longer to answer than a person would wait: it compiles itself, on a machine that does other things.
+START = (
+    f"import web.http.asking; web.http.asking.ANSWER_TIMEOUT_S = {PATIENCE_S}; "
+    "from app.__main__ import main; raise SystemExit(main())"
+)
 
 
 class Program:
     """`ratslam run` with these arguments, alive when the constructor returns."""
 
-    def __init__(self, *arguments: str) -> None:
+    def __init__(self, *arguments: str, start: str = START, **environment: str) -> None:
+        self._brains = tempfile.TemporaryDirectory()  # where it keeps them; gone afterwards
         self.process = subprocess.Popen(
-            [sys.executable, "-c", START, "run", "--no-browser", *arguments],
+            [sys.executable, "-c", start, "run", "--no-browser", *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            env={**os.environ, "PYTHONUNBUFFERED": "1"},
+            env={**os.environ, "PYTHONUNBUFFERED": "1", "RATSLAM_BRAINS": self._brains.name, **environment},
         )
         assert self.process.stdout is not None
-        said = []
+        self.said: list[str] = []
         for line in self.process.stdout:
-            said.append(line)
+            self.said.append(line)
             found = re.search(r"alive at (http://\S+:(\d+)/)", line)
             if found:
                 self.url, self.port = found[1], int(found[2])
+                self._listener = threading.Thread(target=self.said.extend, args=(self.process.stdout,), daemon=True)
+                self._listener.start()  # nobody waits for a full pipe
+                self._awake()
                 return
-        raise RuntimeError("".join(said))
+        raise RuntimeError("".join(self.said))
+
+    def _awake(self) -> None:
+        """Wait for the first tick: at a first start the page is there long before it."""
+        deadline = time.monotonic() + PATIENCE_S
+        while True:
+            try:
+                with urllib.request.urlopen(f"{self.url}healthz", timeout=PATIENCE_S):
+                    return
+            except urllib.error.HTTPError:  # 503: it is starting
+                if time.monotonic() > deadline:
+                    raise
+            time.sleep(0.05)
 
     def stop(self) -> int:
         """SIGINT, as Ctrl+C; the exit code."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGINT)
         try:
-            self.process.communicate(timeout=10)
+            self.process.wait(timeout=PATIENCE_S)
         finally:
             self.process.kill()
+            self._listener.join()
+            self._brains.cleanup()
         return self.process.returncode
 
     def state(self, full: bool = False) -> dict[str, Any]:
-        with urllib.request.urlopen(f"{self.url}api/state" + ("?map=1" if full else ""), timeout=10) as answer:
+        with urllib.request.urlopen(f"{self.url}api/state" + ("?map=1" if full else ""), timeout=PATIENCE_S) as answer:
             return orjson.loads(answer.read())
 
     def command(self, kind: str, **fields: Any) -> dict[str, Any]:
         body = orjson.dumps({"type": kind, **fields})
         request = urllib.request.Request(f"{self.url}api/commands", body, {"Content-Type": "application/json"})
-        with urllib.request.urlopen(request, timeout=10) as answer:
-            return orjson.loads(answer.read())
+        while True:
+            try:
+                with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
+                    return orjson.loads(answer.read())
+            except urllib.error.HTTPError as error:
+                if error.code != 429:
+                    raise
+                time.sleep(0.1)  # "wait a moment and send it again"
 
-    def wait(self, condition: Callable[[dict[str, Any]], bool], timeout_s: float) -> dict[str, Any]:
+    def wait(self, condition: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
         """The first state for which `condition` holds."""
-        deadline = time.monotonic() + timeout_s
+        end = time.monotonic() + PATIENCE_S
         while not condition(state := self.state()):
-            if time.monotonic() > deadline:
-                raise AssertionError(f"not within {timeout_s} s; the last state was {state}")
+            assert time.monotonic() < end, f"not within {PATIENCE_S:g} s; the last state was {state}"
             time.sleep(0.05)
         return state

@@ -7,47 +7,34 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import FrameLocator, Page, expect
+from playwright.sync_api import Page, expect
 
-from tests.e2e.browser import on_screen, open_page, show, until
+from tests.e2e.browser import on_screen, open_page, show, told, until
 from tests.e2e.program import Program
 from tests.e2e.test_dashboard import node_on_stage
 from web.messages import Packet
-from web.stage.cell_fit import CellFit
-from web.stage.pose_cell_plate import ORIGIN as CELLS_ORIGIN
-
-PATIENCE_MS = 15_000
+from web.viewer.fits.cell_fit import CellFit
+from web.viewer.plates.pose_cell_plate import ORIGIN as CELLS_ORIGIN
 
 
 @pytest.fixture(scope="module")
-def walked(program, browser) -> Program:
-    """A minute and a half of exploring, paused; the page has seen the start and so knows the map's turn."""
-    with open_page(browser, program.url):
-        start = program.state()
-        program.turn = float(
-            np.remainder(start["robot"]["heading_rad"] - start["estimate"]["heading_rad"] + np.pi, 2 * np.pi) - np.pi
-        )
+def walked(program) -> Program:
+    """A minute and a half of exploring, paused."""
     program.command("step", ticks=900)
     return program
 
 
-def panel(page: Page) -> FrameLocator:
-    return page.frame_locator("#stage")
-
-
 def selected(page: Page, tab: str) -> None:
-    expect(panel(page).get_by_role("tab", name=tab, exact=True)).to_have_attribute(
-        "aria-selected", "true", timeout=PATIENCE_MS
-    )
+    expect(page.get_by_role("tab", name=tab, exact=True)).to_have_attribute("aria-selected", "true")
 
 
 def open_tab(page: Page, tab: str) -> None:
-    panel(page).get_by_role("tab", name=tab, exact=True).click()
+    page.get_by_role("tab", name=tab, exact=True).click()
     selected(page, tab)
 
 
 def says(page: Page, words: str | re.Pattern[str]) -> None:
-    expect(panel(page).get_by_text(words).first).to_be_visible(timeout=PATIENCE_MS)
+    expect(page.get_by_role("tabpanel").get_by_text(words).first).to_be_visible()
 
 
 def test_a_click_with_shift_on_the_map_and_a_click_into_the_pose_cells_inspect(walked, browser):
@@ -59,14 +46,14 @@ def test_a_click_with_shift_on_the_map_and_a_click_into_the_pose_cells_inspect(w
         page.keyboard.up("Shift")
         selected(page, "Inspect")
         says(page, "Links to other experiences")
-        number = panel(page).get_by_label("experience #")
+        number = page.get_by_label("experience #")
         assert np.hypot(*(nodes[int(number.input_value())] - nodes[40])) < 0.3
         assert walked.state()["goal"] is None  # it did not go there
 
-        link = panel(page).get_by_text(re.compile(r"^(to|from) #\d+$")).first
+        link = page.get_by_role("tabpanel").get_by_text(re.compile(r"^(to|from) #\d+$")).first
         wanted = link.inner_text().split("#")[1]
         link.click()
-        expect(number).to_have_value(wanted, timeout=PATIENCE_MS)
+        expect(number).to_have_value(wanted)
 
         show(page, "pose")
         state = walked.state()["pose_cells"]
@@ -75,35 +62,41 @@ def test_a_click_with_shift_on_the_map_and_a_click_into_the_pose_cells_inspect(w
         page.mouse.click(*on_screen(page, "pose", tuple(at.tolist())))
         says(page, "pose cells at")
         says(page, "Views linked here, by strength")
-        panel(page).get_by_role("button", name="Inject", exact=True).click()
+        page.get_by_role("button", name="Inject", exact=True).click()
         until(page, "() => document.getElementById('events').textContent.includes('packet')")
         walked.command("step")
         assert len(walked.state()["pose_cells"]["packets"]) == 2
 
 
 def test_a_click_on_a_view_shows_it_beside_what_is_seen_now(walked, browser):
-    with open_page(browser, walked.url) as page:
-        open_tab(page, "Senses")
-        panel(page).locator("[data-view]").first.click()
+    with open_page(browser, walked.url, stage=False) as page:
+        page.get_by_role("button", name="Inspect the stored view").click()
         selected(page, "Inspect")
         says(page, "as it is stored")
         open_tab(page, "Senses")
-        strip = panel(page).locator(".view-strip").bounding_box()
+        strip = page.get_by_role("slider", name="Local view cells").bounding_box()
         assert strip is not None
         page.mouse.click(strip["x"] + 3, strip["y"] + 3)
         selected(page, "Inspect")
         says(page, re.compile(r"^#0$"))
+        open_tab(page, "Senses")
+        page.get_by_role("slider", name="Local view cells").focus()
+        page.keyboard.press("ArrowRight")
+        page.keyboard.press("Enter")
+        selected(page, "Inspect")
+        next_square = -(-walked.state()["views"] // 204)  # so many views a square stands for
+        says(page, re.compile(rf"^#{next_square}$"))
 
 
 def test_a_tick_is_walked_through_by_key_and_by_button(walked, browser):
     walked.command("pause")
-    with open_page(browser, walked.url) as page:
+    with open_page(browser, walked.url, stage=False) as page:
         tick = walked.state()["tick"]
         page.keyboard.press(",")
-        expect(page.locator("#walk")).to_be_visible(timeout=PATIENCE_MS)
+        expect(page.locator("#walk")).to_be_visible()
         titles = []
         for k in range(1, 10):
-            expect(page.locator("#walk .which")).to_have_text(f"{k} of 9", timeout=PATIENCE_MS)
+            expect(page.locator("#walk .which")).to_have_text(f"{k} of 9")
             titles.append(page.locator("#walk .title").inner_text())
             if k < 9:
                 page.click("#walk-next")
@@ -113,18 +106,18 @@ def test_a_tick_is_walked_through_by_key_and_by_button(walked, browser):
         ]  # fmt: skip
         assert walked.state()["tick"] == tick + 1
         page.click("#walk-back")
-        expect(page.locator("#walk .title")).to_have_text("Experience choice", timeout=PATIENCE_MS)
+        expect(page.locator("#walk .title")).to_have_text("Experience choice")
         open_tab(page, "Tick")
         says(page, "Stage 8 of 9")
         says(page, re.compile(r"^A tick takes [\d.]+ of its 100 ms$"))
         page.keyboard.press(".")
-        expect(page.locator("#walk")).to_be_hidden(timeout=PATIENCE_MS)
+        expect(page.locator("#walk")).to_be_hidden()
 
 
 def test_a_brain_goes_down_to_a_file_and_comes_up_again(walked, browser, tmp_path: Path):
     walked.command("pause")
     known = walked.state()["experiences"]
-    with open_page(browser, walked.url, refused=True) as page:
+    with open_page(browser, walked.url, refused=True, stage=False) as page:
         page.click("#restart summary")
         with page.expect_download() as loading:
             page.click("#brain-save")
@@ -136,10 +129,10 @@ def test_a_brain_goes_down_to_a_file_and_comes_up_again(walked, browser, tmp_pat
         bad = tmp_path / "cat.npz"
         bad.write_bytes(b"a picture of a cat")
         page.set_input_files("#brain-file", bad)
-        page.wait_for_selector("#alerts .toast:has-text('This file is no brain')", timeout=PATIENCE_MS)
+        told(page, "This file is no brain")
         assert walked.state() == before
 
         page.set_input_files("#brain-file", file)
-        page.wait_for_selector("#toasts .toast:has-text('Started anew with the brain')", timeout=PATIENCE_MS)
-        after = walked.wait(lambda state: state["tick"] == 0, 5)
+        told(page, "Started anew with the brain")
+        after = walked.wait(lambda state: state["tick"] == 0)
         assert after["experiences"] >= known

@@ -48,4 +48,4 @@ def test_thousands_of_walls_are_drawn_and_edited_while_it_runs(large: Program, b
             page.click("#edit-closer")
         until(page, f"() => ({INK})() < {all_of_it // 2}")  # what is out of sight is not painted
         tick = large.state()["tick"]
-        large.wait(lambda state: state["tick"] > tick + 10, 20)
+        large.wait(lambda state: state["tick"] > tick + 10)

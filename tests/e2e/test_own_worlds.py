@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Page
 
 from sim2d import load_world, world_from_json, world_to_json
-from tests.e2e.browser import open_page, until
+from tests.e2e.browser import calm, open_page, turn_theme, until
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
 from tests.e2e.test_world_editor import edit, walls_are, world
@@ -50,7 +50,7 @@ def listed(page: Page) -> list[str]:
 
 
 def test_an_empty_world_is_begun_drawn_in_and_saved(program, browser, own):
-    with open_page(browser, program.url, 1440, 900, refused=True) as page:
+    with open_page(browser, program.url, 1440, 900, refused=True, stage=False) as page:
         page.click("#restart summary")
         page.click("#new-world")
         page.fill("#new-name", "office")
@@ -92,7 +92,7 @@ def test_an_empty_world_is_begun_drawn_in_and_saved(program, browser, own):
 
 
 def test_saving_under_another_name_can_rename(program, browser, own):
-    with open_page(browser, program.url, 1440, 900, refused=True) as page:
+    with open_page(browser, program.url, 1440, 900, refused=True, stage=False) as page:
         program.command("edit_world", steps=[{"do": "add", "list": "places", "item": {"name": "p", "x": 0.9, "y": 2}}])
         edit(page)
         page.click("#edit-save")
@@ -118,11 +118,11 @@ def test_saving_under_another_name_can_rename(program, browser, own):
 
 
 def test_a_saved_world_is_opened_deleted_and_brought_back(program, browser, own):
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, stage=False) as page:
         edit(page)
         menu(page, "#edit-open")
         page.click("#own-list [aria-label='Open My laboratory']")
-        assert program.wait(lambda state: state["world"] == "lab", 10)["tick"] == 0
+        assert program.wait(lambda state: state["world"] == "lab")["tick"] == 0
         until(page, "() => document.getElementById('edit-name').textContent === 'My laboratory'")
 
         menu(page, "#edit-open")
@@ -148,7 +148,7 @@ def test_a_saved_world_is_opened_deleted_and_brought_back(program, browser, own)
         page.click("#open-close")
         page.select_option("#world", "loop")
         page.click("#leave-dialog [value=leave]")
-        program.wait(lambda state: state["world"] == "loop", 10)
+        program.wait(lambda state: state["world"] == "loop")
         until(page, "() => ![...document.querySelectorAll('#world option')].some((o) => o.value === 'lab')")
         assert "school" in listed(page)
 
@@ -157,11 +157,11 @@ def test_a_saved_world_is_opened_deleted_and_brought_back(program, browser, own)
 def test_axe_finds_nothing_and_it_fits(program, browser, size):
     fits = "(id) => { const d = document.getElementById(id); return d.scrollWidth <= d.clientWidth; }"
     program.command("edit_world", steps=[{"do": "add", "list": "places", "item": {"name": "p", "x": 0.9, "y": 2}}])
-    with open_page(browser, program.url, *size) as page:
+    with open_page(browser, program.url, *size, stage=False) as page:
         page.evaluate("() => document.getElementById('edit').click()")
         until(page, "() => document.querySelector('#plan .outer') !== null")
         for _ in range(2):
-            page.wait_for_timeout(300)
+            calm(page)
             page.click("#edit-menu summary")
             assert findings(page) == []
             page.click("#edit-new")
@@ -177,4 +177,19 @@ def test_axe_finds_nothing_and_it_fits(program, browser, size):
             assert findings(page) == []
             page.click("#open-close")
             assert page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
-            page.evaluate("() => document.getElementById('theme').click()")
+            turn_theme(page)
+
+
+@pytest.mark.parametrize("size", [(1024, 768), (1280, 800)])
+def test_the_editor_s_bar_is_one_row_saved_or_not(program, browser, size) -> None:
+    with open_page(browser, program.url, *size, stage=False) as page:
+        page.click("#edit")
+        page.wait_for_selector("#editor .bar")
+        places = []
+        for unsaved in ("false", "true"):
+            page.evaluate(f"() => {{ document.getElementById('edit-unsaved').hidden = !{unsaved}; }}")
+            places.append([page.locator(part).bounding_box() for part in ("#edit-undo", "#edit-close", "#editor .bar")])
+        for undo, close, bar in places:
+            assert undo["y"] < close["y"] + close["height"] / 2 < undo["y"] + undo["height"]
+            assert close["x"] + close["width"] <= bar["x"] + bar["width"]
+        assert places[0][2] == places[1][2]

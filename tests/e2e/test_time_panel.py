@@ -9,7 +9,7 @@ import orjson
 import pytest
 from playwright.sync_api import Locator, Page
 
-from tests.e2e.browser import open_page, until
+from tests.e2e.browser import calm, open_page, turn_theme, until
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
 from tests.e2e.test_world_editor import edit, says, world
@@ -67,7 +67,7 @@ def json_of(lines: object) -> str:
 
 
 def test_lines_are_added_changed_and_deleted_and_happen(program, browser):
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, stage=False) as page:
         open_time(page)
         assert page.is_visible("#script-none")
         add_line(page, "0:05", "Door shuts", "lab")
@@ -112,7 +112,7 @@ def test_lines_are_added_changed_and_deleted_and_happen(program, browser):
 
 
 def test_what_is_no_time_or_level_is_refused_with_the_reason(program, browser):
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, stage=False) as page:
         open_time(page)
         before = world(page)
         for when, what, which, reason in (
@@ -147,7 +147,7 @@ def test_what_is_no_time_or_level_is_refused_with_the_reason(program, browser):
 
 
 def test_lines_follow_the_thing_that_they_are_about(program, browser):
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, stage=False) as page:
         open_time(page)
         for when in ("5", "7"):
             add_line(page, when, "Door shuts", "lab")
@@ -178,7 +178,7 @@ def test_the_daylight_is_drawn_by_its_points(program, browser):
         page.fill("#daylight-add .level", level)
         page.click("#daylight-add button")
 
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, stage=False) as page:
         open_time(page)
         assert page.is_hidden("#daylight-again")
         for when, level in (("0:10", "0.5"), ("0", "1"), ("0:20", "0.25")):
@@ -215,7 +215,7 @@ def test_the_daylight_is_drawn_by_its_points(program, browser):
 
 
 def test_the_keyboard_alone_writes_a_line(program, browser):
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, stage=False) as page:
         page.keyboard.press("o")
         until(page, "() => document.querySelector('#plan .outer') !== null")
         page.keyboard.press("c")
@@ -235,15 +235,15 @@ def test_axe_finds_nothing_and_it_fits(program, browser, size):
         {"do": "add", "list": "script", "item": {"at_s": at, "do": "close_door", "name": "lab"}} for at in (0, 90)
     ] + [{"do": "add", "list": "daylight", "item": {"points": [[0, 1], [60, 0.5]]}}])  # fmt: skip
     program.command("step", ticks=1)
-    with open_page(browser, program.url, *size) as page:
+    with open_page(browser, program.url, *size, stage=False) as page:
         page.evaluate("() => document.getElementById('edit').click()")
         page.evaluate("() => document.getElementById('edit-time').click()")
         until(page, "() => document.querySelectorAll('#script-lines li').length === 3")
         for _ in range(2):
-            page.wait_for_timeout(300)
+            calm(page)
             assert findings(page) == []
             assert page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
             assert page.evaluate(
                 "() => { const t = document.getElementById('time'); return t.scrollWidth <= t.clientWidth; }"
             )
-            page.evaluate("() => document.getElementById('theme').click()")
+            turn_theme(page)

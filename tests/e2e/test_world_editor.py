@@ -14,7 +14,7 @@ import pytest
 from playwright.sync_api import Page
 
 from sim2d import load_world, world_from_json
-from tests.e2e.browser import open_page, until
+from tests.e2e.browser import calm, open_page, told, turn_theme, until
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
 
@@ -29,6 +29,10 @@ DROP = """async ([files, inside]) => {
   sheet.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
   return shown;
 }"""
+
+# Where somebody's head is drawn, and who it is, at one moment: the plan is drawn anew ten times a second.
+HEAD = """(k) => { const head = document.querySelectorAll("#plan .head")[k], box = head.getBoundingClientRect();
+    return [head.querySelector("title").textContent, box.left + box.width / 2, box.top + box.height / 2]; }"""
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +110,7 @@ def plan_png() -> bytes:
 def test_a_wall_is_drawn_undone_redone_saved_and_downloaded(program, browser, own):
     office = load_world("office")
     count = len(office.walls)
-    with open_page(browser, program.url, 1440, 900, refused=True) as page:
+    with open_page(browser, program.url, 1440, 900, refused=True, stage=False) as page:
         edit(page)
         page.click("[data-tool=wall]")
         click(page, (1.02, 6.03), (2.52, 6.03))
@@ -156,7 +160,7 @@ def test_a_wall_is_drawn_undone_redone_saved_and_downloaded(program, browser, ow
 
 
 def test_things_of_every_kind_are_drawn_moved_and_deleted(program, browser):
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, stage=False) as page:
         edit(page)
         for tool, points, finish in (
             ("door", [(8.0, 1.0), (9.0, 1.0)], False),
@@ -198,7 +202,7 @@ def test_things_of_every_kind_are_drawn_moved_and_deleted(program, browser):
 
 def test_a_door_makes_its_own_gap_and_corners_stay_closed(program, browser):
     count = len(load_world("office").walls)
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, stage=False) as page:
         edit(page)
         page.click("[data-tool=wall]")
         drag(page, (1.0, 4.5), (4.0, 4.5))
@@ -222,12 +226,12 @@ def test_a_door_makes_its_own_gap_and_corners_stay_closed(program, browser):
 
 def test_a_wall_onto_the_robot_is_refused_and_nothing_changes(program, browser):
     program.command("kidnap", x=5.0, y=4.0, heading_rad=0.0)
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, stage=False) as page:
         edit(page)
         before, hands = world(page), program.state()
         page.click("[data-tool=wall]")
         click(page, (4.5, 4.0), (5.5, 4.0))
-        says(page, "would cover the robot at (5.00, 4.00)")
+        says(page, "The wall would cover the robot at (5.00, 4.00)")
         assert page.get_attribute("#plan-status", "class") == "bad"
         assert world(page) == before
         assert program.state()["robot"] == hands["robot"]
@@ -239,7 +243,7 @@ def test_a_wall_onto_the_robot_is_refused_and_nothing_changes(program, browser):
 
 def test_the_keyboard_alone_draws_a_wall(program, browser):
     count = len(load_world("office").walls)
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, stage=False) as page:
         page.keyboard.press("o")
         until(page, "() => document.querySelector('#plan .outer') !== null")
         page.keyboard.press("w")
@@ -270,7 +274,7 @@ def test_people_boxes_and_lamps_are_drawn_as_they_are_now(program, browser):
     program.command("reset", world="living")
     people = program.state()["living"]["people"]
     where = "() => [...document.querySelectorAll('#plan .head')].map((c) => [c.cx.baseVal.value, c.cy.baseVal.value])"
-    with open_page(browser, program.url, 1440, 900) as page:
+    with open_page(browser, program.url, 1440, 900, stage=False) as page:
         edit(page)
         until(page, "(n) => document.querySelectorAll('#plan .head').length === n", argument=people)
         assert page.locator("#plan .box.away").count() == 1  # the trolley, which comes at 5:00
@@ -279,10 +283,8 @@ def test_people_boxes_and_lamps_are_drawn_as_they_are_now(program, browser):
         until(page, "(was) => document.querySelector('#plan .body').getAttribute('cx') !== was", argument=still)
         moved = [abs(a[0] - b[0]) + abs(a[1] - b[1]) > 10 for a, b in zip(before, page.evaluate(where), strict=True)]
         assert any(moved)
-        head = page.locator("#plan .head").nth(moved.index(True))
-        name = head.locator("title").evaluate("(title) => title.textContent")
-        box = head.bounding_box()
-        page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        name, *middle = page.evaluate(HEAD, moved.index(True))
+        page.mouse.click(*middle)
         until(page, "() => document.querySelector('#fields h2').textContent === 'Person'")
         assert page.input_value("#fields [data-key=name]") == name
 
@@ -303,21 +305,21 @@ def test_a_dropped_picture_becomes_a_world(program, browser):
         page.fill("#scale", "0.1")
         until(page, "() => document.getElementById('scale-size').textContent.includes('9.0 × 7.0 m')")
         page.click("#open-scale .go")
-        until(page, "() => document.getElementById('toasts').textContent.includes('walls, 8.0 × 6.0 m')")
-        assert program.wait(lambda state: state["world"] == "plan", 10)["tick"] == 0
+        told(page, "walls, 8.0 × 6.0 m")
+        assert program.wait(lambda state: state["world"] == "plan")["tick"] == 0
         assert page.is_hidden("#open-dialog")
         edit(page)
         yaml = (
             b"image: p.png\nresolution: 0.2\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
         )
         drop(page, ("m.yaml", yaml), ("p.png", plan_png()))
-        until(page, "() => document.getElementById('toasts').textContent.includes('walls, 16.0 × 12.0 m')")
+        told(page, "walls, 16.0 × 12.0 m")
 
 
 def test_what_cannot_be_opened_says_why_and_the_session_goes_on(program, browser):
     program.command("step", ticks=7)
     before = program.state()
-    with open_page(browser, program.url, 1280, 800, refused=True) as page:
+    with open_page(browser, program.url, 1280, 800, refused=True, stage=False) as page:
         for files, why in (
             ([("w.json", b'{"format": 1,\n "name": }')], "w.json: not JSON: line 2, column 10"),
             ([("m.yaml", b"image: p.png\nresolution: zero\n")], "m.yaml: origin is missing"),
@@ -346,19 +348,19 @@ def test_leaving_an_edited_office_asks_first(program, browser):
         assert program.state()["world"] == "office"
         page.select_option("#world", "loop")
         page.click("#leave-dialog [value=leave]")
-        assert program.wait(lambda state: state["world"] == "loop", 10)["tick"] == 0
+        assert program.wait(lambda state: state["world"] == "loop")["tick"] == 0
 
 
 @pytest.mark.parametrize("size", [(1440, 900), (1024, 740), (390, 844)])
 def test_axe_finds_nothing_in_the_editor(program, browser, size):
-    with open_page(browser, program.url, *size) as page:
+    with open_page(browser, program.url, *size, stage=False) as page:
         page.evaluate("() => document.getElementById('edit').click()")
         until(page, "() => document.querySelector('#plan .outer') !== null")
         for _ in range(2):
-            page.wait_for_timeout(300)
+            calm(page)
             assert findings(page) == []
             assert page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
-            page.evaluate("() => document.getElementById('theme').click()")
+            turn_theme(page)
         page.click("[data-tool=wall]")
         page.click("#edit-save")
         assert findings(page) == []

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from app.config import Config
+from app.engine_thread import EngineThread
 from app.headless import run_headless
-from app.runner import Runner
 from app.session import Session, spread_goals
 from ratslam_core import LocalView, LocalViewParams, Recognition
 from sim2d import load_world
+from tests.patience import PATIENCE_S
 from web import messages as m
 
 OFFICE = load_world("office")
@@ -112,14 +113,14 @@ def test_the_same_seed_gives_the_same_run_with_and_without_a_thread() -> None:
     assert reports[0]["state_hash"] == reports[1]["state_hash"]
     one, two = ({k: v for k, v in r.items() if k not in ("wall_s", "real_time_factor")} for r in reports)
     assert one == two
-    runner = Runner(OFFICE, 11, Config(), speed=0.0, running=False)
-    runner.start()
+    engine = EngineThread(OFFICE, 11, Config(), speed=0.0, running=False)
+    engine.start()
     try:
         for command in (m.Step(type="step", ticks=200), m.Kidnap(type="kidnap"), m.Step(type="step", ticks=280)):
-            assert isinstance(runner.submit(command).result(timeout=120), m.Accepted)
-        assert runner.session.state_hash() == reports[0]["state_hash"]
+            assert isinstance(engine.submit(command).result(timeout=PATIENCE_S), m.Accepted)
+        assert engine.session.state_hash() == reports[0]["state_hash"]
     finally:
-        runner.stop()
+        engine.stop()
     assert run_headless(OFFICE, 12, 0.8, kidnap_at_s=[20.0])["state_hash"] != reports[0]["state_hash"]
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core.adjacency import Adjacency
+from ratslam_core.experience_map.adjacency import Adjacency
 
 
 class Lists:
@@ -23,7 +23,7 @@ class Lists:
             assert adjacency.degree(node) == len(expected)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.data())
 def test_links_come_and_go_as_in_lists(data: st.DataObject) -> None:
     """Nodes, links, removals, and rows used again, in any order; links from a node to itself and parallel ones, too."""

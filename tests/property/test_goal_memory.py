@@ -74,7 +74,7 @@ def histories(draw: st.DrawFn) -> tuple[int, int, list[tuple[float, Iteration]]]
 weights = st.sampled_from([0.0, 0.1, 0.25, 1.0])
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(histories(), weights, weights, weights, st.sampled_from([0.05, 0.2, 1.0]), st.sampled_from([0.05, 0.5, 0.9]))
 def test_it_is_the_equations(
     history: tuple[int, int, list[tuple[float, Iteration]]],
@@ -111,7 +111,7 @@ def test_it_is_the_equations(
         assert T[i] == pytest.approx(min(T[j] + got[min(i, j), max(i, j)] for j in beside), rel=1e-6, abs=1e-9)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(40, 80), st.integers(0, 2**32 - 1))
 def test_growing_keeps_what_was_learnt(count: int, seed: int) -> None:
     """Tables grow several times over a few thousand links."""

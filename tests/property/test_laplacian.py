@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core import laplacian
-from ratslam_core.laplacian import Elimination, eliminate
-from ratslam_core.map_correction import solve
+from ratslam_core.experience_map.relaxation import solve
+from ratslam_core.solvers import laplacian
+from ratslam_core.solvers.laplacian import Elimination, eliminate
 from tests.unit.ratslam_core import literal
 
-EXAMPLES = settings(max_examples=60, deadline=None)
+EXAMPLES = settings(max_examples=60)
 
 
 def net(seed: int, nodes: int, links: int) -> tuple[np.ndarray, np.ndarray]:

@@ -44,7 +44,7 @@ def literal_scan(
 number = st.integers(0, 1000).map(lambda k: k / 1000)  # the only step of the model is at the very middle of a cell
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.integers(1, 30),
     st.integers(1, 30),
@@ -72,7 +72,7 @@ off_centre = st.integers(-3000, 3000).map(lambda k: k / 1000 + 0.0003)  # never 
 pose = st.builds(Pose2, off_centre, off_centre, st.floats(-3, 3))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(pose, pose, st.lists(pose, min_size=1, max_size=5))
 def test_moving_the_map_by_whole_cells_moves_the_picture(experience: Pose2, other: Pose2, seen: list[Pose2]) -> None:
     grid = MapGrid(None, [0.5, -0.5])

@@ -9,11 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core import PoseCellParams, PoseCells, kernels, packet_kernels
+from ratslam_core import PoseCellParams, PoseCells
+from ratslam_core.pose_cells import activity_kernels as kernels
+from ratslam_core.pose_cells import packet_kernels
 from tests.unit.ratslam_core import literal
 
 sizes = st.tuples(st.integers(8, 21), st.integers(8, 21), st.integers(8, 21))
-EXAMPLES = settings(max_examples=40, deadline=None)
+EXAMPLES = settings(max_examples=40)
 
 
 @st.composite
@@ -57,7 +59,7 @@ def test_the_attractor_is_that_of_the_papers(
     assert np.abs(pose_cells.activity - expected).max() < 2e-6
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(activities(), st.floats(0.05, 0.9))
 def test_local_inhibition_is_a_second_wider_gaussian_taken_away(dense: np.ndarray, gain: float) -> None:
     pose_cells = network(dense, local_inhibit=gain)

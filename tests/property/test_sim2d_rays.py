@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim2d.column_hits import MAX_HITS, NEAR_M, column_hits
-from sim2d.geometry import nearest_segment, ray_length
-from sim2d.ranges import laser_ranges
-from sim2d.sight import MOST_FLAT_RAD, lens_rays, round_hits, seen_walls
-from sim2d.wall_index import build_index, first_wall, nearest_within
+from sim2d.camera.column_hits import MAX_HITS, NEAR_M, column_hits
+from sim2d.camera.sight import MOST_FLAT_RAD, lens_rays, round_hits, seen_walls
+from sim2d.geometry.segments import nearest_segment, ray_length
+from sim2d.geometry.wall_index import build_index, first_wall, nearest_within
+from sim2d.sensors.ranges import laser_ranges
 
 FOCAL = 30.0
 WIDTH = 24
@@ -41,7 +41,7 @@ def literal_crossings(walls: np.ndarray, x: float, y: float, dx: float, dy: floa
 
 
 @given(clear_segments, heading, st.data())
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 def test_columns_meet_the_walls_that_rays_meet(walls: np.ndarray, angle: float, data: st.DataObject) -> None:
     full = np.array(data.draw(st.lists(st.booleans(), min_size=len(walls), max_size=len(walls))))
     counts, strips = np.zeros(WIDTH, np.int64), np.zeros((WIDTH, MAX_HITS), np.int64)
@@ -69,7 +69,7 @@ def test_columns_meet_the_walls_that_rays_meet(walls: np.ndarray, angle: float, 
 
 
 @given(segments, coordinate, coordinate, heading, st.floats(0.1, 20))
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 def test_a_ray_never_passes_a_wall(walls: np.ndarray, x: float, y: float, angle: float, farthest: float) -> None:
     length = ray_length(walls, x, y, angle, farthest)
     assert 0 <= length <= farthest
@@ -81,14 +81,14 @@ def test_a_ray_never_passes_a_wall(walls: np.ndarray, x: float, y: float, angle:
 
 
 @given(segments, coordinate, coordinate, heading, st.floats(0.1, 20))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_python_and_compiled_agree(walls: np.ndarray, x: float, y: float, angle: float, farthest: float) -> None:
     assert ray_length(walls, x, y, angle, farthest) == ray_length.py_func(walls, x, y, angle, farthest)
     assert nearest_segment(walls, x, y) == nearest_segment.py_func(walls, x, y)
 
 
 @given(segments, coordinate, coordinate, heading, st.floats(0.1, 20))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_the_index_finds_what_looking_at_all_finds(
     walls: np.ndarray, x: float, y: float, angle: float, farthest: float
 ) -> None:
@@ -100,7 +100,7 @@ def test_the_index_finds_what_looking_at_all_finds(
 
 
 @given(clear_segments, heading, st.sampled_from([0.8, 6.2]), st.data())
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 def test_the_camera_sees_the_same_through_the_index(
     walls: np.ndarray, angle: float, fov: float, data: st.DataObject
 ) -> None:
@@ -123,7 +123,7 @@ def test_the_camera_sees_the_same_through_the_index(
 
 
 @given(clear_segments, heading)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_round_lens_sees_what_a_laser_ranges(walls: np.ndarray, angle: float) -> None:
     rays, _ = lens_rays(WIDTH, 2 * math.pi)
     counts, strips = np.zeros(WIDTH, np.int64), np.zeros((WIDTH, MAX_HITS), np.int64)

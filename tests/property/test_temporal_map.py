@@ -13,8 +13,10 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra as scipy_dijkstra
 
-from ratslam_core import ExperienceMapParams, TemporalMap, dijkstra, transitions
-from ratslam_core.transitions import Transitions
+from ratslam_core import ExperienceMapParams, TemporalMap
+from ratslam_core.experience_map import transitions
+from ratslam_core.experience_map.transitions import Transitions
+from ratslam_core.solvers import dijkstra
 from tests.unit.ratslam_core import literal
 
 LEAST_S = 1e-3
@@ -141,7 +143,7 @@ def test_a_map_that_was_mended_is_as_good_as_new(interpreted: bool, monkeypatch:
         literal.interpret(dijkstra, monkeypatch)
         literal.interpret(transitions, monkeypatch)
 
-    @settings(max_examples=40 if interpreted else 200, deadline=None)
+    @settings(max_examples=40 if interpreted else 200)
     @given(st.integers(1, 12), st.data())
     def agrees(n: int, data: st.DataObject) -> None:
         map_ = Links(np.zeros((n, 3)))
@@ -165,7 +167,7 @@ def test_a_map_that_was_mended_is_as_good_as_new(interpreted: bool, monkeypatch:
     agrees()
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.0, 0.4]))
 def test_large_maps_agree_with_scipy(seed: int, shortcut_m: float) -> None:
     """Chains with closures, as a robot makes them; heaps that outgrow their first room."""

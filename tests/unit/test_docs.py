@@ -12,6 +12,7 @@ import pytest
 from app.config import Config, to_markdown
 
 DOCS = Path(__file__).parents[2] / "docs"
+ROOMS = ("app", "disk", "ratslam_core", "sim2d", "web")
 
 
 def blocks(page: str) -> list[str]:
@@ -32,7 +33,7 @@ def test_the_ten_lines_find_the_robot(capsys: pytest.CaptureFixture[str]) -> Non
 
 def test_the_other_examples_run() -> None:
     for example in blocks("engine.md")[1:]:
-        exec(example, {})
+        exec(example, {"__name__": "a_users_file"})
 
 
 def test_the_table_of_parameters_is_that_of_the_program() -> None:
@@ -45,3 +46,32 @@ def test_the_table_of_parameters_is_that_of_the_program() -> None:
 def test_links_lead_somewhere(page: str) -> None:
     for target in re.findall(r"\]\(([^)#\s]+)", (DOCS / page).read_text(encoding="utf-8")):
         assert target.startswith("http") or (DOCS / target).exists(), f"{page}: {target}"
+
+
+ROOT = DOCS.parent
+
+
+def test_every_test_that_is_named_exists() -> None:
+    """In docstrings and documents: files, and functions with or without their file."""
+    tests = list((ROOT / "tests").rglob("test_*"))
+    there = {path.name.split(".")[0] for path in tests} | {"test_x"}
+    for path in (path for path in tests if path.suffix == ".py"):
+        there |= set(re.findall(r"^ *(?:async )?def (test_\w+)", path.read_text(encoding="utf-8"), re.MULTILINE))
+    files = [*DOCS.glob("*.md"), *(path for room in ROOMS for path in (ROOT / room).rglob("*.py"))]
+    words = {
+        (path.name, word) for path in files for word in re.findall(r"\btest_\w+", path.read_text(encoding="utf-8"))
+    }
+    assert {(name, word) for name, word in words if word not in there} == set()
+
+
+def test_every_file_that_a_document_names_exists() -> None:
+    """By its path, or by its name alone."""
+    paths = [path for room in (*ROOMS, "tests", "benchmarks") for path in (ROOT / room).rglob("*.*")]
+    there = {path.name for path in paths} | {str(path.relative_to(ROOT)) for path in paths}
+    ends = {str(path.relative_to(ROOT)).split("/", 1)[-1] for path in paths}
+    named = {
+        (page.name, name)
+        for page in DOCS.glob("*.md")
+        for name in re.findall(r"`([\w/.-]+\.(?:py|js))`", page.read_text("utf-8"))
+    }
+    assert {(page, name) for page, name in named if name not in there | ends} == set()

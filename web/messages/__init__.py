@@ -31,16 +31,18 @@ from web.messages.commands import (
     UndoEdit,
     UsePreset,
 )
-from web.messages.errands import (
+from web.messages.engine_requests import (
     Accepted,
-    Errand,
+    EngineRequest,
     OpenWorld,
     ReadBrain,
     ReadExperience,
+    ReadFiled,
     ReadWorld,
     Refused,
     Request,
     UseBrain,
+    Warn,
     WorldDeleted,
     WorldRestored,
     WorldSaved,
@@ -56,8 +58,10 @@ from web.messages.reports import (
 )
 from web.messages.snapshot import (
     Event,
+    EventKind,
     Goal,
     GoalMemoryLayer,
+    GoalState,
     LivingLayer,
     MapLayer,
     OccupancyLayer,
@@ -71,12 +75,10 @@ from web.messages.snapshot import (
     Series,
     Snap,
     Snapshot,
-    TickStage,
-    TickWalk,
     TimesLayer,
-    Timing,
     WorldDrawing,
 )
+from web.messages.tick import TickStage, TickWalk, Timing
 
 __all__ = [
     "Accepted",
@@ -87,12 +89,14 @@ __all__ = [
     "EditOrder",
     "EditStep",
     "EditWorld",
-    "Errand",
+    "EngineRequest",
     "Event",
+    "EventKind",
     "ExperienceReport",
     "Finite",
     "Goal",
     "GoalMemoryLayer",
+    "GoalState",
     "HebbianReport",
     "InjectPacket",
     "Inspect",
@@ -115,6 +119,7 @@ __all__ = [
     "PutBox",
     "ReadBrain",
     "ReadExperience",
+    "ReadFiled",
     "ReadWorld",
     "RedoEdit",
     "Refused",
@@ -144,6 +149,7 @@ __all__ = [
     "UseBrain",
     "UsePreset",
     "ViewReport",
+    "Warn",
     "WorldDeleted",
     "WorldDrawing",
     "WorldRestored",

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema
+from pydantic_core import PydanticCustomError
 
 
 class _Command(BaseModel):
@@ -63,11 +64,27 @@ class Step(_Command):
     ticks: Annotated[int, Field(ge=1, le=1000)] = 1
 
 
+SLOWEST, FASTEST = 0.25, 16.0  # what the page offers, beside as fast as possible
+SPEEDS = f"0 (as fast as possible) or from {SLOWEST:g} to {FASTEST:g}"
+_SPEED_SCHEMA = {"anyOf": [{"const": 0}, {"type": "number", "minimum": SLOWEST, "maximum": FASTEST}]}
+
+
+def is_speed(factor: float) -> bool:
+    """Whether a session can run so fast: `SPEEDS` in words."""
+    return factor == 0 or SLOWEST <= factor <= FASTEST
+
+
+def _speed(factor: float) -> float:
+    if not is_speed(factor):
+        raise PydanticCustomError("speed", "must be {speeds}", {"speeds": SPEEDS})
+    return factor
+
+
 class SetSpeed(_Command):
     """Simulated seconds per second; 0 = as fast as possible."""
 
     type: Literal["set_speed"]
-    factor: Annotated[float, Field(ge=0.0, le=1000.0)]
+    factor: Annotated[float, AfterValidator(_speed), WithJsonSchema(_SPEED_SCHEMA)]
 
 
 class Reset(_Command):

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from web.messages.reports import Report
+from web.messages.tick import TickWalk, Timing
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +95,7 @@ class PoseCellLayer:
     activity: NDArray[np.float32]  # (k,)
     active_cells: int  # how many are active in all
     packets: tuple[Packet, ...]  # strongest first
-    path: NDArray[np.float32]  # (p, 3): x, y (cells), heading (rad) of the winner over the last two minutes
+    path: NDArray[np.float32]  # (p, 3): x, y (cells), heading (rad) of the winner's last two minutes of driving
     last_snap: Snap | None
     total: float = 1.0  # of all activity
     least: float = 0.0  # of the active cells
@@ -138,32 +139,6 @@ class TimesLayer:
     seconds: NDArray[np.float32]  # (n,), rows as in the MapLayer of the same snapshot
 
 
-@dataclass(frozen=True, slots=True)
-class Timing:
-    """What a part of a tick costs: over the last hundred ticks, milliseconds."""
-
-    part: str
-    mean_ms: float
-    worst_ms: float
-
-
-@dataclass(frozen=True, slots=True)
-class TickStage:
-    """One stage of a tick that is walked through."""
-
-    name: str  # "image", "view match", "path integration", "injection", ...
-    title: str
-    words: str  # what it did, in a sentence
-
-
-@dataclass(frozen=True, slots=True)
-class TickWalk:
-    """A tick that is shown stage by stage: the snapshot's pose cells, map and estimate are those of stage `at`."""
-
-    stages: tuple[TickStage, ...]
-    at: int
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class OccupancyPicture:
     """Where something stands, in the map frame. 0.5 = unknown."""
@@ -191,16 +166,25 @@ class GoalMemoryLayer:
     direction_rad: float | None  # in which they decrease fastest at the packet; None there and where no way is known
 
 
+GoalState = Literal["tracking", "coasting", "exploring", "arrived", "unreachable"]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Goal:
     experience: int
     x: float  # map frame
     y: float
-    state: str  # "tracking", "coasting", "exploring", "arrived", "unreachable"
+    state: GoalState
     eta_s: float | None
     remaining_m: float | None
     route_xy: NDArray[np.float32]  # (r, 2) map frame, from the robot to the goal; empty when none is known
     route_arrival_s: NDArray[np.float32]  # (r,) seconds from now
+
+
+EventKind = Literal[
+    "kidnap", "lost", "recovered", "snap", "goal", "arrived", "unreachable", "packet", "brain", "office", "parameter",
+    "link", "place", "false", "warning", "fault",
+]  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +193,7 @@ class Event:
 
     number: int
     time_s: float
-    kind: str  # a key of NAMES in timeline.js
+    kind: EventKind
     text: str
 
 
@@ -269,7 +253,7 @@ class Snapshot:
     world: WorldDrawing
     worlds: tuple[tuple[str, str], ...]  # (name, title) of all that reset can load
     truth: Pose  # office frame
-    trail: NDArray[np.float32]  # (t, 2) true path of the last two minutes, office frame
+    trail: NDArray[np.float32]  # (t, 2) true path of the last two minutes of driving, office frame
     estimate: Pose  # map frame
     senses: Senses
     pose_cells: PoseCellLayer
@@ -287,12 +271,15 @@ class Snapshot:
     timings: tuple[Timing, ...]  # the parts of a tick, in their order
     events: tuple[Event, ...]
     parameters: tuple[Parameter, ...]
+    no_room: Callable[[float, float], str | None]  # why the robot cannot be put there (office frame), None: it fits
     occupancy: OccupancyLayer | None = None  # None without sonars
     goal_memory: GoalMemoryLayer | None = None
     living: LivingLayer | None = None  # None: nothing lives in this world
+    switches: tuple[str, ...] = ()  # those parameters of `office` that do something in this world
     inspected: Report | None = None
     active_experience: int = -1
     walk: TickWalk | None = None  # None: nothing is shown stage by stage
     presets: tuple[str, ...] = ()
     preset: str = ""  # the one whose values are all set
     office: OfficeEdition | None = None
+    map_turn_rad: float = 0.0  # of the map's frame in the office's, for the eye: turned so it lies as the office does

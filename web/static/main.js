@@ -1,66 +1,82 @@
 // The page: puts the parts together and turns clicks and keys into commands. The server is the only truth.
 
-import { Drive } from "./drive.js";
-import { Editor } from "./editor.js";
-import { Files, sentence } from "./files.js";
-import { Header } from "./header.js";
-import { setIcon } from "./icons.js";
-import { Keys } from "./keys.js";
-import { Link } from "./link.js";
-import { closeOpenMenu } from "./menus.js";
-import { NewWorld } from "./new_world.js";
-import { OwnWorlds } from "./own_worlds.js";
-import { Stage, VIEWS } from "./stage.js";
-import { Timeline } from "./timeline.js";
-import { toast } from "./toasts.js";
-
-const $ = (id) => document.getElementById(id);
+import { $, find } from "./elements/dom.js";
+import { HandDrive } from "./driving/drive.js";
+import { Editor } from "./editor/editor.js";
+import { Files } from "./worlds/files.js";
+import { Header } from "./header/header.js";
+import { setIcon } from "./elements/icons.js";
+import { KeptBrain } from "./worlds/kept_brain.js";
+import { Keys } from "./driving/keys.js";
+import { Connection } from "./net/connection.js";
+import { closeOpenMenu } from "./header/menus.js";
+import { sentence } from "./model/sentences.js";
+import { NewWorld } from "./worlds/new_world.js";
+import { OwnWorlds } from "./worlds/own_worlds.js";
+import { THEMES, VIEWS } from "./shared.js";
+import { Panel } from "./panel/panel.js";
+import { Viewer } from "./viewer/viewer.js";
+import { Timeline } from "./timeline/timeline.js";
+import { dismissToast, toast } from "./elements/toasts.js";
 
 const page = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
-const link = new Link(page);
+const link = new Connection(page);
 const header = new Header();
 const timeline = new Timeline();
-const drive = new Drive((command) => link.tell(command));
+const drive = new HandDrive((command) => link.tell(command));
 const keys = new Keys({ drive: (name, down) => drive.key(name, down), act, allUp: () => drive.allUp() });
-const stage = new Stage(link, keys);
+const viewer = new Viewer(link, keys);
+const panel = new Panel($("panel"), link, (text) => toast(text, { bad: true }));
+/** @type {State | null} */
 let state = null;
+/** @type {OfficeFields | null} */
 let office = null;
 const isSaved = () => office?.saved ?? true;
-const own = new OwnWorlds(() => state?.world, async (name, title) => {
-  if (await command({ type: "reset", world: name }, `Started anew in ${title}.`)) $("open-dialog").close();
-});
+const own = new OwnWorlds(
+  () => state?.world,
+  async (name, title) => {
+    if (await command({ type: "reset", world: name }, `Started anew in ${title}.`)) $("open-dialog").close();
+  },
+);
 const files = new Files(isSaved, own);
 const fresh = new NewWorld(isSaved, () => editor.toggle(true));
 const editor = new Editor(link, { open: () => files.open(), begin: () => fresh.ask() });
-stage.addEventListener("inside", ({ detail }) => files.catchDrops(detail));
+const kept = new KeptBrain(async (world) => world === state?.world || mayLeave());
+viewer.addEventListener("inside", () => viewer.frame.contentWindow && files.catchDrops(viewer.frame.contentWindow));
 
 // ---------------------------------------------------------------- what arrives
 
-link.addEventListener("state", ({ detail }) => {
+link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   state = detail.state;
-  if (detail.theme === null) link.tell({ type: "theme", name: preferredTheme() });
-  else showTheme(detail.theme);
   header.show(state, detail.page);
-  stage.inspected(detail.page.inspected);
+  panel.inspected(detail.page.inspected);
   timeline.at(state.time_s);
   office = detail.page.office;
   editor.at(state, detail.page);
+  kept.ask();
   document.body.dataset.alive = "true";
 });
-link.addEventListener("events", ({ detail }) => {
+link.on("waking", (/** @type {{ doing: string }} */ { doing }) => header.waking(doing));
+link.on("events", (/** @type {{ fresh: boolean, events: TimelineEvent[] }} */ detail) => {
   timeline.add(detail);
-  for (const event of detail.events.slice(-20)) if (event.kind === "warning") toast(sentence(event.text), { bad: true });
+  const told = detail.fresh ? ["warning"] : ["warning", "unreachable"];
+  for (const event of detail.events.slice(-20))
+    if (told.includes(event.kind)) toast(sentence(event.text), { bad: true });
 });
-link.addEventListener("refused", ({ detail }) => {
-  for (const wrong of detail.detail) toast(sentence(wrong.reason), { bad: true });
+link.on("refused", (/** @type {Answer} */ { detail }) => {
+  for (const wrong of detail) toast(sentence(wrong.reason), { bad: true });
 });
 
+link.on("notice", (/** @type {{ text: string }} */ { text }) => toast(sentence(text), { bad: true }));
+
+/** @type {HTMLElement | null} */
 let lostToast = null;
 link.addEventListener("lost", () => {
   drive.allUp();
   lostToast ??= toast("Connection lost. Trying again.", { bad: true, stays: true });
 });
 link.addEventListener("hello", () => {
+  link.tell({ type: "theme", name: theme() });
   if (!lostToast) return;
   lostToast.remove();
   lostToast = null;
@@ -69,6 +85,7 @@ link.addEventListener("hello", () => {
 
 // ---------------------------------------------------------------- what is done
 
+/** @param {Command} wish @param {string} [done] */
 async function command(wish, done) {
   const answer = await link.ask(wish);
   if (answer.accepted && done) toast(done);
@@ -81,12 +98,12 @@ const oneStage = (back = false) => command({ type: "step_stage", back });
 const explore = () => command({ type: "set_mode", mode: "explore" }, "Exploring by itself.");
 const kidnap = () => command({ type: "kidnap" }, "Moved to a random place. The robot was not told.");
 const cancelGoal = () => command({ type: "cancel_goal" });
-const restart = (seed) => {
+const restart = (/** @type {number} */ seed) => {
   $("restart").open = false;
   command({ type: "reset", seed }, `Started anew with seed ${seed}.`);
 };
 
-// A saved brain goes up as it is; what is wrong with it comes back as a sentence.
+/** A saved brain goes up as it is; what is wrong with it comes back as a sentence. @param {File} file */
 async function loadBrain(file) {
   const headers = { "Content-Type": "application/octet-stream" };
   try {
@@ -112,16 +129,19 @@ on("cancel", cancelGoal);
 on("theme", toggleTheme);
 on("help", toggleHelp);
 on("help-close", toggleHelp);
-on("restart-same", () => restart(state.seed));
+on("restart-same", () => state && restart(state.seed));
 on("restart-new", () => restart(crypto.getRandomValues(new Uint16Array(1))[0] % 10000));
-on("brain-save", () => ($("restart").open = false));
+on("brain-save", () => {
+  $("restart").open = false;
+});
 on("brain-load", () => {
   $("restart").open = false;
   $("brain-file").click();
 });
-$("brain-file").addEventListener("change", ({ target }) => {
-  if (target.files.length) loadBrain(target.files[0]);
-  target.value = ""; // so that the same file can be chosen again
+$("brain-file").addEventListener("change", () => {
+  const input = $("brain-file");
+  if (input.files?.length) loadBrain(input.files[0]);
+  input.value = ""; // so that the same file can be chosen again
 });
 on("open-world", () => {
   $("restart").open = false;
@@ -131,35 +151,39 @@ on("new-world", () => {
   $("restart").open = false;
   fresh.ask();
 });
-on("panels", () => stage.showPanels(!stage.panels));
+on("panels", () => panel.show(!panel.shown));
+on("panel-show", () => panel.show(true));
 on("more", () => {
-  const open = document.querySelector("header").classList.toggle("open");
+  const open = find(document, "header").classList.toggle("open");
   $("more").setAttribute("aria-expanded", String(open));
 });
-$("speed").addEventListener("change", ({ target }) => {
-  command({ type: "set_speed", factor: Number(target.value) });
-  target.blur();
+$("speed").addEventListener("change", () => {
+  command({ type: "set_speed", factor: Number($("speed").value) });
+  $("speed").blur();
 });
-$("world").addEventListener("change", async ({ target }) => {
+$("world").addEventListener("change", async () => {
+  const target = $("world");
   const [world, title] = [target.value, target.selectedOptions[0].text];
   target.blur(); // the list shows the present world again until there is another
   if (await mayLeave()) command({ type: "reset", world }, `Started anew in ${title}.`);
 });
 
-// Whether what has been drawn and not saved may be left behind.
-function mayLeave() {
+/** Whether what has been drawn and not saved may be left behind. @returns {Promise<boolean>} */
+async function mayLeave() {
   if (isSaved()) return true;
   const dialog = $("leave-dialog");
   dialog.returnValue = "stay";
   dialog.showModal();
-  return new Promise((resolve) => dialog.addEventListener("close", () => resolve(dialog.returnValue === "leave"), { once: true }));
+  return new Promise((resolve) =>
+    dialog.addEventListener("close", () => resolve(dialog.returnValue === "leave"), { once: true }),
+  );
 }
 $("help-dialog").addEventListener("click", ({ target }) => target === $("help-dialog") && toggleHelp());
 
-// True when the key meant something.
+/** True when the key meant something. @param {string} name */
 function act(name) {
   const view = VIEWS[Number(name) - 1];
-  if (view) stage.show(view);
+  if (view) viewer.show(view);
   else if (name === " ") playOrPause();
   else if (name === ".") oneTick();
   else if (name === ",") oneStage();
@@ -167,34 +191,55 @@ function act(name) {
   else if (name === "k") kidnap();
   else if (name === "x" && state?.goal) cancelGoal();
   else if (name === "t") toggleTheme();
+  else if (name === "p") panel.show(!panel.shown);
   else if (name === "o") editor.toggle();
   else if (name === "?") toggleHelp();
-  else return name === "Escape" && closeOpenMenu();
+  else return name === "Escape" && (closeOpenMenu() || dismissToast());
   return true;
 }
 
+/** @param {keyof IndexIds} id @param {() => void} action */
 function on(id, action) {
   $(id).addEventListener("click", (event) => {
     action();
-    if (event.detail > 0) event.currentTarget.blur(); // after a mouse click the space bar is play and pause again
+    if (/** @type {MouseEvent} */ (event).detail > 0) $(id).blur(); // after a mouse click the space bar is play and pause again
   });
 }
 
 // ---------------------------------------------------------------- looks
 
-function preferredTheme() {
-  return window.matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
+/** @returns {Theme} */
+function theme() {
+  return document.documentElement.dataset.theme === "light" ? "light" : "dark";
 }
 
-function showTheme(theme) {
-  if (document.documentElement.dataset.theme === theme) return;
-  document.documentElement.dataset.theme = theme;
-  setIcon($("theme"), theme === "dark" ? "sun" : "moon");
-  $("theme").setAttribute("aria-label", theme === "dark" ? "Light colours" : "Dark colours");
+/** The one chosen in this browser before, else the system's. @returns {Theme} */
+function firstTheme() {
+  const preferred = window.matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
+  try {
+    const kept = localStorage.getItem("theme");
+    return THEMES.find((name) => name === kept) ?? preferred;
+  } catch {
+    return preferred; // a browser that keeps nothing
+  }
+}
+
+/** The stage follows: the server shows this page the one of its theme. @param {Theme} name */
+function showTheme(name) {
+  document.documentElement.dataset.theme = name;
+  setIcon($("theme"), name === "dark" ? "sun" : "moon");
+  $("theme").setAttribute("aria-label", name === "dark" ? "Light colours" : "Dark colours");
+  link.tell({ type: "theme", name });
 }
 
 function toggleTheme() {
-  link.tell({ type: "theme", name: document.documentElement.dataset.theme === "dark" ? "light" : "dark" });
+  const other = theme() === "dark" ? "light" : "dark";
+  showTheme(other);
+  try {
+    localStorage.setItem("theme", other);
+  } catch {
+    // it is forgotten with the page
+  }
 }
 
 function toggleHelp() {
@@ -202,4 +247,4 @@ function toggleHelp() {
   else $("help-dialog").showModal();
 }
 
-showTheme(preferredTheme());
+showTheme(firstTheme());

@@ -1,3 +1,5 @@
+"""The command line without the dashboard: what is printed, written and refused."""
+
 from __future__ import annotations
 
 import argparse
@@ -8,11 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from app import cli, runner
+from app.cli import command_line as cli
+from app.cli import progress, run
 from app.config import Config, from_toml
-from sim2d.world_file import WORLDS
-from web import server
-from web.stage import stage
+from sim2d.world.world_file import WORLDS
 
 
 def test_config_is_taken_back(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -129,10 +130,11 @@ def test_parameters_reach_the_run(tmp_path: Path) -> None:
         (["config", "--set", "pilot.cruise_speed=9"], "pilot.cruise_speed must be between 0.05 and 0.5 m/s, got 9.0"),
         (["config", "--set", "pilot.cruise_speed=[1]"], "'[1]' is not a number, true, false or a word"),
         (["config", "--set", "robot.light=1" + 400 * "0"], "robot.light must be within its range"),
-        (["run", "--speed", "-1"], "--speed must be from 0 to 1000, got -1"),
-        (["run", "--speed", "nan"], "--speed must be from 0 to 1000, got nan"),
+        (["run", "--speed", "-1"], "--speed must be 0 (as fast as possible) or from 0.25 to 16, got -1"),
+        (["run", "--speed", "nan"], "--speed must be 0 (as fast as possible) or from 0.25 to 16, got nan"),
         (["run", "--world", "castle"], "no world 'castle'"),
-        (["--paused", "--speed", "2000"], "--speed must be from 0 to 1000, got 2000"),
+        (["--paused", "--speed", "17"], "--speed must be 0 (as fast as possible) or from 0.25 to 16, got 17"),
+        (["--paused", "--speed", "0.2"], "or from 0.25 to 16, got 0.2"),
         (["headless", "--set", "robot.image_width=8"], "robot.image_width must be at least 12"),
     ],
 )
@@ -189,11 +191,11 @@ def test_what_argparse_refuses_ends_with_two(command: list[str], capsys: pytest.
 
 
 def test_a_port_is_a_whole_number() -> None:
-    assert cli._port("0") == 0
-    assert cli._port("65535") == 65535
+    assert run._port("0") == 0
+    assert run._port("65535") == 65535
     for text in ("65536", "-1", "8000.0", ""):
         with pytest.raises(argparse.ArgumentTypeError, match="a port is a whole number from 0 to 65535, got"):
-            cli._port(text)
+            run._port(text)
 
 
 def test_help_is_not_a_run(capsys: pytest.CaptureFixture[str]) -> None:
@@ -205,8 +207,8 @@ def test_help_is_not_a_run(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_it_runs_as_a_module() -> None:
     done = subprocess.run(
-        [sys.executable, "-c", "import sys; from app.cli import main; sys.exit(main())", "worlds"],
-        capture_output=True, text=True, timeout=120, check=False,
+        [sys.executable, "-c", "import sys; from app.cli.command_line import main; sys.exit(main())", "worlds"],
+        capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0
     assert done.stdout.startswith("office ")
@@ -241,102 +243,9 @@ def test_progress_is_counted_beyond_what_was_expected(monkeypatch: pytest.Monkey
             progress(10.0, "exploring")
         return "done"
 
-    assert cli._with_progress(50.0, work) == "done"
+    assert progress.with_progress(50.0, work) == "done"
     assert bars[0].n == 70
     assert bars[0].total == 70
-
-
-class Doubles:
-    """Stands in for runner, stage and dashboard, and notes what is done with them."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, refuse: bool = False) -> None:
-        self.log: list[str] = []
-        self.made: dict[str, tuple] = {}
-        doubles, log = self, self.log
-
-        class Runner:
-            latest, submit = "latest", "submit"
-
-            def __init__(self, world, seed, config, **options) -> None:
-                doubles.made["runner"] = (world.name, seed, config, options)
-
-            def start(self) -> None:
-                log.append("runner starts")
-
-            def stop(self) -> None:
-                log.append("runner stops")
-
-        class Dashboard:
-            on_ready = None
-
-            def __init__(self, latest, submit, stage, *, port) -> None:
-                doubles.made["dashboard"] = (latest, submit, stage, port)
-
-            def bind(self) -> None:
-                if refuse:
-                    raise server.CannotListen("port 8000 is taken; try --port 0")
-                log.append("bound")
-
-            def run(self) -> None:
-                log.append("serving")
-                assert self.on_ready is not None
-                self.on_ready("http://127.0.0.1:8000/")
-
-        monkeypatch.setattr(runner, "Runner", Runner)
-        monkeypatch.setattr(server, "Dashboard", Dashboard)
-        monkeypatch.setattr(stage, "Stage", lambda *_: "stage")
-        monkeypatch.setattr("webbrowser.open", lambda url: log.append(f"opens {url}"))
-
-
-def test_run_binds_first_then_starts_and_stops(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    doubles = Doubles(monkeypatch)
-    monkeypatch.setattr(cli, "_has_screen", lambda: True)
-    command = ["--world", "loop", "--seed", "9", "--port", "0", "--paused", "--speed", "3", "--set", "robot.light=0.8"]
-    assert cli.main(command) == 0
-    assert doubles.log == ["bound", "runner starts", "serving", "opens http://127.0.0.1:8000/", "runner stops"]
-    name, seed, config, options = doubles.made["runner"]
-    assert (name, seed, options) == ("loop", 9, {"speed": 3.0, "running": False, "brain": None})
-    assert config == Config().with_value("robot.light", 0.8)
-    assert doubles.made["dashboard"] == ("latest", "submit", "stage", 0)
-    assert "RatSLAM is alive at http://127.0.0.1:8000/" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(("options", "screen"), [(["--no-browser"], True), ([], False)])
-def test_no_browser_opens_unasked_or_unseen(options: list[str], screen: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    doubles = Doubles(monkeypatch)
-    monkeypatch.setattr(cli, "_has_screen", lambda: screen)
-    assert cli.main(["run", *options]) == 0
-    assert not any(entry.startswith("opens") for entry in doubles.log)
-
-
-def test_a_taken_port_is_a_sentence(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    doubles = Doubles(monkeypatch, refuse=True)
-    assert cli.main([]) == 2
-    assert capsys.readouterr().err == "ratslam: port 8000 is taken; try --port 0\n"
-    assert doubles.log == []  # nothing was started
-
-
-def test_the_engine_stops_when_serving_fails(monkeypatch: pytest.MonkeyPatch) -> None:
-    doubles = Doubles(monkeypatch)
-    monkeypatch.setattr(server.Dashboard, "run", lambda _self: (_ for _ in ()).throw(KeyboardInterrupt))
-    assert cli.main(["run"]) == 130
-    assert doubles.log[-1] == "runner stops"
-
-
-@pytest.mark.parametrize(
-    ("platform", "environment", "screen"),
-    [("linux", {}, False), ("linux", {"DISPLAY": ":0"}, True), ("linux", {"WAYLAND_DISPLAY": "w"}, True),
-     ("darwin", {}, True), ("win32", {}, True)],
-)  # fmt: skip
-def test_a_screen(platform: str, environment: dict[str, str], screen: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "platform", platform)
-    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
-        monkeypatch.delenv(name, raising=False)
-    for name, value in environment.items():
-        monkeypatch.setenv(name, value)
-    assert cli._has_screen() is screen
 
 
 def test_bench_prints_and_writes_its_rows(

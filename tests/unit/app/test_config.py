@@ -28,7 +28,7 @@ def values(name: str) -> st.SearchStrategy:
     return st.integers(low, high) if isinstance(default, int) else st.floats(low, high)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60)
 @given(st.data())
 def test_toml_there_and_back_is_the_identity(data: st.DataObject) -> None:
     config = Config()
@@ -100,6 +100,9 @@ def test_a_whole_number_for_a_float() -> None:
         ("[pilot]\ncruise_speed = 9\n", r"pilot\.cruise_speed must be between 0\.05 and 0\.5 m/s, got 9\.0"),
         ("[pilot]\ncruise_speed = [1]\n", r"pilot\.cruise_speed must be float, got \[1\]"),
         ("[pilot\n", "not valid TOML: "),
+        ("a = " + "[" * 3000, "nested too deeply; at most 20 tables or lists"),
+        ("a" + ".a" * 400 + " = 1", "nested too deeply; at most 20 tables or lists"),
+        ("[robot]\nlight." + "a." * 400 + "a = 1", "nested too deeply; at most 20 tables or lists"),
         ("[robot]\nsensor_rate_hz = 7\n", r"robot\.physics_rate_hz must be a multiple of sensor_rate_hz \(7\), got 240"),
         ("[robot]\nimage_width = 8\n", r"robot\.image_width must be at least 12"),
     ],
@@ -139,4 +142,10 @@ def test_a_value_from_the_command_line(text: str, value: object) -> None:
 @pytest.mark.parametrize("text", ["[1, 2]", "{a = 1}", "2024-01-01"])
 def test_what_is_not_a_value_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match="is not a number, true, false or a word"):
+        parse_value(text)
+
+
+@pytest.mark.parametrize("text", ["[" * 3000, "{a=" * 500, "[" * 50 + "]" * 50])
+def test_a_value_that_is_nested_too_deeply_gets_a_sentence(text: str) -> None:
+    with pytest.raises(ValueError, match="nested too deeply"):
         parse_value(text)

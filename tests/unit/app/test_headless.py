@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from app.headless import run_headless
+from app import headless
+from app.headless import BrainFile, run_headless
 from app.session import Session
+from disk import state_codec
 from ratslam_core import load_brain
 from sim2d import load_world
 
@@ -70,9 +72,23 @@ def test_a_goal_that_is_not_reached_in_time_is_given_up(monkeypatch: pytest.Monk
     assert goal["miss_m"] > 0.3
 
 
+def test_a_brain_that_grows_too_large_for_a_file_is_told_of_in_time(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(headless, "LOOK_AFTER", 10)
+    monkeypatch.setattr(state_codec, "MOST_BYTES", 1 << 20)
+    run_headless(OFFICE, 2, 0.1)
+    assert capsys.readouterr().err == ""
+    run_headless(OFFICE, 2, 0.1, brain_file=BrainFile(tmp_path / "brain.npz"))
+    words = "ratslam: note: the brain fills more than half of the 1 MiB that a file may hold: save it before it grows\n"
+    assert capsys.readouterr().err == words  # once
+
+
 def test_a_saved_brain_finds_its_way_again(tmp_path: Path) -> None:
     world, file = load_world("office"), tmp_path / "brain.npz"
-    run_headless(world, 4, 8.0, save_brain_to=file)
+    brain_file = BrainFile(file)
+    run_headless(world, 4, 8.0, brain_file=brain_file)
+    brain_file.save()
     brain = load_brain(file)
     known = len(brain.experience_map)
     report = run_headless(world, 11, 2.0, brain=brain, goals=2)

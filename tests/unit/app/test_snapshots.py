@@ -7,10 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from app import snapshots
-from app.chronicle import Chronicle
 from app.session import Session
-from app.snapshots import Slow, Snapshots
+from app.views import throttle
+from app.views.history import History
+from app.views.snapshots import Snapshots
+from app.views.throttle import Slow
 from sim2d import load_world
 from web import messages as m
 
@@ -27,7 +28,7 @@ def session() -> Session:
 
 
 def build(session: Session) -> m.Snapshot:
-    made = Snapshots(session, Chronicle(session), 1, ())
+    made = Snapshots(session, History(session), 1, ())
     return made.build(running=True, speed=1.0, real_time_factor=1.0, fault=None)
 
 
@@ -88,7 +89,7 @@ def test_the_attractor_s_invariants_are_shown(session: Session) -> None:
 
 def test_a_slow_part_is_built_when_time_has_come_and_something_has_changed(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [100.0]
-    monkeypatch.setattr(snapshots.time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(throttle.time, "perf_counter", lambda: now[0])
     built: list[object] = []
 
     def make() -> object:

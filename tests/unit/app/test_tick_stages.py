@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.attractor_stages import Activity, excited, inhibited, normalised
-from app.chronicle import Chronicle
 from app.config import Config
 from app.session import PARTS, Session
-from app.snapshots import Snapshots
 from app.stopwatch import KEPT, Stopwatch
-from app.tick_stages import TITLES, TickRecorder, Walk
+from app.views.attractor_stages import Activity, excited, inhibited, normalised
+from app.views.history import History
+from app.views.snapshots import Snapshots
+from app.views.tick_stages import TITLES, TickRecorder, Walk
 from ratslam_core import PoseCellParams, PoseCells
 from ratslam_core.slam import STAGES
 from sim2d import load_world
@@ -23,7 +23,7 @@ OFFICE = load_world("office")
 
 def recorded(session: Session) -> tuple[Walk, dict]:
     """A walk through the next tick, and the parts before it."""
-    snapshots = Snapshots(session, Chronicle(session), 1, ())
+    snapshots = Snapshots(session, History(session), 1, ())
     before = snapshots.parts()
     recorder = TickRecorder(session, before)
     session.tick(recorder)

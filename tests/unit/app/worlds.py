@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from ratslam_core import ExperienceMapParams, Pose2, TemporalMap
-from ratslam_core.transitions import Transitions
+from ratslam_core.experience_map.transitions import Transitions
 from sim2d import Drive, SimParams, Simulator, Start, Wall, World
 
 GREY = (160, 160, 160)

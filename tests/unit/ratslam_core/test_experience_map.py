@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2, Recognition, experience_map, map_correction
+from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2, Recognition, SolverParams
+from ratslam_core.experience_map import relaxation
 
 from .drives import Robot
 
@@ -219,14 +220,14 @@ def test_a_kidnap_makes_no_way() -> None:
     robot.see(0, new=True)
     robot.go(1.0, 0.0, 1, new=True)
     ways = [[0, 1]]
-    robot.map.lose_track()
+    robot.map.declare_kidnapped()
     robot.pose = Pose2(5.0, 3.0, 0.0)
     assert robot.see(2, new=True)  # carried to where it has never been
     assert robot.map.links.tolist() == ways
     robot.go(0.5, 0.0, 3, new=True)
     ways += [[2, 3]]
     assert robot.map.links.tolist() == ways
-    robot.map.lose_track()
+    robot.map.declare_kidnapped()
     robot.pose = Pose2(0.0, 0.0, 0.0)
     robot.see(0)  # carried to a known place
     assert robot.map.active == 0
@@ -240,7 +241,7 @@ def test_a_way_driven_after_a_kidnap_along_it_is_a_way() -> None:
     robot = Robot(replace(EXACT, odometry_drift=0.03))
     robot.see(0, new=True)
     robot.go(1.0, 0.0, 1, new=True)
-    robot.map.lose_track()
+    robot.map.declare_kidnapped()
     robot.pose = Pose2(0.0, 0.0, 0.0)
     robot.see(0)  # carried from 1 to 0
     assert robot.map.links.tolist() == [[0, 1]]
@@ -255,7 +256,7 @@ def test_a_way_driven_after_a_kidnap_along_it_is_a_way() -> None:
 def test_a_robot_put_back_where_it_was_goes_on() -> None:
     robot = Robot(replace(EXACT, odometry_drift=0.03))
     robot.see(0, new=True)
-    robot.map.lose_track()
+    robot.map.declare_kidnapped()
     assert not robot.see(0)
     assert (len(robot.map), robot.map.link_count) == (1, 0)
 
@@ -343,13 +344,13 @@ def test_a_correction_that_was_hard_is_followed_by_a_long_rest(
     a_step: float, rested: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A loop that closes in every step; corrections are due in every step and again after what the last one cost."""
-    monkeypatch.setattr(experience_map, "WORK_A_STEP", a_step)
     robot = loop(ExperienceMapParams(solve_every=1), 1.0, 0.0, 1)
-    solve, solved = map_correction.solve, []
-    monkeypatch.setattr(map_correction, "solve", lambda *given: solved.append(solve(*given)) or solved[-1])
+    robot.map.optimiser.params = SolverParams(work_a_step=a_step)
+    solve, solved = relaxation.solve, []
+    monkeypatch.setattr(relaxation, "solve", lambda *given: solved.append(solve(*given)) or solved[-1])
     for _ in range(60):
         robot.map.closures += 1
-        robot.map._steps += 1
+        robot.map.steps += 1
         robot.map.correct()
     rests = max(1, math.ceil(solved[0].work / a_step))
     assert (rests > 4) is rested

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition, experiences
-from ratslam_core.experiences import Experiences
+from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition
+from ratslam_core.experience_map import experiences
+from ratslam_core.experience_map.experiences import Experiences
 
 from .literal import interpret
 
@@ -47,7 +48,7 @@ params = st.builds(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.sampled_from(SHAPES), params, states, states)
 def test_energy_is_that_of_the_papers(shape, p: ExperienceMapParams, made, now) -> None:
     known = Experiences(shape)
@@ -57,7 +58,7 @@ def test_energy_is_that_of_the_papers(shape, p: ExperienceMapParams, made, now) 
     assert known.energy(0, packet, now[3], p) == pytest.approx(expected, abs=1e-9)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.sampled_from(SHAPES), params, st.lists(states, max_size=40), states)
 def test_the_choice_is_that_of_a_loop_over_all(shape, p: ExperienceMapParams, made, now) -> None:
     """The oldest of those with the most energy, by view or by pose cells, however the buckets lie."""
@@ -68,7 +69,7 @@ def test_the_choice_is_that_of_a_loop_over_all(shape, p: ExperienceMapParams, ma
     packet, view = Packet(now[0] % shape[2], now[1] % shape[1], now[2], 1.0), now[3]
     best, most = -1, p.threshold
     for i in range(len(made)):
-        far = math.hypot(known.pose[i, 0] - robot.x, known.pose[i, 1] - robot.y) > experiences.BLIND_M
+        far = math.hypot(known.pose[i, 0] - robot.x, known.pose[i, 1] - robot.y) > p.blind_m
         energy = known.energy(i, packet, view, p)
         if energy > most and not (p.match_view and view < 0 and far):
             best, most = i, energy

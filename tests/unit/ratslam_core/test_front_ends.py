@@ -10,9 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 from ratslam_core import LocalView, LocalViewParams, Odometry, RatSlam, RatSlamParams
-from ratslam_core.front_ends import front_end
-from ratslam_core.front_ends.complex_cells import DARK, GAIN, NEIGHBOURHOOD, REACH, ComplexCells, gabor_pair
-from ratslam_core.front_ends.hue_saturation import CERTAIN, MOST_SATURATION, HueSaturation, histogram
+from ratslam_core.local_view.front_ends import named_front_end
+from ratslam_core.local_view.front_ends.complex_cells import DARK, GAIN, NEIGHBOURHOOD, REACH, ComplexCells, gabor_pair
+from ratslam_core.local_view.front_ends.hue_saturation import CERTAIN, MOST_SATURATION, HueSaturation, histogram
 
 Image = NDArray[np.uint8]
 FRONT_ENDS = ("template", "complex cells", "hue and saturation", "scene numbers")
@@ -82,12 +82,12 @@ def test_surprise_is_a_jump_that_no_turn_explains(kind: str) -> None:
     surprised = []
     for turned in (0, 4, 8, 4):
         local_view.observe(office(3, turned=turned))
-        surprised.append(local_view.surprise > 1)
+        surprised.append(local_view.image_change > 1)
     assert surprised == [False] * 4
     for seed in range(10, 20):
         for surprised_now in (True, False):
             local_view.observe(office(seed))
-            assert (local_view.surprise > 1) is surprised_now
+            assert (local_view.image_change > 1) is surprised_now
 
 
 @pytest.mark.parametrize("kind", SEEING)
@@ -101,7 +101,7 @@ def test_a_bare_wall_shows_nothing(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", FRONT_ENDS)
 def test_features_are_96_bytes_with_a_picture_and_words(kind: str) -> None:
-    end = front_end(LocalViewParams(front_end=kind))
+    end = named_front_end(LocalViewParams(front_end=kind))
     features = end.look(office(1), 4711)
     assert (features.shape, features.dtype) == ((96,), np.uint8)
     picture = end.picture(features)
@@ -245,7 +245,7 @@ def test_every_number_is_one_cell() -> None:
     for view, scene in reversed(list(enumerate(numbers))):
         seen = local_view.observe(office(view), scene)  # type: ignore[arg-type]
         assert (seen.view, seen.recruited, seen.best_view, seen.facing_rad) == (view, False, view, None)
-        assert local_view.surprise <= 1
+        assert local_view.image_change <= 1
     assert len(local_view) == len(numbers)
     assert local_view.front_end.words(local_view.stored(3)) == f"scene {2**63 - 1}"
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ratslam_core import LocalView, LocalViewParams, Recognition
-from ratslam_core.front_ends.template import grey_template
+from ratslam_core.local_view.front_ends.template import grey_template
 
 Image = NDArray[np.uint8]
 FOV = math.radians(50)
@@ -154,15 +154,15 @@ def test_surprised_by_what_no_turn_explains() -> None:
     scene = panorama(7)
     local_view = LocalView()
     local_view.observe(look(scene, 20))
-    assert local_view.surprise <= 1
+    assert local_view.image_change <= 1
     for column in (23, 20, 19, 17):  # within three columns of the one before
         local_view.observe(look(scene, column))
-        assert local_view.surprise <= 1
+        assert local_view.image_change <= 1
     elsewhere = look(panorama(8), 20)
     local_view.observe(elsewhere)
-    assert local_view.surprise > 1
+    assert local_view.image_change > 1
     local_view.observe(elsewhere)
-    assert local_view.surprise <= 1
+    assert local_view.image_change <= 1
 
 
 @pytest.mark.parametrize("jump", [-7, 6, 9])
@@ -173,7 +173,7 @@ def test_surprise_is_a_matter_of_degree(jump: int) -> None:
         local_view = LocalView(LocalViewParams(surprise=limit))
         local_view.observe(look(scene, 20))
         local_view.observe(look(scene, 20 + jump))
-        assert (local_view.surprise > 1) is surprised
+        assert (local_view.image_change > 1) is surprised
 
 
 def test_with_no_limit_left_every_change_is_a_surprise() -> None:
@@ -182,7 +182,7 @@ def test_with_no_limit_left_every_change_is_a_surprise() -> None:
     found = []
     for column in (20, 20, 40):
         local_view.observe(look(scene, column))
-        found.append(local_view.surprise)
+        found.append(local_view.image_change)
     assert found == [0.0, 0.0, math.inf]
 
 

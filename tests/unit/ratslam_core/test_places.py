@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core import ExperienceMap, ExperienceMapParams, Packet, Pose2, find_places, places
-from ratslam_core.places import HashCollision, MultipleRepresentation, Places
+from ratslam_core import ExperienceMap, ExperienceMapParams, Packet, Pose2, find_places
+from ratslam_core.experience_map import places
+from ratslam_core.experience_map.places import HashCollision, MultipleRepresentation, Places
 
 from .literal import interpret
 
@@ -93,7 +94,7 @@ cell = st.one_of(st.floats(0, 63.9), st.sampled_from([0.0, 8.0, 63.9, 20.0]))
 rows = st.lists(st.tuples(metre, metre, angle, cell, cell, angle), max_size=30)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(rows, st.sampled_from(SHAPES), st.sampled_from([0.3, 0.5, 1.5]), st.sampled_from([0.5, 2.0, 20.0]))
 def test_places_are_those_of_a_loop_over_all(made, shape, radius: float, zone: float) -> None:
     known = a_map(made, shape, zone_xy=zone, zone_theta=min(zone, 5.0))
@@ -112,7 +113,7 @@ def test_the_interpreted_places_are_the_compiled_ones(monkeypatch: pytest.Monkey
     assert found.hash_collisions
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(rows, st.floats(0.1, 3.0))
 def test_every_experience_is_near_the_first_of_its_place(made, radius: float) -> None:
     known = a_map(made)

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ratslam_core import PoseCellParams, PoseCells, kernels, packet_kernels
+from ratslam_core import PoseCellParams, PoseCells
+from ratslam_core.pose_cells import activity_kernels as kernels
+from ratslam_core.pose_cells import attractor_kernels, packet_kernels
 
 from . import literal
 
@@ -252,7 +254,7 @@ def test_a_packet_keeps_its_id_while_it_moves_wraps_and_turns() -> None:
         drive(pose_cells, 0.9, 0.6, 1)
         assert ids(pose_cells) == [1]
     pose_cells.place(3, 4, 5)
-    assert ids(pose_cells) == [2]
+    assert ids(pose_cells) == [1]
 
 
 def test_ids_stay_when_packets_swap_rank() -> None:
@@ -289,15 +291,43 @@ def test_a_merged_packet_keeps_the_heavier_one_s_id(share: float) -> None:
     assert pose_cells.winner.x == pytest.approx(36, abs=1)
 
 
-def test_the_loser_s_id_is_never_used_again() -> None:
+def test_the_least_free_number_is_used_again() -> None:
     pose_cells = two_packets(20, 0.6)
     pose_cells.attract()
     first, second = ids(pose_cells)
-    rest(pose_cells, 400)
-    assert ids(pose_cells) == [first]
-    pose_cells.inject(np.array([7], np.int32), np.array([0.5], np.float32))
+    for _ in range(5):
+        rest(pose_cells, 400)
+        assert ids(pose_cells) == [first]
+        pose_cells.inject(np.array([7], np.int32), np.array([0.3], np.float32))
+        pose_cells.attract()
+        assert ids(pose_cells) == [first, second]
+    assert {first, second} == {1, 2}
+
+
+def test_a_packet_does_not_get_the_number_of_one_that_has_just_gone() -> None:
+    pose_cells = PoseCells()
+    pose_cells.place(3, 4, 5)
     pose_cells.attract()
-    assert ids(pose_cells) == [first, second + 1]
+    before = pose_cells.winner.id
+    flats = np.flatnonzero(np.roll(pose_cells.activity, (18, 30), (0, 2))).astype(np.int32)
+    pose_cells.inject(flats, np.full(flats.size, 1e5, np.float32))  # nothing of the old one is left
+    pose_cells.attract()
+    assert ids(pose_cells) != [before]
+    rest(pose_cells, 3)
+    assert len(ids(pose_cells)) == 1
+
+
+def test_what_was_injected_is_a_packet_at_once() -> None:
+    pose_cells = two_packets(20, 0.6)
+    pose_cells.attract()
+    known = pose_cells.packets
+    pose_cells.inject(np.array([7], np.int32), np.array([0.5], np.float32))
+    pose_cells.settle()
+    assert pose_cells.active[1].sum() == pytest.approx(1.0)
+    assert [p.id for p in pose_cells.packets] == [known[0].id, 3, known[1].id]
+    assert [p.mass for p in pose_cells.packets] == pytest.approx([0.4, 1 / 3, 0.8 / 3], abs=0.02)
+    new = pose_cells.packets[1]
+    assert (new.x, new.y, new.heading_rad) == (7.0, 0.0, 0.0)
 
 
 def test_ids_beyond_those_reported() -> None:
@@ -374,6 +404,7 @@ def test_interpreted_kernels_do_what_the_compiled_ones_do(
     for interpreted in (False, True):
         if interpreted:
             literal.interpret(kernels, monkeypatch)
+            literal.interpret(attractor_kernels, monkeypatch)
             literal.interpret(packet_kernels, monkeypatch)
         pose_cells = PoseCells(params)
         pose_cells.place(7, 7, 9)
@@ -392,6 +423,7 @@ def test_interpreted_kernels_far_from_everything(monkeypatch: pytest.MonkeyPatch
     for interpreted in (False, True):
         if interpreted:
             literal.interpret(kernels, monkeypatch)
+            literal.interpret(attractor_kernels, monkeypatch)
             literal.interpret(packet_kernels, monkeypatch)
         pose_cells = PoseCells()
         for forwards, row in ((0.4, 0), (0.0, 60), (1.3, 20)):

@@ -64,6 +64,55 @@ def test_a_kidnap_is_noticed_and_survived(seed: int) -> None:
     assert np.hypot(*(after - map_before)[:, :2].T).max() < 0.3  # the map is what it was
 
 
+def test_a_changed_place_does_not_keep_the_robot_lost() -> None:
+    """Something was put up: every second sight is new for good, but the others are where they always were."""
+    circle, brain = start()
+    circle.advance(brain, 2 * LAP)
+    brain.declare_kidnapped()
+    rng = np.random.default_rng(1)
+    row = 0
+    for tick in range(LAP):
+        circle.angle += STEP_RAD
+        changed = tick % 8 >= 4
+        image = rng.integers(0, 256, (8, 12), np.uint8) if changed else circle.image
+        before = len(brain.experience_map)
+        brain.local_view._last = None  # only the first change is a surprise
+        estimate = brain.step(image, Odometry(RADIUS_M * STEP_RAD / 0.1, STEP_RAD / 0.1, 0.1))
+        known = estimate.experience < before and not changed
+        row = row + 1 if known else 0
+        assert row < 8  # never so many in a row
+        if not brain.lost:
+            break
+    assert not brain.lost
+    assert circle.miss_m(estimate) < 0.3
+
+
+def test_sights_that_contradict_each_other_find_nobody_again() -> None:
+    circle, brain = start()
+    circle.advance(brain, 2 * LAP)
+    brain.declare_kidnapped()
+    for agrees in [True] * 7 + ([False] + [True] * 6) * 3 + [False] + [True] * 7:
+        assert brain.lost
+        brain.kidnap_detector.settle(agrees, 0)
+    assert not brain.lost
+
+
+@pytest.mark.parametrize("most", [256, 2])
+def test_nobody_is_lost_for_ever(most: int) -> None:
+    """Stood before a wall that was put up there, be it bland, or carried to where it has never been."""
+    circle, brain = start()
+    circle.advance(brain, 100)
+    still, wall = Odometry(0.0, 0.0, 0.1), np.random.default_rng(1).integers(0, most, (8, 12), np.uint8)
+    brain.step(wall, still)
+    assert brain.lost
+    steps = 0
+    while brain.lost:
+        brain.step(wall, still)
+        steps += 1
+        assert steps <= 2000
+    assert steps > 600  # but for long
+
+
 @pytest.mark.parametrize(
     ("alike", "others_m", "noticed"),
     [(0.7, 2.0, True), (0.7, 1.0, False), (1.2, 1.4, True), (1.2, 1.0, False), (0.4, 2.0, False)],
@@ -76,10 +125,10 @@ def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: 
     brain.step(circle.image, still, ranges_m=near)
     circle.angle += 2.6
     params = brain.params.local_view
-    changed = replace(params, surprise=brain.local_view.params.surprise * _unlikeness(circle) / alike)
+    changed = replace(params, surprise=params.surprise * _unlikeness(circle) / alike)
     brain.set_params(replace(brain.params, local_view=changed))
     brain.step(circle.image, still, ranges_m=np.array([1.0, 1.0, 1.0, *[others_m] * 5]))
-    assert brain.local_view.surprise == pytest.approx(alike)
+    assert brain.local_view.image_change == pytest.approx(alike)
     assert brain.lost is noticed
 
 
@@ -88,7 +137,7 @@ def _unlikeness(circle: Circle) -> float:
     fresh = RatSlam()
     fresh.local_view.observe(Circle(0).image)
     fresh.local_view.observe(circle.image)
-    return fresh.local_view.surprise
+    return fresh.local_view.image_change
 
 
 def test_driving_on_is_no_kidnap() -> None:
@@ -104,11 +153,11 @@ def test_views_that_show_nothing_neither_find_nor_lose() -> None:
     circle.angle += 2.6
     circle.advance(brain, 1)
     assert brain.lost
-    agreed = brain._agreed
+    agreed = brain.kidnap_detector._agreed
     brain.step(np.full((8, 12), 100, np.uint8), Odometry(0.0, 0.0, 0.1))
     assert brain.lost
     assert brain.experience_map.cell_state(brain.experience_map.active)[3] == -1
-    assert brain._agreed == 0 <= agreed
+    assert brain.kidnap_detector._agreed == 0 <= agreed
 
 
 def test_equal_inputs_give_equal_runs() -> None:
@@ -160,10 +209,10 @@ def test_a_young_view_does_not_hold_the_packet_back() -> None:
 def test_the_learnt_bias_is_taken_off_while_the_wheels_turn() -> None:
     _, brain = start()
     brain.experience_map.yaw_bias = 0.05
-    assert brain._calibrated(Odometry(0.3, 0.2, 0.1)) == Odometry(0.3, 0.2 - 0.05, 0.1)
-    assert brain._calibrated(Odometry(0.0, 0.2, 0.1)).yaw_rate == pytest.approx(0.15)
+    assert brain.experience_map.calibrated(Odometry(0.3, 0.2, 0.1)) == Odometry(0.3, 0.2 - 0.05, 0.1)
+    assert brain.experience_map.calibrated(Odometry(0.0, 0.2, 0.1)).yaw_rate == pytest.approx(0.15)
     still = Odometry(0.0, 0.0, 0.1)
-    assert brain._calibrated(still) is still
+    assert brain.experience_map.calibrated(still) is still
 
 
 def test_new_parameters_reach_every_part_and_the_size_is_refused() -> None:
@@ -281,21 +330,21 @@ def test_the_adaptive_rate_follows_vision_and_confidence() -> None:
     rates = []
     for _ in range(LAP + 60):
         circle.advance(brain, 1)
-        rates.append(brain.learning_rate)
+        rates.append(brain.association.learning_rate)
     assert 0 <= min(rates) < max(rates) <= 2 * eta
     one = circle.advance(brain, 1)[0]
     strength = 1 - one.recognition.difference / params.local_view.match_threshold
-    assert brain.learning_rate == pytest.approx(2 * eta * strength * brain.pose_cells.winner.mass, rel=0.05)
+    assert brain.association.learning_rate == pytest.approx(2 * eta * strength * brain.pose_cells.winner.mass, rel=0.05)
     circle.angle += 2.6
     circle.advance(brain, 1)
     assert brain.lost
-    assert brain.learning_rate == 0.0
+    assert brain.association.learning_rate == 0.0
 
 
 def test_the_fixed_rate_is_fixed() -> None:
     circle, brain = start()
     circle.advance(brain, LAP)
-    assert brain.learning_rate == brain.params.local_view.learning_rate
+    assert brain.association.learning_rate == brain.params.local_view.learning_rate
 
 
 def test_a_step_allocates_no_more_with_time() -> None:
@@ -314,5 +363,5 @@ def test_a_step_allocates_no_more_with_time() -> None:
             needed.append(peak - before)
     finally:
         tracemalloc.stop()
-    assert np.median(needed[4:]) < 1.2 * np.median(needed[:4])
-    assert held[-1] < 1_000_000  # arrays that double included
+    assert min(needed[4:]) < 1.2 * min(needed[:4])  # of laps in which no array grew
+    assert held[-1] < 1_000_000 + 8 * brain.view_links.room  # it moved meanwhile, arrays that grew included

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2, Recognition
-from ratslam_core.transitions import Transitions
+from ratslam_core.experience_map.transitions import Transitions
 
 from .drives import Robot
 
@@ -38,7 +38,7 @@ def two_places(params: ExperienceMapParams = EXACT) -> Robot:
 # ---------------------------------------------------------------- reading
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(st.floats(0.3, 2.0), st.floats(-1.5, 1.5), st.integers(0, 15))
 def test_a_link_is_read_as_the_paper_writes_it(forwards: float, turn: float, behaviour: int) -> None:
     """B 4.2: distance, bearing to j relative to the facing of i, facing of j relative to that of i."""
@@ -207,7 +207,7 @@ def test_what_was_deleted_is_measured_no_more() -> None:
     assert np.array_equal(t.weight[: t.count], before[1])
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.lists(st.tuples(st.integers(0, 11), st.integers(0, 11)), max_size=20))
 def test_whatever_is_deleted_the_map_stays_in_one_piece(doubted: list[tuple[int, int]]) -> None:
     """Odometry by which experiences were made still holds them together; only looks at known places go."""

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ratslam_core import ExperienceMapParams, LocalViewParams, Odometry, Pose2, PoseCellParams, wrap_angle
-from ratslam_core.parameter import check_ranges, param
+from ratslam_core.params.parameter import check_ranges, param
 
 places = st.floats(-50, 50)
 poses = st.builds(Pose2, places, places, st.floats(-math.pi, math.pi).map(wrap_angle))
@@ -61,6 +61,7 @@ def test_odometry_is_checked(bad: float) -> None:
         (lambda: PoseCellParams(n_x=7), r"n_x must be between 8 and 1000 cells, got 7"),
         (lambda: PoseCellParams(n_x=20.0), r"n_x must be int, got 20\.0"),  # type: ignore[arg-type]
         (lambda: PoseCellParams(n_x=True), r"n_x must be int, got True"),
+        (lambda: PoseCellParams(n_x=1000, n_y=1000, n_theta=68), r"at most 67108864 cells together, got 68000000"),
         (lambda: PoseCellParams(inhibit=math.nan), r"inhibit must be between 0\.0 and 0\.02, got nan"),
         (lambda: PoseCellParams(carry=1), r"carry must be bool, got 1"),  # type: ignore[arg-type]
         (lambda: LocalViewParams(shift=6), r"shift must be between 0 and 5 columns, got 6"),

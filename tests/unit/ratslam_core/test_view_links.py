@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratslam_core import LocalViewParams, PoseCells, ViewLinks, view_links
+from ratslam_core import LocalViewParams, PoseCells, ViewLinks
+from ratslam_core.local_view import view_links
 
 from . import literal
 
@@ -121,3 +122,20 @@ def test_the_views_at_a_column_are_those_linked_there(interpreted: bool, monkeyp
         assert views.tolist() == np.flatnonzero(expected).tolist()
         assert strength == pytest.approx(np.array(expected)[views], rel=1e-5)
         assert len(links.views_at(y * n_x + x, n_y * n_x, 0)[0]) == 0
+
+
+def test_the_arena_takes_hardly_more_room_than_the_links() -> None:
+    """Hours of views: blocks that moved leave no gaps for long, and what is spare is a part and not a doubling."""
+    links, rng = ViewLinks(), np.random.default_rng(4)
+    slot = np.zeros(147_456, np.int32)
+    for turn in range(3):
+        for view in range(400 * (turn + 1)):
+            flats = 100 * view + turn * 40 + np.arange(int(rng.integers(200, 600)))
+            slot[:] = 0
+            slot[flats] = np.arange(len(flats)) + 1
+            cells = np.zeros((len(flats), 4), np.int32)
+            cells[:, 3] = flats
+            links.learn(view, cells, np.ones(len(flats), np.float32), slot)
+            if view % 40 == 39 and (turn or view > 200):
+                used = sum(len(links.of(k)[0]) for k in range(400 * (turn + 1)))
+                assert links.room <= 2 * used

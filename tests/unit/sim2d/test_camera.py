@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from sim2d import Panel, SimParams, Wall, World, camera, column_hits, load_world, painting
-from sim2d.atlas import Atlas
-from sim2d.camera import Camera
-from sim2d.geometry import ray_length
-from sim2d.texture import paint_strip
+from sim2d import Panel, SimParams, Wall, World, load_world
+from sim2d.camera import camera, column_hits, painting
+from sim2d.camera.atlas import Atlas
+from sim2d.camera.camera import Camera
+from sim2d.geometry.segments import ray_length
+from sim2d.world.texture import paint_strip
 
 from .rooms import GREY, room
 

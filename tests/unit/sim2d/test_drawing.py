@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim2d import Panel, Wall, draw_world, load_world, world_names
-from sim2d.texture import TEXTURES, paint_strip, strip_shape
+from sim2d.world.texture import TEXTURES, paint_strip, strip_shape
 
 from .rooms import GREY, room
 

@@ -5,9 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from sim2d import geometry, ranges, wall_index
-from sim2d.geometry import free_cells, inside_ring, nearest_segment, ray_length
-from sim2d.wall_index import build_index
+from sim2d.geometry import segments as geometry
+from sim2d.geometry import wall_index
+from sim2d.geometry.segments import free_cells, inside_ring, nearest_segment, ray_length
+from sim2d.geometry.wall_index import build_index
+from sim2d.sensors import ranges
 
 SQUARE = np.array([[0, 0, 4, 0], [4, 0, 4, 4], [4, 4, 0, 4], [0, 4, 0, 0]], float)
 RING = SQUARE[:, :2]

@@ -141,7 +141,7 @@ def rectilinear(draw: st.DrawFn) -> NDArray[np.bool_]:
     return np.pad(np.kron(np.array(fields), np.ones((14, 14), bool)), 3)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(rectilinear())
 def test_rectilinear_plans_come_back(plan: NDArray[np.bool_]) -> None:
     rings = trace(plan)
@@ -170,7 +170,7 @@ def _inside(world: World, shape: tuple[int, int]) -> NDArray[np.bool_]:
     return crossings % 2 == 1
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.floats(0.3, 0.7))
 def test_simplified_walls_keep_the_tolerance(seed: int, share: float) -> None:
     """Any mess of pixels: no wall strays into the floor by more than a pixel, no border from its wall by more than 1.5."""
@@ -310,6 +310,10 @@ def test_bad_pictures(picture: NDArray[np.uint8], scale_m: float | None, complai
         ('{"edges": [], "nodes": []}', "an object with keys edges, nodes; expected a world file"),
         ('{"format": 1}', "v.json: name: field required"),
         ("[" * 100_000, "nested too deeply"),
+        ("[" * 100 + "]" * 100, "v.json: not a world: nested too deeply; at most 20"),
+        ("[[0, 0, 5, 1" + "0" * 400 + "]]", r"\[0\]: got"),
+        ("[[0, 0, 5, 1" + "0" * 5000 + "]]", "v.json: a number has thousands of digits"),
+        ('{"\\ud800": 1}', r"an object with keys \\ud800; expected"),
         ("7", "v.json: "),
         (json.dumps(SQUARE * 2501), "10004 segments; at most 10000"),
         (" " * 1_000_001, "v.json: 1000001 bytes; at most 1000000"),

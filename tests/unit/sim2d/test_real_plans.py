@@ -1,4 +1,4 @@
-"""The importers on floor plans of real buildings, which lie beside the repository or not at all."""
+"""The importers on floor plans: of a building of our own, and of real ones where they lie beside the repository."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from sim2d import FreeSpace, World
-from sim2d.geometry import nearest_segment
+from sim2d import FreeSpace
+from sim2d.geometry.segments import nearest_segment
 from sim2d.importers import import_file
 from sim2d.importers.floor import choose_floor
 from sim2d.importers.map_yaml import MapYaml, read_map_yaml
@@ -19,27 +19,36 @@ from sim2d.importers.picture import read_picture
 from sim2d.importers.picture_map import SPECK_PX, free_pixels, without_slivers
 from sim2d.importers.trace import ring_area, trace
 
-PLANS = Path(__file__).parents[4] / "shared" / "data" / "worlds"
-PICTURES = [("gdc_3ne/3ne.yaml", None), ("willow/willow-full.pgm", 0.1)]
-VECTORS = ["amrl/AHG2.vectormap.json", "amrl/NSH1.vectormap.json"]
+OURS = Path(__file__).parents[2] / "data"
+THEIRS = Path(__file__).parents[4] / "shared" / "data" / "worlds"
 
 
-def plan(name: str, scale_m: float | None = None) -> World:
-    path = PLANS / name
-    if not path.is_file():
-        pytest.skip(f"{name} is not here")
-    return import_file(path, scale_m)
+def those_here(*names: str) -> list[Path]:
+    return [path for name in names if (path := THEIRS / name).is_file()]
 
 
-def meta(name: str, scale_m: float | None) -> MapYaml:
+PICTURES: list[tuple[Path, float | None]] = [(OURS / "building.yaml", None), (OURS / "drawing.png", 0.1)]
+PICTURES += [(path, None) for path in those_here("gdc_3ne/3ne.yaml")]
+PICTURES += [(path, 0.1) for path in those_here("willow/willow-full.pgm")]
+VECTORS = [
+    OURS / "building.vectormap.json",
+    *those_here("amrl/AHG2.vectormap.json", "amrl/NSH1.vectormap.json"),
+]
+
+
+def name_of(value: object) -> str | None:
+    return value.name if isinstance(value, Path) else None
+
+
+def meta(path: Path, scale_m: float | None) -> MapYaml:
     if scale_m is None:
-        return read_map_yaml(name, (PLANS / name).read_text("utf-8"))
-    return MapYaml(Path(name).name, scale_m, (0.0, 0.0, 0.0), False, 0.65, 0.196, "trinary")
+        return read_map_yaml(path.name, path.read_text("utf-8"))
+    return MapYaml(path.name, scale_m, (0.0, 0.0, 0.0), False, 0.65, 0.196, "trinary")
 
 
-@pytest.mark.parametrize(("name", "scale_m"), [*PICTURES, *((name, None) for name in VECTORS)])
-def test_it_loads_with_places_to_start_from(name: str, scale_m: float | None) -> None:
-    world = plan(name, scale_m)
+@pytest.mark.parametrize(("path", "scale_m"), [*PICTURES, *((path, None) for path in VECTORS)], ids=name_of)
+def test_it_loads_with_places_to_start_from(path: Path, scale_m: float | None) -> None:
+    world = import_file(path, scale_m)
     assert 100 < len(world.walls) <= 4000
     free = FreeSpace(world, 0.22)
     assert len(world.starts) == 4
@@ -47,11 +56,11 @@ def test_it_loads_with_places_to_start_from(name: str, scale_m: float | None) ->
     assert all(20 < free.shortest_m((home.x, home.y), (s.x, s.y)) < 200 for s in world.starts[1:])
 
 
-@pytest.mark.parametrize(("name", "scale_m"), PICTURES)
-def test_walls_are_where_the_picture_has_them(name: str, scale_m: float | None) -> None:
+@pytest.mark.parametrize(("path", "scale_m"), PICTURES, ids=name_of)
+def test_walls_are_where_the_picture_has_them(path: Path, scale_m: float | None) -> None:
     """Both ways: every wall within 1.5 pixels of a pixel that is no floor, every border of the floor within 1.5 of a wall."""
-    world, about = plan(name, scale_m), meta(name, scale_m)
-    free = free_pixels(*read_picture(name, (PLANS / name).with_name(about.image).read_bytes()), about)[::-1]
+    world, about = import_file(path, scale_m), meta(path, scale_m)
+    free = free_pixels(*read_picture(path.name, path.with_name(about.image).read_bytes()), about)[::-1]
     walls = (world.segments() - np.tile(about.origin[:2], 2)) / about.resolution
 
     points = np.concatenate([np.linspace(w[:2], w[2:], int(np.hypot(*(w[2:] - w[:2])) * 4) + 2) for w in walls])
@@ -61,18 +70,18 @@ def test_walls_are_where_the_picture_has_them(name: str, scale_m: float | None) 
     off = np.maximum(np.abs(around.data[near] - points[:, None]) - 0.5, 0.0)  # from their edges
     assert np.hypot(off[..., 0], off[..., 1]).min(axis=1).max() <= 1.5
 
-    floor = choose_floor(name, without_slivers(free, about.resolution), about.resolution, 0.22).mask
+    floor = choose_floor(path.name, without_slivers(free, about.resolution), about.resolution, 0.22).mask
     rings = [r for r in trace(floor) if ring_area(r) > 0 or -ring_area(r) >= SPECK_PX]
     middles = [(a + b) / 2 for ring in rings for a, b in pairwise(ring.astype(float))][::3]
     away = [nearest_segment(walls, x, y)[1] for x, y in middles]
     assert max(away) <= 1.5 + 0.03  # walls lie at whole millimetres
 
 
-@pytest.mark.parametrize("name", VECTORS)
-def test_vector_maps_are_taken_as_they_are(name: str) -> None:
-    world = plan(name)
-    given = json.loads((PLANS / name).read_text("utf-8"))
+@pytest.mark.parametrize("path", VECTORS, ids=name_of)
+def test_vector_maps_are_taken_as_they_are(path: Path) -> None:
+    world = import_file(path)
+    given = json.loads(path.read_text("utf-8"))
     inner = [w for w in world.walls if not w.outer]
-    assert len(inner) == len(given)  # these two have none without length
+    assert len(inner) == len(given)  # none of them without length
     first = given[0]
     assert (inner[0].x1, inner[0].y2) == (round(first["p0"]["x"], 3), round(first["p1"]["y"], 3))

@@ -139,11 +139,11 @@ def test_same_seed_same_drives_same_frames() -> None:
     world = load_world("office")
     one, two = Simulator(world, seed=9), Simulator(world, seed=9)
     assert all(same(a, b) for a, b in zip(wander(one, 100), wander(two, 100), strict=True))
-    assert one.state() == two.state()
+    assert one.digest() == two.digest()
     assert one.random_free_pose() == two.random_free_pose()
-    first = one.state()
+    first = one.digest()
     one.step(Drive(0.1, 0.0))
-    assert one.state() != first
+    assert one.digest() != first
 
 
 def test_reset_is_a_new_simulator() -> None:
@@ -152,7 +152,7 @@ def test_reset_is_a_new_simulator() -> None:
     wander(used, 40)
     used.teleport(*used.random_free_pose())
     used.reset(2)
-    assert used.state() == new.state()
+    assert used.digest() == new.digest()
     assert all(same(a, b) for a, b in zip(wander(used, 60), wander(new, 60), strict=True))
 
 
@@ -188,10 +188,10 @@ def test_teleport() -> None:
 )
 def test_teleport_refuses_and_leaves_all_as_it_was(pose: tuple[float, float, float], reason: str) -> None:
     simulator = Simulator(room(Wall(0.5, 1.0, 1.5, 1.0, "desk", 0.75, GREY)))
-    before = simulator.state()
+    before = simulator.digest()
     with pytest.raises(ValueError, match=reason):
         simulator.teleport(*pose)
-    assert simulator.state() == before
+    assert simulator.digest() == before
 
 
 def test_random_poses_are_free() -> None:
@@ -215,7 +215,7 @@ def test_rates_change_while_it_runs_and_time_goes_on() -> None:
     people = (Person("Ada", ((0.5, 0.5), (3.5, 0.5)), (0.0, 0.0), speed=0.8),)
     simulator = Simulator(replace(room(), people=people), EXACT)
     times = [simulator.step(Drive(0.4, 0.0)).time_s for _ in range(10)]
-    at, walked = simulator.truth.x, simulator.living.walkers.xy[0, 0]
+    at, walked = simulator.truth.x, simulator.actors.walkers.xy[0, 0]
     simulator.set_params(replace(EXACT, sensor_rate_hz=20, physics_rate_hz=480))
     frames = [simulator.step(Drive(0.4, 0.0)) for _ in range(10)]
     assert times + [frame.time_s for frame in frames] == pytest.approx(
@@ -224,17 +224,17 @@ def test_rates_change_while_it_runs_and_time_goes_on() -> None:
     assert frames[-1].dt == 0.05
     assert frames[-1].odometry_speed == pytest.approx(0.4)
     assert simulator.truth.x - at == pytest.approx(0.2, abs=0.01)  # half a second
-    assert simulator.living.walkers.xy[0, 0] - walked == pytest.approx(0.4, abs=0.01)
+    assert simulator.actors.walkers.xy[0, 0] - walked == pytest.approx(0.4, abs=0.01)
 
 
 def test_the_robot_grows_where_there_is_room() -> None:
     simulator = Simulator(room(), EXACT)
     reason = r"robot_radius_m cannot become 0\.5 here: .* would cover the robot at \(0\.48, 2\.00\); keep"
     simulator.teleport(0.48, 2.0, math.pi)
-    before = simulator.state()
+    before = simulator.digest()
     with pytest.raises(ValueError, match=reason):
         simulator.set_params(replace(EXACT, robot_radius_m=0.5))
-    assert simulator.state() == before
+    assert simulator.digest() == before
     simulator.set_params(replace(EXACT, robot_radius_m=0.4))
     for _ in range(20):
         simulator.step(Drive(0.5, 0.0))

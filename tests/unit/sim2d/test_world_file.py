@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sim2d import DEFAULT_WORLD, FreeSpace, World, WorldError, load_world, world_names, world_to_json
-from sim2d.world_file import SCHEMA, WORLDS, schema_text
+from sim2d.world.world_file import SCHEMA, WORLDS, schema_text
 from sim2d.worlds.make import MADE
 
 from .rooms import room_file

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
@@ -11,14 +12,16 @@ from http import HTTPStatus
 from typing import Any
 
 from starlette.testclient import TestClient
-from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 from websockets.sync.server import ServerConnection, serve
 
 from tests.fake_snapshots import fake_snapshot
-from web.api import create_app
+from web.http.api import create_app
 from web.latest import Latest
 from web.messages import Accepted, Command, Refused, Snapshot
+from web.switches import Switches
+from web.viewer.camera_views import Camera
+from web.viewer.viser_server import knows
 
 PORT = 8000
 ORIGIN = f"http://127.0.0.1:{PORT}"
@@ -46,27 +49,43 @@ class StubEngine:
 
 
 @dataclass
-class StubStage:
+class StubViewer:
     port: int = 0
+    secret: str = "known to the proxy alone"
     on_connect: Callable[[int], None] | None = None
+    on_complaint: Callable[[int, str], None] | None = None
     calls: list[tuple[Any, ...]] = field(default_factory=list)
     called: threading.Event = field(default_factory=threading.Event)
+    cameras: dict[int, Camera] = field(default_factory=dict)  # those that have been turned
 
     def _note(self, *call: Any) -> None:
         self.calls.append(call)
         self.called.set()
 
+    def fly(self, client_id: int, view: str, at_once: bool = False, turned: Camera | None = None) -> None:
+        self._note("jump" if at_once else "fly", client_id, view, *[turned] * (turned is not None))
+
+    def turned(self, client_id: int) -> Camera | None:
+        return self.cameras.get(client_id)
+
+
+class StubViewers:
+    """One stage for both themes unless another is given for the light one."""
+
+    def __init__(self, dark: StubViewer | None = None, light: StubViewer | None = None) -> None:
+        self.dark = dark or StubViewer()
+        self.light = light or self.dark
+        self.switches = Switches()
+        self.calls: list[str] = []
+
+    def of(self, theme: str) -> StubViewer:
+        return {"dark": self.dark, "light": self.light}[theme]
+
     def start(self) -> None:
-        self._note("start")
+        self.calls.append("start")
 
     def stop(self) -> None:
-        self._note("stop")
-
-    def fly(self, client_id: int, view: str) -> None:
-        self._note("fly", client_id, view)
-
-    def set_theme(self, theme: str) -> None:
-        self._note("set_theme", theme)
+        self.calls.append("stop")
 
 
 @dataclass
@@ -74,9 +93,10 @@ class House:
     """A whole server in the test client's hands."""
 
     engine: StubEngine
-    stage: StubStage
+    stage: StubViewer
     latest: Latest[Snapshot]
     client: TestClient
+    switches: Switches
 
     def post(self, body: bytes, **headers: str) -> tuple[int, Any]:
         answer = self.client.post(
@@ -89,28 +109,28 @@ class House:
 
 
 @contextlib.contextmanager
-def house(*, empty: bool = False, stage: StubStage | None = None) -> Iterator[House]:
-    engine, stage, latest = StubEngine(), stage or StubStage(), Latest[Snapshot]()
+def house(*, empty: bool = False, stage: StubViewer | None = None, light: StubViewer | None = None) -> Iterator[House]:
+    engine, stage, latest = StubEngine(), stage or StubViewer(), Latest[Snapshot]()
     if not empty:
         latest.put(fake_snapshot(12))
-    app = create_app(latest, engine.submit, stage, PORT)
+    viewers = StubViewers(stage, light)
+    app = create_app(latest, engine.submit, viewers, PORT)
     with TestClient(app, base_url=ORIGIN) as client:
-        yield House(engine, stage, latest, client)
+        yield House(engine, stage, latest, client, viewers.switches)
 
 
 @contextlib.contextmanager
-def viser_double(stage: StubStage, greet: int = 1) -> Iterator[list[bytes]]:
-    """A loopback server like viser's: a page, and a websocket that numbers its client at the `greet`th message.
+def viser_double(stage: StubViewer, greet: int = 1) -> Iterator[list[bytes]]:
+    """A loopback server like viser's: a websocket that asks for the secret and numbers its client at the `greet`th message.
 
     Echoes what it gets; yields the list of what it got.
     """
     got: list[bytes] = []
-    numbers = iter(range(100))
+    secret = stage.secret
+    numbers = itertools.count()
 
-    def page(_connection: ServerConnection, request: Request) -> Response | None:
-        if request.headers.get("Upgrade") == "websocket":
-            return None
-        return Response(HTTPStatus.OK, "OK", Headers({"Content-Length": "4"}), b"page")
+    def check(connection: ServerConnection, request: Request) -> Response | None:
+        return None if knows(request, secret) else connection.respond(HTTPStatus.FORBIDDEN, "")
 
     def talk(connection: ServerConnection) -> None:
         for count, message in enumerate(connection, 1):
@@ -125,9 +145,9 @@ def viser_double(stage: StubStage, greet: int = 1) -> Iterator[list[bytes]]:
                 connection.send(message)
 
     def choose(_connection: ServerConnection, names: Any) -> Any:
-        return next((name for name in names if name.startswith("viser-v")), None)
+        return names[0]
 
-    with serve(talk, "127.0.0.1", 0, process_request=page, select_subprotocol=choose, compression=None) as server:
+    with serve(talk, "127.0.0.1", 0, process_request=check, select_subprotocol=choose, compression=None) as server:
         stage.port = server.socket.getsockname()[1]
         thread = threading.Thread(target=server.serve_forever)
         thread.start()

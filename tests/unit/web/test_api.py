@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import re
+
 import orjson
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.fake_snapshots import fake_reports
+from tests.fake_snapshots import fake_reports, fake_snapshot
 from tests.unit.web.doubles import house
-from web import stream
-from web.commands import MODELS, Malformed, check, read_object
-from web.messages import Accepted, Drive, Kidnap, ReadExperience, Refused, Reset, SetGoal
+from web.http import asking
+from web.http.api import STATIC
+from web.http.commands import MODELS, Malformed, check, read_object
+from web.messages import Accepted, Drive, Kidnap, ReadExperience, Refused, Reset, SetGoal, SetSpeed
+from web.messages.commands import FASTEST, SLOWEST
 
 
 @pytest.fixture
@@ -26,10 +30,34 @@ def test_healthz_tells_the_tick(server):
 
 def test_before_the_first_tick():
     with house(empty=True) as young:
-        assert young.client.get("/healthz").json()["tick"] is None
+        young.latest.waking = "compiling 3 of 7"
+        answer = young.client.get("/healthz")
+        assert answer.status_code == 503
+        assert answer.json() == {"status": "starting", "doing": "compiling 3 of 7", "tick": None}
         answer = young.client.get("/api/state")
         assert answer.status_code == 503
-        assert "first tick" in answer.json()["detail"][0]["reason"]
+        assert "first tick yet (compiling 3 of 7)" in answer.json()["detail"][0]["reason"]
+        young.latest.put(fake_snapshot(0))
+        answer = young.client.get("/healthz")
+        assert (answer.status_code, answer.json()) == (200, {"status": "ok", "tick": 0})
+
+
+def test_the_page_hears_how_far_the_start_has_come():
+    with house(empty=True) as young, young.stream() as page:
+        assert page.receive_json()["type"] == "hello"
+        assert page.receive_json() == {"type": "waking", "doing": "starting"}
+        young.latest.waking = "compiling 3 of 7"
+        assert page.receive_json() == {"type": "waking", "doing": "compiling 3 of 7"}
+        young.latest.put(fake_snapshot(0))
+        assert page.receive_json()["type"] == "state"
+
+
+def test_the_page_offers_the_speeds_there_are():
+    select = (STATIC / "index.html").read_text("utf-8").split('id="speed"')[1].split("</select>")[0]
+    offered = [float(value) for value in re.findall(r'value="([^"]*)"', select)]
+    for factor in offered:
+        SetSpeed(type="set_speed", factor=factor)
+    assert (min(offered), sorted(offered)[1], max(offered)) == (0.0, SLOWEST, FASTEST)
 
 
 def test_state_with_and_without_the_map(server):
@@ -67,7 +95,7 @@ def test_a_refusal_of_the_engine_has_field_value_and_reason(server):
 
 
 def test_a_silent_engine_is_503(server, monkeypatch):
-    monkeypatch.setattr(stream, "ANSWER_TIMEOUT_S", 0.02)
+    monkeypatch.setattr(asking, "ANSWER_TIMEOUT_S", 0.02)
     server.engine.answer = None
     status, body = server.post(b'{"type": "pause"}')
     assert status == 503
@@ -91,6 +119,16 @@ WRONG = [
     (b'{"type": "drive", "speed": true, "yaw_rate": 0}', "speed", "speed must be a number, got true"),
     (b'{"type": "set_goal", "x": "1", "y": 0}', "x", 'x must be a number, got "1"'),
     (b'{"type": "step", "ticks": 1.5}', "ticks", "ticks must be a whole number, got 1.5"),
+    (
+        b'{"type": "set_speed", "factor": 16.5}',
+        "factor",
+        "factor must be 0 (as fast as possible) or from 0.25 to 16, got 16.5",
+    ),
+    (
+        b'{"type": "set_speed", "factor": 0.1}',
+        "factor",
+        "factor must be 0 (as fast as possible) or from 0.25 to 16, got 0.1",
+    ),
     (b'{"type": "step", "ticks": 0}', "ticks", "ticks must be at least 1, got 0"),
     (b'{"type": "set_mode", "mode": "fly"}', "mode", 'mode must be explore, manual or goal, got "fly"'),
     (b'{"type": "reset", "seed": -1}', "seed", "seed must be at least 0, got -1"),
@@ -119,6 +157,22 @@ def test_what_is_wrong_is_said_with_field_value_and_remedy(body, field, reason):
     assert first["field"] == field
     assert first["reason"].startswith(reason)
     assert str(error.value)
+
+
+@pytest.mark.parametrize("levels", [20, 128, 254, 255, 1000, 1022, 1023, 9000])
+@pytest.mark.parametrize("route", ["commands", "worlds/new", "worlds/open", "worlds/save", "worlds/delete"])
+def test_what_is_nested_too_deeply_is_refused_on_every_route(server, levels, route):
+    for body in (b'{"type": ' + b"[" * levels + b"]" * levels + b"}", b'{"a":' * levels + b"[]" + b"}" * levels):
+        answer = server.client.post(f"/api/{route}", content=body, headers={"Content-Type": "application/json"})
+        assert answer.status_code == 422
+        reason = answer.json()["detail"][0]["reason"]
+        assert reason.startswith(("nested too deeply; at most 20", *(["this is not JSON"] if levels > 1022 else [])))
+    assert server.engine.commands == []
+
+
+def test_a_body_of_brackets_alone_is_not_unpacked():
+    with pytest.raises(Malformed, match=r"this has 200001 brackets \[ and \{; at most 100000 can be"):
+        read_object(b"[" + b"[]," * 200_000)
 
 
 def test_every_wrong_field_is_named(server):
@@ -154,7 +208,7 @@ fields = st.sampled_from(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(
     st.dictionaries(fields, json_values, max_size=4),
     st.sampled_from([*MODELS, "nonsense"]) | json_values,
@@ -187,7 +241,12 @@ def test_a_wrong_method_is_said(server):
 
 @pytest.mark.parametrize(
     ("path", "holds"),
-    [("/", "<title>RatSLAM</title>"), ("/docs", "docs.js"), ("/static/main.js", "Link"), ("/favicon.ico", "<svg")],
+    [
+        ("/", "<title>RatSLAM</title>"),
+        ("/docs", "docs/docs.js"),
+        ("/static/main.js", "Connection"),
+        ("/favicon.ico", "<svg"),
+    ],
 )
 def test_pages_are_there(server, path, holds):
     answer = server.client.get(path)
@@ -196,9 +255,9 @@ def test_pages_are_there(server, path, holds):
 
 
 def test_nothing_in_the_pages_comes_from_elsewhere():
-    from web.api import STATIC
-
-    for file in STATIC.iterdir():
+    for file in STATIC.rglob("*.*"):
+        if "vendor" in file.parts:  # its licence and comments name addresses, which it does not ask
+            continue
         text = file.read_text(encoding="utf-8").replace("http://www.w3.org/", "")
         assert "http://" not in text, file
         assert "https://" not in text, file

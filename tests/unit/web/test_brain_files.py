@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import asyncio
 import io
 import json
+import threading
 import zipfile
+from concurrent.futures import Future
 
 import numpy as np
 import pytest
 
-from ratslam_core import RatSlam
-from ratslam_core.brain_snapshot import take_snapshot
+from disk import archive
+from ratslam_core import Odometry, RatSlam, take_snapshot
 from tests.unit.web.doubles import house
-from web import brain_files
-from web.brain_files import packed, unpacked
+from web.http import brain_download
+from web.http.asking import NoAnswer
+from web.http.brain_download import BrainDownload
+from web.http.brain_files import packed, unpacked
+from web.http.security import MAX_BRAIN_BYTES
 from web.messages import Accepted, ReadBrain, Refused, UseBrain
-from web.security import MAX_BRAIN_BYTES
 
 BINARY = {"Content-Type": "application/octet-stream"}
 
@@ -23,7 +28,7 @@ BINARY = {"Content-Type": "application/octet-stream"}
 @pytest.fixture(scope="module")
 def brain() -> RatSlam:
     brain = RatSlam()
-    brain.local_view.observe(np.random.default_rng(0).integers(0, 256, (48, 64), np.uint8))
+    brain.step(np.random.default_rng(0).integers(0, 256, (48, 64), np.uint8), Odometry(0.3, 0.1, 0.1))
     return brain
 
 
@@ -82,30 +87,102 @@ def test_what_is_no_brain_is_refused_and_the_engine_is_not_asked(server, brain, 
 
 
 def test_a_file_that_unpacks_to_too_much_is_refused_before_it_is_unpacked(monkeypatch) -> None:
-    monkeypatch.setattr(brain_files, "MAX_UNPACKED_BYTES", 1 << 20)
+    monkeypatch.setattr(archive, "MOST_BYTES", 1 << 20)
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as file:
-        file.writestr("json.npy", bytes(2 << 20))
+        file.writestr("json.npy", b"")
+        file.writestr("a0.npy", bytes(2 << 20))
     with pytest.raises(ValueError, match="too large: 2 MiB unpacked, at most 1 can be"):
         unpacked(out.getvalue())
 
 
 def test_a_brain_goes_down_as_a_file(server, brain) -> None:
-    server.engine.answer = Accepted(12, take_snapshot(brain))
+    server.engine.answer = Accepted(12, brain)
     answer = server.client.get("/api/brain")
     assert answer.status_code == 200
     assert server.engine.commands == [ReadBrain()]
     assert answer.headers["content-disposition"] == 'attachment; filename="brain-office-seed3.npz"'
     assert unpacked(answer.content).digest() == brain.digest()
+    assert server.client.get("/api/brain").status_code == 200
+    assert server.engine.commands == [ReadBrain(), ReadBrain()]  # another one
+
+
+def test_a_brain_that_could_not_come_up_again_does_not_go_down(server, brain, monkeypatch) -> None:
+    server.engine.answer = Accepted(12, brain)
+    monkeypatch.setattr(archive, "MOST_BYTES", 1000)
+    answer = server.client.get("/api/brain")
+    assert answer.status_code == 507
+    words = answer.json()["detail"][0]["reason"]
+    assert words.startswith("this brain cannot be sent: too large for a file: ")
+    assert words.endswith(" MiB of arrays, at most 0 can be read again")
+    monkeypatch.undo()
+    assert server.client.get("/api/brain").status_code == 200
+
+
+def test_who_asks_while_a_brain_is_made_gets_the_same(brain, monkeypatch) -> None:
+    made, go_on, calls = [], threading.Event(), []
+
+    def slowly(copy: RatSlam) -> bytes:
+        made.append(copy)
+        assert go_on.wait(60)
+        return b"a brain"
+
+    def submit(request: ReadBrain) -> Future:
+        calls.append(request)
+        future: Future = Future()
+        future.set_result(Accepted(12, brain))
+        return future
+
+    async def ask_thrice() -> list[bytes]:
+        download = BrainDownload(submit)  # type: ignore[arg-type]
+        asked = [asyncio.create_task(download.answer({})) for _ in range(3)]
+        while not made:
+            await asyncio.sleep(0.01)
+        monkeypatch.setattr(brain_download, "FRESH_S", -1.0)  # what is made is old by now
+        with pytest.raises(NoAnswer, match="is being sent to somebody") as refused:
+            await download.answer({})
+        assert refused.value.status == 429
+        go_on.set()
+        answers = await asyncio.gather(*asked)
+        for answer in answers:
+            await answer({"type": "http"}, _nothing, _nothing)  # type: ignore[arg-type]
+        assert download._file is None  # nothing is kept
+        return [answer.body for answer in answers]
+
+    monkeypatch.setattr(brain_download, "_packed", slowly)
+    bodies = asyncio.run(ask_thrice())
+    assert bodies == [b"a brain"] * 3
+    assert bodies[0] is bodies[1] is bodies[2]
+    assert (len(made), len(calls)) == (1, 1)
+
+
+async def _nothing(*_: object) -> None:
+    """Sends and receives."""
+
+
+@pytest.mark.parametrize("site", ["cross-site", "same-site"])
+def test_another_site_cannot_have_a_brain_copied(server, site: str) -> None:
+    for path in ("/api/brain", "/api/state?map=1", "/api/experience/0", "/api/world", "/api/world/file"):
+        answer = server.client.get(path, headers={"Sec-Fetch-Site": site})
+        assert (answer.status_code, "another site" in answer.text) == (403, True)
+    assert server.engine.commands == []
+    assert server.client.get("/", headers={"Sec-Fetch-Site": site}).status_code == 200  # a link may lead here
+    assert server.client.get("/api/state", headers={"Sec-Fetch-Site": "same-origin"}).status_code == 200
+
+
+def test_an_engine_that_has_ended_is_told_of(server) -> None:
+    server.engine.answer = Refused("type", "ReadBrain", "the engine has ended")
+    answer = server.client.get("/api/brain")
+    assert (answer.status_code, answer.json()["detail"][0]["reason"]) == (503, "the engine has ended")
 
 
 def test_a_brain_comes_up_and_is_used(server, brain) -> None:
     answer = server.client.post("/api/brain", content=packed(take_snapshot(brain)), headers=BINARY)
     assert (answer.status_code, answer.json()["accepted"]) == (200, True)
-    (errand,) = server.engine.commands
-    assert isinstance(errand, UseBrain)
-    assert isinstance(errand.brain, RatSlam)
-    assert errand.brain.digest() == brain.digest()
+    (request,) = server.engine.commands
+    assert isinstance(request, UseBrain)
+    assert isinstance(request.brain, RatSlam)
+    assert request.brain.digest() == brain.digest()
 
 
 def test_a_brain_that_the_engine_refuses_is_told(server, brain) -> None:

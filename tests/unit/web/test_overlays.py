@@ -9,10 +9,11 @@ import pytest
 
 from tests.fake_snapshots import fake_snapshot
 from web.messages import OccupancyPicture
-from web.stage import images, overlays
-from web.stage.map_fit import DEPTH, WIDTH, MapFit
-from web.stage.palette import DARK, LIGHT, Palette
-from web.stage.pose_cell_plate import way_arrow
+from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit
+from web.viewer.plates import overlays
+from web.viewer.plates.pose_cell_plate import way_arrow
+from web.viewer.primitives import images
+from web.viewer.primitives.palette import DARK, LIGHT, Palette
 
 SHAPE = (36, 64, 48)
 GROUND = images.gridded_floor((7.0, 7.0), 30, DARK.floor, DARK.floor)

@@ -3,36 +3,41 @@
 from __future__ import annotations
 
 import asyncio
+from typing import ClassVar
 
+import orjson
 import pytest
 from starlette.testclient import WebSocketDenialResponse
-from starlette.websockets import WebSocketDisconnect
+from starlette.websockets import WebSocketDisconnect, WebSocketState
 
-from tests.unit.web.doubles import OURS, PAGE, StubStage, house, viser_double
-from web import proxy as module
-from web.proxy import Cameras, _call
+from tests.patience import PATIENCE_S
+from tests.unit.web.doubles import OURS, PAGE, StubViewer, StubViewers, house, viser_double
+from web.http import proxy as module
+from web.http.proxy import Cameras, ViserProxy, _call
+from web.themes import Themes
+from web.viewer.viser_server import client_page
 
 PROTOCOL = "viser-v1.1.1"
 
 
 @pytest.fixture
 def behind():
-    stage = StubStage()
+    stage = StubViewer()
     with viser_double(stage) as got, house(stage=stage) as server:
         yield server, got
 
 
-def connect(server, page=PAGE):
-    return server.client.websocket_connect(f"/viser/ws/{page}", subprotocols=[PROTOCOL], headers=OURS)
+def connect(server, page=PAGE, protocols=(PROTOCOL,)):
+    return server.client.websocket_connect(f"/viser/ws/{page}", subprotocols=list(protocols), headers=dict(OURS))
 
 
-def test_the_client_s_page_comes_from_viser_once(behind, monkeypatch):
+def test_the_client_s_page_is_read_once(behind, monkeypatch):
     server, _ = behind
     answer = server.client.get("/viser/")
-    assert (answer.status_code, answer.text) == (200, "page")
-    assert server.client.get("/viser/", headers={"Accept-Encoding": "identity"}).text == "page"
+    assert (answer.status_code, answer.content) == (200, client_page())
+    assert server.client.get("/viser/", headers={"Accept-Encoding": "identity"}).content == client_page()
     assert "blob:" in answer.headers["content-security-policy"]
-    monkeypatch.setattr(module, "_fetch", None)  # a second fetch would fail
+    monkeypatch.setattr(module, "client_page", None)  # to read it again would fail
     tag = answer.headers["etag"]
     assert server.client.get("/viser/", headers={"If-None-Match": tag}).status_code == 304
 
@@ -59,12 +64,32 @@ def test_a_page_s_view_flies_its_own_camera(behind):
         with connect(server) as socket:
             socket.send_bytes(b"camera")
             socket.receive_bytes()
-            assert server.stage.called.wait(3)
-            assert server.stage.calls == [("fly", 0, "map")]
+            assert server.stage.called.wait(PATIENCE_S)
+            assert server.stage.calls == [("jump", 0, "map")]
             server.stage.called.clear()
             stream.send_text('{"type": "view", "name": "pose"}')
-            assert server.stage.called.wait(3)
+            assert server.stage.called.wait(PATIENCE_S)
             assert server.stage.calls[-1] == ("fly", 0, "pose")
+
+
+def test_a_refusal_on_a_stage_is_told_to_the_page_it_is_of(behind):
+    server, _ = behind
+    other = "q" * 22
+    with server.stream() as one, server.stream(f"/api/stream?page={other}") as two:
+        with connect(server) as first, connect(server, other) as second:
+            for socket in (first, second):
+                socket.send_bytes(b"camera")
+                socket.receive_bytes()
+            for client_id, text in ((1, "No goal set: too far"), (0, "Not done: a wall"), (5, "whose?")):
+                server.stage.on_complaint(client_id, text)
+            assert (next_notice(one), next_notice(two)) == ("Not done: a wall", "No goal set: too far")
+        server.stage.on_complaint(0, "after its end")
+
+
+def next_notice(stream) -> str:
+    while (message := orjson.loads(stream.receive_text()))["type"] != "notice":
+        pass
+    return message["text"]
 
 
 def test_viser_s_end_ends_the_browser_s(behind):
@@ -85,9 +110,34 @@ def test_text_is_not_viser_s_language(behind):
 
 
 def test_without_viser_the_browser_may_try_again():
-    stage = StubStage(port=1)  # nobody listens there
+    stage = StubViewer(port=1)  # nobody listens there
     with house(stage=stage) as server, pytest.raises(WebSocketDisconnect), connect(server) as socket:
         socket.receive_bytes()
+
+
+@pytest.mark.parametrize(
+    "protocols", [[], ["chat"], ["viser-v"], ["viser-v1.1.1 or so"], ["Viser-v1.1.1"], ["viser-v" + "1" * 40]]
+)
+def test_without_viser_s_subprotocol_it_is_said_what_is_missing(behind, protocols):
+    server, _ = behind
+    with pytest.raises(WebSocketDenialResponse) as refused, connect(server, protocols=protocols):
+        pass
+    assert refused.value.status_code == 400
+    assert "viser-v" in refused.value.json()["detail"][0]["reason"]
+
+
+def test_of_several_subprotocols_viser_s_is_taken(behind):
+    server, _ = behind
+    with connect(server, protocols=["chat", PROTOCOL]) as socket:
+        assert socket.accepted_subprotocol == PROTOCOL
+
+
+def test_without_the_secret_the_browser_may_try_again(behind):
+    server, _ = behind
+    server.stage.secret += "?"  # as it would be with another server on viser's port
+    with pytest.raises(WebSocketDisconnect) as refused, connect(server):
+        pass
+    assert refused.value.code == 1013
 
 
 @pytest.mark.parametrize("page", ["short", "..%5c..%5cetc", "p" * 65])
@@ -120,16 +170,16 @@ def test_a_message_that_brings_no_number_waits_and_the_late_one_is_still_right(m
     monkeypatch.setattr(module, "PAIRING_S", 0.01)
 
     async def run():
-        stage = StubStage()
-        cameras = Cameras(stage)
-        cameras.listen()
+        stage = StubViewer()
+        cameras = Cameras()
+        cameras.listen(stage)
         assert stage.on_connect is not None
-        assert not await cameras.pair(PAGE, nothing)
-        assert not await cameras.pair(PAGE, nothing)
+        assert not await cameras.pair(PAGE, stage, nothing)
+        assert not await cameras.pair(PAGE, stage, nothing)
         stage.on_connect(3)
         await asyncio.sleep(0.01)
         assert cameras.paired(PAGE)
-        cameras.unpair(PAGE)
+        cameras.unpair(PAGE, stage)
         assert not cameras.paired(PAGE)
         stage.on_connect(4)  # nobody waits for it
         await asyncio.sleep(0.01)
@@ -137,11 +187,71 @@ def test_a_message_that_brings_no_number_waits_and_the_late_one_is_still_right(m
     asyncio.run(run())
 
 
+def test_a_page_that_went_to_another_stage_keeps_its_camera_there():
+    async def run():
+        dark, light, cameras = StubViewer(), StubViewer(), Cameras()
+
+        async def arrive(stage: StubViewer, number: int):
+            cameras.listen(stage)
+
+            async def pass_on():
+                assert stage.on_connect is not None
+                stage.on_connect(number)
+
+            assert await cameras.pair(PAGE, stage, pass_on)
+
+        await arrive(dark, 0)
+        await arrive(light, 5)  # before the end of the other connection is noticed
+        cameras.unpair(PAGE, dark)
+        await cameras.show(PAGE, "map")
+        assert (dark.calls, light.calls) == ([], [("fly", 5, "map")])
+
+    asyncio.run(run())
+
+
+def test_a_number_of_one_stage_is_nobody_s_at_the_other():
+    async def run():
+        dark, light, cameras = StubViewer(), StubViewer(), Cameras()
+        cameras.listen(dark)
+        cameras.listen(light)
+
+        async def pass_on():
+            assert dark.on_connect is not None
+            assert light.on_connect is not None
+            dark.on_connect(3)
+            light.on_connect(7)
+
+        assert await cameras.pair(PAGE, light, pass_on)
+        await cameras.show(PAGE, "pose")
+        assert (dark.calls, light.calls) == ([], [("fly", 7, "pose")])
+
+    asyncio.run(run())
+
+
+def test_each_page_is_shown_the_stage_of_its_theme():
+    dark, light = StubViewer(), StubViewer()
+    with viser_double(dark) as at_dark, viser_double(light) as at_light, house(stage=dark, light=light) as server:
+        with server.stream() as stream, connect(server, "q" * 22) as other, connect(server) as socket:
+            other.send_bytes(b"other")
+            assert other.receive_bytes() == b"other"
+            stream.send_text('{"type": "theme", "name": "light"}')
+            with pytest.raises(WebSocketDisconnect):  # viser's client comes again by itself
+                socket.receive_bytes()
+            other.send_bytes(b"still here")
+            assert other.receive_bytes() == b"still here"
+        for words in (b"first", b"again"):
+            with connect(server) as socket:
+                socket.send_bytes(words)
+                assert socket.receive_bytes() == words
+    assert at_light == [b"first", b"again"]
+    assert at_dark == [b"other", b"still here"]
+
+
 def test_two_pages_never_get_each_other_s_camera():
     async def run():
-        stage = StubStage()
-        cameras = Cameras(stage)
-        cameras.listen()
+        stage = StubViewer()
+        cameras = Cameras()
+        cameras.listen(stage)
         order: list[str] = []
 
         async def slowly(page: str, number: int):
@@ -151,7 +261,7 @@ def test_two_pages_never_get_each_other_s_camera():
                 assert stage.on_connect is not None
                 stage.on_connect(number)
 
-            assert await cameras.pair(page, pass_on)
+            assert await cameras.pair(page, stage, pass_on)
 
         await asyncio.gather(slowly("a", 1), slowly("b", 2))
         for page, number in (("a", 1), ("b", 2)):
@@ -163,7 +273,7 @@ def test_two_pages_never_get_each_other_s_camera():
 
 def test_old_wishes_are_forgotten():
     async def run():
-        cameras = Cameras(StubStage())
+        cameras = Cameras()
         for number in range(3 * module.MOST_CLIENTS):
             await cameras.show(f"page {number}", "map")
         assert len(cameras._wanted) == 2 * module.MOST_CLIENTS
@@ -175,3 +285,16 @@ def test_a_number_that_comes_after_the_end_is_dropped():
     loop = asyncio.new_event_loop()
     loop.close()
     _call(loop, lambda _: pytest.fail("called"), 1)
+
+
+def test_a_browser_that_has_gone_before_its_stage_is_open_is_no_error():
+    class Gone:
+        client_state = WebSocketState.DISCONNECTED
+        scope: ClassVar = {"subprotocols": ["viser-v1.1.1"]}
+
+        async def close(self, _code: int) -> None:
+            raise WebSocketDisconnect(1006)
+
+    proxy = ViserProxy(StubViewers(), Cameras(), Themes())
+    asyncio.run(proxy.relay(Gone(), PAGE))  # type: ignore[arg-type]
+    assert not proxy.full

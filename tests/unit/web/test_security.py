@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from starlette.testclient import WebSocketDenialResponse
 from starlette.websockets import WebSocketDisconnect
 
 from tests.unit.web.doubles import ORIGIN, OURS, PAGE, PORT, house
-from web import security
-from web.security import Bucket, Guard, Limits, own_hosts
+from web.http import asking, security
+from web.http.api import STATIC
+from web.http.security import Bucket, Guard, Limits, own_hosts
 
 _HOSTS = """
     evil.example:8000 127.0.0.1 127.0.0.1:8001 127.0.0.1:80000 localhost 127.0.0.1.evil.example:8000 LOCALHOST:8000
@@ -133,6 +136,76 @@ def test_get_cannot_command(server):
     before = len(server.engine.commands)
     assert server.client.get("/api/commands").status_code == 405
     assert len(server.engine.commands) == before
+
+
+def routes(server) -> dict[str, set[str]]:
+    """Every path of the API with the methods it takes, places in it filled in."""
+    paths = server.client.get("/openapi.json").json()["paths"]
+    return {
+        path.replace("{number}", "0").replace("{name}", "mine"): {*map(str.upper, kinds)}
+        for path, kinds in paths.items()
+    }
+
+
+def test_whatever_is_only_looked_at_changes_nothing(monkeypatch, tmp_path):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setattr(asking, "ANSWER_TIMEOUT_S", 0.01)
+    with house() as server:
+        server.engine.answer = None
+        looked = [path for path, methods in routes(server).items() if "GET" in methods]
+        for path in [
+            *looked,
+            "/",
+            "/docs",
+            "/viser/",
+            "/openapi.json",
+            "/healthz?type=kidnap",
+            "/api/state?type=reset",
+        ]:
+            for method in ("GET", "HEAD"):
+                server.client.request(method, path, headers={"Content-Type": "application/json"})
+        assert len(looked) >= 4
+        assert {type(asked).__name__ for asked in server.engine.commands} <= {
+            "ReadBrain",
+            "ReadExperience",
+            "ReadWorld",
+        }
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({"Origin": "http://evil.example"}, 403),
+        ({"Origin": "null"}, 403),
+        ({"Host": "evil.example"}, 403),
+        ({"Sec-Fetch-Site": "cross-site"}, 403),
+        ({"Content-Type": "text/plain"}, 415),
+        ({"Content-Type": "multipart/form-data; boundary=b"}, 415),
+        ({"Content-Length": "9" * 12}, 413),
+    ],
+)
+def test_no_way_to_change_something_is_open_to_others(server, headers, status):
+    before = len(server.engine.commands)
+    changed = 0
+    for path, methods in routes(server).items():
+        for method in methods - {"GET", "HEAD"}:
+            kind = "application/octet-stream" if path == "/api/brain" else "application/json"
+            answer = server.client.request(method, path, content=b"{}", headers={"Content-Type": kind} | headers)
+            assert answer.status_code == status, (method, path)
+            changed += 1
+    assert changed >= 4
+    assert len(server.engine.commands) == before
+
+
+def test_the_page_never_makes_markup_of_text():
+    wrong = re.compile(
+        r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(|new Function|srcdoc|javascript:"
+    )
+    for file in STATIC.rglob("*.*"):
+        if "vendor" in file.parts:
+            continue
+        assert not wrong.search(file.read_text()), file.name
 
 
 def test_on_port_80_browsers_leave_the_port_out():

@@ -10,8 +10,8 @@ import orjson
 import pytest
 
 from tests.fake_snapshots import fake_reports, fake_snapshot, fake_walk
-from tests.unit.web.test_office_stage import living
-from web.state import StateText, page_fields, state, to_json
+from tests.unit.web.test_office_plate import living
+from web.http.state import StateText, page_fields, state, to_json
 
 
 @pytest.fixture

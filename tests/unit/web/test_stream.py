@@ -5,20 +5,28 @@ from __future__ import annotations
 import asyncio
 import time
 from dataclasses import replace
+from types import SimpleNamespace
 
 import orjson
 import pytest
 from starlette.testclient import WebSocketDenialResponse
 from starlette.websockets import WebSocketState
 
+from tests import patience
 from tests.fake_snapshots import fake_snapshot
-from tests.unit.web.doubles import OURS, PAGE, StubEngine, StubStage, house
-from web import proxy
-from web import stream as module
+from tests.unit.web.doubles import OURS, PAGE, StubEngine, StubViewer, house
+from tests.unit.web.frames import read_frame
+from web.http import asking, proxy, security
+from web.http import client as client_module
+from web.http import stream as module
+from web.http.client import Client
+from web.http.proxy import Cameras
+from web.http.stream import Stream
 from web.latest import Latest
 from web.messages import Drive, Event, Pause, Refused, Snapshot
-from web.proxy import Cameras
-from web.stream import Client, Stream
+from web.panel.panel import Panel, PanelReader
+from web.switches import Switches
+from web.themes import Themes
 
 
 @pytest.fixture
@@ -30,16 +38,9 @@ def server():
 def until(socket, kind, **fields):
     """The next message of this kind with these fields."""
     while True:
-        message = orjson.loads(socket.receive_text())
+        message = orjson.loads(socket.receive().get("text") or '{"type": "a part with arrays"}')
         if message["type"] == kind and all(message[name] == value for name, value in fields.items()):
             return message
-
-
-def wait_for(condition):
-    deadline = time.monotonic() + 3
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
 
 
 def test_greets_then_tells_the_state_and_the_events(server):
@@ -48,7 +49,6 @@ def test_greets_then_tells_the_state_and_the_events(server):
         assert (hello["type"], hello["views"]) == ("hello", ["all", "office", "pose", "map"])
         state = until(socket, "state")
         assert state["state"] == server.client.get("/api/state").json()
-        assert state["theme"] is None
         assert set(state["page"]) == {
             "run",
             "doing",
@@ -134,7 +134,7 @@ def test_no_json_is_answered_and_the_socket_lives(server):
 
 
 def test_refused_silent_and_broken_engines_are_told(server, monkeypatch):
-    monkeypatch.setattr(module, "ANSWER_TIMEOUT_S", 0.02)
+    monkeypatch.setattr(asking, "ANSWER_TIMEOUT_S", 0.02)
     with server.stream() as socket:
         for answer, status in [(Refused("x", 1, "no"), 422), (None, 503), (RuntimeError("oh"), 500)]:
             server.engine.answer = answer
@@ -142,50 +142,57 @@ def test_refused_silent_and_broken_engines_are_told(server, monkeypatch):
             assert until(socket, "answer")["status"] == status
 
 
-def test_other_commands_10_a_second(server):
+def test_other_commands_10_a_second(server, monkeypatch):
+    monkeypatch.setattr(security, "time", SimpleNamespace(monotonic=lambda: 7.0))  # all within no time
     with server.stream() as socket:
         for number in range(14):
             socket.send_text(orjson.dumps({"type": "pause", "id": number}).decode())
         answers = [until(socket, "answer") for _ in range(14)]
         refused = [answer for answer in answers if not answer["accepted"]]
-        assert refused
-        assert all(answer["status"] == 429 for answer in refused)
+        assert [answer["status"] for answer in refused] == 4 * [429]
 
 
 def test_the_robot_stops_when_the_socket_that_drove_closes(server):
     with server.stream() as socket:
         socket.send_text('{"type": "drive", "speed": 0.4, "yaw_rate": 0}')
-        wait_for(lambda: server.engine.commands)
-    wait_for(lambda: len(server.engine.commands) == 2)
+        patience.until(lambda: server.engine.commands)
+    patience.until(lambda: len(server.engine.commands) == 2)
     assert server.engine.commands[-1] == Drive(type="drive", speed=0.0, yaw_rate=0.0)
 
 
 def test_no_stop_is_sent_when_it_stood_already_or_never_drove(server):
     with server.stream() as socket:
         socket.send_text('{"type": "drive", "speed": 0, "yaw_rate": 0}')
-        wait_for(lambda: server.engine.commands)
+        patience.until(lambda: server.engine.commands)
     with server.stream() as socket:
         until(socket, "state")
     assert len(server.engine.commands) == 1
 
 
-def test_theme_is_everyones(server):
-    with server.stream() as one, server.stream() as two:
-        until(one, "state")
-        two.send_text('{"type": "theme", "name": "light"}')
-        assert until(one, "state", theme="light")
-    wait_for(lambda: server.stage.calls)
-    assert server.stage.calls == [("set_theme", "light")]
+@pytest.mark.parametrize(
+    "message", ['"type": "theme", "name": "dark"', '"type": "view", "name": "map"', '"type": "got"']
+)
+def test_whatever_has_an_id_is_answered(server, message):
     with server.stream() as socket:
-        socket.send_text('{"type": "theme", "name": "dark"}')
-        assert until(socket, "state", theme="dark")
+        socket.send_text(f'{{{message}, "id": "mine"}}')
+        assert until(socket, "answer") == {"type": "answer", "id": "mine", "accepted": True, "tick": 12}
+
+
+def test_what_is_nested_too_deeply_is_answered_and_the_socket_stays(server):
+    with server.stream() as socket:
+        for levels in (21, 255, 1023, 50_000):
+            socket.send_text('{"id": 1, "type": ' + "[" * levels + "]" * levels + "}")
+            answer = until(socket, "answer")
+            assert (answer["id"], answer["status"]) == (None, 422)
+        socket.send_text('{"type": "pause", "id": 2}')
+        assert until(socket, "answer")["accepted"]
 
 
 def test_a_view_flies_when_the_stage_is_there():
     async def run():
-        stage = StubStage()
-        cameras = Cameras(stage)
-        cameras.listen()
+        stage = StubViewer()
+        cameras = Cameras()
+        cameras.listen(stage)
         await cameras.show(PAGE, "map")  # not there yet: remembered
         assert stage.calls == []
 
@@ -193,8 +200,8 @@ def test_a_view_flies_when_the_stage_is_there():
             assert stage.on_connect is not None
             stage.on_connect(4)
 
-        assert await cameras.pair(PAGE, message)
-        assert stage.calls == [("fly", 4, "map")]
+        assert await cameras.pair(PAGE, stage, message)
+        assert stage.calls == [("jump", 4, "map")]
         await cameras.show(PAGE, "office")
         assert stage.calls[-1] == ("fly", 4, "office")
 
@@ -212,7 +219,6 @@ def test_at_most_32_pages(server):
     finally:
         for socket in sockets:
             socket.__exit__(None, None, None)
-    wait_for(lambda: True)
 
 
 @pytest.mark.parametrize("page", ["short", "p" * 65, "p" * 21 + "/", "%00" * 22])
@@ -227,10 +233,11 @@ class StalledSocket:
 
     def __init__(self) -> None:
         self.sent = 0
+        self.stuck = asyncio.Event()
         self.client_state = WebSocketState.CONNECTED
 
     async def close(self, _code: int) -> None:
-        await asyncio.sleep(60)
+        await asyncio.Event().wait()
 
     async def accept(self) -> None:
         pass
@@ -238,54 +245,139 @@ class StalledSocket:
     async def send_text(self, _text: str) -> None:
         self.sent += 1
         if self.sent > 1:
-            await asyncio.sleep(60)
+            self.stuck.set()
+            await asyncio.Event().wait()
 
     async def receive_text(self) -> str:
-        await asyncio.sleep(60)
+        await asyncio.Event().wait()
         return ""
 
 
-def test_a_stalled_page_is_let_go_and_slows_nobody(monkeypatch):
-    monkeypatch.setattr(module, "SEND_TIMEOUT_S", 0.1)
-    monkeypatch.setattr(proxy, "CLOSE_TIMEOUT_S", 0.05)
-    monkeypatch.setattr(module, "PERIOD_S", 0.001)
+class LiveSocket(StalledSocket):
+    """A browser that takes all."""
 
-    class LiveSocket(StalledSocket):
-        async def send_text(self, _text: str) -> None:
-            self.sent += 1
+    def __init__(self) -> None:
+        super().__init__()
+        self.news = asyncio.Event()
+
+    async def send_text(self, _text: str) -> None:
+        self.news.set()
+
+
+def served(check):
+    """Run `check(latest, stalled, live, task of the stalled one)` while a stream serves both."""
 
     async def run():
         latest: Latest[Snapshot] = Latest()
         latest.put(fake_snapshot(1))
-        stage = StubStage()
-        stream = Stream(latest, StubEngine().submit, stage, Cameras(stage))
-        publishing = asyncio.create_task(stream.publish())
+        stream = Stream(latest, StubEngine().submit, Cameras(), Themes(), Switches())
         stalled, live = StalledSocket(), LiveSocket()
         tasks = [asyncio.create_task(stream.serve(socket, PAGE)) for socket in (stalled, live)]  # type: ignore[arg-type]
-        snapshot = fake_snapshot(1)
-        for tick in range(30):
-            latest.put(replace(snapshot, tick=tick))
-            await asyncio.sleep(0.01)
-        assert tasks[0].done()
-        assert live.sent > 20
-        for task in (*tasks, publishing):
+        tasks.append(asyncio.create_task(stream.publish()))
+        await check(latest, stalled, live, tasks[0])
+        for task in tasks:
             task.cancel()
-        await asyncio.gather(*tasks, publishing, return_exceptions=True)
+        await asyncio.gather(*tasks, return_exceptions=True)
 
-    asyncio.run(run())
+    asyncio.run(asyncio.wait_for(run(), patience.PATIENCE_S))
+
+
+def test_a_stalled_page_slows_nobody(monkeypatch):
+    monkeypatch.setattr(client_module, "SEND_TIMEOUT_S", 1e6)
+    monkeypatch.setattr(module, "PERIOD_S", 0.001)
+    monkeypatch.setattr(proxy, "CLOSE_TIMEOUT_S", 0.05)
+
+    async def check(latest, stalled, live, task):
+        await stalled.stuck.wait()
+        for tick in range(30):
+            live.news.clear()
+            latest.put(replace(fake_snapshot(1), tick=2 + tick))
+            await live.news.wait()
+        assert not task.done()
+
+    served(check)
+
+
+def test_a_stalled_page_is_let_go(monkeypatch):
+    monkeypatch.setattr(client_module, "SEND_TIMEOUT_S", 0.1)
+    monkeypatch.setattr(proxy, "CLOSE_TIMEOUT_S", 0.05)
+
+    async def check(_latest, stalled, live, task):
+        await asyncio.wait({task})
+        assert stalled.stuck.is_set()
+        assert live.news.is_set()
+
+    served(check)
 
 
 def test_a_client_s_background_failure_ends_nothing():
     async def run():
-        stage = StubStage()
-        stream = Stream(Latest(), StubEngine().submit, stage, Cameras(stage))
-        client = Client(StalledSocket(), PAGE, False)  # type: ignore[arg-type]
+        client = Client(StalledSocket(), PAGE, False, PanelReader(Panel(Switches())))  # type: ignore[arg-type]
 
         async def fail():
             raise RuntimeError("the browser went away")
 
-        stream._background(client, fail())
-        await asyncio.sleep(0.01)
-        assert client.answers == set()
+        client.background(fail())
+        assert len(client.tasks) == 1
+        while client.tasks:
+            await asyncio.sleep(0.001)
 
     asyncio.run(run())
+
+
+def parts(socket, count: int) -> list[str]:
+    """The next so many parts of the panel that arrive, by name."""
+    named = []
+    while len(named) < count:
+        message = socket.receive()
+        raw = message.get("bytes")
+        head = read_frame(raw)[0] if raw else orjson.loads(message["text"])
+        if head["type"] == "panel":
+            named.append(head["part"])
+    return named
+
+
+def test_only_open_tabs_are_told_and_each_page_has_its_own(server):
+    with server.stream() as one, server.stream() as two:
+        one.send_text('{"type": "tabs", "names": ["Senses"]}')
+        assert parts(one, 2) == ["views", "cells"]
+        two.send_text('{"type": "tabs", "names": ["Tune", "Memory"]}')
+        assert parts(two, 3) == ["switches", "memory", "tune"]
+        one.send_text('{"type": "tabs", "names": ["Truth"]}')
+        assert parts(one, 2) == ["numbers", "series"]
+        two.send_text('{"type": "tabs", "names": []}')
+        server.latest.put(fake_snapshot(13))
+        assert until(two, "state")["state"]["tick"] == 13
+        two.send_text('{"type": "got", "id": 1}')
+        assert until(two, "answer")["accepted"]  # and nothing of the panel was before it
+
+
+def test_a_switch_is_turned_for_all_who_look(server):
+    with server.stream() as one, server.stream() as two:
+        for socket in (one, two):
+            socket.send_text('{"type": "tabs", "names": ["Inspect"]}')
+            assert parts(socket, 3) == ["switches", "active", "inspected"]
+        assert not server.switches.is_on("click_inspects")
+        one.send_text('{"type": "switch", "name": "click_inspects", "on": true, "id": 3}')
+        assert until(one, "answer")["accepted"]
+        assert parts(two, 1) == ["switches"]
+        assert server.switches.is_on("click_inspects")
+
+
+@pytest.mark.parametrize(
+    "fields", ['"name": "moon", "on": true', '"name": "occupancy"', '"name": "occupancy", "on": 1']
+)
+def test_a_switch_that_is_none_is_a_sentence(server, fields):
+    with server.stream() as socket:
+        socket.send_text(f'{{"type": "switch", {fields}}}')
+        (wrong,) = until(socket, "answer")["detail"]
+        assert wrong["reason"].startswith("switch takes on, true or false, and name, one of: occupancy, ")
+
+
+@pytest.mark.parametrize("names", ["null", '"Senses"', '["Senses", 3]', '["Sense"]', '[["Senses"]]', "[{}]"])
+def test_tabs_that_do_not_exist_are_a_sentence(server, names):
+    with server.stream() as socket:
+        socket.send_text(f'{{"type": "tabs", "names": {names}}}')
+        wrong = until(socket, "answer")["detail"][0]
+        assert wrong["field"] == "names"
+        assert wrong["reason"].startswith("tabs takes names, a list of: Senses, Memory")

@@ -14,10 +14,20 @@ import numpy as np
 import pytest
 
 from sim2d import World, load_world, own_worlds, world_from_json, world_to_json
-from sim2d.world_check import check_world
+from sim2d.world.world_check import check_world
 from tests.unit.web.doubles import House, house
-from web.messages import Accepted, OfficeEdition, OpenWorld, ReadWorld, Refused, WorldDeleted, WorldRestored, WorldSaved
-from web.security import Limits
+from web.http.security import Limits
+from web.messages import (
+    Accepted,
+    OfficeEdition,
+    OpenWorld,
+    ReadFiled,
+    ReadWorld,
+    Refused,
+    WorldDeleted,
+    WorldRestored,
+    WorldSaved,
+)
 
 OFFICE = load_world("office")
 EDITION = OfficeEdition(7, "wall drawn", "", False)
@@ -28,6 +38,7 @@ class Engine:
 
     def __init__(self) -> None:
         self.world: World = OFFICE
+        self.filed: dict[str, World] = {}
         self.got: list[Any] = []
         self.refuses = False
 
@@ -38,10 +49,12 @@ class Engine:
         match request:
             case ReadWorld():
                 return Accepted(5, (self.world, EDITION))
+            case ReadFiled(name):
+                return Accepted(5, self.filed.get(name))
             case OpenWorld(world, _):
                 return Accepted(5, world.name)
             case WorldSaved(_, world):
-                self.world = world
+                self.world = self.filed[world.name] = world
         return Accepted(5)
 
 
@@ -103,6 +116,35 @@ def test_a_saved_world_is_there_and_the_one_before_is_kept(server: House) -> Non
     assert path.with_name("mine.json.before").read_text("utf-8") == first
     assert sorted(p.name for p in path.parent.iterdir()) == ["mine.json", "mine.json.before"]
     assert own_worlds.names() == (("mine", "Mine"),)
+
+
+def test_two_dashboards_do_not_overwrite_each_other_unasked(server: House) -> None:
+    with house() as other:
+        other.engine.answer = Engine()
+        assert post(server, "/api/worlds/save", {"name": "mine", "title": "Mine"})[0] == 200
+        other.engine.answer.world = other.engine.answer.filed["mine"] = load_world("mine")
+        assert post(server, "/api/worlds/save", {"name": "mine"})[0] == 200  # nobody else has been there
+        server.engine.answer.world = replace(load_world("mine"), about="theirs")  # type: ignore[union-attr]
+        assert post(server, "/api/worlds/save", {"name": "mine"})[0] == 200
+        for name, reason in {"mine": "somebody else has saved 'mine' since it was read here; replace what is there or",
+                             "office": "office comes with the program"}.items():  # fmt: skip
+            status, answer = post(other, "/api/worlds/save", {"name": name})
+            assert (status, reason in why(answer)) == (422, True)
+            assert load_world("mine").about == "theirs"
+        assert post(other, "/api/worlds/save", {"name": "mine"})[1]["detail"][0]["field"] == "replace"
+        assert post(other, "/api/worlds/save", {"name": "mine", "replace": True})[0] == 200
+        assert load_world("mine").about == OFFICE.about
+        assert post(other, "/api/worlds/save", {"name": "mine"})[0] == 200
+        assert post(server, "/api/worlds/save", {"name": "mine"})[0] == 422
+
+
+def test_a_file_written_by_hand_counts_by_what_it_says(server: House) -> None:
+    own_worlds.save("mine", json.dumps(json.loads(world_to_json(replace(OFFICE, name="mine"))), indent=7))
+    engine = server.engine.answer
+    engine.world = engine.filed["mine"] = load_world("mine")  # type: ignore[union-attr]
+    assert post(server, "/api/worlds/save", {"name": "mine"})[0] == 200
+    (own_worlds.folder() / "mine.json").write_text("{")
+    assert post(server, "/api/worlds/save", {"name": "mine"})[0] == 422
 
 
 @pytest.mark.parametrize("name", ["../evil", "a/b", "..", ".x", "a b", "x" * 41, "c:x", "ü"])

@@ -1,0 +1,27 @@
+"""The command `ratslam`, also as `python -m app`. What it needs is loaded within reach of `ended`: that takes a second."""
+
+from __future__ import annotations
+
+import sys
+
+from app.startup.ending import ended, last_words, obey_signals
+
+
+def main() -> int:
+    obey_signals()
+    code = ended(_command)
+    last_words()
+    return code
+
+
+def _command() -> int:
+    from app.cli.command_line import main
+
+    try:
+        return main()
+    except SystemExit as leave:  # argparse has said what there is to say
+        return leave.code if isinstance(leave.code, int) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""The command `ratslam`: a file for each of its verbs."""

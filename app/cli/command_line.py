@@ -1,0 +1,31 @@
+"""The command `ratslam`: run (the dashboard), headless, config, bench, worlds."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from app.cli.bench import add_bench
+from app.cli.config import add_config
+from app.cli.headless import add_headless
+from app.cli.run import add_run
+from app.cli.worlds import add_worlds
+from app.startup.ending import ended
+
+
+def main(argv: list[str] | None = None) -> int:
+    """The exit code; ending.py says what it means."""
+    parser = _parser()
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if not arguments or (arguments[0].startswith("-") and arguments[0] not in ("-h", "--help")):
+        arguments.insert(0, "run")
+    args = parser.parse_args(arguments)
+    return ended(lambda: args.do(args))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="ratslam", description="RatSLAM, alive in a browser.")
+    commands = parser.add_subparsers(title="commands", required=True)
+    for add in (add_run, add_headless, add_config, add_bench, add_worlds):
+        add(commands)
+    return parser

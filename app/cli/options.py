@@ -1,0 +1,65 @@
+"""Options that several commands take, and what is made of them."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TypeAlias
+
+from app.config import Config, from_toml, parse_value
+from app.config.presets import PRESETS, preset
+from ratslam_core import RatSlam, load_brain
+from sim2d import DEFAULT_WORLD, World
+from sim2d.importers import open_world
+
+Verbs: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"  # pyright: ignore[reportPrivateUsage]
+
+
+def add_session_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--world",
+        default=DEFAULT_WORLD,
+        metavar="NAME|FILE",
+        help=f"default: {DEFAULT_WORLD}; any plan that can be imported",
+    )
+    parser.add_argument("--scale", type=float, metavar="M", help="metres a pixel, when the world is a plain picture")
+    parser.add_argument("--seed", type=int, default=1, help="same seed, same run (default 1)")
+    parser.add_argument("--brain", type=Path, metavar="FILE", help="start with what another robot knows (--save-brain)")
+    add_config_options(parser)
+
+
+def add_config_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--preset", metavar="NAME", help=f"a paper's engine, or a robot as it was: {', '.join(PRESETS)}"
+    )
+    parser.add_argument("--config", type=Path, metavar="FILE", help="parameters as written by `ratslam config`")
+    parser.add_argument("--set", nargs="*", default=[], metavar="NAME=VALUE", help="change single parameters")
+
+
+def config_of(args: argparse.Namespace, config: Config) -> Config:
+    if args.preset is not None:
+        config = preset(args.preset, config)
+    if args.config is not None:
+        try:
+            config = from_toml(args.config.read_text(encoding="utf-8"), config)
+        except OSError as error:
+            raise ValueError(f"--config {args.config}: {error.strerror or error}") from None
+        except ValueError as error:
+            raise ValueError(f"--config {args.config}: {error}") from None
+    for pair in args.set:
+        name, equals, value = pair.partition("=")
+        if not equals:
+            raise ValueError(f"--set takes NAME=VALUE, got {pair!r}")
+        config = config.with_value(name, parse_value(value))
+    return config
+
+
+def session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None]:
+    if not 0 <= args.seed < 2**32:
+        raise ValueError(f"--seed must be from 0 to {2**32 - 1}, got {args.seed}")
+    brain = None if args.brain is None else load_brain(args.brain)
+    config = config_of(args, Config() if brain is None else Config().with_engine(brain.params))
+    for words in config.warnings:
+        print(f"ratslam: note: {words}", file=sys.stderr)
+    return open_world(args.world, args.scale, robot_radius_m=config.robot.robot_radius_m), config, brain

@@ -1,0 +1,24 @@
+"""A bar for long runs."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import TypeVar
+
+Result = TypeVar("Result")
+
+
+def with_progress(seconds: float, work: Callable[[Callable[[float, str], None]], Result]) -> Result:
+    """work: is given a function that takes simulated seconds and what goes on."""
+    from tqdm import tqdm
+
+    with tqdm(total=round(seconds), unit="s", unit_scale=True, disable=not sys.stderr.isatty()) as bar:
+
+        def progress(simulated_s: float, what: str) -> None:
+            bar.set_description(what, refresh=False)
+            if bar.n + simulated_s > (bar.total or 0):
+                bar.total = round(bar.n + simulated_s)
+            bar.update(simulated_s)
+
+        return work(progress)

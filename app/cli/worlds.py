@@ -1,0 +1,82 @@
+"""`ratslam worlds`: list those that come with it, check a file, import a plan, print the schema."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from app.cli.options import Verbs
+from disk import write_whole
+from sim2d import WorldError, load_world, own_worlds, world_names, world_to_json
+from sim2d.importers import import_file
+from sim2d.world.world_file import complaints, parse_json, schema_text
+
+
+def add_worlds(commands: Verbs) -> None:
+    worlds = commands.add_parser("worlds", help="list the worlds that come with it; check or import one of your own")
+    worlds.set_defaults(do=_list)
+    verbs = worlds.add_subparsers(title="commands")
+
+    check = verbs.add_parser("check", help="say everything that is wrong with a world, by line and value")
+    check.add_argument("file", type=Path, metavar="FILE", help="a world, or anything that can be imported")
+    check.add_argument("--scale", type=float, metavar="M", help="metres a pixel, for a plain picture")
+    check.set_defaults(do=_check)
+
+    take = verbs.add_parser("import", help="make a world of a map_server file, a vector map or a picture")
+    take.add_argument("file", type=Path, metavar="FILE", help=".yaml, .json (list of segments), .pgm, .png, ...")
+    take.add_argument("--scale", type=float, metavar="M", help="metres a pixel, for a plain picture")
+    take.add_argument("--seed", type=int, default=0, help="of the walls' looks (default 0)")
+    take.add_argument("-o", "--output", type=Path, required=True, metavar="WORLD.json")
+    take.set_defaults(do=_import)
+
+    schema = verbs.add_parser("schema", help="print the JSON schema of world files")
+    schema.set_defaults(do=_schema)
+
+
+def _list(_args: argparse.Namespace) -> int:
+    for name, _ in world_names():
+        world = load_world(name)
+        x0, y0, x1, y1 = world.bounds
+        print(f"{name:12} {world.title}; {x1 - x0:g} x {y1 - y0:g} m; {world.paper or 'ours'}: {world.about}")
+    for name, title in own_worlds.names():
+        print(f"{name:12} {title}; yours, in {own_worlds.folder()}")
+    return 0
+
+
+def _check(args: argparse.Namespace) -> int:
+    found = _complaints(args.file, args.scale)
+    for complaint in found:
+        print(f"ratslam: {complaint}", file=sys.stderr)
+    if not found:
+        print(f"{args.file}: nothing is wrong with it")
+    return 2 if found else 0
+
+
+def _complaints(path: Path, scale_m: float | None) -> list[str]:
+    """All that is wrong with a world file; of what is imported the first."""
+    try:
+        if path.suffix.lower() == ".json":
+            text = path.read_text("utf-8")
+            if not isinstance(parse_json(text, path.name), list):
+                return complaints(text, path.name)
+        import_file(path, scale_m)
+    except (OSError, UnicodeDecodeError) as error:
+        return [f"{path}: cannot be read: {error}"]
+    except WorldError as error:
+        return [str(error)]
+    return []
+
+
+def _import(args: argparse.Namespace) -> int:
+    if args.seed < 0:
+        raise ValueError(f"--seed must be 0 or larger, got {args.seed}")
+    world = import_file(args.file, args.scale, args.seed)
+    write_whole(args.output, world_to_json(world))
+    print(f"{args.output}: {world.title}, {len(world.walls)} walls, {len(world.starts)} starts")
+    return 0
+
+
+def _schema(_args: argparse.Namespace) -> int:
+    print(schema_text(), end="")
+    return 0

@@ -1,0 +1,31 @@
+"""The brain out and in."""
+
+from __future__ import annotations
+
+from app.commands.outcome import Outcome
+from app.engine.engine import Engine
+from disk import copy_state
+from ratslam_core import RatSlam
+from web import messages as m
+
+
+def read_brain(engine: Engine, _: m.ReadBrain) -> Outcome:
+    session = engine.run.session
+    return m.Accepted(session.tick_count, copy_state(session.brain))
+
+
+def use_brain(engine: Engine, request: m.UseBrain) -> Outcome:
+    """A new run with a foreign brain; the old run goes on when that cannot be."""
+    session, brain = engine.run.session, request.brain
+    seed = session.seed if request.seed is None else request.seed
+    world = session.world
+    try:
+        if request.world is not None and request.world.name != world.name:
+            world = engine.library.read(request.world)
+        if not isinstance(brain, RatSlam):
+            raise TypeError(f"it is a {type(brain).__name__}")
+        new = engine.begin(world, seed, session.config.with_engine(brain.params), brain)
+    except Exception as error:
+        return m.Refused("brain", None, f"this brain cannot be used here: {error}")
+    new.event_log.note("brain", f"woke up with {len(brain.experience_map)} experiences")
+    return m.Accepted(0)

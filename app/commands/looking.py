@@ -1,0 +1,33 @@
+"""What people look at: it changes nothing in the robot. And what they are told."""
+
+from __future__ import annotations
+
+from app.commands.outcome import Outcome, attempt
+from app.engine.engine import Engine
+from app.views import inspection
+from web import messages as m
+
+
+def inspect(engine: Engine, command: m.Inspect) -> Outcome:
+    """From now on everybody looks at this."""
+    run = engine.run
+    chosen = command.model_dump(exclude={"type"}, exclude_none=True)
+
+    def choose() -> None:
+        inspection.inspect(run.session, run.visits, command)
+        run.snapshots.inspected = command
+
+    return attempt(", ".join(chosen) or "type", list(chosen.values()), choose)
+
+
+def read_experience(engine: Engine, request: m.ReadExperience) -> Outcome:
+    run = engine.run
+    try:
+        report = inspection.experience_report(run.session, run.visits, request.experience)
+    except ValueError as error:
+        return m.Refused("experience", request.experience, str(error))
+    return m.Accepted(run.session.tick_count, report)
+
+
+def warn(engine: Engine, request: m.Warn) -> Outcome:
+    engine.run.event_log.note("warning", request.text)

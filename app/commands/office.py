@@ -1,0 +1,41 @@
+"""What a person does to the office: doors, lamps, boxes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from app.commands.outcome import Outcome, attempt
+from app.engine.engine import Engine
+from sim2d import Box
+from web import messages as m
+
+
+def set_door(engine: Engine, command: m.SetDoor) -> Outcome:
+    simulator = engine.run.session.simulator
+    words = "opens" if command.open else "shuts"
+    return _done(engine, command.name, words, lambda: simulator.set_door(command.name, command.open))
+
+
+def set_lamp(engine: Engine, command: m.SetLamp) -> Outcome:
+    simulator = engine.run.session.simulator
+    words = "on" if command.on else "off"
+    return _done(engine, command.name, words, lambda: simulator.set_lamp(command.name, command.on))
+
+
+def put_box(engine: Engine, command: m.PutBox) -> Outcome:
+    simulator, c = engine.run.session.simulator, command
+    box = Box(c.name, c.x, c.y, c.width, c.depth, c.height, c.angle_rad)
+    return _done(engine, command.name, "put down", lambda: simulator.put_box(box))
+
+
+def remove_box(engine: Engine, command: m.RemoveBox) -> Outcome:
+    simulator = engine.run.session.simulator
+    return _done(engine, command.name, "taken away", lambda: simulator.remove_box(command.name))
+
+
+def _done(engine: Engine, name: str, words: str, order: Callable[[], None]) -> Outcome:
+    def do() -> None:
+        order()
+        engine.run.event_log.note("office", f"{name} {words}")
+
+    return attempt("name", name, do)

@@ -1,0 +1,36 @@
+"""Where the robot is to go, by whom it is driven, and that it is carried away."""
+
+from __future__ import annotations
+
+from app.commands.outcome import Outcome, attempt
+from app.engine.engine import Engine
+from web import messages as m
+
+
+def set_goal(engine: Engine, command: m.SetGoal) -> Outcome:
+    def go() -> None:
+        experience = engine.run.session.set_goal(command.x, command.y)
+        engine.run.event_log.note("goal", f"to experience {experience}")
+
+    return attempt("x, y", (command.x, command.y), go)
+
+
+def cancel_goal(engine: Engine, _: m.CancelGoal) -> Outcome:
+    engine.run.session.pilot.cancel_goal()
+
+
+def set_mode(engine: Engine, command: m.SetMode) -> Outcome:
+    return attempt("mode", command.mode, lambda: engine.run.session.set_mode(command.mode))
+
+
+def drive(engine: Engine, command: m.Drive) -> Outcome:
+    engine.run.session.pilot.drive(command.speed, command.yaw_rate)
+    engine.pace.drive()
+
+
+def kidnap(engine: Engine, command: m.Kidnap) -> Outcome:
+    def carry() -> None:
+        engine.run.session.kidnap(command.x, command.y, command.heading_rad)
+        engine.run.event_log.note("kidnap", "carried away without being told")
+
+    return attempt("x, y", (command.x, command.y), carry)

@@ -1,0 +1,75 @@
+"""Who carries out what. A command is told by people, a request asked by the server; both go the same way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from app.commands import brains, editing, looking, office, parameters, robot, transport, worlds
+from app.commands.inject_packet import inject_packet
+from app.commands.outcome import Later, Outcome
+from app.engine.engine import Engine
+from web import messages as m
+
+Handler = Callable[[Engine, Any], Outcome]  # of the class that it stands beside
+
+COMMANDS: dict[type, Handler] = {
+    m.SetGoal: robot.set_goal,
+    m.CancelGoal: robot.cancel_goal,
+    m.SetMode: robot.set_mode,
+    m.Drive: robot.drive,
+    m.Kidnap: robot.kidnap,
+    m.Pause: transport.pause,
+    m.Resume: transport.resume,
+    m.Step: transport.step,
+    m.StepStage: transport.step_stage,
+    m.SetSpeed: transport.set_speed,
+    m.Reset: transport.reset,
+    m.SetParameter: parameters.set_parameter,
+    m.UsePreset: parameters.use_preset,
+    m.SetDoor: office.set_door,
+    m.SetLamp: office.set_lamp,
+    m.PutBox: office.put_box,
+    m.RemoveBox: office.remove_box,
+    m.EditWorld: editing.edit_world,
+    m.UndoEdit: editing.undo_edit,
+    m.RedoEdit: editing.redo_edit,
+    m.Inspect: looking.inspect,
+    m.InjectPacket: inject_packet,
+}
+REQUESTS: dict[type, Handler] = {
+    m.ReadExperience: looking.read_experience,
+    m.Warn: looking.warn,
+    m.ReadBrain: brains.read_brain,
+    m.UseBrain: brains.use_brain,
+    m.ReadWorld: worlds.read_world,
+    m.ReadFiled: worlds.read_filed,
+    m.OpenWorld: worlds.open_world,
+    m.WorldSaved: worlds.world_saved,
+    m.WorldDeleted: worlds.world_deleted,
+    m.WorldRestored: worlds.world_restored,
+}
+
+
+def carry_out(engine: Engine, command: m.Command | m.EngineRequest) -> m.Accepted | m.Refused | Later:
+    """Do what it says, between two ticks; or the field, its value and the reason why it cannot be."""
+    kind = type(command)
+    if kind in REQUESTS:
+        outcome = REQUESTS[kind](engine, command)
+    elif kind in COMMANDS:
+        outcome = _commanded(engine, COMMANDS[kind], command)
+    else:
+        raise TypeError(f"nobody carries out {getattr(command, 'type', kind.__name__)}")
+    return m.Accepted(engine.run.session.tick_count) if outcome is None else outcome
+
+
+def _commanded(engine: Engine, handler: Handler, command: object) -> Outcome:
+    """What it has changed is looked at anew, and what the parameters warn of since is noted."""
+    run, before = engine.run, engine.run.session.config.warnings
+    outcome = handler(engine, command)
+    if outcome is None:
+        run.snapshots.refresh()
+    for words in run.session.config.warnings:
+        if words not in before:
+            run.event_log.note("warning", words)
+    return outcome

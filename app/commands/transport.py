@@ -1,0 +1,59 @@
+"""Play, pause, one tick, one stage of a tick, how fast, and anew."""
+
+from __future__ import annotations
+
+from app.commands.outcome import Later, Outcome
+from app.engine.engine import Engine
+from web import messages as m
+
+
+def pause(engine: Engine, _: m.Pause) -> Outcome:
+    engine.running = False
+    engine.break_off()
+
+
+def resume(engine: Engine, command: m.Resume) -> Outcome:
+    refused = engine.pause_for(command.type)
+    engine.break_off()
+    engine.running = refused is None
+    engine.pace.hurry()
+    return refused
+
+
+def step(engine: Engine, command: m.Step) -> Outcome:
+    return engine.pause_for(command.type) or Later(command.ticks)
+
+
+def set_speed(engine: Engine, command: m.SetSpeed) -> Outcome:
+    engine.pace.speed = command.factor
+    engine.pace.hurry()
+
+
+def step_stage(engine: Engine, command: m.StepStage) -> Outcome:
+    """The next stage of the tick that is shown, or the first of another tick; or the one before."""
+    refused = engine.pause_for(command.type)
+    if refused is not None:
+        return refused
+    run = engine.run
+    engine.break_off()
+    if run.walk(command.back):
+        return None
+    if command.back:
+        return m.Refused("back", True, "there is no stage before this one; go forwards")
+    recorder = run.recorder()
+    engine.tick(recorder)
+    if engine.fault is None:
+        run.show(recorder)
+    return None
+
+
+def reset(engine: Engine, command: m.Reset) -> Outcome:
+    session = engine.run.session
+    world, name = session.world, command.world
+    try:
+        if name is not None and name != world.name:
+            world = engine.library.world(name)
+        engine.begin(world, session.seed if command.seed is None else command.seed, session.config)
+    except ValueError as error:
+        return m.Refused("world", name or world.name, str(error))
+    return None

@@ -1,0 +1,7 @@
+"""All parameters in one frozen tree; TOML out and in; presets."""
+
+from app.config.table import to_markdown
+from app.config.toml_file import from_toml, parse_value, to_toml
+from app.config.tree import Config, Value
+
+__all__ = ["Config", "Value", "from_toml", "parse_value", "to_markdown", "to_toml"]

@@ -1,0 +1,83 @@
+"""Parameters as TOML, out and in."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import Field, fields
+from typing import Any, cast
+
+import tomlkit
+
+from app.config.tree import Config, Value
+from sim2d.world.json_lines import deeper_than
+
+_MOST_LEVELS = 20
+
+
+def to_toml(config: Config) -> str:
+    """The whole tree with symbol, unit, range, meaning and source as comments."""
+    document = tomlkit.document()
+    document.add(tomlkit.comment("RatSLAM: every parameter. Take it back with --config FILE."))
+    section, table = "", tomlkit.table()
+    for name, item, value in config.items():
+        group, key = name.split(".")
+        if group != section:
+            section, table = group, tomlkit.table()
+            document.add(section, table)
+        table.add(tomlkit.comment(_about(item)))
+        table.add(key, value)
+    return tomlkit.dumps(document)
+
+
+def _about(item: Field[Any]) -> str:
+    """Symbol, meaning, unit, range and source of a parameter on one line."""
+    about = item.metadata
+    unit = f" [{about['unit']}]" if about["unit"] else ""
+    symbol = f"{about['symbol']}: " if about["symbol"] else ""
+    limits = "" if about["low"] is None else f"; {about['low']:g} to {about['high']:g}"
+    limits += f"; one of: {', '.join(about['choices'])}" if about["choices"] else ""
+    restart = "" if about["live"] else "; takes effect at the next reset"
+    return f"{symbol}{about['meaning']}{unit}{limits}; {about['source']}{restart}"
+
+
+def from_toml(text: str, base: Config | None = None) -> Config:
+    """A config from TOML; what is left out keeps its default. ValueError lists the right keys when one is unknown."""
+    try:
+        tree = _toml(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"not valid TOML: {error}") from None
+    config = base or Config()
+    sections = [item.name for item in fields(config)]
+    for section, table in sorted(
+        tree.items(), key=lambda item: item[0] != "robot"
+    ):  # what the brain is told of it stands
+        if section not in sections or not isinstance(table, dict):
+            raise ValueError(f"unknown section {section!r}; expected one of: {', '.join(sections)}")
+        keys = [item.name for item in fields(getattr(config, section))]
+        for key, value in cast(dict[str, Any], table).items():
+            if key not in keys:
+                raise ValueError(f"unknown parameter '{section}.{key}'; expected one of: {', '.join(keys)}")
+            config = config.with_value(f"{section}.{key}", value)
+    return config
+
+
+def parse_value(text: str) -> Value:
+    """A value from the command line: a TOML literal, or a plain word as text."""
+    try:
+        value = _toml(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+    if not isinstance(value, (float, int, bool, str)):
+        raise ValueError(f"{text!r} is not a number, true, false or a word")
+    return value
+
+
+def _toml(text: str) -> dict[str, Any]:
+    """ValueError when it is none, or nested as no parameters are: reader and complaints would recurse into it."""
+    try:
+        tree = tomllib.loads(text)
+        if not deeper_than(_MOST_LEVELS, tree):
+            return tree
+    except RecursionError:
+        pass
+    raise ValueError(f"nested too deeply; at most {_MOST_LEVELS} tables or lists can lie within one another")

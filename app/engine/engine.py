@@ -1,0 +1,126 @@
+"""What commands act on: the run that is on, whether it plays, and who waits for ticks. Knows no queue and no page."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import traceback
+from collections.abc import Callable
+
+from app.config import Config
+from app.engine.faults import words_of
+from app.engine.library import Library
+from app.engine.pace import Pace
+from app.engine.run import Run
+from app.engine.steps import Steps
+from app.engine.watchdog import Watchdog
+from app.views.tick_stages import TickRecorder
+from app.world_editor import WorldEditor
+from ratslam_core import RatSlam
+from sim2d import World
+from web import messages as m
+
+
+class Engine:
+    """Of one thread, whichever it is."""
+
+    def __init__(
+        self,
+        world: World,
+        pace: Pace,
+        watchdog: Watchdog,
+        *,
+        running: bool,
+        answer: Callable[[m.Request, m.Accepted], None],
+    ) -> None:
+        """answer: gets each request whose ticks are done, or broken off."""
+        self.library, self.editor = Library(world), WorldEditor(world)
+        self.pace, self.steps = pace, Steps()
+        self.running = running
+        self.fault: str | None = None
+        self._run: Run | None = None
+        self._watchdog, self._answer = watchdog, answer
+
+    @property
+    def run(self) -> Run:
+        assert self._run is not None
+        return self._run
+
+    def begin(self, world: World, seed: int, config: Config, brain: RatSlam | None = None) -> Run:
+        """Another run, or none of it: what fails leaves the old one as it is. ValueError says why."""
+        old = self._run
+        before = None if old is None or self.fault is not None else old.session  # which may be in pieces
+        run = Run(old.number + 1 if old else 1, world, seed, config, self.library.titles, brain, before)
+        self.break_off()
+        self.library.close(world.name)
+        run.snapshots.worlds = self.library.titles
+        self.editor.begin(world)
+        self.running = self.running or self.fault is not None
+        self._run, self.fault = run, None
+        self.pace.begin()
+        return run
+
+    # ------------------------------------------------------------ ticks
+
+    def tick(self, recorder: TickRecorder | None = None) -> bool:
+        """One tick; whether anything happened that is to be shown at once.
+
+        What it throws pauses the session and is shown. Of one that hung and ended there is a note.
+        """
+        self._watchdog.begin()
+        try:
+            self.run.tick(recorder)
+        except BaseException as error:
+            self._watchdog.end()
+            self.fail(error)
+            return True
+        hung = self._watchdog.end()
+        if hung:
+            self.run.event_log.note("fault", f"a tick took more than {self._watchdog.limit_s:g} s")
+        return hung
+
+    def step(self) -> bool:
+        """One of the ticks that were asked for; as `tick`."""
+        to_show = self.tick()
+        if self.fault is None:
+            self._accept(self.steps.ticked())
+        return to_show
+
+    def break_off(self) -> None:
+        """Whoever still waits for ticks gets the tick that was reached."""
+        self._accept(self.steps.end())
+
+    def _accept(self, requests: list[m.Request]) -> None:
+        for request in requests:
+            self._answer(request, m.Accepted(self.run.session.tick_count))
+
+    # ------------------------------------------------------------ stopping
+
+    def pause_for(self, kind: str) -> m.Refused | None:
+        """Pause for what is asked for, which may be refused."""
+        if self.fault is not None:
+            return m.Refused("type", kind, f"the session stopped at a fault ({self.fault}); reset it")
+        self.running = False
+        return None
+
+    def fail(self, error: BaseException) -> None:
+        """Stop at a fault, which is told once."""
+        words = words_of(error)
+        new, self.fault, self.running = words != self.fault, words, False
+        if new:
+            with contextlib.suppress(Exception):  # there may be nobody to print to
+                traceback.print_exception(error)
+        self.break_off()
+        if new and self._run is not None:
+            self._run.event_log.note("fault", words)
+
+    # ------------------------------------------------------------ looking
+
+    def snapshot(self) -> m.Snapshot:
+        """The session as it is now."""
+        run, speed = self.run, self.pace.speed if self.pace.speed > 0 else math.inf
+        self.editor.follow(run.session.simulator.world)
+        run.snapshots.office = self.editor.edition
+        return run.snapshots.build(
+            running=self.running, speed=speed, real_time_factor=self.pace.factor, fault=self.fault
+        )

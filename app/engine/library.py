@@ -1,0 +1,78 @@
+"""The worlds that can be opened by name: those that come with the program, those in one's own folder, those of this session."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from sim2d import World, load_world, own_worlds, world_names
+
+
+class Library:
+    """Titles by name. A world whose file was deleted stays for as long as it is open."""
+
+    def __init__(self, world: World) -> None:
+        self._worlds = {world.name: world}  # of this session; the others are read when they are opened
+        self._filed = {world.name: world}  # as last read from their files or written there
+        self._deleted: set[str] = set()
+        self._titles = dict(world_names()) | dict(own_worlds.names())
+        self._titles.setdefault(world.name, world.title)
+
+    @property
+    def titles(self) -> tuple[tuple[str, str], ...]:
+        return tuple(self._titles.items())
+
+    def world(self, name: str) -> World:
+        """ValueError when there is none, or somebody has spoilt its file."""
+        if name not in self._titles:
+            known = ", ".join(self._titles)
+            raise ValueError(f"unknown world {name!r}; expected one of: {known}")
+        world = self._worlds.get(name)
+        if world is None:
+            world = self._filed[name] = load_world(name)
+        return world
+
+    def read(self, world: World) -> World:
+        """One that has just been read from its file; as it is in this session where that knows it."""
+        if world.name not in self._worlds:
+            self._filed[world.name] = world
+            self._titles.setdefault(world.name, world.title)
+        return self._worlds.get(world.name, world)
+
+    def filed(self, name: str) -> World | None:
+        """As it was last read from its file or written there."""
+        return self._filed.get(name)
+
+    def saved(self, world: World) -> None:
+        """It has been written."""
+        self._filed[world.name] = world
+        self.add(world)
+
+    def named(self, world: World) -> World:
+        """The same, with a name that no other world has: plan, plan-2, plan-3."""
+        if self._worlds.get(world.name) == world:
+            return self._worlds[world.name]
+        name, k = world.name, 2
+        while name in self._titles:
+            name, k = f"{world.name[:36]}-{k}", k + 1
+        return replace(world, name=name)
+
+    def add(self, world: World) -> None:
+        self._worlds[world.name] = world
+        self.restored(world.name, world.title)
+
+    def restored(self, name: str, title: str) -> None:
+        """Its file is there (again)."""
+        self._deleted.discard(name)
+        self._titles[name] = title
+
+    def deleted(self, name: str, open_now: str) -> None:
+        """Its file has gone."""
+        self._deleted.add(name)
+        self.close(open_now)
+
+    def close(self, open_now: str) -> None:
+        """Only this one is open: others whose files have gone are forgotten."""
+        for name in self._deleted - {open_now}:
+            self._titles.pop(name, None)
+            self._worlds.pop(name, None)
+        self._deleted &= {open_now}

@@ -1,0 +1,99 @@
+"""Notices from outside that a tick hangs. It counts its own short naps: who was suspended with it has not hung.
+
+Compiling is no hanging, whenever it happens: numba tells when it begins and ends. What keeps Python's one lock while it computes
+keeps the watchdog from running, too; the processor time of the tick tells afterwards.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+from numba.core.event import Event, Listener, register, unregister  # pyright: ignore[reportUnknownVariableType]
+
+NAPS = 20  # in the limit
+
+
+class Watchdog:
+    """The engine's thread says when a tick begins and ends; `on_stall` is called from another, once, while it hangs."""
+
+    def __init__(self, limit_s: float, on_stall: Callable[[], None]) -> None:
+        self.limit_s = limit_s
+        self._on_stall = on_stall
+        self._nap_s = limit_s / NAPS
+        self._lock = threading.Lock()
+        self._woken = threading.Event()
+        self._age_s: float | None = None  # of the tick; None between two
+        self._stalled = False
+        self._busy_since_s = 0.0
+        self._compiler = _Compiler()
+        self._thread = threading.Thread(target=self._watch, name="watchdog", daemon=True)
+
+    def start(self) -> None:
+        """From the thread that is to be watched."""
+        self._compiler.of_thread = threading.get_ident()
+        register("numba:compile", self._compiler)
+        self._thread.start()
+
+    def stop(self) -> None:
+        if self._thread.is_alive():
+            unregister("numba:compile", self._compiler)
+            self._woken.set()
+            self._thread.join()
+
+    def begin(self) -> None:
+        with self._lock:
+            self._age_s, self._stalled = 0.0, False
+        self._compiler.took_s = 0.0
+        self._busy_since_s = time.thread_time()
+
+    def end(self) -> bool:
+        """The tick is over; whether it took too long."""
+        busy_s = time.thread_time() - self._busy_since_s - self._compiler.took_s
+        with self._lock:
+            self._age_s = None
+            return self._stalled or busy_s > self.limit_s
+
+    def _watch(self) -> None:
+        before = time.monotonic()
+        while not self._woken.wait(self._nap_s):
+            now = time.monotonic()
+            self._note(min(now - before, 2 * self._nap_s))
+            before = now
+
+    def _note(self, passed_s: float) -> None:
+        """So much time has passed. The stall is told under the lock: never of a tick that is over."""
+        with self._lock:
+            if self._age_s is None or self._stalled or self._compiler.busy:
+                return
+            self._age_s += passed_s
+            if self._age_s > self.limit_s:
+                self._stalled = True
+                self._on_stall()
+
+
+class _Compiler(Listener):
+    """Whether a kernel is being compiled in the watched thread, and what processor time that took."""
+
+    def __init__(self) -> None:
+        self.of_thread = 0
+        self.took_s = 0.0
+        self._depth = 0  # a kernel compiles those that it calls
+        self._began_s = 0.0
+
+    @property
+    def busy(self) -> bool:
+        return self._depth > 0
+
+    def on_start(self, event: Event) -> None:  # noqa: ARG002
+        if threading.get_ident() == self.of_thread:
+            if self._depth == 0:
+                self._began_s = time.thread_time()
+            self._depth += 1
+
+    def on_end(self, event: Event) -> None:  # noqa: ARG002
+        if threading.get_ident() == self.of_thread and self._depth > 0:
+            self._depth -= 1
+            if self._depth == 0:
+                self.took_s += time.thread_time() - self._began_s

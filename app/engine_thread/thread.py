@@ -1,0 +1,168 @@
+"""The one engine thread: takes commands between ticks, works off ticks, publishes snapshots. Waits for no browser.
+
+It does not die in silence: whatever is thrown in it becomes a fault that is shown, and every request gets an answer.
+"""
+
+from __future__ import annotations
+
+import threading
+import traceback
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import replace
+
+from app.commands import Later, carry_out
+from app.config import Config
+from app.engine.engine import Engine
+from app.engine.faults import words_of
+from app.engine.pace import LONGEST_WAIT_S, Pace
+from app.engine.watchdog import Watchdog
+from app.engine_thread.inbox import Inbox
+from app.session import Session
+from ratslam_core import RatSlam
+from sim2d import World
+from web import messages as m
+from web.latest import Latest
+
+STALL_S = 2.0
+
+
+class EngineThread:
+    """Owns the engine. `submit` may be called from any thread; everything else happens in its own."""
+
+    def __init__(
+        self, world: World, seed: int, config: Config, *, speed: float = 1.0, running: bool = True,
+        brain: RatSlam | None = None, stall_s: float = STALL_S,
+    ) -> None:  # fmt: skip
+        """brain: one that knows places already. stall_s: of a tick that takes longer everybody is told."""
+        self.latest: Latest[m.Snapshot] = Latest()
+        self.stillborn: str | None = None  # why it could not even begin; then the thread has ended ...
+        self.on_stillborn: Callable[[], object] = lambda: None  # ... and calls this
+        self.pace = Pace(speed)
+        self._first = (world, seed, config, brain)
+        self._inbox = Inbox()
+        self._watchdog = Watchdog(stall_s, self._tell_stall)
+        self._engine = Engine(world, self.pace, self._watchdog, running=running, answer=self._inbox.answer)
+        self._stopping = False
+        self._thread = threading.Thread(target=self._loop, name="engine", daemon=True)
+
+    @property
+    def session(self) -> Session:
+        return self._engine.run.session
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self, patience_s: float | None = None) -> None:
+        """Ends the thread after the tick it is in. patience_s: so long a tick is waited for."""
+        self._stopping = True
+        self._inbox.wake()
+        if self._thread.ident is not None:  # it was started
+            self._thread.join(patience_s)
+
+    def submit(self, command: m.Command | m.EngineRequest) -> Future[m.Accepted | m.Refused]:
+        """Hand a command to the engine; the answer comes when it has taken effect or was refused."""
+        return self._inbox.submit(command)
+
+    # ------------------------------------------------------------ the thread
+
+    def _loop(self) -> None:
+        if not self._begin():
+            return
+        while not self._stopping:
+            try:
+                self._turn()
+            except BaseException as error:  # SystemExit, too
+                self._engine.fail(error)
+                self._publish()
+            finally:
+                self._inbox.give()
+        self._watchdog.stop()
+        self._engine.break_off()
+        self._inbox.close("the engine has ended; start the program again")
+
+    def _begin(self) -> bool:
+        """False: it could not even begin."""
+        try:
+            self._watchdog.start()
+            self._engine.begin(*self._first)
+            self._publish()
+            if self.latest.get()[1] is None:
+                raise RuntimeError(self._engine.fault)
+        except BaseException as error:
+            traceback.print_exc()
+            self.stillborn = words_of(error)
+            self._watchdog.stop()
+            self._inbox.close(f"the engine could not begin: {self.stillborn}")
+            self.on_stillborn()
+        return self.stillborn is None
+
+    def _turn(self) -> None:
+        self._take_requests()
+        if self._inbox.has_answers:
+            self._publish()  # first: who reads right after the answer sees what it did
+            self._inbox.give()
+        engine, pace, session = self._engine, self.pace, self.session
+        if pace.let_go() and session.pilot.mode == "manual":
+            session.pilot.drive(0.0, 0.0)
+        if engine.steps:
+            self._step()
+        elif engine.running and pace.due(session.frame.dt) and engine.tick():
+            self._publish()
+        pace.measure(session.time_s)
+        if (engine.running or engine.steps) and pace.publishing_due:
+            self._publish()
+
+    def _step(self) -> None:
+        if self._engine.step() or self._inbox.has_answers:
+            self._publish()
+            self._inbox.give()
+
+    # ------------------------------------------------------------ the queue
+
+    def _take_requests(self) -> None:
+        """Carry out all commands that wait; with none, sleep until the next tick or command."""
+        wait = self.pace.wait_s() if self._engine.running else LONGEST_WAIT_S
+        while True:
+            idle = not self._inbox.has_answers and not self._engine.steps
+            request = self._inbox.take(min(wait, LONGEST_WAIT_S) if idle else 0.0)
+            if request is None:
+                return
+            self._take(request)
+
+    def _take(self, request: m.Request) -> None:
+        """A command that fails is answered with its error, and the session goes on."""
+        try:
+            answer = carry_out(self._engine, request.command)
+        except BaseException as error:
+            self._inbox.answer(request, error)
+            if not isinstance(error, Exception):
+                raise
+            traceback.print_exc()
+            return
+        if isinstance(answer, Later):
+            self._engine.steps.add(request, answer.ticks)
+        else:
+            self._inbox.answer(request, answer)
+
+    # ------------------------------------------------------------ publishing
+
+    def _publish(self) -> None:
+        """The session as it is now; when that cannot be shown, the last that could, and why."""
+        try:
+            snapshot: m.Snapshot | None = self._engine.snapshot()
+        except BaseException as error:
+            self._engine.fail(error)
+            _, snapshot = self.latest.get()
+            if snapshot is not None:
+                snapshot = replace(snapshot, running=False, fault=self._engine.fault)
+        if snapshot is not None:
+            self.latest.put(snapshot)
+        self.pace.published()
+
+    def _tell_stall(self) -> None:
+        """In the watchdog's thread: the engine's own cannot say it now."""
+        _, last = self.latest.get()
+        if last is not None:
+            words = f"the tick is taking more than {self._watchdog.limit_s:g} s; the session goes on when it has ended"
+            self.latest.put(replace(last, fault=words))

@@ -1,0 +1,6 @@
+"""Truth against estimate, for judging and drawing; the robot never sees it."""
+
+from app.evaluation.alignment import align, alignment, rmse
+from app.evaluation.evaluation import Evaluation
+
+__all__ = ["Evaluation", "align", "alignment", "rmse"]

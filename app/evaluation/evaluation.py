@@ -1,0 +1,128 @@
+"""Truth against estimate: alignment, errors, consistency, kidnaps, goals. For judging and drawing; the robot never sees it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.evaluation.alignment import alignment, rmse
+from app.evaluation.kidnapping import Kidnapping
+from disk import kind
+from ratslam_core import ExperienceMap, Odometry, Pose2
+from sim2d import Truth
+
+REVISIT_AGE_S = 20.0  # an experience this old that is active again counts as revisited
+NEAR_M, NEAR_RAD = 1.0, 0.6
+CONSISTENT_M = 0.5  # a revisit is consistent when the robot truly is so near to where it believed to be
+LEAST_WAY_M = 0.5  # a shorter path, root mean square from its middle, does not tell how the map is turned
+
+Points = NDArray[np.float64]  # (n, 2)
+
+
+@kind("evaluation/1")
+class Evaluation:
+    """Keeps, tick by tick, what is needed to compare the map with the truth."""
+
+    def __init__(self, known: int = 0) -> None:
+        """known: experiences that a brain brought with it; where they were made nobody here has seen."""
+        self._rows: NDArray[np.float64] = np.zeros(
+            (4096, 8)
+        )  # truth x y heading, local pose x y heading, odometry alone x y
+        self._experience = np.zeros(4096, np.int64)
+        self._count = 0
+        self._made_at = np.full(
+            (max(1024, known), 4), np.nan
+        )  # truth x y heading and time when each experience was made
+        self._odometry = Pose2(0.0, 0.0, 0.0)
+        self._revisits = self._consistent = 0
+        self.path_m = 0.0
+        self.kidnaps: list[Kidnapping] = []
+
+    def record(
+        self, time_s: float, truth: Truth, experiences: ExperienceMap, created: bool, odometry: Odometry
+    ) -> None:
+        """One tick."""
+        if self._count == len(self._rows):
+            self._rows = np.concatenate([self._rows, np.zeros_like(self._rows)])
+            self._experience = np.concatenate([self._experience, np.zeros_like(self._experience)])
+        step, turn = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
+        self._odometry = self._odometry.compose(Pose2(step * math.cos(turn / 2), step * math.sin(turn / 2), turn))
+        local = experiences.local_pose
+        self._rows[self._count] = (
+            truth.x, truth.y, truth.heading_rad, local.x, local.y, local.heading_rad, self._odometry.x, self._odometry.y,
+        )  # fmt: skip
+        self._experience[self._count] = experiences.active
+        self._count += 1
+        self.path_m += abs(truth.speed) * odometry.dt
+        if created:
+            if experiences.active >= len(self._made_at):
+                self._made_at = np.concatenate([self._made_at, np.full_like(self._made_at, np.nan)])
+            self._made_at[experiences.active] = truth.x, truth.y, truth.heading_rad, time_s
+        self._judge(time_s, truth, experiences, local, abs(truth.speed) * odometry.dt)
+
+    def kidnapped(self, time_s: float, experiences: ExperienceMap) -> None:
+        self.kidnaps.append(Kidnapping(time_s, self._map_in_office(experiences), len(experiences.poses)))
+
+    def made_at(self, experience: int, experiences: ExperienceMap) -> tuple[float, float]:
+        """Where the robot truly was when it made this experience, office frame; of one that its brain brought with it, where
+        the map says, laid over the office as it fits the robot's path best."""
+        x, y = (float(v) for v in self._made_at[experience, :2])
+        if math.isfinite(x):
+            return x, y
+        truth, mapped, _ = self.trajectories(experiences)
+        place = alignment(mapped, truth).compose(experiences.pose(experience))
+        return place.x, place.y
+
+    def heading_at(self, experience: int) -> float | None:
+        """Where the robot truly faced (rad) when it made this experience; None for one that its brain brought with it."""
+        heading = float(self._made_at[experience, 2])
+        return heading if math.isfinite(heading) else None
+
+    @property
+    def revisit_consistency(self) -> float | None:
+        """Share of the time on old experiences during which the robot truly was within 0.5 m of where it believed to be."""
+        return self._consistent / self._revisits if self._revisits else None
+
+    def trajectories(self, experiences: ExperienceMap, every: int = 1) -> tuple[Points, Points, Points]:
+        """True path, the path through the map as it is now, and odometry alone, (n, 2) each, not aligned."""
+        rows, at = self._rows[: self._count : every], self._experience[: self._count : every]
+        pose = experiences.poses[at]
+        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        x = pose[:, 0] + c * rows[:, 3] - s * rows[:, 4]
+        y = pose[:, 1] + s * rows[:, 3] + c * rows[:, 4]
+        return rows[:, :2], np.stack([x, y], axis=1), rows[:, 6:8]
+
+    def errors(self, experiences: ExperienceMap, every: int = 1) -> tuple[float, float]:
+        """RMSE (m) after SE(2) alignment of the path through the map, and of odometry alone."""
+        truth, mapped, odometry = self.trajectories(experiences, every)
+        return rmse(mapped, truth), rmse(odometry, truth)
+
+    def _judge(self, time_s: float, truth: Truth, experiences: ExperienceMap, local: Pose2, way_m: float) -> None:
+        made = self._made_at[experiences.active].tolist()
+        c, s = math.cos(made[2]), math.sin(made[2])
+        believed = made[0] + c * local.x - s * local.y, made[1] + s * local.x + c * local.y
+        off = math.hypot(believed[0] - truth.x, believed[1] - truth.y)
+        if time_s - made[3] > REVISIT_AGE_S:
+            self._revisits += 1
+            self._consistent += off <= CONSISTENT_M
+        for kidnap in self.kidnaps[-1:]:
+            if kidnap.after_s is None:
+                kidnap.note(time_s, way_m, self._knows(kidnap, truth, experiences))
+
+    def _knows(self, kidnap: Kidnapping, truth: Truth, experiences: ExperienceMap) -> bool:
+        """Place alone would not do: who is turned on the spot is still where it was."""
+        if experiences.active >= kidnap.known:
+            return False
+        robot = kidnap.map_in_office.compose(experiences.robot)
+        turn = abs(math.remainder(robot.heading_rad - truth.heading_rad, math.tau))
+        return math.hypot(robot.x - truth.x, robot.y - truth.y) <= NEAR_M and turn <= NEAR_RAD
+
+    def _map_in_office(self, experiences: ExperienceMap) -> Pose2:
+        """The map's frame as the whole path fits best; while there is hardly one, as the robot stood last."""
+        truth, mapped, _ = self.trajectories(experiences)
+        if math.sqrt(np.var(truth, axis=0).sum()) >= LEAST_WAY_M:
+            return alignment(mapped, truth)
+        row, pose = self._rows[self._count - 1], experiences.pose(int(self._experience[self._count - 1]))
+        return Pose2(*row[:3].tolist()).compose(pose.compose(Pose2(*row[3:6].tolist())).inverse())

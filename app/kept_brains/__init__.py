@@ -1,0 +1,1 @@
+"""Brains of running sessions, kept on the disk."""

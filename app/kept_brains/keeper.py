@@ -1,0 +1,80 @@
+"""Keeps the brain of the running session: every minute, and when the program ends. The engine only copies it."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+
+from app.kept_brains.files import About, folder, keep
+from ratslam_core import RatSlam
+from web import messages as m
+from web.latest import Latest
+
+EVERY_S = 60.0
+LEAST_S = 60.0  # of simulated time; what knows less is soon learnt again, and would push out what knows more
+PATIENCE_S = 10.0  # with the engine, which may be in a long tick
+LEAVING_S = 5.0
+
+Submit = Callable[[m.Command | m.EngineRequest], "Future[m.Accepted | m.Refused]"]
+
+
+class BrainKeeper:
+    """A thread of its own, which waits for the disk."""
+
+    def __init__(self, latest: Latest[m.Snapshot], submit: Submit) -> None:
+        self._latest, self._submit = latest, submit
+        self._name = f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}"
+        self._kept: tuple[int, int] | None = None  # run and tick
+        self._complained: str | None = None
+        self._leaving = threading.Event()
+        self._thread = threading.Thread(target=self._work, name="brain keeper", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Keeps the brain once more, before the engine ends. One that is too large for that is left as it was kept last."""
+        self._leaving.set()
+        self._thread.join(LEAVING_S)
+        if self._thread.is_alive():
+            print("ratslam: the brain cannot be written in time; the one kept last stays", file=sys.stderr)
+
+    def _work(self) -> None:
+        while not self._leaving.wait(EVERY_S):
+            self.keep_now()
+        self.keep_now()
+
+    def keep_now(self) -> None:
+        """When there is something new that is sound."""
+        _, now = self._latest.get()
+        if now is None or now.fault is not None or now.time_s < LEAST_S or (now.run, now.tick) == self._kept:
+            return
+        try:
+            answer = self._submit(m.ReadBrain()).result(PATIENCE_S)
+        except Exception as error:  # the engine has told of it, or is not there
+            self._complain("engine", f"the brain cannot be read: {error or type(error).__name__}")
+            return
+        if not (isinstance(answer, m.Accepted) and isinstance(answer.result, RatSlam)):
+            return
+        brain = answer.result
+        about = About(now.world.name, now.seed, now.time_s, len(brain.experience_map), time.time())
+        try:
+            warning = keep(f"{self._name}-{now.run}", brain, about)
+        except OSError as error:
+            self._complain("disk", f"the brain cannot be kept in {folder()}: {error.strerror or error}")
+        except ValueError as error:
+            self._complain("size", f"the brain cannot be kept: {error}")
+        else:
+            self._kept = now.run, now.tick
+            self._complain(warning and "growth", warning)
+
+    def _complain(self, about: str | None, words: str | None) -> None:
+        """Once, until something else is the matter or nothing."""
+        if words and about != self._complained:
+            print(f"ratslam: {words}", file=sys.stderr, flush=True)
+            self._submit(m.Warn(words))
+        self._complained = about

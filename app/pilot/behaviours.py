@@ -1,0 +1,30 @@
+"""What the robot can be doing: a number that the experience map's links remember, and words for people."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class Behaviour(Enum):
+    """Each with its number and its words. Several may bear one number; 0 is standing."""
+
+    STARTING = 0, "starting"
+    WAITING = 0, "waiting for the hand"
+    AT_THE_GOAL = 0, "at the goal"
+    FOLLOWING_THE_WALL = 1, "following the wall"
+    CROSSING = 2, "crossing"
+    LOOKING_BACK = 3, "turning back to look"
+    FOLLOWING_THE_ROUTE = 4, "following the route"
+    COASTING = 4, "coasting on the old route"
+    FREEING_ITSELF = 5, "freeing itself"
+    DRIVEN_BY_HAND = 6, "driven by hand"
+
+    def __init__(self, number: int, words: str) -> None:
+        self.number, self.words = number, words
+
+
+def words_of(number: int) -> str:
+    """What a link remembers by this number, in the words of the first behaviour that bears it."""
+    if number == 0:
+        return "standing"
+    return next((behaviour.words for behaviour in Behaviour if behaviour.number == number), str(number))

@@ -1,0 +1,72 @@
+"""[ours] Getting free: back off and turn for a while when bumped into something or when getting nowhere.
+
+To turn is to get somewhere, but not again and again. On a floor that makes it slow everything takes its time.
+test_freeing.py::{test_a_cornered_robot_frees_itself, test_a_slow_floor_is_no_reason_to_back_off}.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from app.pilot.params import FreeingParams, PilotParams
+from disk import kind
+from ratslam_core import Odometry
+
+
+@kind("freeing/1")
+class Freeing:
+    """Notices that the robot is stuck, and proposes (speed, yaw rate) until it should be free."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self._rng = rng
+        self._place = np.array([0.0, 0.0, 0.0])  # x, y, heading by odometry, from where it last got ahead
+        self._still_s = 0.0
+        self._looked_at, self._turns = 0.0, 0  # heading when it last had turned far; how often since it got ahead
+        self._grip = 1.0  # how much of a turn that is asked for is made
+        self._left_s = 0.0  # of backing off and turning
+        self._drive = (0.0, 0.0)
+        self.has_begun = False  # in this very tick: what it remembers of its surroundings has led it here
+
+    def at_rest(self) -> None:
+        """Who means to stand is not stuck."""
+        self._still_s = 0.0
+
+    def step(self, bumped: bool, odometry: Odometry, asked: float, p: PilotParams) -> tuple[float, float] | None:
+        """The drive while it frees itself, else None. asked: yaw rate (rad/s) of the drive before."""
+        self.has_begun = False
+        self._move_on(odometry, asked, p)
+        if self._left_s > 0:
+            self._left_s -= odometry.dt
+            if self._left_s < p.free_turn_s:
+                self._drive = (0.0, self._drive[1])
+            return self._drive
+        if self._still_s > p.stuck_s or (bumped and self._still_s > p.bumped_s):
+            self._begin(p)
+            return self._drive
+        return None
+
+    def _move_on(self, odometry: Odometry, asked: float, p: FreeingParams) -> None:
+        """Where it is by odometry, how the floor is, and how long it has been getting nowhere."""
+        x, y, heading = self._place
+        heading += odometry.yaw_rate * odometry.dt
+        step = odometry.speed * odometry.dt
+        self._place[:] = x + step * math.cos(heading), y + step * math.sin(heading), heading
+        if abs(asked) > p.grip_yaw_rate and odometry.yaw_rate != 0:  # wheels that do not turn are not slow, but stuck
+            share = min(1.0, max(p.least_grip, odometry.yaw_rate / asked))
+            self._grip += min(1.0, odometry.dt / p.grip_s) * (share - self._grip)
+        self._still_s += odometry.dt * self._grip
+        if math.hypot(self._place[0], self._place[1]) > p.somewhere_m:
+            self._place[:2] = 0.0
+            self._still_s, self._looked_at, self._turns = 0.0, float(heading), 0
+        elif abs(heading - self._looked_at) > p.turned_rad and self._turns < p.most_turns:
+            self._still_s, self._looked_at, self._turns = 0.0, float(heading), self._turns + 1
+
+    def _begin(self, p: PilotParams) -> None:
+        share = float(self._rng.uniform(p.free_turn_share, 1.0))
+        turn = share * math.copysign(p.turn_rate, self._rng.uniform(-1, 1))
+        self._left_s, self._drive = p.free_turn_s + p.back_off_s, (-p.back_off_speed, turn)
+        self._still_s = 0.0
+        self._place[:2] = 0.0
+        self.has_begun = True

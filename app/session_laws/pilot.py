@@ -1,0 +1,68 @@
+"""What is true of the pilot between two ticks."""
+
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+
+from __future__ import annotations
+
+from typing import get_args
+
+import numpy as np
+
+from app.pilot import Mode, Pilot, PilotParams
+from app.pilot.behaviours import Behaviour
+from app.pilot.explore import Explorer, Turn
+from app.pilot.route_following import RouteFollower
+from ratslam_core import Route
+from ratslam_core.laws.kinds import same_kind
+from ratslam_core.laws.measures import FAR_M, array, number, true, whole, within
+from sim2d import SONAR_ANGLES_RAD
+from web.messages import GoalState
+
+MOST_TURNED = 1e9  # rad
+LONGEST_S = 1e12
+
+
+def pilot(pilot: Pilot, experiences: int) -> None:
+    """ValueError names the first law that does not hold. experiences: how many its map has."""
+    true(isinstance(pilot, Pilot), f"its pilot is a {type(pilot).__name__}")
+    fresh = Pilot(PilotParams(), np.array(SONAR_ANGLES_RAD), np.random.default_rng(0))
+    same_kind("pilot", pilot, fresh)
+    true(pilot.mode in get_args(Mode), f"the mode must be one of {', '.join(get_args(Mode))}, got {pilot.mode!r}")
+    true(pilot._behaviour in Behaviour.__members__, f"the pilot cannot be {pilot._behaviour!r}")
+    place = array("the pilot's place", pilot._freeing._place, np.float64, (3,))
+    within("the pilot's place", place, -MOST_TURNED, MOST_TURNED)
+    local = pilot._local
+    true(np.array_equal(local._angles, SONAR_ANGLES_RAD), "the pilot must know the robot's sonars")
+    ticks = whole("ticks that echoes are remembered", local._ticks, 1, 10**6)
+    echoes = array("echoes", local._echoes, np.float64, (ticks * len(SONAR_ANGLES_RAD), 2))
+    true(not np.isnan(echoes).any(), "echoes must be places, or none")
+    whole("the echoes' tick", local._tick)
+    _explorer(pilot._explorer)
+    one = pilot._explorer._rng is pilot._rng is pilot._freeing._rng
+    true(one, "all parts of the pilot must draw from one generator")
+    if pilot._follower is not None:
+        _follower(pilot._follower, experiences)
+
+
+def _explorer(explorer: Explorer) -> None:
+    true(explorer._state in ("follow", "cross", "look"), f"the explorer cannot be in the state {explorer._state!r}")
+    whole("the explorer's stage", explorer._stage, 0, 1)
+    if explorer._turn is not None:
+        true(isinstance(explorer._turn, Turn), "the explorer's turn must be one")
+        number("what is left of the turn", explorer._turn.left, -MOST_TURNED, MOST_TURNED)
+
+
+def _follower(follower: RouteFollower, experiences: int) -> None:
+    true(isinstance(follower, RouteFollower), "who follows a route must be a RouteFollower")
+    same_kind("route follower", follower, RouteFollower(0))
+    whole("the goal", follower.goal, 0, experiences - 1)
+    true(follower.state in get_args(GoalState), f"the way to a goal cannot be {follower.state!r}")
+    if follower._route is not None:
+        true(isinstance(follower._route, Route), "the route must be one")
+        nodes = array("the route", follower._route.experiences, np.int64, (None,))
+        within("the route", nodes, 0, experiences - 1)
+        times = array("times of the route", follower._route.arrival_s, np.float64, (len(nodes),))
+        within("times of the route", times, 0.0, LONGEST_S)
+    for bar in follower._bars:
+        within("a bar", array("a bar", bar, np.float64, (2, 2)), -FAR_M, FAR_M)

@@ -1,0 +1,51 @@
+"""What is true of a session as a whole, and of what it holds beside its parts."""
+
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.config import Config
+from app.session import Session
+from app.session_laws.evaluation import evaluation
+from app.session_laws.pilot import pilot
+from app.session_laws.simulator import simulator
+from ratslam_core import Estimate, Odometry, RatSlam, laws
+from ratslam_core.laws.kinds import same_kind
+from ratslam_core.laws.measures import number, pose, true, whole
+from sim2d import SONAR_ANGLES_RAD, World
+
+_PARTS = {"seed", "config", "simulator", "brain", "pilot", "evaluation", "odometry", "estimate"}
+
+
+def check(session: Session, world: World) -> None:
+    """ValueError names the first law that does not hold of a session in this world."""
+    odd = vars(session).keys() ^ (_PARTS | set(Session.CACHES))
+    true(not odd, f"a session differs in {', '.join(sorted(odd))}: it was made by another version")
+    whole("seed", session.seed, 0, 2**64)
+    same_kind("config", session.config, Config())
+    simulator(session.simulator, world)
+    true(isinstance(session.brain, RatSlam), f"its brain is a {type(session.brain).__name__}")
+    laws.check(session.brain)
+    occupancy, n = session.brain.occupancy, len(session.brain.experience_map)
+    true(
+        occupancy is not None and np.array_equal(occupancy._angles, SONAR_ANGLES_RAD),
+        "its brain has other sonars than its robot",
+    )
+    pilot(session.pilot, n)
+    evaluation(session.evaluation, n)
+    _last_step(session, n, len(session.brain.local_view))
+
+
+def _last_step(session: Session, experiences: int, views: int) -> None:
+    told, estimate = session.odometry, session.estimate
+    true(isinstance(told, Odometry), "the odometry must be one")
+    for name in ("speed", "yaw_rate", "dt"):
+        number(f"the odometry's {name}", getattr(told, name), -1e6, 1e6)
+    true(isinstance(estimate, Estimate), "the estimate must be one")
+    whole("the estimate's experience", estimate.experience, 0, experiences - 1)
+    pose("the estimate's pose", estimate.pose_map_robot)
+    for name in ("view", "best_view"):
+        whole(f"the estimate's {name}", getattr(estimate.recognition, name), -1, views - 1)

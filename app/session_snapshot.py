@@ -1,0 +1,68 @@
+"""A whole session as a state and as a file: office, robot, brain, pilot and what they are judged by. It goes on bit for bit.
+
+The world is kept as the text of its file, which is checked as any; everything else must keep the laws of session_laws.py.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import IO, cast
+
+import numpy as np
+
+from app import session_laws
+from app.session import Session
+from disk import State, copy_state, decode, encode
+from disk.archive import BROKEN
+from disk.state_file import load_as, read_as, save_state
+from disk.state_reading import words_of
+from ratslam_core.laws.measures import array
+from sim2d import SimParams, world_from_json
+
+SMALLEST = SimParams(robot_radius_m=0.05)  # robot: whoever edits a world may have another one later
+
+
+def take_session(session: Session) -> State:
+    """The whole state, copied: the session may go on."""
+    text = np.frombuffer(session.world_text.encode(), np.uint8)
+    return encode((text, copy_state(session)))
+
+
+def restore_session(state: State) -> Session:
+    """A session in this state, which keeps the state's arrays. ValueError says why there is none."""
+    try:
+        return _settled(state)
+    except BROKEN as error:
+        raise ValueError(words_of(error)) from None
+
+
+def save_session(session: Session, path: Path | str) -> None:
+    """Write a session to one file (.npz: arrays, and JSON as bytes), which is there whole or as it was before.
+
+    OSError names the file; ValueError: it is too large to be read again.
+    """
+    save_state(take_session(session), path)
+
+
+def load_session(path: Path | str) -> Session:
+    """The session that `save_session` wrote. ValueError names the file and what is wrong with it."""
+    return load_as("session", path, _settled)
+
+
+def read_session(file: IO[bytes]) -> Session:
+    """The session in an open file. ValueError says what is wrong with it."""
+    return read_as("session", file, _settled)
+
+
+def _settled(state: State) -> Session:
+    parts = decode(state)
+    if not isinstance(parts, tuple) or len(cast("tuple[object, ...]", parts)) != 2:
+        raise ValueError("it must hold a world and a session")
+    text, session = cast("tuple[object, object]", parts)
+    if not isinstance(session, Session):
+        raise ValueError(f"it must hold a session, got a {type(session).__name__}")
+    text = array("the text of its world", text, np.uint8, (None,))
+    world = world_from_json(text.tobytes().decode(), "its world", SMALLEST.robot_radius_m)
+    session_laws.check(session, world)
+    session.settle(world)
+    return session

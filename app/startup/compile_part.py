@@ -1,0 +1,163 @@
+"""Parts of the program used for a moment, so that numba compiles their kernels and keeps them.
+
+`-m app.startup.compile_part PART ...`: each part in a process of its own, split off when all is loaded. A line is printed for
+each kernel. Nothing else depends on what happens here.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba.core.event import Event, Listener, register  # pyright: ignore[reportUnknownVariableType]
+
+import app.pilot.local_movement
+import ratslam_core.experience_map.places
+import ratslam_core.experience_map.relaxation
+import ratslam_core.goal_links
+import ratslam_core.local_view.matcher
+import ratslam_core.local_view.view_links
+import ratslam_core.occupancy_grid
+import ratslam_core.pose_cells.activity_kernels
+import ratslam_core.pose_cells.attractor_kernels
+import ratslam_core.pose_cells.packet_kernels
+import ratslam_core.solvers.dijkstra
+import ratslam_core.solvers.laplacian
+import sim2d.camera.painting
+import sim2d.geometry.connected_cells
+import sim2d.sensors.ranges
+from app.config import Config
+from app.pilot import Pilot
+from app.pilot.local_movement import LocalMovement
+from ratslam_core import (
+    ExperienceMap,
+    GoalMemory,
+    LocalView,
+    MapGrid,
+    OccupancyGrid,
+    Odometry,
+    Packet,
+    Pose2,
+    PoseCells,
+    Recognition,
+    ViewLinks,
+    find_places,
+)
+from ratslam_core.extensions.scan_change import ScanChange
+from ratslam_core.pose_cells.activity_kernels import X, Y
+from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, load_world
+
+ANGLES = np.array(SONAR_ANGLES_RAD)
+RANGES = np.full(len(ANGLES), 2.0)
+
+
+def office() -> None:
+    """The simulator, and the pilot's look at what is near."""
+    config = Config()
+    simulator = Simulator(load_world(), config.robot, 1, config.office)
+    pilot = Pilot(config.pilot, ANGLES, np.random.default_rng(1))
+    cells = config.pose_cells
+    nowhere = ExperienceMap((cells.n_theta, cells.n_y, cells.n_x), cells.cell_m, config.experience_map)
+    frame = simulator.observe()
+    local = LocalMovement(ANGLES, config.pilot.echo_ticks)
+    local.free_way(0.0, config.pilot)
+    for _ in range(50):
+        odometry = Odometry(frame.odometry_speed, frame.odometry_yaw_rate, frame.dt)
+        frame = simulator.step(Drive(*pilot.step(frame.ranges_m, frame.bumped, odometry, nowhere)))
+
+
+def cells() -> None:
+    """Views, pose cells with two packets, and the links between them."""
+    config = Config()
+    rng = np.random.default_rng(1)
+    local_view, links = LocalView(config.local_view, rng), ViewLinks(config.local_view)
+    pose_cells, jump = PoseCells(config.pose_cells), ScanChange()
+    images = rng.integers(0, 256, (4, 8, 12), dtype=np.uint8).repeat(6, axis=1).repeat(6, axis=2)
+    for k in range(60):
+        seen = local_view.observe(images[k // 5 % 4])
+        jump.observe(RANGES + k % 2, config.kidnap)
+        pose_cells.integrate(0.03, 0.02)
+        links.learn(seen.view, *pose_cells.active, pose_cells.slot, config.local_view.learning_rate)
+        where, strength = links.recall(seen.view)
+        pose_cells.inject(where.copy(), strength)
+        if k == 30:
+            far = (where + np.int32(20)) % np.int32(min(pose_cells.shape))
+            pose_cells.inject(np.ascontiguousarray(far, np.int32), strength)
+        pose_cells.attract()
+    for view in range(300):  # more than the arena has room for at first
+        links.learn(view, *pose_cells.active, pose_cells.slot)
+
+
+def maps() -> None:
+    """The goal memory and the occupancy grids."""
+    config = Config()
+    cells = config.pose_cells
+    shape = (cells.n_theta, cells.n_y, cells.n_x)
+    goals = GoalMemory(config.goal_memory, shape, cells.cell_m)
+    grid = OccupancyGrid(config.occupancy, shape, cells.cell_m, ANGLES)
+    pictures = MapGrid(config.occupancy, ANGLES)
+    for k in range(10):
+        grid.update(Packet(k % 5 * 4.0, 4.0, 0.0, 1.0), RANGES)
+        pictures.add(k, Pose2(0.0, 0.0, 0.0), RANGES)
+    blob = np.zeros((64, 4), np.int32)
+    for k in range(3):  # more links than there is room for at first
+        blob[:, X], blob[:, Y] = np.arange(64) % 8 + 8 * k, np.arange(64) // 8
+        goals.learn(blob, np.ones(64, np.float32), 0.1 * k)
+
+
+def loops() -> None:
+    """The experience map with loops that close, and the ways through it."""
+    config = Config()
+    cells = config.pose_cells
+    made = ExperienceMap((cells.n_theta, cells.n_y, cells.n_x), cells.cell_m, config.experience_map)
+    for k in range(600):
+        view, known = k // 10 % 20, k >= 200
+        packet = Packet(view % 5 * 4.0, view // 5 * 4.0, 0.0, 1.0)
+        seen = Recognition(view, not known and k % 10 == 0, view if known else -1, 2.0)
+        made.step(packet, seen, Odometry(0.3, 0.1, 0.1))
+        made.correct()
+    made.temporal_map.times_to(0)
+    find_places(made)
+
+
+# What each part compiles last, or among the last: where they are, the part has been compiled.
+PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
+    "office": (office, (sim2d.geometry.connected_cells, sim2d.camera.painting, sim2d.sensors.ranges, app.pilot.local_movement)),
+    "cells": (cells, (ratslam_core.pose_cells.activity_kernels, ratslam_core.pose_cells.attractor_kernels,
+                      ratslam_core.pose_cells.packet_kernels,
+                      ratslam_core.local_view.matcher, ratslam_core.local_view.view_links)),
+    "loops": (loops, (ratslam_core.experience_map.relaxation, ratslam_core.solvers.laplacian, ratslam_core.solvers.dijkstra,
+                      ratslam_core.experience_map.places)),
+    "maps": (maps, (ratslam_core.goal_links, ratslam_core.occupancy_grid)),
+}  # fmt: skip
+
+
+class _Count(Listener):
+    """Says when a kernel is compiled; those that it calls are a part of it."""
+
+    def __init__(self) -> None:
+        self._depth = 0
+
+    def on_start(self, event: Event) -> None:  # noqa: ARG002
+        self._depth += 1
+
+    def on_end(self, event: Event) -> None:  # noqa: ARG002
+        self._depth -= 1
+        if self._depth == 0:
+            print(flush=True)
+
+
+if __name__ == "__main__":
+    register("numba:compile", _Count())
+    gc.disable()  # an eighth of the time; what is left over ends with the process
+    for part in sys.argv[1:]:
+        if os.fork() == 0:
+            PARTS[part][0]()
+            break
+    else:
+        for _ in sys.argv[1:]:
+            os.wait()

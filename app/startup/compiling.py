@@ -1,0 +1,70 @@
+"""The first start: numba compiles each kernel at its first call and keeps it on the disk. All of them take half a minute of one
+core, so other processes do it side by side, and somebody hears how far they are."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from numba.core.dispatcher import Dispatcher
+
+from app.startup.compile_part import PARTS
+
+WORDS = "compiling the engine for this machine, once"
+
+
+class Compiling:
+    """Begins at once, with those parts whose kernels are not on the disk. A part that fails is compiled when it is needed."""
+
+    def __init__(self) -> None:
+        missing = [part for part, (_, modules) in PARTS.items() if not all(map(is_compiled, modules))]
+        self._process = _process(missing) if missing else None
+
+    def __bool__(self) -> bool:
+        """Whether there was anything to do."""
+        return self._process is not None
+
+    def wait(self, tell: Callable[[str], None]) -> None:
+        """Until all is compiled, or `stop`. tell: gets how far it is, in words."""
+        if self._process is None:
+            return
+        assert self._process.stdout is not None
+        for done, _ in enumerate(self._process.stdout, start=1):
+            tell(f"{WORDS}: {done} {'function' if done == 1 else 'functions'} done")
+        if sys.stderr.isatty():
+            print(file=sys.stderr)
+
+    def stop(self) -> None:
+        """Ends it wherever it is: what has been compiled is kept, and `wait` returns."""
+        if self._process is not None and self._process.poll() is None:
+            os.killpg(self._process.pid, signal.SIGKILL)
+            self._process.wait()
+
+
+def say_how_far(words: str) -> None:
+    """On one line of a terminal; in a log it would be many."""
+    if sys.stderr.isatty():
+        print(f"\r{words} ", end="", file=sys.stderr, flush=True)
+
+
+def is_compiled(module: ModuleType) -> bool:
+    """Whether numba keeps a kernel of this module that is not older than the module."""
+    source = Path(str(module.__file__))
+    items: list[Any] = [item for item in vars(module).values() if isinstance(item, Dispatcher)]
+    kernel = next(item for item in items if item.py_func.__module__ == module.__name__)
+    kept = Path(str(kernel.stats.cache_path)).glob(f"{source.stem}.*.nbi")
+    return any(index.stat().st_mtime >= source.stat().st_mtime for index in kept)
+
+
+def _process(parts: list[str]) -> subprocess.Popen[str]:
+    """The leader of a group of its own, so that all that it splits off can be ended with it."""
+    return subprocess.Popen(
+        [sys.executable, "-P", "-m", "app.startup.compile_part", *parts],
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, process_group=0,
+    )  # fmt: skip

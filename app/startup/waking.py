@@ -1,0 +1,42 @@
+"""What goes on between the server's first answer and the robot's first tick."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING
+
+from app.startup.compiling import WORDS, Compiling, say_how_far
+
+if TYPE_CHECKING:
+    from app.engine_thread import EngineThread  # loaded while others compile
+
+
+class Waking:
+    """Starts the engine once its kernels are compiled, in a thread of its own: meanwhile the page says how far it is."""
+
+    def __init__(self, engine: EngineThread, compiling: Compiling) -> None:
+        self._engine, self._compiling = engine, compiling
+        self._stopped = False
+        self._thread = threading.Thread(target=self._wake, name="waking", daemon=True)
+
+    def start(self) -> None:
+        if self._compiling:
+            print(f"RatSLAM wakes up: {WORDS}, which takes some twenty seconds ...", flush=True)
+        self._thread.start()
+
+    def stop(self, patience_s: float | None = None) -> None:
+        """Ends the engine, or whatever was to come before it. patience_s: so long a tick is waited for."""
+        self._stopped = True
+        self._compiling.stop()
+        self._thread.join()
+        self._engine.stop(patience_s)
+
+    def _wake(self) -> None:
+        self._compiling.wait(self._tell)
+        self._engine.latest.waking = "loading the office and the brain"
+        if not self._stopped:
+            self._engine.start()
+
+    def _tell(self, words: str) -> None:
+        self._engine.latest.waking = words
+        say_how_far(words)

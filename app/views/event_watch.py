@@ -1,0 +1,110 @@
+"""Notices after each tick what is worth a mark on the timeline."""
+
+from __future__ import annotations
+
+from app.session import Session, is_lost
+from app.views.event_log import EventLog
+from ratslam_core import find_places
+from web.messages import Packet, Snap
+
+FALSE_EVERY_S = 5.0  # false positives are marked no more often
+PLACES_EVERY_S = 10.0
+
+
+class EventWatch:
+    """Call `watch` after each tick."""
+
+    def __init__(self, session: Session, log: EventLog) -> None:
+        self._session, self._log = session, log
+        self.last_snap: Snap | None = None
+        self.lost = False
+        self._before = session.brain.pose_cells.winner
+        self._goal_state: tuple[int, str] | None = None
+        self._false_marked, self._false_due_s = 0, 0.0
+        self._recovered = self._multiple = self._collisions = 0
+        self._dropped = len(session.brain.experience_map.dropped_links)
+        self._places_due_s = session.time_s + PLACES_EVERY_S
+
+    def watch(self) -> None:
+        self._watch_snaps()
+        self._watch_packets()
+        self._watch_goal()
+        self._watch_kidnaps()
+        self._watch_false_positives()
+        self._watch_links()
+        self._watch_places()
+
+    def _watch_snaps(self) -> None:
+        session = self._session
+        packet = session.estimate.packet
+        if session.estimate.relocalised:
+            start, end = (Packet(p.x, p.y, p.heading_rad, p.mass, p.id) for p in (self._before, packet))
+            self.last_snap = Snap(session.time_s, start, end)
+            view = session.estimate.recognition.view
+            ends = f"({start.x:.0f}, {start.y:.0f}) to ({end.x:.0f}, {end.y:.0f})"
+            self._log.note("snap", f"relocalised by view {view}: {ends}")
+        self._before = packet
+
+    def _watch_packets(self) -> None:
+        session, lost = self._session, is_lost(self._session)
+        if lost and not self.lost:
+            packets = len(session.brain.pose_cells.packets)
+            why = "the image jumped: carried away?" if session.brain.lost else f"{packets} packets compete"
+            self._log.note("lost", why)
+        self.lost = lost
+
+    def _watch_goal(self) -> None:
+        follower_state = self._session.pilot.goal_state
+        if follower_state == self._goal_state:
+            return
+        self._goal_state = follower_state
+        if follower_state is None:
+            return
+        goal, state = follower_state
+        if state == "arrived":
+            self._log.note("arrived", f"at experience {goal}")
+        elif state == "unreachable":
+            self._log.note("unreachable", f"no way to experience {goal} is known; exploring for one")
+
+    def _watch_kidnaps(self) -> None:
+        kidnaps = self._session.evaluation.kidnaps
+        while self._recovered < len(kidnaps) and kidnaps[self._recovered].after_s is not None:
+            kidnap = kidnaps[self._recovered]
+            self._log.note(
+                "recovered", f"knows where it is {kidnap.after_s:.1f} s and {kidnap.after_m:.1f} m after the kidnap"
+            )
+            self._recovered += 1
+        if self._recovered < len(kidnaps) - 1:
+            self._recovered = len(kidnaps) - 1  # kidnapped again before it recovered
+
+    def _watch_false_positives(self) -> None:
+        """Each is counted, few are marked: the mark tells how many there were since the one before."""
+        seen, count = self._session.estimate.recognition, self._session.brain.local_view.false_positives
+        if not seen.false_positive or self._session.time_s < self._false_due_s:
+            return
+        more = count - self._false_marked - 1
+        words = f"view {seen.view} instead of {seen.best_view}"
+        self._log.note("false", words + (f", and {more} more since the last mark" if more else ""))
+        self._false_marked, self._false_due_s = count, self._session.time_s + FALSE_EVERY_S
+
+    def _watch_links(self) -> None:
+        """Those that went."""
+        dropped = self._session.brain.experience_map.dropped_links[self._dropped :]
+        if dropped:
+            i, j = dropped[0]
+            more = f" and {len(dropped) - 1} more" if len(dropped) > 1 else ""
+            self._log.note("link", f"deleted: from experience {i} to {j}{more}, tried too often in vain")
+            self._dropped += len(dropped)
+
+    def _watch_places(self) -> None:
+        """Those that pose cells hold twice or in common, now and then."""
+        if self._session.time_s < self._places_due_s:
+            return
+        self._places_due_s = self._session.time_s + PLACES_EVERY_S
+        found = find_places(self._session.brain.experience_map)
+        multiple, collisions = len(found.multiple_representations), len(found.hash_collisions)
+        if multiple > self._multiple:
+            self._log.note("place", f"places with several representations in the pose cells: {multiple}")
+        if collisions > self._collisions:
+            self._log.note("place", f"states of the pose cells that stand for several places: {collisions}")
+        self._multiple, self._collisions = max(multiple, self._multiple), max(collisions, self._collisions)

@@ -1,0 +1,22 @@
+"""The goal and the way there, with the times at which the robot should be along it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.session import Session
+from app.views.arrays import frozen
+from web.messages import Goal
+
+
+def goal_view(session: Session) -> Goal | None:
+    experiences = session.brain.experience_map
+    progress = session.pilot.progress(experiences)
+    if progress is None:
+        return None
+    goal = experiences.pose(progress.experience)
+    xy = experiences.poses[progress.route, :2]
+    return Goal(
+        progress.experience, goal.x, goal.y, progress.state, progress.eta_s, progress.remaining_m,
+        frozen(xy.astype(np.float32)), frozen(progress.arrival_s.astype(np.float32)),
+    )  # fmt: skip

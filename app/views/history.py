@@ -1,0 +1,23 @@
+"""What happened in a run so far, for people to look at. Watches a session; never changes it."""
+
+from __future__ import annotations
+
+from app.session import Session
+from app.views.event_log import EventLog
+from app.views.event_watch import EventWatch
+from app.views.series import RunSeries
+from app.views.trails import Trails
+from app.views.visits import VisitLog
+
+
+class History:
+    """Call `watch` after each tick."""
+
+    def __init__(self, session: Session) -> None:
+        self.log = EventLog(session)
+        self.events = EventWatch(session, self.log)
+        self.trails, self.visits, self.series = Trails(session), VisitLog(session), RunSeries(session)
+
+    def watch(self) -> None:
+        for part in (self.trails, self.visits, self.events, self.series):
+            part.watch()

@@ -1,0 +1,58 @@
+"""The experience map and the times to the goal over it, at the rates at which people can see them."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+
+from app.session import Session
+from app.views.arrays import frozen
+from ratslam_core import ExperienceMap
+from web.messages import MapLayer, TimesLayer
+
+MAP_EVERY_S = 0.5  # of wall time
+TIMES_EVERY_S = 0.25
+
+
+class MapLayers:
+    """Map and times of one moment; rows of both agree."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._map: MapLayer | None = None
+        self._times: TimesLayer | None = None
+        self._goal_timed: int | None = None
+        self._map_due = self._times_due = -math.inf
+
+    def refresh(self) -> None:
+        self._map_due = self._times_due = -math.inf
+
+    def layers(self) -> tuple[MapLayer, TimesLayer]:
+        now = time.perf_counter()
+        if self._map is None or now >= self._map_due:
+            self._map = map_layer(self._session.brain.experience_map)
+            self._map_due, self._times_due = now + MAP_EVERY_S, -math.inf
+        goal = self._session.pilot.goal
+        if self._times is None or now >= self._times_due or goal != self._goal_timed:
+            self._times = self._times_to(goal, len(self._map.ids))
+            self._times_due, self._goal_timed = now + TIMES_EVERY_S, goal
+        return self._map, self._times
+
+    def _times_to(self, goal: int | None, shown: int) -> TimesLayer:
+        experiences = self._session.brain.experience_map
+        source = experiences.active if goal is None else goal
+        seconds = experiences.temporal_map.times_to(source)[:shown].astype(np.float32)
+        return TimesLayer(goal is not None, frozen(seconds))
+
+
+def map_layer(experiences: ExperienceMap) -> MapLayer:
+    """The map as it is now."""
+    poses = experiences.poses.astype(np.float32)
+    return MapLayer(
+        frozen(np.arange(len(poses), dtype=np.int32)),
+        frozen(np.ascontiguousarray(poses[:, :2])),
+        frozen(np.ascontiguousarray(poses[:, 2])),
+        frozen(experiences.links.astype(np.int32)),
+    )

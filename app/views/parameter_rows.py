@@ -1,0 +1,28 @@
+"""All parameters with what is to be told of each, and the preset that they are."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from app.config import Config, Value
+from app.config.presets import preset_of
+from web.messages import Parameter
+
+
+class ParameterRows:
+    """The same objects as long as the config is the same."""
+
+    def __init__(self) -> None:
+        self._config: Config | None = None
+        self._rows: tuple[Parameter, ...] = ()
+        self._preset = ""
+
+    def of(self, config: Config) -> tuple[tuple[Parameter, ...], str]:
+        """All parameters, and the preset that they are."""
+        if self._config is not config:
+            self._config, self._preset = config, preset_of(config)
+            self._rows = tuple(
+                Parameter(name=name, value=value, default=cast(Value, item.default), **item.metadata)
+                for name, item, value in config.items()
+            )
+        return self._rows, self._preset

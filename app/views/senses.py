@@ -1,0 +1,29 @@
+"""What the robot senses, and which view it takes it for."""
+
+from __future__ import annotations
+
+from app.session import Session
+from app.views.arrays import frozen
+from web.messages import Senses
+
+
+def senses_of(session: Session) -> Senses:
+    recognition, local_view = session.estimate.recognition, session.brain.local_view
+    best, front_end = recognition.best_view, local_view.front_end
+    stored = local_view.stored(best) if best >= 0 else None
+    return Senses(
+        camera=session.frame.image,
+        front_end=local_view.params.front_end,
+        seen=frozen(front_end.picture(local_view.features).copy()),
+        seen_words=front_end.words(local_view.features),
+        best=None if stored is None else frozen(front_end.picture(stored).copy()),
+        best_words="" if stored is None else front_end.words(stored),
+        best_view=best,
+        difference=recognition.difference,
+        threshold=front_end.threshold(local_view.params),
+        active_view=recognition.view,
+        recruited=recognition.recruited,
+        false_positive=recognition.false_positive,
+        false_positives=local_view.false_positives,
+        ranges_m=session.frame.ranges_m,
+    )

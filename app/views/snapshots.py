@@ -1,0 +1,110 @@
+"""Builds the immutable Snapshot of a session. Parts that cost much are built at the rates at which people can see them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from app.config.presets import PRESETS
+from app.session import Session
+from app.views.actors import ActorsView
+from app.views.goal_memory_layer import goal_memory_layer
+from app.views.goal_view import goal_view
+from app.views.history import History
+from app.views.inspection import inspect
+from app.views.map_layers import MapLayers
+from app.views.occupancy_layer import occupancy_layer
+from app.views.parameter_rows import ParameterRows
+from app.views.pose_cell_layer import pose_cell_layer
+from app.views.senses import senses_of
+from app.views.throttle import Slow
+from app.views.tick_stages import Walk
+from app.views.world_drawing import DrawnWorld
+from web.messages import Inspect, OfficeEdition, Pose, Snapshot, Timing
+
+OCCUPANCY_EVERY_S = 2.0  # of wall time
+GOAL_MEMORY_EVERY_S = 0.5
+INSPECT_EVERY_S = 0.25
+_PRESETS = tuple(PRESETS)
+
+
+class Snapshots:
+    """`build` looks at one session; it changes nothing that the session's future depends on."""
+
+    def __init__(self, session: Session, history: History, run: int, worlds: tuple[tuple[str, str], ...]) -> None:
+        self._session, self._history, self._run, self.worlds = session, history, run, worlds
+        self.office: OfficeEdition | None = None
+        self.inspected = Inspect(type="inspect")  # what is looked at: nothing
+        self.walk: Walk | None = None  # through the last tick
+        self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), ParameterRows()
+        self._map = MapLayers(session)
+        self._occupancy = Slow(OCCUPANCY_EVERY_S, lambda: occupancy_layer(session))
+        self._inspection = Slow(INSPECT_EVERY_S, lambda: inspect(session, history.visits, self.inspected))
+        self._goal_memory = Slow(GOAL_MEMORY_EVERY_S, lambda: goal_memory_layer(session))
+
+    def refresh(self) -> None:
+        """Build everything anew with the next snapshot: a command has changed something."""
+        for part in (self._map, self._goal_memory, self._inspection):
+            part.refresh()
+
+    def build(self, *, running: bool, speed: float, real_time_factor: float, fault: str | None) -> Snapshot:
+        session, history = self._session, self._history
+        brain, truth = session.brain, session.simulator.truth
+        parts = self.parts() | (self.walk.parts if self.walk is not None else {})
+        parameters, preset = self._parameters.of(session.config)
+        return Snapshot(
+            run=self._run,
+            tick=session.tick_count,
+            time_s=session.time_s,
+            mode=session.pilot.mode,
+            doing=session.pilot.doing,
+            running=running,
+            speed=speed,
+            real_time_factor=real_time_factor,
+            seed=session.seed,
+            fault=fault,
+            lost=history.events.lost,
+            world=self._drawn.look(session.simulator),
+            worlds=self.worlds,
+            truth=Pose(truth.x, truth.y, truth.heading_rad),
+            trail=history.trails.robot,
+            estimate=parts["estimate"],
+            senses=senses_of(session),
+            pose_cells=parts["pose_cells"],
+            map=parts["map"],
+            times=parts["times"],
+            goal=goal_view(session),
+            views=len(brain.local_view),
+            experiences=len(brain.experience_map),
+            links=brain.experience_map.link_count,
+            relocalisations=brain.relocalisations,
+            map_turn_rad=history.series.map_turn_rad,
+            error_map_m=history.series.error_map_m,
+            error_odometry_m=history.series.error_odometry_m,
+            revisit_consistency=session.evaluation.revisit_consistency,
+            series=history.series.series,
+            timings=tuple(Timing(part, *ms) for part, ms in session.stopwatch.mean_and_worst_ms.items()),
+            events=history.log.events,
+            parameters=parameters,
+            occupancy=self._occupancy.part(session.tick_count),
+            goal_memory=self._goal_memory.part(session.tick_count),
+            living=self._actors.look(session.simulator),
+            switches=self._actors.switches(session.simulator.world),
+            inspected=self._inspection.part(session.tick_count),
+            active_experience=brain.experience_map.active,
+            walk=None if self.walk is None else self.walk.told,
+            presets=_PRESETS,
+            preset=preset,
+            office=self.office,
+            no_room=session.simulator.fit.refusal,
+        )
+
+    def parts(self) -> dict[str, Any]:
+        """What a walk through a tick shows as it was at each stage: fields of the snapshot, as they are now."""
+        layer, times = self._map.layers()
+        robot = self._session.brain.experience_map.robot
+        return {
+            "pose_cells": pose_cell_layer(self._session, self._history),
+            "map": layer,
+            "times": times,
+            "estimate": Pose(robot.x, robot.y, robot.heading_rad),
+        }

@@ -1,0 +1,214 @@
+"""One tick, stage by stage: what each stage of the engine did, kept while it runs, to be walked through afterwards.
+
+The tick itself is computed whole, in the order of `RatSlam.step`, whether anybody watches or not.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from app.session import Session
+from app.views.arrays import frozen
+from app.views.attractor_stages import Activity, excited, inhibited, normalised
+from app.views.map_layers import map_layer
+from app.views.pose_cell_layer import STRONGEST
+from ratslam_core import Odometry
+from web.messages import Pose, PoseCellLayer, TickStage, TickWalk
+
+TITLES = {
+    "image": "Image and odometry",
+    "view match": "View match",
+    "path integration": "Path integration",
+    "injection": "Injection by the view",
+    "excitation": "Excitation",
+    "inhibition": "Inhibition",
+    "normalisation": "Normalisation",
+    "experience": "Experience choice",
+    "correction": "Map correction",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Still:
+    """A stage, and the parts of the snapshot that looked otherwise at its end than at the end of the tick."""
+
+    stage: TickStage
+    parts: dict[str, Any]
+
+
+class Walk:
+    """Through the stills of one tick."""
+
+    def __init__(self, stills: tuple[Still, ...], at: int = 0) -> None:
+        self._stills, self._at = stills, at
+        self.parts = stills[at].parts
+        self.told = TickWalk(tuple(still.stage for still in stills), at)
+
+    def moved(self, by: int) -> Walk | None:
+        """One further or back; None at the end and before the beginning."""
+        at = self._at + by
+        return Walk(self._stills, at) if 0 <= at < len(self._stills) else None
+
+
+class TickRecorder:
+    """Made before the tick, called by the engine after each of its stages, read after the tick."""
+
+    def __init__(self, session: Session, before: dict[str, Any]) -> None:
+        """before: `pose_cells`, `map`, `times` and `estimate` of the snapshot before the tick."""
+        self._session, self._before = session, before
+        self._active = session.brain.experience_map.active
+        self._known = len(session.brain.experience_map)
+        self._cells: dict[str, Activity] = {"view match": self._activity()}
+        self._iterations = 1
+        self._poses = np.zeros((0, 3))
+        self._map: dict[str, Any] = {}
+        self._residual = (0.0, 0.0)
+
+    def __call__(self, part: str) -> None:
+        """The engine has done this part of its step; `ratslam_core.slam.STAGES`."""
+        if part in ("path integration", "injection", "attractor"):
+            self._cells[part] = self._activity()
+            if part == "injection":
+                self._iterations = self._session.brain.pose_cells.iterations_due
+        elif part == "experience":
+            map_ = self._session.brain.experience_map
+            self._poses, self._residual = map_.poses.copy(), map_.residual
+            robot = map_.robot
+            self._map = {"map": map_layer(map_), "estimate": Pose(robot.x, robot.y, robot.heading_rad)}
+
+    def walk(self, after: dict[str, Any]) -> Walk:
+        """Through the tick that was recorded. after: the same parts as `before`, of the end of the tick."""
+        params, before = self._session.brain.params.pose_cells, self._before
+        moved, injected = self._cells["path integration"], self._cells["injection"]
+        start = injected
+        for _ in range(self._iterations - 1):
+            start = normalised(inhibited(excited(start, params), params))
+        near = excited(start, params)
+        left = inhibited(near, params)
+        chosen = {"times": after["times"], **self._map}
+
+        # What has been injected is a packet of its own as soon as it is there, though the engine looks for packets at the end.
+        like = replace(before["pose_cells"], packets=after["pose_cells"].packets)
+
+        def cells(activity: Activity) -> dict[str, Any]:
+            return before | {"pose_cells": _layer(like, activity)}
+
+        steps: list[tuple[str, str, dict[str, Any]]] = [
+            ("image", self._image(), before),
+            ("view match", self._view_match(), before),
+            ("path integration", self._path_integration(), cells(moved)),
+            ("injection", self._injection(moved, injected), cells(injected)),
+            ("excitation", _grown(start, near), cells(near)),
+            ("inhibition", _shrunk(near, left, params.inhibit), cells(left)),
+            ("normalisation", self._normalisation(left), before | {"pose_cells": after["pose_cells"]}),
+            ("experience", self._choice(), chosen | {"pose_cells": after["pose_cells"]}),
+            ("correction", self._correction(), {}),
+        ]
+        return Walk(tuple(Still(TickStage(name, TITLES[name], words), parts) for name, words, parts in steps))
+
+    # ------------------------------------------------------------ what each stage did, in a sentence
+
+    def _image(self) -> str:
+        odometry = self._odometry()
+        way, turn = 100 * odometry.speed * odometry.dt, math.degrees(odometry.yaw_rate * odometry.dt)
+        return f"The wheels report {_plain(way, 1)} cm ahead and a turn of {_plain(turn, 1)}°; then the camera takes a picture."
+
+    def _view_match(self) -> str:
+        seen = self._session.estimate.recognition
+        local_view = self._session.brain.local_view
+        limit = local_view.front_end.threshold(local_view.params)
+        if seen.view < 0:
+            return "The picture shows nothing that could be told apart from elsewhere: no view is active."
+        if not math.isfinite(seen.difference):
+            return f"No view is known yet: this one is stored as #{seen.view}."
+        nearest = f"The most similar known view is #{seen.best_view}, {seen.difference:.1f} away"
+        if seen.recruited:
+            return f"{nearest}, farther than the threshold {limit:.1f}: a new one is stored as #{seen.view}."
+        if seen.view != seen.best_view:
+            return f"{nearest}; a false positive puts #{seen.view} in its place."
+        return f"{nearest}, within the threshold {limit:.1f}: it is recognised."
+
+    def _path_integration(self) -> str:
+        odometry, params = self._odometry(), self._session.brain.params.pose_cells
+        if odometry.speed == 0 and odometry.yaw_rate == 0:
+            return "The wheels stand: the activity stays where it is."
+        ahead = odometry.speed * odometry.dt / params.cell_m
+        turn = odometry.yaw_rate * odometry.dt / math.tau * params.n_theta
+        return (
+            f"All activity moves {_plain(ahead, 2)} cells along its own heading and turns by {_plain(turn, 2)} layers."
+        )
+
+    def _injection(self, before: Activity, after: Activity) -> str:
+        seen = self._session.estimate.recognition
+        gained = after.total - before.total
+        if gained <= 1e-9:
+            why = (
+                "there is no view" if seen.view < 0 else "the view is new" if seen.recruited else "the view still rests"
+            )
+            return f"Nothing is injected: {why}."
+        cells = len(self._session.brain.view_links.of(seen.view)[0])
+        return f"View #{seen.view} adds {100 * gained:.1f} % of the activity, over its links to {cells} pose cells."
+
+    def _normalisation(self, left: Activity) -> str:
+        packets = self._session.brain.pose_cells.packets
+        words = "one packet is left" if len(packets) == 1 else f"{len(packets)} packets compete"
+        return f"All is divided by {left.total:.3f}, so that the sum is 1 again; {words}."
+
+    def _choice(self) -> str:
+        map_, estimate = self._session.brain.experience_map, self._session.estimate
+        if estimate.created:
+            return (
+                f"Nothing known fits packet and view: experience #{map_.active} is made, linked from #{self._active}."
+            )
+        energy = map_.energy(map_.active, estimate.packet, estimate.recognition.view)
+        if map_.active == self._active:
+            return f"Experience #{map_.active} still fits, with energy {energy:.2f}: it stays active."
+        return f"Experience #{map_.active} fits best, with energy {energy:.2f}: a link from #{self._active} to it is learnt."
+
+    def _correction(self) -> str:
+        map_ = self._session.brain.experience_map
+        if map_.link_count == 0:
+            return "There is no link yet: nothing to correct."
+        most = float(np.hypot(*(map_.poses[: len(self._poses), :2] - self._poses[:, :2]).T).max(initial=0.0))
+        was, now = 1000 * self._residual[0], 1000 * map_.residual[0]
+        moved = f"the farthest experience moved {1000 * most:.1f} mm"
+        return f"Links and map disagreed by {was:.1f} mm, now by {now:.1f} mm; {moved}."
+
+    def _odometry(self) -> Odometry:
+        return self._session.odometry
+
+    def _activity(self) -> Activity:
+        cells, values = self._session.brain.pose_cells.active
+        order = np.argsort(cells[:, 3], kind="stable")
+        return Activity(cells[order, 3].astype(np.int64), values[order].astype(np.float64))
+
+
+def _plain(value: float, digits: int) -> str:
+    """Without the sign of a zero."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"
+
+
+def _grown(before: Activity, after: Activity) -> str:
+    return f"Every active cell excites its neighbours: {len(before.flat)} active cells become {len(after.flat)}."
+
+
+def _shrunk(before: Activity, after: Activity, inhibit: float) -> str:
+    silent = len(before.flat) - len(after.flat)
+    return f"{inhibit:g} is taken from every cell: {silent} cells fall silent, {len(after.flat)} stay active."
+
+
+def _layer(like: PoseCellLayer, activity: Activity) -> PoseCellLayer:
+    strongest = np.argsort(-activity.values, kind="stable")[:STRONGEST]
+    places = np.stack(np.unravel_index(activity.flat[strongest], like.shape), 1).astype(np.int32)
+    return replace(
+        like,
+        cells=frozen(places),
+        activity=frozen(activity.values[strongest].astype(np.float32)),
+        active_cells=len(activity.flat),
+        total=activity.total,
+        least=float(activity.values.min(initial=1.0)),
+    )

@@ -1,0 +1,42 @@
+"""Where the robot truly went of late, and where the winning packet did."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.session import Session
+from app.views.arrays import frozen
+
+TRAIL_S = 120.0  # of driving
+STILL_M, STILL_CELLS = 0.005, 0.02  # what moves less stands
+
+
+class Trails:
+    """Call `watch` after each tick. Each trail is the same object while what it follows stands."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._most = int(TRAIL_S / session.frame.dt) // 2
+        self.robot = _no_points(2)  # true path, (t, 2), office frame
+        self.packet = _no_points(3)  # of the winning packet, (p, 3): x', y' (cells), heading (rad)
+
+    def watch(self) -> None:
+        session = self._session
+        if session.tick_count % 2 == 0:
+            truth, packet = session.simulator.truth, session.estimate.packet
+            self.robot = _grown(self.robot, (truth.x, truth.y), self._most, STILL_M)
+            self.packet = _grown(self.packet, (packet.x, packet.y, packet.heading_rad), self._most, STILL_CELLS)
+
+
+def _no_points(columns: int) -> NDArray[np.float32]:
+    return frozen(np.zeros((0, columns), np.float32))
+
+
+def _grown(path: NDArray[np.float32], point: tuple[float, ...], most: int, still: float) -> NDArray[np.float32]:
+    """`path` with another point at its end, at most so many; itself where the point is hardly another one."""
+    if len(path) and math.dist(path[-1].tolist(), point) < still:
+        return path
+    return frozen(np.vstack([path[max(0, len(path) + 1 - most) :], np.array([point], np.float32)]))

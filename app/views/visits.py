@@ -1,0 +1,49 @@
+"""When each experience and each view was active first and last, and how often it became so."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.session import Session
+from web.messages import Times
+
+
+class Visits:
+    """Of experiences, or of views. Things that a brain brought with it have no times before they are met."""
+
+    def __init__(self) -> None:
+        self._first_s, self._last_s = np.full(1024, np.nan), np.full(1024, np.nan)
+        self._count = np.zeros(1024, np.int64)
+        self._active = -1
+
+    def note(self, number: int, time_s: float) -> None:
+        """This one is active now; -1: none is."""
+        if number >= len(self._count):
+            more = max(number + 1, 2 * len(self._count)) - len(self._count)
+            self._first_s, self._last_s = (np.append(a, np.full(more, np.nan)) for a in (self._first_s, self._last_s))
+            self._count = np.append(self._count, np.zeros(more, np.int64))
+        if number >= 0:
+            if self._count[number] == 0:
+                self._first_s[number] = time_s
+            self._last_s[number] = time_s
+            self._count[number] += number != self._active
+        self._active = number
+
+    def of(self, number: int) -> Times:
+        if number >= len(self._count) or self._count[number] == 0:
+            return Times(None, None, 0)
+        return Times(float(self._first_s[number]), float(self._last_s[number]), int(self._count[number]))
+
+
+class VisitLog:
+    """Call `watch` after each tick."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self.experiences, self.views = Visits(), Visits()
+        self.watch()
+
+    def watch(self) -> None:
+        session = self._session
+        self.experiences.note(session.brain.experience_map.active, session.time_s)
+        self.views.note(session.estimate.recognition.view, session.time_s)

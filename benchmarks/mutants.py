@@ -1,0 +1,218 @@
+"""How many small faults put into the engine its unit and property tests notice.
+
+    python -m benchmarks.mutants --count 200 --seed 1 --json mutants.json
+
+A mutant is one changed operator, comparison, minimum or maximum of one file of ratslam_core. Each is tried in a copy of the
+tree, with kernels compiled afresh where the change can reach them; it is killed when a test fails or takes far too long.
+Survivors are listed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import json
+import os
+import random
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from tqdm import tqdm
+
+ROOT = Path(__file__).resolve().parent.parent
+ROOMS = ("app", "benchmarks", "disk", "docs", "ratslam_core", "sim2d", "tests", "web", "pyproject.toml")
+SUITE = ("tests/unit/ratslam_core", "tests/property")
+NOT_MUTATED = ("laws", "params")  # guards of files, and declarations
+MOST_S = 900.0  # of a mutant's tests; the suite takes a tenth of it
+OTHER: dict[type[ast.AST], tuple[type[ast.AST], ...]] = {
+    ast.Add: (ast.Sub,), ast.Sub: (ast.Add,), ast.Mult: (ast.Div,), ast.Div: (ast.Mult,), ast.FloorDiv: (ast.Mult,),
+    ast.Mod: (ast.FloorDiv,), ast.Pow: (ast.Mult,), ast.Lt: (ast.LtE, ast.GtE), ast.LtE: (ast.Lt, ast.Gt),
+    ast.Gt: (ast.GtE, ast.LtE), ast.GtE: (ast.Gt, ast.Lt), ast.Eq: (ast.NotEq,), ast.NotEq: (ast.Eq,),
+    ast.And: (ast.Or,), ast.Or: (ast.And,),
+}  # fmt: skip
+SWAPPED = {"min": "max", "max": "min", "minimum": "maximum", "maximum": "minimum"}
+
+
+@dataclass(frozen=True)
+class Mutant:
+    file: str
+    line: int
+    start: int  # offsets in the file
+    end: int
+    before: str
+    after: str
+
+
+def mutants_of(file: Path) -> Iterator[Mutant]:
+    """Every mutant of one file. What stands in annotations, decorators, error sentences and text is left alone."""
+    source = file.read_text(encoding="utf-8")
+    starts = [0]
+    for line in source.encode().splitlines(keepends=True):
+        starts.append(starts[-1] + len(line))
+    for node, changed in _changes(ast.parse(source)):
+        assert isinstance(node, ast.expr | ast.stmt)
+        start, end = (
+            starts[node.lineno - 1] + node.col_offset,
+            starts[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0),
+        )
+        before, after = source.encode()[start:end].decode(), ast.unparse(changed)
+        after = after if isinstance(node, ast.stmt) else f"({after})"
+        yield Mutant(str(file.relative_to(ROOT)), node.lineno, start, end, before, after)
+
+
+def _changes(tree: ast.AST) -> Iterator[tuple[ast.AST, ast.AST]]:
+    """A node of the tree and what it becomes."""
+    for node in _reached(tree):
+        if isinstance(node, ast.BinOp | ast.AugAssign | ast.BoolOp):
+            for other in OTHER.get(type(node.op), ()):
+                yield node, _with(node, op=other())
+        elif isinstance(node, ast.Compare) and len(node.ops) == 1:
+            for other in OTHER.get(type(node.ops[0]), ()):
+                yield node, _with(node, ops=[other()])
+        elif isinstance(node, ast.Call):
+            name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            if name in SWAPPED and (isinstance(node.func, ast.Name) or ast.unparse(node.func).startswith("np.")):
+                yield (
+                    node,
+                    _with(node, func=ast.parse(ast.unparse(node.func).replace(name, SWAPPED[name]), mode="eval").body),
+                )
+
+
+def _reached(tree: ast.AST) -> Iterator[ast.AST]:
+    for field, value in ast.iter_fields(tree):
+        if field in ("annotation", "returns", "decorator_list"):
+            continue
+        for node in value if isinstance(value, list) else [value]:
+            if isinstance(node, ast.AST) and not isinstance(node, ast.Raise | ast.JoinedStr):
+                yield node
+                yield from _reached(node)
+
+
+def _with(node: ast.AST, **changed: object) -> ast.AST:
+    return type(node)(**{**dict(ast.iter_fields(node)), **changed})
+
+
+class Bench:
+    """A copy of the tree for each worker, with the compiled kernels of the unchanged one."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder, self._lock, self._made = folder, threading.Lock(), 0
+        self._own = threading.local()
+        self._warm = folder / "warm"
+        self._copy(self._warm)
+        self._test(self._warm, ["-q"], check=True)
+
+    def survives(self, mutant: Mutant) -> bool:
+        """Whether no test notices."""
+        tree = self._tree()
+        file = tree / mutant.file
+        source = file.read_bytes()
+        file.write_bytes(source[: mutant.start] + mutant.after.encode() + source[mutant.end :])
+        self._forget_kernels(tree, mutant.file)
+        try:
+            return self._test(tree, ["-q", "-x", *self._first(mutant.file)])
+        finally:
+            file.write_bytes(source)
+            self._forget_kernels(tree, mutant.file)
+
+    def _tree(self) -> Path:
+        if not hasattr(self._own, "tree"):
+            with self._lock:
+                self._made += 1
+                self._own.tree = self._folder / f"tree{self._made}"
+            shutil.copytree(self._warm, self._own.tree)
+        return self._own.tree
+
+    @staticmethod
+    def _copy(to: Path) -> None:
+        to.mkdir()
+        for room in ROOMS:
+            if (ROOT / room).is_dir():
+                shutil.copytree(ROOT / room, to / room, ignore=shutil.ignore_patterns("__pycache__", "node_modules"))
+            else:
+                shutil.copy2(ROOT / room, to / room)
+
+    @staticmethod
+    def _first(file: str) -> list[str]:
+        """Tests named after the file come first: most mutants do not live to see the others."""
+        name = Path(file).stem
+        named = sorted(
+            str(path.relative_to(ROOT)) for room in SUITE for path in (ROOT / room).glob(f"test_*{name}*.py")
+        )
+        return [*named, *SUITE]
+
+    @staticmethod
+    def _forget_kernels(tree: Path, changed: str) -> None:
+        """Compiled code of the file and of all that import it, straight or over others: their callers have it inside."""
+        files = {
+            str(path.relative_to(tree)): path.read_text(encoding="utf-8")
+            for path in (tree / "ratslam_core").rglob("*.py")
+        }
+        reached, before = {changed}, set[str]()
+        while reached != before:
+            before = set(reached)
+            modules = [name.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for name in before]
+            reached |= {name for name, text in files.items() if any(_imports(text, module) for module in modules)}
+        for name in reached:
+            for compiled in (tree / name).parent.glob(f"__pycache__/{Path(name).stem}.*.nb*"):
+                compiled.unlink()
+
+    @staticmethod
+    def _test(tree: Path, arguments: list[str], check: bool = False) -> bool:
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-p",
+            "no:cacheprovider",
+            *arguments,
+            *(() if len(arguments) > 1 else SUITE),
+        ]
+        environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1"}
+        try:
+            done = subprocess.run(command, cwd=tree, env=environment, capture_output=True, timeout=MOST_S, check=False)
+        except subprocess.TimeoutExpired:
+            return False
+        if check and done.returncode:
+            raise RuntimeError(f"the unchanged tree fails its tests:\n{done.stdout.decode()[-3000:]}")
+        return done.returncode == 0
+
+
+def _imports(text: str, module: str) -> bool:
+    room, _, name = module.rpartition(".")
+    return module in text or re.search(rf"from {re.escape(room)} import .*\b{name}\b", text) is not None
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--only", default="", metavar="TEXT", help="files whose path has this in it")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="the survivors")
+    args = parser.parse_args()
+    files = [path for path in sorted((ROOT / "ratslam_core").rglob("*.py")) if not set(path.parts) & set(NOT_MUTATED)]
+    every = [mutant for path in files if args.only in str(path) for mutant in mutants_of(path)]
+    chosen = random.Random(args.seed).sample(every, min(args.count, len(every)))
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(args.jobs) as pool:
+        bench = Bench(Path(folder))
+        lived = list(tqdm(pool.map(bench.survives, chosen), total=len(chosen), unit="mutant", disable=None))
+    survivors = [mutant for mutant, alive in zip(chosen, lived, strict=True) if alive]
+    killed = len(chosen) - len(survivors)
+    print(f"{killed} of {len(chosen)} killed ({killed / len(chosen):.1%}), of {len(every)} there are")
+    for m in survivors:
+        print(f"{m.file}:{m.line}: {m.before!r} -> {m.after!r}")
+    if args.json is not None:
+        args.json.write_text(json.dumps([asdict(m) for m in survivors], indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

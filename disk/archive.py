@@ -1,0 +1,116 @@
+"""The file around a snapshot (.npz: arrays, and JSON as bytes), taken apart within limits that are asked before unpacking.
+
+Half a megabyte of zeros can be unpacked to half a gigabyte, and a header can claim anything.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import struct
+import zipfile
+import zlib
+from typing import IO, Any
+
+import numpy as np
+from numpy.lib import format as npy
+from numpy.typing import NDArray
+
+MOST_BYTES = 512 << 20  # of all arrays together, as they lie in memory
+MOST_JSON_BYTES = 16 << 20  # nothing of it grows with the map (state_codec.py)
+FAST = 3  # of zlib: half the time of its usual level, 3 % larger
+MOST_ARRAYS = 500
+MOST_DIRECTORY_BYTES = 128 * MOST_ARRAYS
+_HEADER = re.compile(
+    rb"\{'descr': '[<|][biuf]([1248])', 'fortran_order': False, 'shape': \(((?:\d{1,12}, )*(?:\d{1,12},?)?)\), \}\s*"
+)
+_LONGEST_HEADER = 256
+_END = b"PK\x05\x06"  # of a zip file: this, counts, and the size of its directory
+# Whatever a file can make its readers say.
+BROKEN = (
+    ValueError, LookupError, TypeError, AttributeError, ImportError, EOFError, ArithmeticError, RuntimeError, MemoryError,
+    struct.error, zlib.error, zipfile.BadZipFile, zipfile.LargeZipFile,
+)  # fmt: skip
+
+
+def pack(file: IO[bytes], tree: dict[str, Any], arrays: list[NDArray], note: str = "") -> None:
+    """Write what `unpack` reads. note: stands in the file's directory. ValueError, before a byte: it could not be read again."""
+    text = np.frombuffer(json.dumps(tree).encode(), np.uint8)
+    named = {"json": text} | {f"a{k}": array for k, array in enumerate(arrays)}
+    for what, size, most in (("JSON", text.nbytes, MOST_JSON_BYTES), ("arrays", room_of([text, *arrays]), MOST_BYTES)):
+        if size > most:
+            raise ValueError(
+                f"too large for a file: {size >> 20} MiB of {what}, at most {most >> 20} can be read again"
+            )
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED, compresslevel=FAST) as archive:
+        for name, array in named.items():
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as entry:
+                npy.write_array(entry, array, allow_pickle=False)
+        archive.getinfo("json.npy").comment = note.encode()
+
+
+def room_of(arrays: list[NDArray]) -> int:
+    """How many of MOST_BYTES they take at most."""
+    return sum(array.nbytes + _LONGEST_HEADER for array in arrays)
+
+
+def unpack(file: IO[bytes]) -> tuple[dict[str, Any], list[NDArray]]:
+    """What is in the file. One of BROKEN says why it cannot be."""
+    _require_directory(file)
+    with zipfile.ZipFile(file) as archive:
+        entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
+        names = ["json", *(f"a{k}" for k in range(len(entries) - 1))]
+        if sorted(entries) != sorted(names) or len(entries) != len(archive.infolist()):
+            raise ValueError(f"it must hold json and a0, a1 and so on, got {', '.join(list(entries)[:6]) or 'nothing'}")
+        if entries["json"].file_size > MOST_JSON_BYTES:
+            raise ValueError(
+                f"its JSON has {entries['json'].file_size >> 20} MiB, at most {MOST_JSON_BYTES >> 20} can be"
+            )
+        size = sum(entry.file_size for entry in entries.values())
+        if size > MOST_BYTES:
+            raise ValueError(f"too large: {size >> 20} MiB unpacked, at most {MOST_BYTES >> 20} can be")
+        for name in names:
+            _require_entry(archive, entries[name], name)
+        text, *arrays = (_array(archive, entries[name]) for name in names)
+    tree = json.loads(text.tobytes())
+    if not isinstance(tree, dict):
+        raise ValueError(f"its JSON must be an object, got a {type(tree).__name__}")
+    return tree, arrays
+
+
+def _require_directory(file: IO[bytes]) -> None:
+    """A zip file's directory is read at once and whole, so its size is looked at first."""
+    size = file.seek(0, os.SEEK_END)
+    if size == 0:
+        raise ValueError("the file is empty")
+    file.seek(-min(size, 42), os.SEEK_END)
+    tail = file.read()
+    file.seek(0)
+    if tail[-22:-18] != _END or tail[:4] == b"PK\x06\x07":
+        raise ValueError("the file is not a zip file; it has to be one that was saved")
+    directory = struct.unpack("<I", tail[-10:-6])[0]
+    if directory > MOST_DIRECTORY_BYTES:
+        raise ValueError(f"its directory has {directory} bytes; at most {MOST_DIRECTORY_BYTES} can be")
+
+
+def _require_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, name: str) -> None:
+    """Nobody parses a header that says more than type and shape, and it claims what there is."""
+    if entry.flag_bits & 1:
+        raise ValueError(f"{name} is encrypted; a brain is not")
+    if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        raise ValueError(f"{name} is packed in an unusual way; it has to be one that was saved")
+    with archive.open(entry) as data:
+        header = npy.read_magic(data) == (1, 0) and _HEADER.fullmatch(data.read(*struct.unpack("<H", data.read(2))))
+        if not header:
+            raise ValueError(f"{name} is not an array of plain numbers as it is saved, row after row")
+        shape = [int(n) for n in header[2].decode().rstrip(",").split(", ") if n]
+        claimed, there = math.prod(shape) * int(header[1]), entry.file_size - data.tell()
+        if claimed != there:
+            raise ValueError(f"{name} claims to be of shape {str(shape)[:60]} but has {there} bytes")
+
+
+def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> NDArray:
+    with archive.open(entry) as data:
+        return npy.read_array(data, allow_pickle=False)

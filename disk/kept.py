@@ -1,0 +1,28 @@
+"""The folder of what a person keeps: `.ratslam` in the home directory."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+
+def kept_folder() -> Path:
+    """It need not exist. ValueError when there is no home: an empty HOME is none, and nothing is written to `/`."""
+    return _home() / ".ratslam"
+
+
+def _home() -> Path:
+    home = Path(os.environ.get("HOME") or _of_the_account())
+    if home.absolute() == Path(home.absolute().anchor):
+        raise ValueError(f"there is no home directory (it would be {home}): set HOME to a folder of yours")
+    return home
+
+
+def _of_the_account() -> str:
+    """The home directory that the system knows of, where it knows this account."""
+    try:
+        import pwd
+
+        return pwd.getpwuid(os.getuid()).pw_dir or "/"
+    except (ImportError, KeyError):
+        return str(Path.home()) if os.name == "nt" else "/"

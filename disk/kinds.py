@@ -1,0 +1,67 @@
+"""Which classes a state may hold, and by which short versioned name each is written: "pose_cells/1", never a module's path.
+
+A file outlives the module it was written by, and whoever moves a class breaks no file. Another version of what a class holds
+gets the next number.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+Class = TypeVar("Class", bound=type)
+_NAME = re.compile(r"[a-z][a-z0-9_ .-]{0,60}/[1-9][0-9]{0,3}", re.ASCII)
+_class_of: dict[str, type] = {}
+_name_of: dict[type, str] = {}
+
+
+def kind(name: str) -> Callable[[Class], Class]:
+    """Names a class, `@kind("pose_cells/1")`: from then on a state may hold its objects.
+
+    What makes their state are the fields of a dataclass, else all attributes; what the class lists in CACHES is left out,
+    what it lists in SHARED may be one array in two places.
+    """
+    if not _NAME.fullmatch(name):
+        raise ValueError(f"a kind must be a name and a version, such as 'pose_cells/1', got {name!r}")
+
+    def named(cls: Class) -> Class:
+        known = _class_of.get(name)
+        if known is not None and (known.__module__, known.__qualname__) != (cls.__module__, cls.__qualname__):
+            raise ValueError(
+                f"the kind {name!r} is {known.__module__}.{known.__qualname__}; give {cls.__name__} another"
+            )
+        _class_of[name], _name_of[cls] = cls, name
+        return cls
+
+    return named
+
+
+def is_known(cls: type) -> bool:
+    return cls in _name_of
+
+
+def name_of(cls: type) -> str:
+    """The kind of a class. TypeError says how it gets one."""
+    if cls not in _name_of:
+        raise TypeError(f'a state must not hold a {cls.__module__}.{cls.__name__}: name its class with @kind("name/1")')
+    return _name_of[cls]
+
+
+def class_of(name: object) -> type:
+    """The class of a kind. ValueError when there is none, or one of another version."""
+    if isinstance(name, str) and name in _class_of:
+        return _class_of[name]
+    words = str(name)
+    others = [known for known in _class_of if known.split("/")[0] == words.split("/")[0]]
+    if others:
+        raise ValueError(f"{words} was made by another version of the program, which has {', '.join(sorted(others))}")
+    raise ValueError(f"no class is of the kind {words!r}: if it is one of yours, import its file first")
+
+
+def attributes(value: Any) -> dict[str, Any]:
+    """All that makes the state of an object; its caches count for nothing."""
+    if dataclasses.is_dataclass(value):
+        return {item.name: getattr(value, item.name) for item in dataclasses.fields(value)}
+    return {name: None if name in getattr(value, "CACHES", ()) else item for name, item in vars(value).items()}

@@ -1,0 +1,76 @@
+"""A state copied while it stands still: arrays by memcpy, tables at C speed, so that whoever drives waits for milliseconds.
+
+What is done with the copy, a file say, may take its time in another thread. test_state_copy.py.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from itertools import chain
+from typing import Any, TypeVar
+
+import numpy as np
+
+from disk.kinds import attributes, name_of
+
+PLAIN = {int, float, bool, str, type(None)}  # cannot change: shared
+T = TypeVar("T")
+
+
+def copy_state(value: T) -> T:
+    """Another object in the same state, caches left out; what is one object there is one object here."""
+    return _copy(value, {})
+
+
+def _copy(value: Any, made: dict[int, tuple[Any, Any]]) -> Any:
+    """made: by the id of what was copied, the copy; beside the original, so that no id comes twice."""
+    kind = type(value)
+    if kind in PLAIN or isinstance(value, np.generic):
+        return value
+    if kind is tuple:
+        return value if _plain(value) else tuple(_copy(item, made) for item in value)
+    if kind in (list, set, deque):
+        return value.copy() if _plain(value) else _refilled(value, [_copy(item, made) for item in value])
+    if id(value) not in made:
+        _copy_once(value, made)
+    return made[id(value)][1]
+
+
+def _copy_once(value: Any, made: dict[int, tuple[Any, Any]]) -> None:
+    kind: type = type(value)
+    copy: Any
+    if isinstance(value, np.ndarray):
+        copy = np.array(value)
+    elif kind is dict:
+        copy = value.copy() if _plain_table(value) else {}
+        made[id(value)] = value, copy
+        if not copy:
+            copy.update({_copy(key, made): _copy(item, made) for key, item in value.items()})
+    elif isinstance(value, np.random.Generator):
+        copy = np.random.default_rng()
+        copy.bit_generator.state = value.bit_generator.state
+    else:
+        name_of(kind)  # or it must not be held
+        copy = object.__new__(kind)
+        made[id(value)] = value, copy
+        for name, item in attributes(value).items():
+            object.__setattr__(copy, name, _copy(item, made))
+    made[id(value)] = value, copy
+
+
+def _refilled(like: Any, items: list[Any]) -> Any:
+    return deque(items, like.maxlen) if isinstance(like, deque) else type(like)(items)
+
+
+def _plain(items: Iterable[Any]) -> bool:
+    """Whether nothing of it can change, told without a loop of Python's."""
+    return set(map(type, items)) <= PLAIN
+
+
+def _plain_table(table: dict[Any, Any]) -> bool:
+    """The same of keys and values; keys may be pairs."""
+    keys = set(map(type, table))
+    if keys == {tuple}:
+        return _plain(chain.from_iterable(table)) and _plain(table.values())
+    return keys <= PLAIN and _plain(table.values())

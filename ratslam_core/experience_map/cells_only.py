@@ -1,0 +1,34 @@
+"""No experience map, as in 2004: where the packet is, is where the robot is."""
+
+from __future__ import annotations
+
+import math
+
+from disk import kind
+from ratslam_core.experience_map.experience_map import ExperienceMap
+from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, wrap_angle
+
+
+@kind("cells only/1")
+class CellsOnly(ExperienceMap):
+    """One experience, made where the robot woke up. In its frame the winning packet's place in the pose cells is the robot's.
+
+    A packet that crosses the border of the network comes in at the other side, and so does the robot: the network has to be as
+    large as the building. Whoever asks for a way gets none.
+    """
+
+    def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0) -> bool:  # noqa: ARG002
+        self.steps += 1
+        if self.active < 0:
+            self._create(packet, seen.view, IDENTITY)
+            return True
+        dx, dy, dtheta = self._experiences.cells_from(0, packet)
+        facing = self.cell_states[0, 2] * 2 * math.pi / self.shape[0]
+        c, s = math.cos(facing), math.sin(facing)
+        dx, dy = dx * self.cell_m, dy * self.cell_m
+        turn = wrap_angle(dtheta * 2 * math.pi / self.shape[0])
+        self.pose_filter.local = Pose2(c * dx + s * dy, -s * dx + c * dy, turn)
+        return False
+
+    def declare_kidnapped(self) -> None:
+        """The pose cells find it again, or nothing does."""

@@ -1,0 +1,256 @@
+"""The experience map: experiences tie pose cells and scenes to places of a map that stays true. ACRA 2006 section 3.
+
+An experience stands for a state of the pose cells (x', y', theta') and a scene V, and has a pose of its own in the map. A
+link is a transition that the robot made: distance, bearing and change of facing by odometry, and the time it took.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from disk import kind
+from ratslam_core.experience_map.map_reading import MapReading
+from ratslam_core.experience_map.preintegrated import PreintegratedOdometry, moved_by
+from ratslam_core.experience_map.transitions import require_behaviour
+from ratslam_core.extensions.exact_solver import ExactSolver
+from ratslam_core.extensions.loop_verifier import LoopVerifier
+from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges
+from ratslam_core.params import ExperienceMapParams, PoseFilterParams, SolverParams
+from ratslam_core.parts import Optimiser
+from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite, wrap_angle
+
+
+@kind("experience map/2")
+class ExperienceMap(MapReading):
+    """Experiences and links. `step` finds or makes the active experience and learns the transition to it."""
+
+    def __init__(
+        self,
+        shape: tuple[int, int, int],
+        cell_m: float,
+        params: ExperienceMapParams | None = None,
+        filter_params: PoseFilterParams | None = None,
+        optimiser: Optimiser | None = None,
+    ) -> None:
+        """shape: layers, cells along y' and x' of the pose cells; cell_m: side of one cell."""
+        super().__init__(shape, cell_m, params, filter_params)
+        self.optimiser: Optimiser = optimiser or ExactSolver(SolverParams())
+        self.yaw_bias = 0.0  # rad/s, learnt
+        self.agrees = True  # what was seen last, with where the robot believed to be
+        self.closures = 0  # links made to experiences that existed before
+        self.steps = 0
+        self._offset = IDENTITY  # the robot in the frame of the active experience when it was seen best
+        self._sigma = 0.0  # how well that is known, m
+        self._travel = IDENTITY  # odometry since then
+        self._kidnapped = False  # since the active experience was entered: what led here is not a transition
+        self._leg = PreintegratedOdometry()  # since the last link was learnt
+        self._arrival: _Arrival | None = None
+        self._verifier = LoopVerifier(filter_params or PoseFilterParams())
+        self._edges = OdometryEdges() if self.params.odometry_edges else NoOdometryEdges()
+
+    def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0) -> bool:
+        """One step: the robot moved as the odometry says and is now in this state. True when a new experience was made.
+
+        behaviour: 0 to 15, the local movement that brought it here; links remember it. ValueError for another one, and for
+        a packet that is nowhere.
+        """
+        require_behaviour(behaviour)
+        require_finite("packet", packet.x + packet.y + packet.heading_rad)
+        self.steps, self.agrees = self.steps + 1, True
+        if self.active < 0:
+            self._create(packet, seen.view, IDENTITY)
+            return True
+        self._move(odometry)
+        best = self._most_energetic(packet, seen.view)
+        before = self._departure()
+        if best < 0:
+            self._create(packet, seen.view, self.robot)
+            self._learn_link(before, behaviour)
+            self._edges.made(self.active, before.experience, self.transitions, self._weight_of_way)
+            return True
+        if best != before.experience:
+            look = self._look(best, packet, seen)
+            if self._confirmed(best, look):
+                self._enter(best, look, self._deviation(seen))
+                self._learn_link(before, behaviour)
+        elif self._arrival is not None and self._deviation(seen) < self._sigma:
+            self._see_better(seen)
+        return False
+
+    def correct(self) -> None:
+        """One step of map correction: experiences are moved until links and map agree. ACRA 2006 section 3.3."""
+        self.optimiser.correct(self)
+
+    def set_params(self, params: ExperienceMapParams, filter_params: PoseFilterParams, solver: SolverParams) -> None:
+        """Take new live parameters while running."""
+        self.params, self.optimiser.params = params, solver
+        self.pose_filter.params = self._verifier.params = filter_params
+
+    def tried(self, i: int, j: int, reached: bool) -> bool:
+        """One trial of the way between two experiences, either way round; True when a link was deleted for it.
+
+        [ours] The paper counts every departure under a link's behaviour as a trial (`link_trials_are`), but where many ways
+        leave a place, none of them is what the behaviour is expected to bring. Who follows a route knows what it tries.
+        test_transitions.py::test_exploring_deletes_nothing_of_what_was_not_tried.
+        """
+        rows = [self.transitions.row_of.get(ends, -1) for ends in ((i, j), (j, i))]
+        deleted = [self._judge(row, reached) for row in rows if row >= 0]
+        return any(deleted)
+
+    def declare_kidnapped(self) -> None:
+        """[ours] The robot was moved without its wheels: what led here is not a transition, and odometry starts anew.
+
+        test_experience_map.py::test_a_kidnap_makes_no_way.
+        """
+        self._kidnapped, self._sigma = True, self.params.carried_sigma
+        self.pose_filter.forget(self.params.carried_sigma)
+        self._edges.forget()
+
+    def calibrated(self, odometry: Odometry) -> Odometry:
+        """[ours] Odometry without the yaw bias that the map has learnt; wheels that stand have none."""
+        if self.yaw_bias == 0.0 or (odometry.speed == 0 and odometry.yaw_rate == 0):
+            return odometry
+        return Odometry(odometry.speed, odometry.yaw_rate - self.yaw_bias, odometry.dt)
+
+    # ------------------------------------------------------------ inside
+
+    def _move(self, odometry: Odometry) -> None:
+        moved, way_m = moved_by(odometry), abs(odometry.speed * odometry.dt)
+        self._travel = self._travel.compose(moved)
+        self._leg.add(moved, odometry)
+        self._edges.move(moved, odometry)
+        self._driven_m += way_m
+        self._driving_s += odometry.dt * (odometry.speed != 0)
+        self.pose_filter.move(moved, self.params.odometry_drift * way_m)
+
+    def _departure(self) -> _Departure:
+        return _Departure(self.active, self._offset.compose(self._travel), self._sigma, self._kidnapped)
+
+    def _most_energetic(self, packet: Packet, view: int) -> int:
+        robot = self.robot if view < 0 else IDENTITY  # who sees something is not asked where it is in the map
+        return self._experiences.most_energetic(packet, view, self.params, robot)
+
+    def _look(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
+        """Where the robot is in the frame of an experience: it may enter the zone beside the centre."""
+        if not self.params.zone_offset:
+            return IDENTITY
+        dx, dy, dtheta = self._experiences.cells_from(experience, packet)
+        facing = self.cell_states[experience, 2] * 2 * math.pi / self.shape[0]
+        c, s = math.cos(facing), math.sin(facing)
+        dx, dy = dx * self.cell_m, dy * self.cell_m
+        turn = seen.facing_rad if seen.view >= 0 else None
+        if turn is None:  # only the pose cells tell
+            turn = dtheta * 2 * math.pi / self.shape[0]
+        return Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(turn))
+
+    def _confirmed(self, experience: int, look: Pose2) -> bool:
+        """Who knows that it was carried away is surprised by nothing."""
+        needed = 0 if self.pose_filter.lost else self.params.confirm_jumps
+        return self._verifier.believes(self.robot, self.pose(experience).compose(look), needed)
+
+    def _create(self, packet: Packet, view: int, pose: Pose2) -> None:
+        self.active = self._experiences.add(packet, view, pose)
+        self.transitions.graph.add_node()
+        self._offset, self._travel, self._sigma, self._kidnapped = IDENTITY, IDENTITY, 0.0, False
+        self.pose_filter.local = IDENTITY
+
+    def _enter(self, experience: int, look: Pose2, sigma: float) -> None:
+        """Make an experience active."""
+        self.pose_filter.local = self.pose(experience).inverse().compose(self.robot)
+        self._offset, self._travel, self._sigma, self._kidnapped = look, IDENTITY, sigma, False
+        self.active = experience
+        self.agrees = self.pose_filter.see(look, sigma)
+
+    def _deviation(self, seen: Recognition) -> float:
+        """How far (m) the robot may be from where a view was taken that differs so much."""
+        return self.params.anchor_sigma * seen.difference if seen.view >= 0 else self.params.blind_sigma
+
+    def _see_better(self, seen: Recognition) -> None:
+        """[ours] The robot is nearer to where the active experience was made than before: measure the way here anew.
+
+        test_experience_map.py::test_the_best_look_decides_the_transition.
+        """
+        arrival = self._arrival
+        assert arrival is not None
+        arrival.came = arrival.came.compose(self._travel)
+        turn = self.pose_filter.local.heading_rad if seen.facing_rad is None else seen.facing_rad
+        self._offset, self._travel = Pose2(0.0, 0.0, turn), IDENTITY
+        self._sigma = self._deviation(seen)
+        self._kidnapped = False
+        self.agrees = self.pose_filter.see(self._offset, self._sigma)
+        self._measure(arrival)
+
+    def _learn_link(self, before: _Departure, behaviour: int) -> None:
+        """The transition to the active experience took this move and this time; repeats are averaged. ACRA 2006 eqs. 5-6."""
+        i, j, t, leg = before.experience, self.active, self.transitions, self._leg
+        self._leg = PreintegratedOdometry()
+        row = None if before.kidnapped else t.row_of.get((i, j))
+        if row is None:
+            row = t.add(i, j, travelled=not before.kidnapped, behaviour=behaviour)
+            self.closures += j != len(self) - 1
+        t.take_time(row, leg.time_s, leg.turning_s)
+        sigma = math.hypot(before.sigma, self.params.odometry_drift * leg.way_m)
+        arrival = _Arrival(row, t.move[row].copy(), float(t.weight[row]), before.came, sigma)
+        self._arrival = arrival if self.params.best_look else None
+        self._measure(arrival)
+        if not before.kidnapped:
+            self._count(row, behaviour)
+
+    def _count(self, row: int, behaviour: int) -> None:
+        """The robot came this way: a trial of it, and maybe of the others that lead from there. ACRA 2006 3.4, eq. 9."""
+        t, failed = self.transitions, []
+        if self.params.link_trials_are == "departures":
+            departures = t.departures(int(t.ends[row, 0]), behaviour)
+            failed = [int(other) for other in departures if other != row]
+        for other in failed:
+            self._judge(other, False)
+        if self.params.link_trials_are == "tried" or t.behaviour[row] == behaviour:
+            self._judge(row, True)
+
+    def _judge(self, row: int, reached: bool) -> bool:
+        deleted = self.transitions.judge(row, reached, self.params)
+        if deleted and self._arrival is not None and self._arrival.row == row:
+            self._arrival = None  # nothing more is to be measured
+        return deleted
+
+    def _weight_of_way(self, way_m: float) -> float:
+        return self._weight_of(self.params.odometry_drift * way_m)
+
+    def _weight_of(self, sigma: float) -> float:
+        """[ours] What a transition counts in map correction: 1 by odometry over a step, less the worse its ends are known.
+
+        With anchor_sigma and odometry_drift 0 every transition counts the same, as in the papers.
+        """
+        least = self.params.odometry_sigma**2
+        return least / (least + sigma**2)
+
+    def _measure(self, arrival: _Arrival) -> None:
+        move = arrival.came.compose(self._offset.inverse())
+        weight = self._weight_of(math.hypot(arrival.sigma, self._sigma))
+        self.transitions.measure(arrival.row, move, weight, arrival.move, arrival.weight)
+
+
+@dataclass(frozen=True, slots=True)
+class _Departure:
+    """Where a transition begins."""
+
+    experience: int
+    came: Pose2  # the robot in the frame of that experience as it arrived at the next
+    sigma: float  # how well its place in that frame was known, m
+    kidnapped: bool
+
+
+@kind("arrival/1")
+@dataclass(slots=True)
+class _Arrival:
+    """The transition that led to the active experience, as long as it may be measured better."""
+
+    row: int
+    move: NDArray[np.float64]  # of the row before this passage
+    weight: float
+    came: Pose2  # the robot in the frame of the experience before, when the active one was seen best
+    sigma: float

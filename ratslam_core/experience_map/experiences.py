@@ -1,0 +1,168 @@
+"""The experiences themselves: what state of pose cells and scene each stands for, and which one fits best. ACRA 2005 4.1.
+
+Chains of experiences, those of one view and those of one bucket of pose cells, keep the choice quick among many.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from disk import kind
+from ratslam_core.params import ExperienceMapParams
+from ratslam_core.types import Packet, Pose2
+
+BUCKET = 4  # cells and layers
+
+
+@kind("experiences/1")
+class Experiences:
+    """States, scenes and map poses, row by row. Arrays have room to spare; `count` rows are used."""
+
+    def __init__(self, shape: tuple[int, int, int]) -> None:
+        """shape: layers, cells along y' and x' of the pose cells."""
+        self.shape = shape
+        self.count = 0
+        self.pose = np.zeros((1024, 3))  # x, y, heading in the map
+        self.at = np.zeros((1024, 3))  # x', y', theta' in cells and layers
+        self.view = np.zeros(1024, np.int64)
+        self._newest_of_view: dict[int, int] = {}
+        self._before_of_view = np.full(1024, -1, np.int64)  # the one made before it of the same view, -1 for none
+        self._newest_in = np.full([-(-n // BUCKET) for n in shape], -1, np.int64)
+        self._before_in = np.full(1024, -1, np.int64)
+
+    def add(self, packet: Packet, view: int, pose: Pose2) -> int:
+        """One more experience; returns its number."""
+        if self.count == len(self.pose):
+            for name in ("pose", "at", "view", "_before_of_view", "_before_in"):
+                array = getattr(self, name)
+                setattr(self, name, np.concatenate([array, np.zeros_like(array)]))
+        i = self.count
+        n_theta, n_y, n_x = self.shape
+        x, y, theta = self._state(packet)
+        self.pose[i] = pose.x, pose.y, pose.heading_rad
+        self.at[i], self.view[i] = (x, y, theta), view
+        bucket = int(theta) % n_theta // BUCKET, int(y) % n_y // BUCKET, int(x) % n_x // BUCKET
+        self._before_of_view[i] = self._newest_of_view.get(view, -1)
+        self._newest_of_view[view] = i
+        self._before_in[i] = self._newest_in[bucket]
+        self._newest_in[bucket] = i
+        self.count += 1
+        return i
+
+    def _state(self, packet: Packet) -> tuple[float, float, float]:
+        """x', y' in cells and theta' in layers, from 0 on."""
+        n_theta, n_y, n_x = self.shape
+        return packet.x % n_x, packet.y % n_y, (packet.heading_rad * n_theta / (2 * math.pi)) % n_theta
+
+    def cells_from(self, experience: int, packet: Packet) -> tuple[float, float, float]:
+        """The packet relative to an experience's state: cells and layers, the shorter way round."""
+        n_theta, n_y, n_x = self.shape
+        x, y, theta = self._state(packet)
+        own_x, own_y, own_theta = self.at[experience]
+        return (
+            math.remainder(x - own_x, n_x),
+            math.remainder(y - own_y, n_y),
+            math.remainder(theta - own_theta, n_theta),
+        )
+
+    def energy(self, experience: int, packet: Packet, view: int, p: ExperienceMapParams) -> float:
+        """ACRA 2006 eqs. 1-4: E = 0 if r > 1 or q > 1 or V != V_i, else 2 - r - q; ACRA 2005 eqs. 4-9: V ((1-r)+ + (1-q)+)."""
+        if p.match_view and view != self.view[experience]:
+            return 0.0
+        zone = p.zone_xy, p.zone_theta, p.energy == "2005"
+        return float(_energy(*self._state(packet), self.at, experience, *self.shape, *zone))
+
+    def most_energetic(self, packet: Packet, view: int, p: ExperienceMapParams, robot: Pose2) -> int:
+        """The experience with the most energy above the threshold, the oldest of equals; -1 for none.
+
+        [ours] Where there is nothing to see only the pose cells speak, and they use the same cells for places far apart:
+        then an experience must be near the robot in the map, too. test_experience_map.py::test_seeing_nothing_closes_no_loop.
+        """
+        old = p.energy == "2005"
+        state = (*self._state(packet), *self.shape, p.zone_xy, p.zone_theta)
+        if p.match_view:
+            newest = self._newest_of_view.get(view, -1)
+            near = p.blind_m if view < 0 else math.inf
+            return _best_in_chain(
+                newest, self._before_of_view, self.at, *state, old, -1, p.threshold, self.pose, robot.x, robot.y, near
+            )[0]
+        if old:
+            return _best_of_all(self.at[: self.count], *state, p.threshold)
+        return _best_in_buckets(self._newest_in, self._before_in, self.at, *state, p.threshold, self.pose)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _apart(a, b, n):
+    """How far two coordinates from 0 to n are apart on a ring."""
+    d = abs(a - b)
+    return min(d, n - d)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _energy(x, y, theta, at, i, n_theta, n_y, n_x, zone_xy, zone_theta, old):
+    r = math.sqrt(_apart(x, at[i, 0], n_x) ** 2 + _apart(y, at[i, 1], n_y) ** 2) / zone_xy
+    q = _apart(theta, at[i, 2], n_theta) / zone_theta
+    if old:
+        return max(1.0 - r, 0.0) + max(1.0 - q, 0.0)
+    return 0.0 if r > 1.0 or q > 1.0 else 2.0 - r - q
+
+
+@njit(cache=True, nogil=True)
+def _best_in_chain(
+    newest, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy, zone_theta, old, best, most, pose, near_x, near_y, near
+):
+    i = newest
+    while i >= 0:
+        if near == np.inf or math.hypot(pose[i, 0] - near_x, pose[i, 1] - near_y) <= near:
+            energy = _energy(x, y, theta, at, i, n_theta, n_y, n_x, zone_xy, zone_theta, old)
+            if energy > most or (energy == most and i < best):
+                best, most = i, energy
+        i = before[i]
+    return best, most
+
+
+@njit(cache=True, nogil=True)
+def _best_in_buckets(newest, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy, zone_theta, most, pose):
+    """Over the buckets that the zone touches."""
+    best = -1
+    first_t, count_t = _buckets(theta, zone_theta, n_theta, newest.shape[0])
+    first_y, count_y = _buckets(y, zone_xy, n_y, newest.shape[1])
+    first_x, count_x = _buckets(x, zone_xy, n_x, newest.shape[2])
+    for t in range(count_t):
+        for b in range(count_y):
+            for a in range(count_x):
+                head = newest[
+                    (first_t + t) % newest.shape[0], (first_y + b) % newest.shape[1], (first_x + a) % newest.shape[2]
+                ]
+                best, most = _best_in_chain(
+                    head, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy, zone_theta, False, best, most,
+                    pose, 0.0, 0.0, np.inf,
+                )  # fmt: skip
+    return best
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _buckets(middle, reach, n, buckets):
+    """First bucket and how many from there on, round the ring, hold [middle - reach, middle + reach]."""
+    reach += 1e-9  # so that rounding leaves nobody out
+    if 2 * reach + BUCKET >= n:
+        return 0, buckets
+    first = int((middle - reach) % n) % n // BUCKET
+    last = int((middle + reach) % n) % n // BUCKET
+    return first, (last - first) % buckets + 1
+
+
+@njit(cache=True, nogil=True)
+def _best_of_all(at, x, y, theta, n_theta, n_y, n_x, zone_xy, zone_theta, most):
+    """The energy of 2005 reaches every experience of the same heading, and any heading at the same place."""
+    best = -1
+    for i in range(at.shape[0]):
+        faces = 1.0 - _apart(theta, at[i, 2], n_theta) / zone_theta > most
+        if faces or (_apart(x, at[i, 0], n_x) < zone_xy and _apart(y, at[i, 1], n_y) < zone_xy):
+            energy = _energy(x, y, theta, at, i, n_theta, n_y, n_x, zone_xy, zone_theta, True)
+            if energy > most:
+                best, most = i, energy
+    return best

@@ -1,0 +1,160 @@
+"""What an experience map says when it is asked. Learning it is experience_map.py."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ratslam_core.experience_map import relaxation
+from ratslam_core.experience_map.experiences import Experiences
+from ratslam_core.experience_map.temporal_map import TemporalMap
+from ratslam_core.experience_map.transitions import Link, Transitions
+from ratslam_core.extensions.pose_filter import pose_estimate
+from ratslam_core.params import ExperienceMapParams, PoseFilterParams
+from ratslam_core.types import Packet, Pose2
+
+
+class MapReading:
+    """Experiences with their poses, links with their times, the robot in the map."""
+
+    def __init__(
+        self,
+        shape: tuple[int, int, int],
+        cell_m: float,
+        params: ExperienceMapParams | None = None,
+        filter_params: PoseFilterParams | None = None,
+    ) -> None:
+        self.params = params or ExperienceMapParams()
+        self.shape, self.cell_m = shape, cell_m
+        self._experiences = Experiences(shape)
+        self.transitions = Transitions()
+        self.active = -1
+        self.pose_filter = pose_estimate(filter_params or PoseFilterParams())
+        self._driven_m = self._driving_s = 0.0
+        self._temporal_map = TemporalMap(self)
+
+    def __len__(self) -> int:
+        return self._experiences.count
+
+    # ------------------------------------------------------------ experiences
+
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """x, y (m), heading (rad) of every experience in the map, shape (n, 3). A view."""
+        return self._experiences.pose[: len(self)]
+
+    @property
+    def cell_states(self) -> NDArray[np.float64]:
+        """x', y' (cells), theta' (layers) of every experience, shape (n, 3). A view."""
+        return self._experiences.at[: len(self)]
+
+    @property
+    def views(self) -> NDArray[np.int64]:
+        """The scene of every experience, -1 for nothing to see, shape (n,). A view."""
+        return self._experiences.view[: len(self)]
+
+    def pose(self, experience: int) -> Pose2:
+        """An experience's place in the map."""
+        return Pose2(*self._experiences.pose[self._require(experience)].tolist())
+
+    def cell_state(self, experience: int) -> tuple[float, float, float, int]:
+        """x', y' (cells), theta' (layers) and the scene of one experience."""
+        x, y, theta = self.cell_states[self._require(experience)]
+        return float(x), float(y), float(theta), int(self.views[experience])
+
+    def energy(self, experience: int, packet: Packet, view: int) -> float:
+        """How well this state of pose cells and scene fits an experience; at most 2. `Experiences.energy`."""
+        return self._experiences.energy(self._require(experience), packet, view, self.params)
+
+    def _require(self, experience: int) -> int:
+        if not len(self):
+            raise ValueError(f"there is no experience yet, got {experience!r}")
+        if not 0 <= experience < len(self):
+            raise ValueError(f"experience must be from 0 to {len(self) - 1}, got {experience!r}")
+        return experience
+
+    # ------------------------------------------------------------ the robot
+
+    @property
+    def local_pose(self) -> Pose2:
+        """Where the robot believes to be in the frame of the active experience."""
+        return self.pose_filter.local
+
+    @property
+    def robot(self) -> Pose2:
+        """The robot in the map."""
+        return self.pose(self.active).compose(self.local_pose)
+
+    # ------------------------------------------------------------ links
+
+    @property
+    def link_count(self) -> int:
+        return len(self.transitions.row_of)
+
+    @property
+    def links(self) -> NDArray[np.int64]:
+        """From and to of every link, shape (m, 2)."""
+        return self.transitions.ends[self._travelled]
+
+    @property
+    def moves(self) -> NDArray[np.float64]:
+        """Of every link: dx, dy (m) in the frame of the first experience and change of facing (rad), shape (m, 3)."""
+        return self.transitions.move[self._travelled]
+
+    @property
+    def behaviours(self) -> NDArray[np.int8]:
+        """The behaviour under which each link was learnt, shape (m,)."""
+        return self.transitions.behaviour[self._travelled]
+
+    @property
+    def confidences(self) -> NDArray[np.float64]:
+        """c_ij of every link, shape (m,). ACRA 2006 eq. 9."""
+        return self.transitions.confidence[self._travelled]
+
+    @property
+    def link_times(self) -> NDArray[np.float64]:
+        """Seconds that each transition takes, shape (m,).
+
+        [ours] Never less than its length in the map takes at the robot's own pace: from the edge of one zone into the next
+        it is only a step, and a route over many such would promise to be there in half the time.
+        test_experience_map.py::test_no_link_is_quicker_than_the_robot.
+        """
+        return self.transitions.seconds(self.poses, self.pace)[self._travelled]
+
+    @property
+    def pace(self) -> float:
+        """Seconds a metre of all driving so far, 0 before the first, and when `pace_floor` is off."""
+        return self._driving_s / self._driven_m if self._driven_m > 0 and self.params.pace_floor else 0.0
+
+    @property
+    def temporal_map(self) -> TemporalMap:
+        """Times and routes over the links as they are; one for as long as the map lives."""
+        return self._temporal_map
+
+    def link(self, i: int, j: int) -> Link:
+        """The link from experience i to j, read out; ValueError when there is none."""
+        row = self.transitions.row_of.get((i, j))
+        if row is None:
+            raise ValueError(f"there is no link from experience {i!r} to {j!r}")
+        return self.transitions.link(row)
+
+    @property
+    def residual(self) -> tuple[float, float]:
+        """By how much links and map disagree: root mean square over the links, each as far as it is believed, of the distance
+        (m) and of the angle (rad) between where it says its end is and where the map has it. 0 without links."""
+        t, rows = self.transitions, self._travelled
+        weight = t.believed[rows]
+        if weight.sum() <= 0:
+            return 0.0, 0.0
+        apart = relaxation.disagreement(self.poses, t.ends[rows], t.move[rows]) ** 2 * weight[:, None]
+        total = weight.sum()
+        return float(np.sqrt(apart[:, :2].sum() / total)), float(np.sqrt(apart[:, 2].sum() / total))
+
+    @property
+    def dropped_links(self) -> tuple[tuple[int, int], ...]:
+        """From and to of every link that was deleted, in order; one that was driven again may be among the links anew."""
+        return tuple(self.transitions.dropped)
+
+    @property
+    def _travelled(self) -> NDArray[np.int64]:
+        return np.flatnonzero(self.transitions.travelled[: self.transitions.count])

@@ -1,0 +1,33 @@
+"""What odometry adds up to since some moment."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from disk import kind
+from ratslam_core.types import IDENTITY, Odometry, Pose2, wrap_angle
+
+
+@kind("preintegrated odometry/1")
+@dataclass(slots=True)
+class PreintegratedOdometry:
+    """The movement in the frame of where it began, the way, and the time of which the wheels turned."""
+
+    moved: Pose2 = IDENTITY
+    way_m: float = 0.0
+    turning_s: float = 0.0
+    time_s: float = 0.0
+
+    def add(self, moved: Pose2, odometry: Odometry) -> None:
+        self.moved = self.moved.compose(moved)
+        self.way_m += abs(odometry.speed * odometry.dt)
+        self.turning_s += odometry.dt * (odometry.speed != 0 or odometry.yaw_rate != 0)
+        self.time_s += odometry.dt
+
+
+def moved_by(odometry: Odometry) -> Pose2:
+    """One step in the robot's own frame: along the heading in its middle."""
+    middle = odometry.yaw_rate * odometry.dt / 2
+    step = odometry.speed * odometry.dt
+    return Pose2(step * math.cos(middle), step * math.sin(middle), wrap_angle(2 * middle))

@@ -1,0 +1,243 @@
+"""Map correction: moves experiences until links and map agree. ACRA 2005 equations 12-14, ACRA 2006 section 3.3."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from disk import kind
+from ratslam_core.experience_map.adjacency import Adjacency
+from ratslam_core.params import SolverParams
+from ratslam_core.solvers.laplacian import eliminate
+
+if TYPE_CHECKING:
+    from ratslam_core.experience_map.experience_map import ExperienceMap
+
+WORK_AN_EXPERIENCE = 90.0
+ENTANGLED = 1e9  # work, so that it is long until somebody tries again
+LEAST_STRENGTH = 1e-9  # below it no loop tells the bias from a bent way
+
+
+@kind("relaxation/1")
+class Relaxation:
+    """The papers' way: so many sweeps in every step."""
+
+    def __init__(self, params: SolverParams) -> None:
+        self.params = params
+
+    def correct(self, map_: ExperienceMap) -> None:
+        """One step of map correction. test_relaxation.py::test_a_sweep_never_raises_the_residual."""
+        t, p, poses = map_.transitions, map_.params, map_.poses
+        ends, moves = t.ends[: t.count], t.move[: t.count]
+        for _ in range(p.sweeps):
+            if p.sweep == "by link":
+                sweep_by_link(poses, t.graph, ends, moves, t.travelled, p.correction)
+            else:
+                sweep(poses, t.graph, ends, moves, t.believed, p.correction)
+
+
+def sweep(
+    poses: NDArray[np.float64],
+    graph: Adjacency,
+    links: NDArray[np.int64],
+    moves: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    alpha: float,
+) -> None:
+    """One sweep over all experiences but the first, each moved by 2 alpha of its links' mean residual, in place.
+
+    One experience after the other (Gauss-Seidel), place and heading in one go: places by the headings of before the sweep. Of the
+    rows only those that `graph` knows count.
+    """
+    ends = links.view(np.uint64)[: len(moves)]
+    _sweep(poses, graph.start, graph.used, graph.half, graph.other, ends, moves, weights, 2 * alpha)
+
+
+@njit(cache=True, nogil=True)
+def _sweep(poses, start, used, halves, others, ends, moves, weights, gain):
+    """dx_i, dy_i, dth_i = alpha sum of what the links ask, over the weights' sum. B eqs. 12-14."""
+    n, one = np.uint64(poses.shape[0]), np.uint64(1)
+    turned = _turned(poses, ends, moves)
+    for i in range(one, n):
+        x, y, heading = poses[i, 0], poses[i, 1], poses[i, 2]
+        dx = dy = turn = total = 0.0
+        block = np.uint64(start[i])
+        for at in range(block, block + np.uint64(used[i])):
+            half, other = np.uint64(halves[at]), np.uint64(others[at])
+            row = half >> one
+            sign = 1.0 if half & one else -1.0
+            w = weights[row]
+            dx += w * (poses[other, 0] + (sign * turned[row, 0] - x))
+            dy += w * (poses[other, 1] + (sign * turned[row, 1] - y))
+            turn += w * _wrapped(poses[other, 2] + (sign * moves[row, 2] - heading))
+            total += w
+        if total > 0.0:
+            share = gain / total
+            poses[i, 0] = x + share * dx
+            poses[i, 1] = y + share * dy
+            poses[i, 2] = _wrapped(heading + share * turn)
+
+
+def sweep_by_link(
+    poses: NDArray[np.float64],
+    graph: Adjacency,
+    links: NDArray[np.int64],
+    moves: NDArray[np.float64],
+    travelled: NDArray[np.bool_],
+    alpha: float,
+) -> None:
+    """One sweep over all experiences but the first, each moved by alpha of what a link asks, link after link, in place.
+
+    All links of one experience at once, as ACRA 2005 eqs. 12-14 may be read, swing for ever where four meet, and fly apart where
+    more do. test_papers.py::test_a_biased_loop_is_corrected_as_in_the_twin. Places by the headings of before the sweep.
+    """
+    ends = links.view(np.uint64)[: len(moves)]
+    _sweep_by_link(poses, graph.start, graph.used, graph.half, graph.other, ends, moves, travelled, alpha)
+
+
+@njit(cache=True, nogil=True)
+def _sweep_by_link(poses, start, used, halves, others, ends, moves, travelled, alpha):
+    turned = _turned(poses, ends, moves)
+    for i in range(1, poses.shape[0]):
+        block = np.uint64(start[i])
+        for at in range(block, block + np.uint64(used[i])):
+            half, other = np.uint64(halves[at]), np.uint64(others[at])
+            row = half >> np.uint64(1)
+            if travelled[row]:
+                sign = 1.0 if half & np.uint64(1) else -1.0
+                poses[i, 0] += alpha * (poses[other, 0] + sign * turned[row, 0] - poses[i, 0])
+                poses[i, 1] += alpha * (poses[other, 1] + sign * turned[row, 1] - poses[i, 1])
+                turn = _wrapped(poses[other, 2] + sign * moves[row, 2] - poses[i, 2])
+                poses[i, 2] = _wrapped(poses[i, 2] + alpha * turn)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _turned(poses, ends, moves):
+    """Moves in the map's frame: (dx, dy) of each row turned by the heading of where it begins."""
+    n, m = np.uint64(poses.shape[0]), np.uint64(moves.shape[0])
+    c, s = np.empty(n), np.empty(n)
+    for i in range(n):
+        c[i] = poses[i, 2]
+    for i in range(n):  # apart from the other loops, so that the compiler makes it four at a time
+        c[i], s[i] = _facing(c[i])
+    turned = np.empty((m, 2))
+    for row in range(m):
+        i = ends[row, 0]
+        turned[row, 0] = c[i] * moves[row, 0] - s[i] * moves[row, 1]
+        turned[row, 1] = s[i] * moves[row, 0] + c[i] * moves[row, 1]
+    return turned
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _facing(angle):
+    """Cosine and sine of an angle in [-pi, pi] to 1e-14: Taylor series of a quarter of it, doubled twice."""
+    q = angle * 0.25
+    z = q * q
+    s = 1 - z * (1 / 110) * (1 - z * (1 / 156) * (1 - z * (1 / 210)))
+    s = 1 - z * (1 / 6) * (1 - z * (1 / 20) * (1 - z * (1 / 42) * (1 - z * (1 / 72) * s)))
+    c = 1 - z * (1 / 90) * (1 - z * (1 / 132) * (1 - z * (1 / 182)))
+    c = 1 - z * (1 / 2) * (1 - z * (1 / 12) * (1 - z * (1 / 30) * (1 - z * (1 / 56) * c)))
+    s *= q
+    s, c = 2 * s * c, 1 - 2 * s * s
+    return 1 - 2 * s * s, 2 * s * c
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _wrapped(angle):
+    if angle > math.pi or angle <= -math.pi:
+        angle -= 2.0 * math.pi * math.ceil(angle / (2.0 * math.pi) - 0.5)
+    return angle
+
+
+class Solution(NamedTuple):
+    """What came of an exact correction."""
+
+    bias: float  # of the yaw rate, rad/s, that the loops speak of beyond what is known
+    work: float  # how much there was to calculate; 100,000 are half a millisecond or so
+
+
+def solve(
+    poses: NDArray[np.float64],
+    links: NDArray[np.int64],
+    moves: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    turning_s: NDArray[np.float64] | None = None,
+    rounds: int = 2,
+) -> Solution:
+    """The fixed point of the sweeps, in place: headings, then positions, each a sparse Laplacian with the first node fixed.
+
+    A map that is too entangled for that is left to the sweeps. Every experience must be linked, over others, to the first.
+    Headings are linear once their residuals are wrapped; `rounds` lets the wrapping settle.
+    """
+    n = len(poses)
+    if n < 2 or len(links) == 0:
+        return Solution(0.0, 0.0)
+    i, j = links[:, 0], links[:, 1]
+    net = eliminate(n, links, weights)
+    if net is None:
+        return Solution(0.0, ENTANGLED)
+    seconds = np.zeros(len(links)) if turning_s is None else turning_s
+    drift = net.solve(_asked(n, links, weights * seconds))  # headings that a unit of bias would bend the map to
+    unexplained = seconds - drift[j] + drift[i]
+    strength = float(np.sum(weights * seconds * unexplained))
+    bias = 0.0
+    for _ in range(rounds):
+        error = poses[i, 2] + moves[:, 2] - bias * seconds - poses[j, 2]
+        error -= 2 * math.pi * np.round(error / (2 * math.pi))
+        more = float(np.sum(weights * unexplained * error)) / strength if strength > LEAST_STRENGTH else 0.0
+        bias += more
+        poses[:, 2] += net.solve(_asked(n, links, weights * (error - more * seconds)))
+    poses[:, 2] -= 2 * math.pi * np.round(poses[:, 2] / (2 * math.pi))
+    off = weights[:, None] * disagreement(poses, links, moves)[:, :2]
+    across, up = np.ascontiguousarray(off.T)
+    poses[:, :2] += net.solve(np.stack([_asked(n, links, across), _asked(n, links, up)], axis=1))
+    return Solution(bias, net.work + WORK_AN_EXPERIENCE * n)
+
+
+@njit(cache=True, nogil=True)
+def disagreement(poses, links, moves):
+    """Where each link says its end is, less where the map has it: dx, dy (m) in the map's frame and angle (rad), shape (m, 3)."""
+    out = np.empty((len(links), 3))
+    for row in range(len(links)):
+        i, j = links[row]
+        c, s = math.cos(poses[i, 2]), math.sin(poses[i, 2])
+        out[row, 0] = poses[i, 0] + c * moves[row, 0] - s * moves[row, 1] - poses[j, 0]
+        out[row, 1] = poses[i, 1] + s * moves[row, 0] + c * moves[row, 1] - poses[j, 1]
+        out[row, 2] = _wrapped(poses[i, 2] + moves[row, 2] - poses[j, 2])
+    return out
+
+
+def trust(
+    poses: NDArray[np.float64],
+    links: NDArray[np.int64],
+    moves: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    chain: NDArray[np.bool_],
+    sigma: float,
+    p: SolverParams,
+) -> NDArray[np.float64]:
+    """[ours] By how much each link is believed, 0 to 1, given what the map has made of it.
+
+    weights are sigma^2 / variance. Looks pull with a force that stops growing (Huber); odometry, which cannot be far off,
+    lets go (Cauchy): many looks that agree tear the one link over which the robot was carried, and no single look does.
+    test_relaxation.py::test_many_looks_tear_the_link_of_a_kidnap.
+    """
+    ex, ey, turn = disagreement(poses, links, moves).T
+    chi = np.sqrt(weights * (ex**2 + ey**2 + (turn / p.rad_per_m) ** 2)) / sigma
+    return np.where(
+        chain, 1 / (1 + (chi / p.odometry_gives) ** 2), np.minimum(1, p.look_gives / np.maximum(chi, p.look_gives))
+    )
+
+
+@njit(cache=True, nogil=True)
+def _asked(n, links, errors):
+    """What each experience is asked to move in sum, when every link asks its end to follow and its beginning to come back."""
+    asked = np.zeros(n)
+    for row in range(len(links)):
+        asked[links[row, 0]] -= errors[row]
+        asked[links[row, 1]] += errors[row]
+    return asked

@@ -1,0 +1,105 @@
+"""The temporal map: how long it takes from any experience to any other, and the quickest route. ACRA 2006 section 4.
+
+The papers' relaxation t_j <- min(t_j, t_i + t_ij) ends at the shortest times; Dijkstra's algorithm finds the same ones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from disk import kind
+from ratslam_core.solvers import dijkstra
+
+if TYPE_CHECKING:
+    from ratslam_core.experience_map.map_reading import MapReading
+
+
+@kind("route/1")
+@dataclass(frozen=True, slots=True, eq=False)
+class Route:
+    """The quickest way: experiences from here to the goal and the seconds at which each is reached."""
+
+    experiences: NDArray[np.int64]
+    arrival_s: NDArray[np.float64]
+
+
+@kind("temporal map/1")
+class TemporalMap:
+    """Times over the links of an experience map, both ways along each link; of parallel links the quickest counts.
+
+    It lives as long as its map and reads the map's own links; nothing is rebuilt when links come and go. Every answer is exact
+    for the links, their times and the places of the moment of asking. For the goal that was asked for last the tree is kept: if
+    nothing has changed the answer is there; else the tree is mended, which costs a pass over the links and what has become
+    quicker. A mended answer has the bits of a fresh one, so who else asks in between changes nothing.
+
+    [ours] With `experience_map.shortcut_m` experiences that are closer than this in the map and not linked count as linked, by
+    the time that the robot takes so far at its own pace (named as future work in IROS 2005).
+    test_temporal_map.py::test_a_shortcut_saves_the_way_round.
+    """
+
+    CACHES = ("_goal", "_asked", "_times", "_parent")  # snapshots of the brain leave them out
+
+    def __init__(self, experiences: MapReading) -> None:
+        self._map = experiences
+        self._goal: int | None = None
+        self._asked: _Asked | None = None  # what the answer was for
+        self._times = np.zeros(0)
+        self._parent = np.zeros(0, np.int32)
+
+    def times_to(self, experience: int) -> NDArray[np.float64]:
+        """Seconds from every experience to this one (and back), shape (n,); inf where no way is known."""
+        self._answer(experience)
+        return self._times.copy()
+
+    def route(self, start: int, goal: int) -> Route | None:
+        """The quickest way, None when there is none; where ways are equal, the one over experiences with lower numbers."""
+        self._require(start)
+        asked = self._answer(goal)
+        if not np.isfinite(self._times[start]):
+            return None
+        nodes = dijkstra.trace(start, goal, self._times, asked.links, asked.near)
+        return Route(nodes, self._times[start] - self._times[nodes])
+
+    def _answer(self, goal: int) -> _Asked:
+        """See to it that times and tree are those of the moment."""
+        self._require(goal)
+        asked, before, n = _Asked(self._map), self._asked, len(self._map)
+        if goal != self._goal or before is None:
+            self._times, self._parent = np.empty(n), np.empty(n, np.int32)
+            dijkstra.fresh(goal, self._times, self._parent, asked.links, asked.near)
+        elif not asked.same_as(before):
+            new = np.full(n - len(self._parent), -1, np.int32)
+            self._times, self._parent = np.empty(n), np.concatenate([self._parent, new])
+            dijkstra.mend(goal, self._times, self._parent, asked.links, asked.near)
+        self._goal, self._asked = goal, asked
+        return asked
+
+    def _require(self, experience: int) -> None:
+        if not 0 <= experience < len(self._map):
+            raise ValueError(f"experience must be from 0 to {len(self._map) - 1}, got {experience!r}")
+
+
+class _Asked:
+    """Links, their times, and for shortcuts the places, as they are now."""
+
+    def __init__(self, map_: MapReading) -> None:
+        graph, reach = map_.transitions.graph, float(map_.params.shortcut_m)
+        self.seconds = np.maximum(map_.transitions.seconds(map_.poses, map_.pace), dijkstra.LEAST_S)
+        self.changes, self.reach, self.pace = graph.changes, reach, map_.pace
+        self.poses = map_.poses.copy() if reach > 0 else map_.poses
+        grid = dijkstra.buckets(self.poses, reach) if reach > 0 else (np.zeros(0, np.int32),) * 2
+        self.links = graph.start, graph.used, graph.half, graph.other, self.seconds
+        self.near = self.poses, reach, self.pace, *grid
+
+    def same_as(self, other: _Asked) -> bool:
+        if (
+            self.changes != other.changes
+            or self.reach != other.reach
+            or not np.array_equal(self.seconds, other.seconds)
+        ):
+            return False
+        return self.reach == 0 or (self.pace == other.pace and np.array_equal(self.poses, other.poses))

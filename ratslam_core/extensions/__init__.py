@@ -1,0 +1,1 @@
+"""What is ours and stands beside the papers' algorithm."""

@@ -1,0 +1,90 @@
+"""[ours] Where the robot is in the map: what it sees, weighed against where odometry says it must have come to.
+
+A single look tells place and heading within decimetres and degrees only; taken at its word at each experience, it makes
+the robot swerve. test_pose_filter.py::test_a_doubtful_look_moves_the_belief_little. `LatestLook` is the plain twin: ACRA 2006
+section 3 has the robot at the active experience and odometry since.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+from disk import kind
+from ratslam_core.params import PoseFilterParams
+from ratslam_core.types import IDENTITY, Pose2, wrap_angle
+
+
+class PoseEstimate(Protocol):
+    """A pose in the frame of the active experience."""
+
+    params: PoseFilterParams
+    local: Pose2
+    lost: bool  # it was carried away and has seen nothing known since
+
+    def forget(self, sigma_m: float, /) -> None:
+        """The robot was carried away."""
+        ...
+
+    def move(self, moved: Pose2, drift_m: float, /) -> None:
+        """The robot moved by odometry, which may be wrong by `drift_m`."""
+        ...
+
+    def see(self, look: Pose2, sigma_m: float, /) -> bool:
+        """A look says that the robot is at `look`, give or take `sigma_m`. Whether that agrees with where it believed to be."""
+        ...
+
+
+@kind("pose filter/2")
+class PoseFilter:
+    """The pose and how far off it may be (m)."""
+
+    def __init__(self, params: PoseFilterParams) -> None:
+        self.params = params
+        self.local, self.lost = IDENTITY, False
+        self.sigma_m = 0.0
+
+    def forget(self, sigma_m: float) -> None:
+        self.sigma_m, self.lost = sigma_m, True
+
+    def move(self, moved: Pose2, drift_m: float) -> None:
+        self.local = self.local.compose(moved)
+        self.sigma_m += drift_m
+
+    def see(self, look: Pose2, sigma_m: float) -> bool:
+        self.lost = False
+        dx, dy = look.x - self.local.x, look.y - self.local.y
+        turn = wrap_angle(look.heading_rad - self.local.heading_rad)
+        if math.hypot(dx, dy) > self.params.snap_m or abs(turn) > self.params.snap_rad:
+            self.local, self.sigma_m = look, sigma_m
+            return False
+        own = max(self.sigma_m, self.params.least_sigma_m)
+        gain = own**2 / (own**2 + sigma_m**2) if sigma_m > 0 else 1.0
+        heading = wrap_angle(self.local.heading_rad + gain * turn)
+        self.local = Pose2(self.local.x + gain * dx, self.local.y + gain * dy, heading)
+        self.sigma_m = own * math.sqrt(1 - gain)
+        return True
+
+
+@kind("latest look/1")
+class LatestLook:
+    """As the papers: the robot is where it was seen last, and where odometry has brought it since."""
+
+    def __init__(self, params: PoseFilterParams) -> None:
+        self.params = params
+        self.local, self.lost = IDENTITY, False
+
+    def forget(self, _sigma_m: float) -> None:
+        self.lost = True
+
+    def move(self, moved: Pose2, _drift_m: float) -> None:
+        self.local = self.local.compose(moved)
+
+    def see(self, look: Pose2, _sigma_m: float) -> bool:
+        self.local, self.lost = look, False
+        return True
+
+
+def pose_estimate(params: PoseFilterParams) -> PoseEstimate:
+    """The one that the parameters name."""
+    return PoseFilter(params) if params.enabled else LatestLook(params)

@@ -1,0 +1,69 @@
+"""What is true of the experience map between two steps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ratslam_core.experience_map.experience_map import ExperienceMap, _Arrival
+from ratslam_core.experience_map.preintegrated import PreintegratedOdometry
+from ratslam_core.extensions.exact_solver import ExactSolver
+from ratslam_core.extensions.odometry_edges import OdometryEdges
+from ratslam_core.extensions.pose_filter import PoseFilter
+from ratslam_core.laws import experiences as law
+from ratslam_core.laws.measures import FAR_M, array, number, pose, true, whole, within
+
+LONGEST = 1e12  # metres and seconds
+FASTEST = 10.0  # rad/s that a yaw rate may be off by
+
+
+def experience_map(map_: ExperienceMap, views: int) -> None:
+    """ValueError names the first law that does not hold. views: how many local view cells there are."""
+    true(map_._experiences.shape == map_.shape, "the experiences must be of the same pose cells")
+    true(map_._temporal_map._map is map_, "the temporal map must be of the same experiences")
+    law.experiences(map_._experiences, views)
+    n = len(map_)
+    law.transitions(map_.transitions, n)
+    whole("the active experience", map_.active, 0 if n else -1, n - 1)
+    pose("the robot's place", map_.pose_filter.local)
+    if isinstance(map_.pose_filter, PoseFilter):
+        number("how far off it may be", map_.pose_filter.sigma_m, 0.0, LONGEST)
+    pose("offset", map_._offset)
+    pose("travel", map_._travel)
+    for name in ("_driven_m", "_driving_s", "_sigma"):
+        number(name[1:], getattr(map_, name), 0.0, LONGEST)
+    number("yaw bias", map_.yaw_bias, -FASTEST, FASTEST)
+    for name in ("closures", "steps"):
+        whole(name, getattr(map_, name))
+    _leg(map_._leg)
+    if isinstance(map_._edges, OdometryEdges):
+        whole("the latest experience", map_._edges.latest, -1, n - 1)
+        _leg(map_._edges.since)
+    if isinstance(map_.optimiser, ExactSolver):
+        _solver(map_.optimiser)
+    if map_._arrival is not None:
+        _arrival(map_._arrival, map_.transitions.count)
+    c = map_._verifier
+    whole("sights", c.sights)
+    for part in (c._dx, c._dy, c._turn):
+        number("what they agree on", part, -2 * FAR_M, 2 * FAR_M)
+
+
+def _solver(solver: ExactSolver) -> None:
+    for name in ("_solved_at", "_closures_at_solve"):
+        whole(name, getattr(solver, name))
+    number("the rest after a solution", solver._rest_after_solve, 0.0, LONGEST)
+
+
+def _leg(leg: PreintegratedOdometry) -> None:
+    pose("a leg's move", leg.moved)
+    for name in ("way_m", "turning_s", "time_s"):
+        number(f"a leg's {name}", getattr(leg, name), 0.0, LONGEST)
+
+
+def _arrival(arrival: _Arrival, rows: int) -> None:
+    true(isinstance(arrival, _Arrival), "the arrival must be one")
+    whole("the arrival's row", arrival.row, 0, rows - 1)
+    within("the arrival's move", array("the arrival's move", arrival.move, np.float64, (3,)), -FAR_M, FAR_M)
+    number("the arrival's weight", arrival.weight, 0.0, law.LARGEST)
+    pose("where the robot came from", arrival.came)
+    number("the arrival's sigma", arrival.sigma, 0.0, LONGEST)

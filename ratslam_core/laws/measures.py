@@ -1,0 +1,84 @@
+"""What laws are made of: a value, its name, and what would be right; ValueError with all three when it is not."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ratslam_core.types import Pose2
+
+MOST = 2**53  # of whole numbers: what a double still counts exactly
+FAR_M = 1e6  # no robot drives so far
+TURN = math.pi + 1e-6  # a wrapped angle, give or take its rounding
+
+
+def true(holds: object, words: str) -> None:
+    if not holds:
+        raise ValueError(words)
+
+
+def whole(name: str, value: object, low: int = 0, high: int = MOST) -> int:
+    """The value, a whole number from low to high."""
+    if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer) or not low <= value <= high:
+        raise ValueError(f"{name} must be a whole number from {low} to {high}, got {_short(value)}")
+    return int(value)
+
+
+def number(name: str, value: object, low: float = 0.0, high: float = math.inf) -> float:
+    """The value, a number from low to high; that it is infinite must be allowed by `high`."""
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating) or not low <= value <= high:
+        raise ValueError(f"{name} must be a number from {low:g} to {high:g}, got {_short(value)}")
+    return float(value)
+
+
+def pose(name: str, value: object) -> None:
+    if not isinstance(value, Pose2):
+        raise ValueError(f"{name} must be a pose, got {_short(value)}")
+    number(f"{name}.x", value.x, -FAR_M, FAR_M)
+    number(f"{name}.y", value.y, -FAR_M, FAR_M)
+    number(f"{name}.heading_rad", value.heading_rad, -TURN, TURN)
+
+
+def array(name: str, value: object, kind: Any, shape: tuple[int | None, ...]) -> NDArray[Any]:
+    """The value, an array of this type and shape (None: any size but 0) that lies in memory row after row."""
+    if not isinstance(value, np.ndarray) or value.dtype != kind or not value.dtype.isnative:
+        raise ValueError(f"{name} must be an array of {np.dtype(kind)}, got {getattr(value, 'dtype', _short(value))}")
+    fits = len(value.shape) == len(shape)
+    if not fits or not all(n > 0 if m is None else n == m for n, m in zip(value.shape, shape, strict=True)):
+        wanted = ", ".join("any" if n is None else str(n) for n in shape)
+        raise ValueError(f"{name} must have shape ({wanted}), got {value.shape}")
+    if not value.flags.c_contiguous:
+        raise ValueError(f"{name} must lie in memory row after row")
+    if kind == np.bool_ and value.size and value.view(np.uint8).max() > 1:
+        raise ValueError(f"{name} must be true or false everywhere")
+    return value
+
+
+def within(name: str, values: NDArray[Any], low: float, high: float) -> None:
+    """All of them are from low to high, so none is nan."""
+    if values.size and not (values.min() >= low and values.max() <= high):
+        at = int(np.argmin((values >= low) & (values <= high)))
+        raise ValueError(f"{name} must be from {low:g} to {high:g}, got {values.flat[at]:g} in place {at}")
+
+
+def apart(name: str, start: NDArray[Any], room: NDArray[Any], end: int, size: int) -> None:
+    """Blocks of an arena: each lies before its end, none in another; the end is no farther than the size."""
+    true(0 <= end <= size, f"{name} must end within {size}, got {end}")
+    start, room = start.astype(np.int64), room.astype(np.int64)
+    within(f"{name}: start", start, 0, end)
+    within(f"{name}: room", room, 0, end)
+    within(f"{name}: end of a block", start + room, 0, end)
+    real = room > 0
+    order = np.argsort(start[real], kind="stable")
+    start, room = start[real][order], room[real][order]
+    true((start[1:] >= (start + room)[:-1]).all(), f"{name} must not overlap")
+
+
+def _short(value: object) -> str:
+    if isinstance(value, list | tuple | dict | np.ndarray):
+        return f"a {type(value).__name__}"
+    text = f"{value:g}" if isinstance(value, float) else str(value)
+    return text if len(text) <= 60 else f"{text[:60]}..."

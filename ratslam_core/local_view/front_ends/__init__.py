@@ -1,0 +1,59 @@
+"""What a view is made of: four ways from an image (or a scene number) to the bytes that are stored and compared."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ratslam_core.local_view.front_ends.complex_cells import ComplexCells
+from ratslam_core.local_view.front_ends.hue_saturation import HueSaturation
+from ratslam_core.local_view.front_ends.scene_numbers import SceneNumbers
+from ratslam_core.local_view.front_ends.template import Template
+from ratslam_core.local_view.matcher import Features
+from ratslam_core.params import LocalViewParams
+
+
+class FrontEnd(Protocol):
+    """Features are (columns * rows,) uint8; equal views have equal ones, the mean absolute difference says how unlike two are."""
+
+    columns: int
+    rows: int  # bytes of each column
+    shifts: bool  # features are columns of the image: turning the robot shifts them, and the shift tells its heading
+    scale: float  # levels for a mean difference of one byte; in levels all front ends are about equally strict
+    vague: float  # levels by which even an equal view leaves the place open
+
+    def look(self, image: NDArray[np.uint8] | None, scene: int | None, /) -> Features:
+        """The features of what is seen now; ValueError says what is wrong with it."""
+        ...
+
+    def bland(self, features: Features, params: LocalViewParams, /) -> bool:
+        """Whether they show nothing that could be recognised."""
+        ...
+
+    def threshold(self, params: LocalViewParams, /) -> float:
+        """The difference up to which a view is recognised."""
+        ...
+
+    def surprise(self, params: LocalViewParams, /) -> float:
+        """The difference between two images in a row from which on the robot was not driven here; inf = no telling."""
+        ...
+
+    def picture(self, features: Features, /) -> NDArray[np.uint8]:
+        """For people: (h, w) grey or (h, w, 3) RGB."""
+        ...
+
+    def words(self, features: Features, /) -> str:
+        """For people who cannot see it."""
+        ...
+
+
+def named_front_end(params: LocalViewParams) -> FrontEnd:
+    """The one that the parameters name."""
+    return {
+        "template": Template,
+        "complex cells": ComplexCells,
+        "hue and saturation": HueSaturation,
+        "scene numbers": SceneNumbers,
+    }[params.front_end]()

@@ -1,0 +1,76 @@
+"""How much of the image has which hue and saturation. ACRA 2005 section 7, Prasser et al. 2005."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from disk import kind
+from ratslam_core.local_view.front_ends.image import checked
+from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
+from ratslam_core.params import LocalViewParams
+
+HUES, SATURATIONS = COLUMNS, ROWS  # bins
+MOST_SATURATION = 0.5  # more counts as this
+FULL = 1 / 6  # a bin with this share of the image is full
+CERTAIN = 0.1  # saturation from which on a hue is taken at its word
+WIDTH, HEIGHT = 32, 24  # pixels: smaller than the camera's, which quiets its noise
+
+
+@kind("hue and saturation/1")
+class HueSaturation:
+    """A histogram of the whole image: brightness does not count, nor where in the image a colour is."""
+
+    columns, rows = COLUMNS, ROWS
+    shifts, scale, vague = False, 2.5, 0.0
+
+    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None) -> Features:
+        rgb = checked(image)
+        if rgb.ndim == 2:
+            raise ValueError(f"image must be in colour, shape (h, w, 3), for hue and saturation, got {rgb.shape}")
+        small = cv2.resize(rgb.astype(np.float32) / 255, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
+        hsv = np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2HSV), np.float32)
+        shares = histogram(hsv[..., 0].ravel(), hsv[..., 1].ravel())
+        return np.minimum(np.rint(255 / FULL * shares), 255).astype(np.uint8).ravel()
+
+    def bland(self, features: Features, params: LocalViewParams) -> bool:
+        """Grey all over."""
+        return FULL / 255 * float(features.reshape(HUES, SATURATIONS)[:, 1:].sum()) < params.min_colour
+
+    def threshold(self, params: LocalViewParams) -> float:
+        return params.colour_threshold
+
+    def surprise(self, params: LocalViewParams) -> float:
+        return params.colour_surprise
+
+    def picture(self, features: Features) -> NDArray[np.uint8]:
+        """Hue to the right, saturation downwards, each bin in its colour, the brighter the more of it there is."""
+        value = np.minimum(features.reshape(HUES, SATURATIONS).T * 2.5, 255).astype(np.uint8)
+        hue = np.tile((np.arange(HUES) * 180 // HUES).astype(np.uint8), (SATURATIONS, 1))
+        saturation = np.tile((np.arange(SATURATIONS) * 255 // (SATURATIONS - 1)).astype(np.uint8)[:, None], (1, HUES))
+        return np.asarray(cv2.cvtColor(np.dstack([hue, saturation, value]), cv2.COLOR_HSV2RGB), np.uint8)
+
+    def words(self, features: Features) -> str:
+        hue, saturation = divmod(int(features.argmax()), SATURATIONS)
+        return f"mostly hue {hue * 360 // HUES}° at saturation {saturation} of {SATURATIONS - 1}"
+
+
+def histogram(hue_deg: NDArray[np.float32], saturation: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Shares of the bins, shape (12, 8), sum 1. Every pixel is shared by the two nearest hues and the two nearest saturations.
+
+    [ours] The greyer a pixel, the more evenly it is spread over all hues: none jumps from one hue to another by noise.
+    test_front_ends.py::test_grey_has_no_hue.
+    """
+    level = np.minimum(saturation / MOST_SATURATION, 1.0) * (SATURATIONS - 1)
+    low = np.minimum(level.astype(np.int64), SATURATIONS - 2)
+    turn = hue_deg * (HUES / 360.0)
+    left = np.floor(turn).astype(np.int64)
+    certain = np.minimum(saturation / CERTAIN, 1.0)
+    shares = np.zeros((HUES, SATURATIONS))
+    for row, by_level in ((low, low + 1 - level), (low + 1, level - low)):
+        shares += np.bincount(row, by_level * (1 - certain), SATURATIONS) / HUES
+        for column, by_hue in ((left, left + 1 - turn), (left + 1, turn - left)):
+            bins = column % HUES * SATURATIONS + row
+            shares += np.bincount(bins, by_level * by_hue * certain, HUES * SATURATIONS).reshape(HUES, SATURATIONS)
+    return np.maximum(shares, 0) / len(hue_deg)

@@ -1,0 +1,44 @@
+"""A view as 12 x 8 grey levels. ACRA 2006 section 7."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from disk import kind
+from ratslam_core.local_view.front_ends.image import grey
+from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
+from ratslam_core.params import LocalViewParams
+
+
+@kind("template/1")
+class Template:
+    """Sensitive to all that changes, the light included: several views stand for one place."""
+
+    columns, rows = COLUMNS, ROWS
+    shifts, scale, vague = True, 1.0, 0.0
+
+    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None) -> Features:
+        return np.ascontiguousarray(grey_template(image).T).ravel()
+
+    def bland(self, features: Features, params: LocalViewParams) -> bool:
+        """A wall at arm's length has no contrast."""
+        return float(cv2.meanStdDev(self.picture(features))[1][0, 0]) < params.min_contrast
+
+    def threshold(self, params: LocalViewParams) -> float:
+        return params.match_threshold
+
+    def surprise(self, params: LocalViewParams) -> float:
+        return params.surprise
+
+    def picture(self, features: Features) -> NDArray[np.uint8]:
+        return features.reshape(COLUMNS, ROWS).T
+
+    def words(self, features: Features) -> str:
+        return f"12 x 8 grey levels, {features.mean():.0f} on average"
+
+
+def grey_template(image: object) -> NDArray[np.uint8]:
+    """An image as 12 x 8 grey levels, shape (8, 12), each the mean of its area."""
+    return np.asarray(cv2.resize(grey(image), (COLUMNS, ROWS), interpolation=cv2.INTER_AREA), np.uint8)

@@ -1,0 +1,152 @@
+"""Local view cells: each stands for one scene, found again by the sum of absolute differences of its features.
+
+ACRA 2006 section 7 (view matcher), ACRA 2004 section 3.3 (one cell per scene), IROS 2005 (recruitment). What the features are is
+the front end's business.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from disk import kind
+from ratslam_core.local_view.front_ends import FrontEnd, named_front_end
+from ratslam_core.local_view.matcher import Features, Matcher, difference
+from ratslam_core.params import LocalViewParams
+from ratslam_core.types import Recognition
+
+NOTHING = -1
+TURNS = (0, 1, -1, 2, -2, 3, -3)  # columns by which one tick of turning may shift the image
+
+
+@kind("local view/1")
+class LocalView:
+    """The known scenes. `observe` recognises an image or recruits a new cell for it."""
+
+    SHARED = ("features", "_last")  # one array, which is never written to
+
+    def __init__(
+        self,
+        params: LocalViewParams | None = None,
+        rng: np.random.Generator | None = None,
+        front_end: FrontEnd | None = None,
+    ) -> None:
+        """front_end: one of one's own, in the place of the one that the parameters name."""
+        self.params = params or LocalViewParams()
+        self.rng = rng or np.random.default_rng(0)  # draws false positives and nothing else
+        self.front_end: FrontEnd = front_end or named_front_end(self.params)
+        size = self.front_end.columns * self.front_end.rows
+        self.features = np.zeros(size, np.uint8)  # of what is seen now
+        self.recognition = Recognition(NOTHING, False, NOTHING, math.inf)
+        self.image_change = (
+            0.0  # how far the image is from what driving could make of the one before; above 1 none could
+        )
+        self.false_positives = 0  # so far
+        self._templates = np.zeros((1024, size), np.uint8)
+        self._count = 0
+        self._matcher = Matcher(self.front_end.columns, self.front_end.rows)
+        self._last: Features | None = None
+
+    def __len__(self) -> int:
+        return self._count
+
+    @property
+    def templates(self) -> NDArray[np.uint8]:
+        """The features of all known scenes, shape (n, columns * rows). A view."""
+        return self._templates[: self._count]
+
+    @property
+    def memory_bytes(self) -> int:
+        """What the known scenes take, room for more included."""
+        return self._templates.nbytes
+
+    def stored(self, view: int) -> Features:
+        """The features of one view, shape (columns * rows,); `front_end.picture` draws them."""
+        if not 0 <= view < self._count:
+            raise ValueError(f"view must be from 0 to {self._count - 1}, got {view!r}")
+        return self._templates[view]
+
+    def difference_to(self, view: int) -> float:
+        """How far one known view is from what was seen last, as `Recognition.difference` counts it."""
+        most = self.params.shift if self.front_end.shifts else 0
+        stored = self.stored(view)
+        apart = min(self._apart(self.features, stored, shift) for shift in range(-most, most + 1))
+        return max(apart * self.front_end.scale, self.front_end.vague)
+
+    def strength(self, seen: Recognition) -> float:
+        """How sure a recognition is: 1 for a new or an equal view, 0 for one that is only just recognised."""
+        vague, limit = self.front_end.vague, self.front_end.threshold(self.params)
+        return 1.0 if seen.recruited or limit <= vague else 1 - (seen.difference - vague) / (limit - vague)
+
+    def observe(self, image: NDArray[np.uint8] | None, scene: int | None = None) -> Recognition:
+        """The active cell for what is seen now; a new one if it is like none known.
+
+        image: (h, w) grey or (h, w, 3) RGB, uint8. scene: for the front end "scene numbers", which looks at nothing else.
+
+        [ours] What shows nothing (a wall at arm's length) activates no cell and recruits none, since such views look alike
+        everywhere. test_local_view.py::test_a_bland_view_shows_nothing. With vision off nothing does.
+        """
+        features = self.front_end.look(image, scene)
+        self.image_change = self._jump(features)
+        self.features = self._last = features
+        most = self.params.shift if self.front_end.shifts else 0
+        best, apart, shift = self._matcher.nearest(self.templates, features, most)
+        apart = max(apart * self.front_end.scale, self.front_end.vague)
+        if not self.params.enabled or self.front_end.bland(features, self.params):
+            self.recognition = Recognition(NOTHING, False, best, apart)
+        elif apart <= self.front_end.threshold(self.params):
+            self.recognition = self._recognised(best, apart, shift)
+        else:
+            self._recruit(features)
+            self.recognition = Recognition(self._count - 1, True, best, apart)
+        return self.recognition
+
+    def _recognised(self, best: int, apart: float, shift: int) -> Recognition:
+        """The view that was found, or now and then another: N_vis of ACRA 2006 section 5.1.
+
+        A new scene is still recruited, and nothing is replaced by itself.
+        """
+        if self.params.false_positives > 0 and self._count > 1 and self.rng.random() < self.params.false_positives:
+            other = int(self.rng.integers(self._count - 1))
+            self.false_positives += 1
+            return Recognition(other + (other >= best), False, best, apart, None, True)
+        return Recognition(best, False, best, apart, self._facing(best, shift))
+
+    def _facing(self, view: int, shift: int) -> float | None:
+        """[ours] How the robot stands to where the view was taken from, by the shift; None when columns tell no heading."""
+        if not self.front_end.shifts or not self.params.facing:
+            return None
+        return self._sub_column(view, shift) * self.params.field_of_view / self.front_end.columns
+
+    def _jump(self, features: Features) -> float:
+        """How much the last image, turned as it may be within one tick, differs from this one, as a share of the limit."""
+        limit = self.front_end.surprise(self.params)
+        if self._last is None or not self.params.enabled or math.isinf(limit):
+            return 0.0
+        turns = TURNS if self.front_end.shifts else (0,)
+        least = self.front_end.scale * min(self._apart(features, self._last, turn) for turn in turns)
+        if limit == 0:
+            return math.inf if least > 0 else 0.0
+        return least / limit
+
+    def _sub_column(self, view: int, shift: int) -> float:
+        """The shift in fractions of a column: where the two flanks of the difference around its least value meet."""
+        if self.params.shift == 0:
+            return 0.0
+        left, least, right = (self._apart(self.features, self._templates[view], shift + k) for k in (-1, 0, 1))
+        steepest = max(left, right) - least
+        return shift + (left - right) / (2 * steepest) if steepest > 0 else float(shift)
+
+    def _apart(self, new: Features, stored: Features, shift: int) -> float:
+        return difference(new, stored, shift, self.front_end.columns, self.front_end.rows)
+
+    def _recruit(self, features: Features) -> None:
+        if self._count == len(self._templates):
+            more = np.zeros(
+                (self._count // 2, features.size), np.uint8
+            )  # half as many again: a view stays below 150 bytes
+            self._templates = np.concatenate([self._templates, more])
+        self._templates[self._count] = features
+        self._count += 1

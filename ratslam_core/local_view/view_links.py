@@ -1,0 +1,160 @@
+"""Hebbian links from local view cells to pose cells. ACRA 2004 equations 2-4.
+
+Links are sparse: each view has a block of (pose cell, strength) in one arena. A block that is full moves to the end with a
+quarter more room; when the arena is full, the blocks move together into another, a third larger than all of them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from disk import kind
+from ratslam_core.params import LocalViewParams
+from ratslam_core.pose_cells.activity_kernels import FLAT
+
+
+@kind("view links/1")
+class ViewLinks:
+    """beta_i,xyz for every view i."""
+
+    def __init__(self, params: LocalViewParams | None = None) -> None:
+        self.params = params or LocalViewParams()
+        self._cells = np.zeros(65_536, np.int32)
+        self._strength = np.zeros(65_536, np.float32)
+        self._blocks = np.zeros((1024, 3), np.int64)  # start, used, room of each view
+        self._end = 0
+        self._seen = np.zeros(4096, np.bool_)
+
+    def of(self, view: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+        """The pose cells that a view is linked to, flat indices, and the strengths."""
+        start, used, _ = self._blocks[view] if view < len(self._blocks) else (0, 0, 0)
+        return self._cells[start : start + used], self._strength[start : start + used]
+
+    @property
+    def room(self) -> int:
+        """How many links the arena has room for."""
+        return self._cells.size
+
+    def views_at(self, column: int, columns: int, views: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+        """The views below `views` that are linked to pose cells of one x', y' = flat index modulo `columns`, in order, and
+        the sums of those links. For looking: it goes through all links."""
+        strength = np.zeros(max(views, 1), np.float32)
+        _sum_at(self._blocks, min(views, len(self._blocks)), self._cells, self._strength, column, columns, strength)
+        linked = np.flatnonzero(strength).astype(np.int32)
+        return linked, strength[linked]
+
+    def learn(
+        self,
+        view: int,
+        cells: NDArray[np.int32],
+        activity: NDArray[np.float32],
+        slot: NDArray[np.int32],
+        rate: float | None = None,
+    ) -> None:
+        """beta <- (1 - delta) beta + eta P for all active pose cells. ACRA 2004 eqs. 2-3.
+
+        cells, activity, slot: the active set of the pose cells (`PoseCells.active`, `PoseCells.slot`). rate: eta, without it
+        the parameter `learning_rate`.
+        """
+        eta = self.params.learning_rate if rate is None else rate
+        self._make_room(view, len(cells), slot)
+        block = self._blocks[view]
+        block[1] = _learn(
+            self._cells[block[0] : block[0] + block[2]], self._strength[block[0] : block[0] + block[2]], block[1],
+            cells, activity, slot, self._seen, np.float32(eta), np.float32(self.params.decay),
+        )  # fmt: skip
+
+    def recall(self, view: int, lost: bool = False) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+        """What the active view injects: min(beta, s_max) per link. ACRA 2004 eq. 4.
+
+        [ours] Scaled down so that all links together inject at most `injection`: one look-alike must not move a packet, a
+        row of agreeing views must. test_view_links.py::test_injection_is_capped_in_sum.
+        """
+        cells, strength = self.of(view)
+        values = np.minimum(strength, np.float32(self.params.saturation))
+        total = float(values.sum(dtype=np.float64))
+        if lost and total > 0:
+            values *= np.float32(self.params.lost_injection / total)
+        elif self.params.capped and total > self.params.injection:
+            values *= np.float32(self.params.injection / total)
+        return cells, values
+
+    def _make_room(self, view: int, active: int, slot: NDArray[np.int32]) -> None:
+        while view >= len(self._blocks):
+            self._blocks = np.concatenate([self._blocks, np.zeros_like(self._blocks)])
+        if active > len(self._seen):
+            self._seen = np.zeros(2 * active, np.bool_)
+        start, used, room = self._blocks[view].tolist()
+        if used + active <= room:
+            return
+        needed = used + active - _count_active(self._cells[start : start + used], slot)
+        if needed <= room:
+            return
+        wanted = needed + room // 4
+        if self._end + wanted > self._cells.size:
+            self._move_together(wanted)
+            start = self._blocks[view, 0]
+        self._cells[self._end : self._end + used] = self._cells[start : start + used]
+        self._strength[self._end : self._end + used] = self._strength[start : start + used]
+        self._blocks[view] = self._end, used, wanted
+        self._end += wanted
+
+    def _move_together(self, wanted: int) -> None:
+        """The blocks without the gaps that moved ones left, and so much more."""
+        size = (int(self._blocks[:, 2].sum()) + wanted) * 4 // 3
+        cells, strength = np.zeros(size, np.int32), np.zeros(size, np.float32)
+        self._end = _copy_blocks(self._blocks, self._cells, self._strength, cells, strength)
+        self._cells, self._strength = cells, strength
+
+
+@njit(cache=True, nogil=True)
+def _count_active(linked, slot):
+    count = 0
+    for k in range(len(linked)):
+        if slot[linked[k]] > 0:
+            count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _copy_blocks(blocks, old_cells, old_strength, cells, strength):
+    """One after the other, by the number of the view; returns where the last one ends."""
+    end = 0
+    for view in range(len(blocks)):
+        start, used = blocks[view, 0], blocks[view, 1]
+        for k in range(used):
+            cells[end + k] = old_cells[start + k]
+            strength[end + k] = old_strength[start + k]
+        blocks[view, 0] = end
+        end += blocks[view, 2]
+    return end
+
+
+@njit(cache=True, nogil=True)
+def _sum_at(blocks, views, cells, strength, column, columns, out):
+    for view in range(views):
+        start, used = blocks[view, 0], blocks[view, 1]
+        for k in range(start, start + used):
+            if cells[k] % columns == column:
+                out[view] += strength[k]
+
+
+@njit(cache=True, nogil=True)
+def _learn(linked, strength, used, cells, activity, slot, seen, eta, delta):
+    """beta <- (1 - delta) beta + eta P in one view's block; returns how much of the block is used then."""
+    n = len(cells)
+    seen[:n] = False
+    for k in range(used):
+        strength[k] *= 1 - delta
+        at = slot[linked[k]]
+        if at > 0:
+            strength[k] += eta * activity[at - 1]
+            seen[at - 1] = True
+    for i in range(n):
+        if not seen[i]:
+            linked[used] = cells[i, FLAT]
+            strength[used] = eta * activity[i]
+            used += 1
+    return used

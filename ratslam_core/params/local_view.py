@@ -1,0 +1,135 @@
+"""The parameters of the local view cells and of their links. Sources are named in params/__init__.py."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from disk import kind
+from ratslam_core.params.parameter import check_ranges, param
+
+
+@kind("parameters of local view/1")
+@dataclass(frozen=True, slots=True)
+class LocalViewParams:
+    """Recognising scenes (D section 7) and their Hebbian links to pose cells (A 4)."""
+
+    front_end: str = param(
+        "template",
+        choices=("template", "complex cells", "hue and saturation", "scene numbers"),
+        meaning="what a view is made of",
+        source="D 7; A 3.3; B 7; B 5",
+        live=False,
+    )
+    match_threshold: float = param(
+        6.0,
+        unit="grey levels",
+        low=0.0,
+        high=255.0,
+        meaning="mean absolute difference below which a view is recognised",
+        source="D 7; value ours",
+    )
+    edge_threshold: float = param(
+        6.0,
+        unit="levels",
+        low=0.0,
+        high=255.0,
+        meaning="the same for complex cells",
+        source="A 3.3; value ours",
+    )
+    colour_threshold: float = param(
+        5.0,
+        unit="levels",
+        low=0.0,
+        high=255.0,
+        meaning="the same for hue and saturation",
+        source="B 7; value ours",
+    )
+    shift: int = param(
+        2, unit="columns", low=0, high=5, meaning="horizontal shifts tried to either side", source="D 7; value ours"
+    )
+    facing: bool = param(
+        True, meaning="the shift of a recognised view tells how the robot is turned against it", source="ours"
+    )
+    field_of_view: float = param(
+        math.radians(50),
+        unit="rad",
+        low=0.1,
+        high=6.3,
+        meaning="width of the camera's view, to read headings from shifts",
+        source="A 3, C IV.A",
+    )
+    min_contrast: float = param(
+        12.0, unit="grey levels", low=0.0, high=255.0, meaning="a view with less contrast shows nothing", source="ours"
+    )
+    min_edges: float = param(
+        16.0, unit="levels", low=0.0, high=255.0, meaning="complex cells that see less edge see nothing", source="ours"
+    )
+    min_colour: float = param(
+        0.6, low=0.0, high=1.0, meaning="a view with a smaller share of colour shows no hue", source="ours"
+    )
+    learning_rate: float = param(0.15, symbol="η", low=0.0, high=1.0, meaning="Hebbian learning rate", source="C IV.C")
+    adaptive: bool = param(
+        False,
+        meaning="learning rate that follows the strength of vision and the confidence of the estimate",
+        source="A 6.3 (future work); ours",
+    )
+    learn_first: bool = param(
+        False,
+        meaning="a view injects what it has learnt in this very step, too; off = what it had learnt before",
+        source="A 4; off is ours",
+    )
+    decay: float = param(
+        0.0, symbol="δ", low=0.0, high=1.0, meaning="share of a link forgotten at each sight", source="A eq. 2"
+    )
+    saturation: float = param(
+        0.02, symbol="s_max", low=0.0, high=1.0, meaning="most that one link injects", source="A eq. 4; value ours"
+    )
+    capped: bool = param(True, meaning="all links of a view inject at most `injection` together", source="ours")
+    injection: float = param(
+        0.14, low=0.0, high=5.0, meaning="most that all links of a view inject together", source="ours"
+    )
+    rest: float = param(
+        10.0, unit="s", low=0.0, high=1e6, meaning="a view younger than this does not inject", source="ours"
+    )
+    surprise: float = param(
+        20.0,
+        unit="grey levels",
+        low=0.0,
+        high=255.0,
+        meaning="an image that differs so much from the one before was not driven to",
+        source="ours",
+    )
+    edge_surprise: float = param(
+        20.0, unit="levels", low=0.0, high=255.0, meaning="the same for complex cells", source="ours"
+    )
+    colour_surprise: float = param(
+        20.0, unit="levels", low=0.0, high=255.0, meaning="the same for hue and saturation", source="ours"
+    )
+    range_surprise: float = param(
+        1.5,
+        unit="1/m",
+        low=0.0,
+        high=10.0,
+        meaning="what half of the sonars add to the surprise, a metre of change beyond 0.17 m; 1 is a kidnap",
+        source="ours",
+    )
+    lost_injection: float = param(
+        0.5,
+        low=0.0,
+        high=5.0,
+        meaning="what a view may inject while the robot knows that it is lost",
+        source="ours",
+    )
+    false_positives: float = param(
+        0.0,
+        symbol="N_vis",
+        low=0.0,
+        high=1.0,
+        meaning="share of the recognised views that are taken for another known one",
+        source="D 5.1",
+    )
+    enabled: bool = param(True, meaning="vision; off = path integration only", source="A figures 9, 10")
+
+    def __post_init__(self) -> None:
+        check_ranges(self)

@@ -1,0 +1,45 @@
+"""The parameters of the occupancy pictures. Sources are named in params/__init__.py."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from disk import kind
+from ratslam_core.params.parameter import check_ranges, param
+
+
+@kind("parameters of occupancy/1")
+@dataclass(frozen=True, slots=True)
+class OccupancyParams:
+    """The wide sonar beam of the occupancy pictures (A 6.1, C V.A)."""
+
+    beam_rad: float = param(
+        math.radians(15), unit="rad", low=0.01, high=1.5, meaning="width of a sonar's beam", source="Moravec and Elfes"
+    )
+    farthest_m: float = param(
+        5.0, symbol="R_max", unit="m", low=0.5, high=20.0, meaning="a range from here on is no echo", source="ours"
+    )
+    depth_m: float = param(
+        0.1, symbol="ε", unit="m", low=0.0, high=1.0, meaning="how far off an echo may be", source="Moravec and Elfes"
+    )
+    free: float = param(
+        0.4, low=0.0, high=0.95, meaning="how sure one echo is of the free floor before it", source="A 6.1; value ours"
+    )
+    occupied: float = param(
+        0.6, low=0.0, high=0.95, meaning="how sure one echo is of what it met", source="A 6.1; value ours"
+    )
+    bound: float = param(
+        5.0, low=0.5, high=20.0, meaning="log odds stay within ± this, so that the picture can change", source="ours"
+    )
+    scans: int = param(
+        6,
+        low=1,
+        high=100,
+        meaning="scans kept for each experience, the oldest gives way",
+        source="ours",
+        live=False,
+    )
+
+    def __post_init__(self) -> None:
+        check_ranges(self)

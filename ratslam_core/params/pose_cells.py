@@ -1,0 +1,104 @@
+"""The parameters of the pose cells. Sources are named in params/__init__.py."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from disk import kind
+from ratslam_core.params.parameter import check_ranges, param
+
+MOST_CELLS = 2**26  # of the pose cells, four bytes each: a brain has to fit into memory, and into its file
+
+
+@kind("parameters of pose cells/1")
+@dataclass(frozen=True, slots=True)
+class PoseCellParams:
+    """The continuous attractor network (A section 4)."""
+
+    n_x: int = param(
+        64, symbol="n_x'", unit="cells", low=8, high=1000, meaning="cells along x'", source="D 5.3", live=False
+    )
+    n_y: int = param(
+        64, symbol="n_y'", unit="cells", low=8, high=1000, meaning="cells along y'", source="D 5.3", live=False
+    )
+    n_theta: int = param(
+        36,
+        symbol="n_θ'",
+        unit="layers",
+        low=8,
+        high=360,
+        meaning="layers of heading; 36 are 10 degrees each",
+        source="A 4",
+        live=False,
+    )
+    cell_m: float = param(
+        0.25, unit="m", low=0.01, high=100.0, meaning="side of one cell", source="A 4, D 5.3", live=False
+    )
+    excite_sigma: float = param(
+        0.5,
+        symbol="σ_ε",
+        unit="cells",
+        low=0.2,
+        high=3.0,
+        meaning="width of the excitation Gaussian",
+        source="A eq. 10; value ours",
+    )
+    excite_radius: int = param(
+        2, unit="cells", low=1, high=9, meaning="reach of the excitation", source="A eq. 10; value ours"
+    )
+    inhibit: float = param(
+        3e-4,
+        symbol="φ",
+        low=0.0,
+        high=0.02,
+        meaning="global inhibition taken from every cell",
+        source="A eq. 11; value ours",
+    )
+    local_inhibit: float = param(
+        0.0, low=0.0, high=1.0, meaning="strength of local inhibition, 0 = off", source="later RatSLAM"
+    )
+    local_inhibit_sigma: float = param(
+        2.0, unit="cells", low=0.5, high=5.0, meaning="width of the local inhibition", source="later RatSLAM"
+    )
+    local_inhibit_radius: int = param(
+        2, unit="cells", low=1, high=9, meaning="reach of the local inhibition", source="later RatSLAM"
+    )
+    window: int = param(
+        6, unit="cells", low=2, high=12, meaning="half-width of the window that holds one packet", source="ours"
+    )
+    carry: bool = param(True, meaning="give back the motion that the attractor swallows", source="ours")
+    divide_spread: bool = param(
+        True, meaning="the way of a packet is not shortened by the spread of its headings", source="ours"
+    )
+    arc: bool = param(
+        True,
+        meaning="the way points along the heading in the middle of the movement; off = at its beginning",
+        source="ours",
+    )
+    iterations: int = param(
+        4,
+        low=1,
+        high=16,
+        meaning="most attractor iterations in a step, one for each cell driven; 1 = always one",
+        source="ours",
+    )
+    move_first: bool = param(
+        True,
+        meaning="path integration comes before association: the image belongs to the end of the movement",
+        source="ours; A 4 associates first",
+        live=False,
+    )
+    snap_cells: float = param(
+        3.0,
+        unit="cells",
+        low=1.0,
+        high=100.0,
+        meaning="a longer jump of the winning packet is a relocalisation",
+        source="ours",
+    )
+
+    def __post_init__(self) -> None:
+        check_ranges(self)
+        cells = self.n_x * self.n_y * self.n_theta
+        if cells > MOST_CELLS:
+            raise ValueError(f"n_x, n_y and n_theta must make at most {MOST_CELLS} cells together, got {cells}")

@@ -1,0 +1,39 @@
+"""The parameters of where the robot is between two experiences. Sources are named in params/__init__.py."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from disk import kind
+from ratslam_core.params.parameter import check_ranges, param
+
+
+@kind("parameters of pose filter/1")
+@dataclass(frozen=True, slots=True)
+class PoseFilterParams:
+    """What is seen weighed against odometry, and when a look that disagrees is believed."""
+
+    enabled: bool = param(
+        True,
+        meaning="weigh a look against odometry; off = the latest look is the robot's place",
+        source="ours",
+        live=False,
+    )
+    snap_m: float = param(
+        1.0, unit="m", low=0.05, high=100.0, meaning="a look that is farther off is believed at once", source="ours"
+    )
+    snap_rad: float = param(
+        0.8, unit="rad", low=0.05, high=3.2, meaning="a look that is turned by more is believed at once", source="ours"
+    )
+    least_sigma_m: float = param(
+        0.06, unit="m", low=1e-4, high=1.0, meaning="it is never firmer, so that it can follow the map", source="ours"
+    )
+    agrees_m: float = param(
+        0.5, unit="m", low=0.01, high=10.0, meaning="so near are sights that confirm each other", source="ours"
+    )
+    agrees_rad: float = param(
+        0.4, unit="rad", low=0.01, high=3.2, meaning="so alike turned are sights that confirm each other", source="ours"
+    )
+
+    def __post_init__(self) -> None:
+        check_ranges(self)

@@ -1,0 +1,78 @@
+"""What each paper says and nothing else, as values of parameters: `preset("paper-2006")`. What runs by default is "ours".
+
+A value that no paper names, a threshold or a rate of learning, is the same in all of them. Which addition is whose switch stands
+in additions.py and docs/additions.md; test_papers.py holds whole runs with all of them off against a literal twin.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ratslam_core.params import RatSlamParams
+from ratslam_core.params.additions import ADDITIONS, Value
+
+# Off by default as it is: another learning rate, jumps that are confirmed, short cuts.
+_ALSO_OFF: dict[str, Value] = {
+    "local_view.adaptive": False,
+    "experience_map.confirm_jumps": 0,
+    "experience_map.shortcut_m": 0.0,
+}
+_PLAIN: dict[str, Value] = {name: value for addition in ADDITIONS for name, value in addition.off.items()} | _ALSO_OFF
+_PAPERS: dict[str, dict[str, Value]] = {
+    # A: pose cells and local view; the map is the cells' own plane.
+    "paper-2004": {
+        **_PLAIN,
+        "local_view.front_end": "complex cells",
+        "local_view.learning_rate": 0.2,
+        "experience_map.enabled": False,
+        "experience_map.link_confidence": 0.0,
+    },
+    # B and C: experiences, map correction, goal memory.
+    "paper-2005": {
+        **_PLAIN,
+        "local_view.front_end": "hue and saturation",
+        "local_view.learning_rate": 0.15,
+        "experience_map.energy": "2005",
+        "experience_map.link_confidence": 0.0,
+    },
+    # D: experiences of one place and scene, links with behaviour and confidence.
+    "paper-2006": {
+        **_PLAIN,
+        "local_view.front_end": "template",
+        "local_view.learning_rate": 0.15,
+        "experience_map.energy": "2006",
+        "experience_map.link_confidence": 0.2,
+    },
+}
+
+
+def _all_of_ours() -> dict[str, Value]:
+    names = sorted({name for values in _PAPERS.values() for name in values})
+    return {name: _value(RatSlamParams(), name) for name in names}
+
+
+def _value(params: RatSlamParams, name: str) -> Value:
+    section, key = name.split(".")
+    value: Value = getattr(getattr(params, section), key)
+    return value
+
+
+PRESETS: dict[str, dict[str, Value]] = {"ours": _all_of_ours()}
+PRESETS.update({name: {**PRESETS["ours"], **values} for name, values in _PAPERS.items()})
+
+
+def preset(name: str, base: RatSlamParams | None = None) -> RatSlamParams:
+    """Parameters with a preset over them. ValueError lists the presets when there is none of this name."""
+    if name not in PRESETS:
+        raise ValueError(f"unknown preset {name!r}; expected one of: {', '.join(PRESETS)}")
+    return with_values(base or RatSlamParams(), PRESETS[name])
+
+
+def with_values(params: RatSlamParams, values: dict[str, Value]) -> RatSlamParams:
+    """Parameters with some of them changed, by dotted names."""
+    sections: dict[str, dict[str, Value]] = {}
+    for name, value in values.items():
+        section, key = name.split(".")
+        sections.setdefault(section, {})[key] = value
+    changed = {section: replace(getattr(params, section), **change) for section, change in sections.items()}
+    return replace(params, **changed)

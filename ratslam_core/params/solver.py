@@ -1,0 +1,42 @@
+"""The parameters of the exact correction of the map. Sources are named in params/__init__.py."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from disk import kind
+from ratslam_core.params.parameter import check_ranges, param
+
+
+@kind("parameters of solver/1")
+@dataclass(frozen=True, slots=True)
+class SolverParams:
+    """The fixed point of the sweeps, computed directly now and then. When, and what it learns, says `experience_map`."""
+
+    enabled: bool = param(
+        True, meaning="exact corrections beside the sweeps; off = sweeps alone", source="ours", live=False
+    )
+    work_a_step: float = param(
+        1e5,
+        low=1.0,
+        high=1e9,
+        meaning="what exact corrections may cost a step on average; 100,000 are half a millisecond or so",
+        source="ours",
+    )
+    rad_per_m: float = param(
+        0.7,
+        unit="rad/m",
+        low=0.01,
+        high=10.0,
+        meaning="a link that is off by a metre is off by so much in heading",
+        source="ours",
+    )
+    odometry_gives: float = param(
+        5.0, unit="σ", low=0.1, high=100.0, meaning="disagreement at which odometry counts half", source="ours"
+    )
+    look_gives: float = param(
+        1.0, unit="σ", low=0.1, high=100.0, meaning="disagreement from which a look pulls no harder", source="ours"
+    )
+
+    def __post_init__(self) -> None:
+        check_ranges(self)

@@ -1,0 +1,121 @@
+"""What RatSlam asks of its parts: any of them may be another class, in a file of one's own (docs/engine.md has three).
+
+A part whose class is named with `disk.kind` is in the brain's digest and in its file like ours.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ratslam_core.types import Odometry, Packet, Pose2, Recognition
+
+if TYPE_CHECKING:
+    from ratslam_core.experience_map.experience_map import ExperienceMap
+
+
+class LocalViewPart(Protocol):
+    """Recognises scenes."""
+
+    params: Any
+    image_change: float  # since the step before, as a share of what driving cannot do
+
+    def __len__(self) -> int: ...
+
+    def observe(self, image: NDArray[np.uint8] | None, scene: int | None = None, /) -> Recognition:
+        """The active cell for what is seen now. ValueError before anything has changed."""
+        ...
+
+    def strength(self, seen: Recognition, /) -> float:
+        """How sure a recognition is, 0 to 1."""
+        ...
+
+
+class PoseCellsPart(Protocol):
+    """Holds where the robot is. Cells go by a flat index, (theta * n_y + y) * n_x + x."""
+
+    params: Any
+    shape: tuple[int, int, int]  # layers, cells along y' and x'
+
+    @property
+    def active(self) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+        """Rows (x, y, theta, flat index) of the n cells with activity, shape (n, 4), and their activities, shape (n,)."""
+        ...
+
+    @property
+    def slot(self) -> NDArray[np.int32]:
+        """For each cell 1 + its row in `active`, 0 when it is not active."""
+        ...
+
+    @property
+    def packets(self) -> tuple[Packet, ...]: ...
+    @property
+    def winner(self) -> Packet: ...
+
+    def integrate(self, distance_m: float, turn_rad: float, /) -> None:
+        """The robot moved so, as its wheels say."""
+        ...
+
+    def inject(self, cells: NDArray[np.int32], values: NDArray[np.float32], /) -> None:
+        """Add activity to cells, by their flat indices."""
+        ...
+
+    def attract(self) -> Packet:
+        """The competition of one step; the packet that leads."""
+        ...
+
+    def cells_apart(self, x1: float, y1: float, x2: float, y2: float, /) -> float: ...
+    def set_params(self, params: Any, /) -> None: ...
+
+
+class ExperienceMapPart(Protocol):
+    """Makes a map of it. The pilot and the page ask more of it: inherit from ExperienceMap for those."""
+
+    active: int
+    agrees: bool
+
+    def __len__(self) -> int: ...
+    @property
+    def local_pose(self) -> Pose2: ...
+    @property
+    def robot(self) -> Pose2: ...
+
+    def calibrated(self, odometry: Odometry, /) -> Odometry:
+        """Odometry without the errors that the map has learnt."""
+        ...
+
+    def declare_kidnapped(self) -> None:
+        """The robot was moved without its wheels."""
+        ...
+
+    def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int, /) -> bool:
+        """Find or make the active experience; True when it is new."""
+        ...
+
+    def correct(self) -> None: ...
+    def set_params(self, params: Any, filter_params: Any, solver_params: Any, /) -> None: ...
+
+
+class Optimiser(Protocol):
+    """Moves experiences until links and map agree, a step at a time."""
+
+    params: Any
+
+    def correct(self, map_: ExperienceMap, /) -> None:
+        """`map_.poses` (n, 3) is changed in place; the first experience stays where it is. `map_.links` and `map_.moves`
+        say what is asked: the end of each link in the frame of its beginning (m, m, rad)."""
+        ...
+
+
+class KidnapDetectorPart(Protocol):
+    """Notices that the robot was carried away, and that it knows again where it is."""
+
+    kidnapped: bool
+    params: Any
+    view_params: Any
+
+    def observe(self, image_change: float, ranges_m: NDArray[np.float64] | None, /) -> bool: ...
+    def declare(self, experiences: int, /) -> None: ...
+    def settle(self, agrees: bool, known: int, /) -> None: ...

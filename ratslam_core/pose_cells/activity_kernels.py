@@ -1,0 +1,187 @@
+"""Compiled array functions of the pose cells. They touch active cells only, so that size costs nothing.
+
+A set of active cells is (cells, values, n): in the first n rows of `cells` x, y, theta and the flat index
+(theta * n_y + y) * n_x + x, in `values` their activities. `slot[flat]` is 1 + the row of an active cell, 0 for all others;
+every function says which set it indexes. Coordinates are kept because integer division is what would cost most.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+X, Y, THETA, FLAT = 0, 1, 2, 3
+PATCH = 32
+
+
+@njit(cache=True, nogil=True, inline="always")
+def add(x, y, t, flat, value, cells, values, n, slot):
+    """Add activity to one cell; returns the new number of active cells."""
+    at = slot[flat]
+    if at == 0:
+        cells[n, X] = x
+        cells[n, Y] = y
+        cells[n, THETA] = t
+        cells[n, FLAT] = flat
+        values[n] = value
+        slot[flat] = n + 1
+        return n + 1
+    values[at - 1] += value
+    return n
+
+
+@njit(cache=True, nogil=True, inline="always")
+def wrap(place, size):
+    """A place on a ring of this size, from less than one turn beyond."""
+    return place - size if place >= size else place
+
+
+@njit(cache=True, nogil=True, inline="always")
+def offset(a, b, size):
+    """a - b on a ring of this size, the shorter way round."""
+    d = a - b
+    if 2 * d > size:
+        return d - size
+    if 2 * d < -size:
+        return d + size
+    return d
+
+
+@njit(cache=True, nogil=True)
+def index(cells, n, slot):
+    """Make `slot` index this set; it must be clear before."""
+    for i in range(n):
+        slot[cells[i, FLAT]] = i + 1
+
+
+@njit(cache=True, nogil=True)
+def clear(cells, n, slot):
+    for i in range(n):
+        slot[cells[i, FLAT]] = 0
+
+
+@njit(cache=True, nogil=True)
+def first_bad(flats, more, size):
+    """The first row with a cell outside the network or an activity that is none, -1 when all are right."""
+    for i in range(flats.size):
+        if not (0 <= flats[i] < size and 0.0 <= more[i] < np.inf):
+            return i
+    return -1
+
+
+@njit(cache=True, nogil=True)
+def inject(flats, more, cells, values, n, owner, slot, shape):
+    """P <- P + injection. A eq. 4. New cells move with the winner. `slot` indexes P before and after."""
+    n_y, n_x = shape[1], shape[2]
+    before = n
+    for i in range(flats.size):
+        row = flats[i] // n_x
+        n = add(flats[i] - row * n_x, row % n_y, row // n_y, flats[i], more[i], cells, values, n, slot)
+    owner[before:n] = 0
+    return n
+
+
+@njit(cache=True, nogil=True)
+def shift(
+    cells, values, n, owner, moves, yaws, headings, out_cells, out_values, out_owner, slot, shape, patch
+):  # fmt: skip
+    """P'_xyz = sum over a 2x2x2 cube of alpha_abc P. A eqs. 5-9. `slot` indexes the input, afterwards the output.
+
+    owner: the packet of each cell; moves, shape (packets, 4): the packet's way forwards and to its left (cells, each layer
+    along its own heading, headings[t] = cos, sin), and what is added to x and y of all its layers; yaws: layers.
+    patch: scratch, PATCH x PATCH zeros. Rows of cells in the same layer are laid out there first, so that each cell of the
+    result is looked up twice rather than eight times.
+    """
+    n_theta, n_y, n_x = shape
+    clear(cells, n, slot)
+    middle = PATCH // 2
+    m = 0
+    i = 0
+    while i < n:
+        t, p = cells[i, THETA], owner[i]
+        cos, sin = headings[t, 0], headings[t, 1]
+        dx = moves[p, 0] * cos - moves[p, 1] * sin + moves[p, 2]
+        dy = moves[p, 0] * sin + moves[p, 1] * cos + moves[p, 3]
+        whole_x, whole_y, whole_t = np.floor(dx), np.floor(dy), np.floor(yaws[p])
+        fx, fy, ft = np.float32(dx - whole_x), np.float32(dy - whole_y), np.float32(yaws[p] - whole_t)
+        gx, gy, gt = np.float32(1.0) - fx, np.float32(1.0) - fy, np.float32(1.0) - ft
+        first_x, first_y = cells[i, X], cells[i, Y]
+        low_x = low_y = middle
+        high_x = high_y = middle
+        while i < n and cells[i, THETA] == t and owner[i] == p:
+            x = offset(cells[i, X], first_x, n_x) + middle
+            y = offset(cells[i, Y], first_y, n_y) + middle
+            if x < 0 or y < 0 or x > PATCH - 2 or y > PATCH - 2:
+                break
+            low_x, high_x, low_y, high_y = min(low_x, x), max(high_x, x), min(low_y, y), max(high_y, y)
+            v0, v1 = values[i] * gx, values[i] * fx
+            patch[y, x] += v0 * gy
+            patch[y, x + 1] += v1 * gy
+            patch[y + 1, x] += v0 * fy
+            patch[y + 1, x + 1] += v1 * fy
+            i += 1
+        t0 = (t + int(whole_t)) % n_theta
+        t1 = wrap(t0 + 1, n_theta)
+        from_x = (first_x + int(whole_x) + low_x - middle) % n_x
+        to_y = (first_y + int(whole_y) + low_y - middle) % n_y
+        began = m
+        for y in range(low_y, high_y + 2):
+            row0, row1 = (t0 * n_y + to_y) * n_x, (t1 * n_y + to_y) * n_x
+            to_x = from_x
+            for x in range(low_x, high_x + 2):
+                v = patch[y, x]
+                if v > 0.0:
+                    patch[y, x] = 0.0
+                    m = add(to_x, to_y, t0, row0 + to_x, v * gt, out_cells, out_values, m, slot)
+                    if ft > 0.0:
+                        m = add(to_x, to_y, t1, row1 + to_x, v * ft, out_cells, out_values, m, slot)
+                to_x = wrap(to_x + 1, n_x)
+            to_y = wrap(to_y + 1, n_y)
+        out_owner[began:m] = p
+    return m
+
+
+@njit(cache=True, nogil=True)
+def cluster(cells, values, n, shape, window, radius, owner, peaks, bounds):
+    """Give every active cell to a cluster: the strongest free cell and all free cells within `window` of it, again and again.
+
+    Writes the cluster of each cell to `owner`, the row of each cluster's strongest cell to `peaks`, and how far the cluster
+    reaches from there to `bounds`: lowest x, y, theta, highest x, y, theta. Returns the number of clusters and the cells of
+    all their boxes with `radius` more on each side.
+    """
+    n_theta, n_y, n_x = shape
+    wx, wy, wt = min(window, (n_x - 1) // 2), min(window, (n_y - 1) // 2), min(window, (n_theta - 1) // 2)
+    owner[:n] = -1
+    found = room = 0
+    best = 0
+    for i in range(n):
+        if values[i] > values[best]:
+            best = i
+    while best >= 0:
+        peak = best
+        peaks[found] = peak
+        px, py, pt = cells[peak, X], cells[peak, Y], cells[peak, THETA]
+        low_x = low_y = low_t = high_x = high_y = high_t = 0
+        best = -1
+        most = np.float32(-1.0)  # cells may hold nothing
+        for i in range(n):
+            if owner[i] >= 0:
+                continue
+            dy = offset(cells[i, Y], py, n_y)
+            if abs(dy) <= wy:
+                dx = offset(cells[i, X], px, n_x)
+                if abs(dx) <= wx:
+                    dt = offset(cells[i, THETA], pt, n_theta)
+                    if abs(dt) <= wt:
+                        owner[i] = found
+                        low_x, low_y, low_t = min(low_x, dx), min(low_y, dy), min(low_t, dt)
+                        high_x, high_y, high_t = max(high_x, dx), max(high_y, dy), max(high_t, dt)
+                        continue
+            if values[i] > most:
+                best, most = i, values[i]
+        for axis, bound in enumerate((low_x, low_y, low_t, high_x, high_y, high_t)):
+            bounds[found, axis] = bound
+        more = 1 + 2 * radius
+        room += (high_x - low_x + more) * (high_y - low_y + more) * (high_t - low_t + more)
+        found += 1
+    return found, room

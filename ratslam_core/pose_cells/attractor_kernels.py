@@ -1,0 +1,135 @@
+"""The attractor's compiled functions: excitation, inhibition, normalisation. ACRA 2004 eqs. 10-12.
+
+Sets of active cells are those of `activity_kernels`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from ratslam_core.pose_cells.activity_kernels import FLAT, THETA, X, Y, add, clear, offset, wrap
+
+
+def gaussian(sigma: float, radius: int) -> NDArray[np.float32]:
+    """A normalised Gaussian over 2 radius + 1 cells."""
+    at = np.arange(-radius, radius + 1)
+    weights = np.exp(-0.5 * (at / sigma) ** 2)
+    return (weights / weights.sum()).astype(np.float32)
+
+
+@njit(cache=True, nogil=True)
+def convolve(
+    cells, values, n, owner, peaks, bounds, clusters, out_cells, out_values, slot, shape, weights, floor, box_a, box_b
+):  # fmt: skip
+    """P <- eps * P: circular convolution with a 3-D Gaussian as three 1-D passes. A eq. 10.
+
+    `owner`, `peaks`, `bounds` split the active cells into clusters that fit a small dense box each; the boxes' results add up,
+    since convolution is linear. Cells up to `floor` are left out where no other box can add to them: inhibition would take
+    them at once. `slot` indexes the input, afterwards the output. box_a, box_b: scratch.
+    """
+    n_theta, n_y, n_x = shape
+    clear(cells, n, slot)
+    taps = weights.size
+    radius = taps // 2
+    m = 0
+    for c in range(clusters):
+        px, py, pt = cells[peaks[c], X], cells[peaks[c], Y], cells[peaks[c], THETA]
+        low_x, low_y, low_t = int(bounds[c, 0]) - radius, int(bounds[c, 1]) - radius, int(bounds[c, 2]) - radius
+        bx, by, bt = (
+            int(bounds[c, 3]) - low_x + 1 + radius,
+            int(bounds[c, 4]) - low_y + 1 + radius,
+            int(bounds[c, 5]) - low_t + 1 + radius,
+        )
+        layer = by * bx
+        size = bt * layer
+        box_a[:size] = 0.0
+        for i in range(n):
+            if owner[i] == c:
+                dx = offset(cells[i, X], px, n_x) - low_x
+                dy = offset(cells[i, Y], py, n_y) - low_y
+                dt = offset(cells[i, THETA], pt, n_theta) - low_t
+                box_a[(dt * by + dy) * bx + dx] = values[i]
+        # The margin of zeros lets each pass run over the box as one long row.
+        inner = radius * layer, size - radius * layer
+        _pass(box_a, box_b, size, inner, layer // layer, weights)  # 1 as a number like the others: else compiled twice
+        _pass(box_b, box_a, size, inner, bx, weights)
+        _pass(box_a, box_b, size, inner, layer, weights)
+        alone = bx <= n_x and by <= n_y and bt <= n_theta
+        least = np.float32(floor if alone and _apart(c, clusters, cells, peaks, bounds, radius, shape) else 0.0)
+        first_x, to_y, to_t = (px + low_x) % n_x, (py + low_y) % n_y, (pt + low_t) % n_theta
+        at = 0
+        for _t in range(bt):
+            for _y in range(by):
+                row = (to_t * n_y + to_y) * n_x
+                to_x = first_x
+                for _x in range(bx):
+                    if box_b[at] > least:
+                        m = add(to_x, to_y, to_t, row + to_x, box_b[at], out_cells, out_values, m, slot)
+                    at += 1
+                    to_x = wrap(to_x + 1, n_x)
+                to_y = wrap(to_y + 1, n_y)
+            to_y = (py + low_y) % n_y
+            to_t = wrap(to_t + 1, n_theta)
+    return m
+
+
+@njit(cache=True, nogil=True)
+def _pass(source, target, size, inner, stride, weights):
+    """1-D convolution of the cells from inner[0] to inner[1] along the axis of this stride."""
+    radius = weights.size // 2
+    target[:size] = 0.0
+    fro = source[inner[0] : inner[1]]
+    for k in range(weights.size):
+        weight = weights[k]
+        to = target[inner[0] + (k - radius) * stride :]
+        for i in range(fro.size):
+            to[i] += weight * fro[i]
+
+
+@njit(cache=True, nogil=True)
+def _apart(c, clusters, cells, peaks, bounds, radius, shape):
+    """No other cluster's box, with its margin, shares a cell with that of cluster c."""
+    for other in range(clusters):
+        touching = other != c
+        for axis in range(3):
+            size = shape[2 - axis]
+            ahead = (
+                cells[peaks[other], axis] + int(bounds[other, axis]) - cells[peaks[c], axis] - int(bounds[c, axis])
+            ) % size
+            width = int(bounds[c, 3 + axis]) - int(bounds[c, axis]) + 2 * radius
+            other_width = int(bounds[other, 3 + axis]) - int(bounds[other, axis]) + 2 * radius
+            touching = touching and (ahead <= width or size - ahead <= other_width)
+        if touching:
+            return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def subtract(values, slot, other_cells, other_values, m, gain):
+    """P <- P - gain Q where P is active. `slot` indexes P."""
+    for i in range(m):
+        at = slot[other_cells[i, FLAT]]
+        if at > 0:
+            values[at - 1] -= gain * other_values[i]
+
+
+@njit(cache=True, nogil=True)
+def inhibit_and_normalise(cells, values, n, slot, phi):
+    """P <- max(P - phi, 0) / sum P. A eqs. 11-12. Returns how many cells stay active, 0 when none does."""
+    m = 0
+    total = 0.0
+    for i in range(n):
+        left = values[i] - phi
+        slot[cells[i, FLAT]] = 0
+        if left > 0.0:
+            for k in range(4):
+                cells[m, k] = cells[i, k]
+            values[m] = left
+            total += left
+            m += 1
+            slot[cells[i, FLAT]] = m
+    for i in range(m):
+        values[i] = np.float32(values[i] / total)
+    return m

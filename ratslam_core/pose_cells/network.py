@@ -1,0 +1,300 @@
+"""Pose cells: a three-dimensional continuous attractor network that holds where the robot is. ACRA 2004 section 4.
+
+Activity P[theta, y, x] >= 0 sums to 1 and wraps in all directions. Packets of activity move with the odometry (path
+integration), are pulled by recognised scenes (visual calibration) and compete (attractor).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from disk import kind
+from ratslam_core.params import PoseCellParams
+from ratslam_core.pose_cells import activity_kernels as kernels
+from ratslam_core.pose_cells import attractor_kernels as attractor
+from ratslam_core.pose_cells import packet_kernels
+from ratslam_core.types import Packet, require_finite, wrap_angle
+
+MAX_PACKETS = 8  # reported; all are tracked
+Cell = TypeVar("Cell", np.int32, np.float32, np.int8)
+ROOM = 4096  # active cells there is room for at first; grows when needed
+
+
+@kind("pose cells/1")
+class PoseCells:
+    """The network. `step` is one path integration and attractor iteration; RatSlam calls the stages one by one."""
+
+    def __init__(self, params: PoseCellParams | None = None) -> None:
+        self.params = p = params or PoseCellParams()
+        self.shape = (p.n_theta, p.n_y, p.n_x)
+        self._slot = np.zeros(p.n_theta * p.n_y * p.n_x, np.int32)
+        self._cells = np.zeros((ROOM, 4), np.int32)
+        self._values = np.zeros(ROOM, np.float32)
+        self._spare_cells, self._spare_values = self._cells.copy(), self._values.copy()
+        self._owner, self._peaks, self._spare_owner = (np.zeros(ROOM, np.int32) for _ in range(3))
+        self._bounds = np.zeros((ROOM, 6), np.int8)
+        self._rows, self._ids = np.zeros((MAX_PACKETS, packet_kernels.ROW)), np.zeros(MAX_PACKETS, np.int64)
+        self._spare_rows, self._spare_ids = self._rows.copy(), self._ids.copy()
+        self._moves, self._yaws = np.zeros((MAX_PACKETS, 4)), np.zeros(MAX_PACKETS)
+        self._patch = np.zeros((kernels.PATCH, kernels.PATCH), np.float32)
+        turns = np.arange(p.n_theta) * 2 * math.pi / p.n_theta
+        self._headings = np.column_stack([np.cos(turns), np.sin(turns)])
+        self._found, self._way = 0, 0.0
+        self._weights()
+        self._n = 0
+        self.place(p.n_x // 2, p.n_y // 2, 0)
+
+    # ------------------------------------------------------------ reading
+
+    @property
+    def activity(self) -> NDArray[np.float32]:
+        """P as a dense array, shape (n_theta, n_y, n_x), no unit, sums to 1. A copy: for looking, not for every step."""
+        dense = np.zeros(self._slot.size, np.float32)
+        dense[self._cells[: self._n, kernels.FLAT]] = self._values[: self._n]
+        return dense.reshape(self.shape)
+
+    @property
+    def active(self) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+        """The n cells with activity, in no promised order: rows (x, y, theta, flat index), shape (n, 4), in cells and layers,
+        and their activities, shape (n,), no unit, > 0, summing to 1. Views that hold until the next change."""
+        return self._cells[: self._n], self._values[: self._n]
+
+    @property
+    def slot(self) -> NDArray[np.int32]:
+        """For each cell by its flat index (theta * n_y + y) * n_x + x, shape (n_theta * n_y * n_x,): 1 + its row in `active`,
+        0 when it is not active."""
+        return self._slot
+
+    @property
+    def memory_bytes(self) -> int:
+        """All that the network's arrays take: 4 bytes a cell for `slot`, and room for active cells that does not grow with it."""
+        return sum(a.nbytes for a in vars(self).values() if isinstance(a, np.ndarray))
+
+    @property
+    def carry(self) -> tuple[float, float, float]:
+        """What the attractor swallowed of the winner's last motion: cells in x', y' and layers."""
+        x, y, theta = self._rows[0, packet_kernels.CARRY :].tolist()
+        return x, y, theta
+
+    @property
+    def packets(self) -> tuple[Packet, ...]:
+        """All packets, the heaviest first: the competing hypotheses."""
+        return tuple(self._packet(rank) for rank in range(min(self._found, MAX_PACKETS)))
+
+    @property
+    def winner(self) -> Packet:
+        """The packet with the most activity: where the network believes the robot is."""
+        return self._packet(0)
+
+    # ------------------------------------------------------------ stages
+
+    def step(self, *, speed: float, yaw_rate: float, dt: float) -> Packet:
+        """Path integration, then one attractor iteration. m/s, rad/s counter-clockwise, s; returns the winner."""
+        require_finite("speed", speed)
+        require_finite("yaw_rate", yaw_rate)
+        if not (math.isfinite(dt) and dt > 0):
+            raise ValueError(f"dt must be a positive number of seconds, got {dt!r}")
+        self.integrate(speed * dt, yaw_rate * dt)
+        return self.attract()
+
+    def place(self, x: int, y: int, theta: int) -> None:
+        """All activity in one cell, a new packet. Whole numbers of cells; ValueError outside the network."""
+        for name, value, size in (("theta", theta, 0), ("y", y, 1), ("x", x, 2)):
+            if isinstance(value, bool) or not (isinstance(value, int | np.integer) and 0 <= value < self.shape[size]):
+                raise ValueError(f"{name} must be a cell from 0 to {self.shape[size] - 1}, got {value!r}")
+        flat = (int(theta) * self.shape[1] + int(y)) * self.shape[2] + int(x)
+        self._put(np.array([[x, y, theta, flat]], np.int32), np.ones(1, np.float32))
+        self._found, self._way = 0, 0.0
+        self._find()
+
+    def settle(self) -> None:
+        """Make what was injected a packet at once, without the attractor: the activity sums to 1 again."""
+        self._n = attractor.inhibit_and_normalise(self._cells, self._values, self._n, self._slot, np.float32(0))
+        self._find()
+
+    def inject(self, cells: NDArray[np.int32], values: NDArray[np.float32]) -> None:
+        """Visual calibration, P <- P + injection. ACRA 2004 eq. 4. It acts with the next `attract`.
+
+        cells: flat indices, int32 of shape (k,); values: what they get, float32 of shape (k,), finite and >= 0. A cell named
+        twice gets both. ValueError otherwise, and then nothing is injected.
+        """
+        if not (isinstance(cells, np.ndarray) and cells.dtype == np.int32 and cells.ndim == 1):
+            raise ValueError(f"cells must be an int32 array of shape (k,), got {_kind(cells)}")
+        if not (isinstance(values, np.ndarray) and values.dtype == np.float32 and values.shape == cells.shape):
+            raise ValueError(f"values must be a float32 array of shape {cells.shape}, got {_kind(values)}")
+        bad = kernels.first_bad(cells, values, self._slot.size)
+        if bad >= 0:
+            raise ValueError(
+                f"cells must be from 0 to {self._slot.size - 1} and values finite and >= 0, "
+                f"got cell {cells[bad]} with {values[bad]:g} in row {bad}"
+            )
+        self._make_room(self._n + cells.size)
+        self._n = kernels.inject(cells, values, self._cells, self._values, self._n, self._owner, self._slot, self.shape)
+
+    def integrate(self, distance_m: float, turn_rad: float) -> None:
+        """Shift the activity as the wheels say: each layer along its own heading. ACRA 2004 eqs. 5-9.
+
+        [ours] Each packet's move is divided by the mean of exp(i theta) over its headings, because their spread would shorten
+        it (`divide_spread`); what the last attractor iteration pulled the packet back is added again (`carry`); the heading is
+        that in the middle of the movement, so that the end does not depend on the rate (`arc`).
+        test_pose_cells.py::test_gain_is_one_at_any_speed, ::test_an_arc_ends_where_it_should,
+        test_papers.py::test_a_run_is_that_of_the_literal_twin.
+        """
+        along = require_finite("distance_m", distance_m) / self.params.cell_m
+        require_finite("turn_rad", turn_rad)
+        self._way += abs(along)
+        p = self.params
+        packet_kernels.advance(
+            self._rows, self._found, self.shape, along, turn_rad, p.arc, p.divide_spread, self._moves, self._yaws
+        )
+        self._make_room(self._n * 8)
+        m = kernels.shift(
+            self._cells, self._values, self._n, self._owner, self._moves, self._yaws, self._headings,
+            self._spare_cells, self._spare_values, self._spare_owner, self._slot, self.shape, self._patch,
+        )  # fmt: skip
+        self._owner, self._spare_owner = self._spare_owner, self._owner
+        self._swap(m)
+
+    @property
+    def iterations_due(self) -> int:
+        """How often the next `attract` iterates, for the way driven since the last one."""
+        return min(max(1, math.ceil(self._way - 1e-6)), self.params.iterations)
+
+    def attract(self) -> Packet:
+        """Excite, inhibit, normalise. ACRA 2004 eqs. 10-12. Returns the winner.
+
+        [ours] A way longer than one cell since the last call gets an iteration for each cell (at most `iterations`): layers
+        of one packet drift apart as they are driven, and the attractor is what holds them together.
+        """
+        due, self._way = self.iterations_due, 0.0
+        for _ in range(due):
+            self._iterate()
+        return self.winner
+
+    def _iterate(self) -> None:
+        p, n = self.params, self._n
+        inhibit = np.float32(p.inhibit)
+        kept = self._cells[:n].copy(), self._values[:n].copy()
+        self._weigh(1.0)
+        self._convolve(self._excite, inhibit if p.local_inhibit == 0 else np.float32(0))
+        if p.local_inhibit > 0:
+            self._inhibit_locally()
+        self._n = attractor.inhibit_and_normalise(self._cells, self._values, self._n, self._slot, inhibit)
+        gone = self._n == 0
+        if gone:
+            self._put(*kept)
+        self._weigh(-1.0)
+        self._find()
+        if gone:
+            raise ValueError(
+                f"inhibit = {p.inhibit} is above the activity of every cell; take less (nothing was changed)"
+            )
+
+    def set_params(self, params: PoseCellParams) -> None:
+        """Take new live parameters; the size stays what it is."""
+        p = self.params
+        if (params.n_theta, params.n_y, params.n_x, params.cell_m) != (p.n_theta, p.n_y, p.n_x, p.cell_m):
+            raise ValueError(f"the size of the pose cells is fixed at {p.n_x} x {p.n_y} x {p.n_theta} until a reset")
+        self.params = params
+        self._weights()
+
+    def cells_apart(self, x1: float, y1: float, x2: float, y2: float) -> float:
+        """Distance in the x', y' plane, around the torus, in cells."""
+        n_y, n_x = self.shape[1:]
+        return math.hypot((x1 - x2 + n_x / 2) % n_x - n_x / 2, (y1 - y2 + n_y / 2) % n_y - n_y / 2)
+
+    # ------------------------------------------------------------ inside
+
+    def _weights(self) -> None:
+        self._excite = attractor.gaussian(self.params.excite_sigma, self.params.excite_radius)
+        self._inhibit = attractor.gaussian(self.params.local_inhibit_sigma, self.params.local_inhibit_radius)
+        side = 2 * self.params.window + 2 * max(self.params.excite_radius, self.params.local_inhibit_radius) + 1
+        self._box_a, self._box_b = np.zeros(side**3, np.float32), np.zeros(side**3, np.float32)
+
+    def _convolve(self, weights: NDArray[np.float32], floor: np.float32) -> None:
+        clusters, room = self._cluster(weights.size // 2)
+        self._make_room(room)
+        m = attractor.convolve(
+            self._cells, self._values, self._n, self._owner, self._peaks, self._bounds, clusters, self._spare_cells,
+            self._spare_values, self._slot, self.shape, weights, floor, self._box_a, self._box_b,
+        )  # fmt: skip
+        self._swap(m)
+
+    def _weigh(self, sign: float) -> None:
+        """Add the packets' centres to their carry: once before and once, taken away, after the attractor."""
+        if self.params.carry:
+            reach = 2 * self.params.window
+            packet_kernels.weigh(self._cells, self._values, self._n, self.shape, reach, self._rows, self._found, sign)
+
+    def _cluster(self, radius: int) -> tuple[int, int]:
+        return kernels.cluster(
+            self._cells, self._values, self._n, self.shape, self.params.window, radius, self._owner, self._peaks,
+            self._bounds,
+        )  # fmt: skip
+
+    def _inhibit_locally(self) -> None:
+        excited = self._cells[: self._n].copy(), self._values[: self._n].copy()
+        self._convolve(self._inhibit, np.float32(0))
+        wide = self._cells[: self._n].copy(), self._values[: self._n].copy()
+        self._put(*excited)
+        attractor.subtract(self._values, self._slot, *wide, len(wide[1]), np.float32(self.params.local_inhibit))
+
+    def _put(self, cells: NDArray[np.int32], values: NDArray[np.float32]) -> None:
+        """Make these the active cells."""
+        kernels.clear(self._cells, self._n, self._slot)
+        self._n = len(values)
+        self._cells[: self._n], self._values[: self._n] = cells, values
+        kernels.index(self._cells, self._n, self._slot)
+
+    def _swap(self, n: int) -> None:
+        self._cells, self._spare_cells = self._spare_cells, self._cells
+        self._values, self._spare_values = self._spare_values, self._values
+        self._n = n
+
+    def _make_room(self, wanted: int) -> None:
+        wanted = min(wanted, self._slot.size)
+        if wanted <= len(self._cells):
+            return
+        extra = max(wanted, 2 * len(self._cells)) - len(self._cells)
+
+        def grow(array: NDArray[Cell]) -> NDArray[Cell]:
+            return np.concatenate([array, np.zeros((extra, *array.shape[1:]), array.dtype)])
+
+        self._cells, self._values = grow(self._cells), grow(self._values)
+        self._spare_cells, self._spare_values = grow(self._spare_cells), grow(self._spare_values)
+        self._owner, self._peaks, self._spare_owner = grow(self._owner), grow(self._peaks), grow(self._spare_owner)
+        self._bounds = grow(self._bounds)
+
+    def _find(self) -> None:
+        """Packets of the activity as it is now, each with the id of the one that was expected there."""
+        clusters, _ = self._cluster(0)
+        if clusters > len(self._spare_rows):
+            self._spare_rows = np.zeros((2 * clusters, packet_kernels.ROW))
+            self._spare_ids = np.zeros(2 * clusters, np.int64)
+        if clusters > len(self._moves):  # rows take turns with their spares, moves do not: each grows for itself
+            self._moves, self._yaws = np.zeros((2 * clusters, 4)), np.zeros(2 * clusters)
+        packet_kernels.join_flanks(
+            self._cells, self._values, self._slot, self.shape, self._owner, self._peaks, clusters
+        )
+        found = packet_kernels.packet_rows(
+            self._cells, self._values, self._n, self.shape, self._owner, self._peaks, clusters, self._headings,
+            self._spare_rows,
+        )  # fmt: skip
+        packet_kernels.follow(
+            self._rows, self._ids, self._found, self._spare_rows, self._spare_ids, found, self.shape, self.params.window
+        )
+        self._rows, self._spare_rows = self._spare_rows, self._rows
+        self._ids, self._spare_ids = self._spare_ids, self._ids
+        self._found = found
+
+    def _packet(self, rank: int) -> Packet:
+        x, y, theta, mass = self._rows[rank, :4].tolist()
+        return Packet(x, y, wrap_angle(theta * 2 * math.pi / self.shape[0]), mass, int(self._ids[rank]))
+
+
+def _kind(value: object) -> str:
+    return f"{value.dtype} {value.shape}" if isinstance(value, np.ndarray) else repr(value)

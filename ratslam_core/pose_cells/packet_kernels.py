@@ -1,0 +1,201 @@
+"""Compiled array functions of packets: which clusters of active cells are one, where they are, go and keep their ids.
+
+A packet is a row: x, y, theta, then the columns named below. Sets of active cells are those of `kernels`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from ratslam_core.pose_cells.activity_kernels import THETA, X, Y, offset
+
+MASS, COS, SIN, CARRY = 3, 4, 5, 6  # columns after x, y, theta; CARRY is three columns
+ROW = 9
+LEAST_AGREEMENT = 0.25  # of headings: what is spread wider is not a packet that could be kept at its pace
+
+
+@njit(cache=True, nogil=True)
+def join_flanks(cells, values, slot, shape, owner, peaks, clusters):
+    """Clusters whose strongest cell has a stronger neighbour are flanks of its cluster: one packet. `slot` indexes P.
+
+    peaks[c] becomes the strongest cell of the packet that cluster c belongs to.
+    """
+    n_theta, n_y, n_x = shape
+    for c in range(1, clusters):
+        peak = peaks[c]
+        best = peak
+        for t in range(cells[peak, THETA] - 1, cells[peak, THETA] + 2):
+            for y in range(cells[peak, Y] - 1, cells[peak, Y] + 2):
+                for x in range(cells[peak, X] - 1, cells[peak, X] + 2):
+                    at = slot[((t % n_theta) * n_y + y % n_y) * n_x + x % n_x] - 1
+                    if at >= 0 and values[at] > values[best]:
+                        best = at
+        if best != peak:
+            peaks[c] = peaks[owner[best]]
+
+
+@njit(cache=True, nogil=True)
+def packet_rows(cells, values, n, shape, owner, peaks, clusters, headings, out):
+    """The packets, heaviest first, and how many; clusters with the same peak are one. `owner` names packets afterwards.
+
+    out rows: x, y, theta (cells, fractions), mass, mean cosine and sine of the headings; the carry is cleared.
+    """
+    n_theta, n_y, n_x = shape
+    rank = np.empty(clusters, np.int64)
+    found = 0
+    for c in range(clusters):
+        rank[c] = found
+        for other in range(c):
+            if peaks[other] == peaks[c]:
+                rank[c] = rank[other]
+                break
+        if rank[c] == found:
+            peaks[found] = peaks[c]
+            found += 1
+    sums = np.zeros((found, 6))
+    for i in range(n):
+        owner[i] = c = rank[owner[i]]
+        peak = peaks[c]
+        v = values[i]
+        sums[c, X] += v * offset(cells[i, X], cells[peak, X], n_x)
+        sums[c, Y] += v * offset(cells[i, Y], cells[peak, Y], n_y)
+        sums[c, THETA] += v * offset(cells[i, THETA], cells[peak, THETA], n_theta)
+        sums[c, MASS] += v
+        sums[c, COS] += v * headings[cells[i, THETA], 0]
+        sums[c, SIN] += v * headings[cells[i, THETA], 1]
+    out[:found] = 0.0
+    for r in range(found):
+        c = 0
+        for other in range(found):
+            if sums[other, MASS] > sums[c, MASS]:
+                c = other
+        rank[c] = r
+        mass = sums[c, MASS]
+        for axis in range(3):
+            out[r, axis] = (cells[peaks[c], axis] + sums[c, axis] / mass) % shape[2 - axis]
+        out[r, MASS] = mass
+        out[r, COS] = sums[c, COS] / mass
+        out[r, SIN] = sums[c, SIN] / mass
+        sums[c, MASS] = -1.0
+    if found > 1:
+        for i in range(n):
+            owner[i] = rank[owner[i]]
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _among(number, ids, n):
+    for p in range(n):  # noqa: SIM110
+        if ids[p] == number:
+            return True
+    return False
+
+
+@njit(cache=True, nogil=True)
+def follow(old, old_ids, n_old, new, new_ids, n_new, shape, window):
+    """Give packets their ids: each old one, heaviest first, goes on as the nearest new one. The others get the least numbers
+    that no packet bears, not even one that has just gone: it would seem to live on elsewhere."""
+    new_ids[:n_new] = 0
+    for p in range(n_old):
+        best, least = -1, np.inf
+        for q in range(n_new):
+            if new_ids[q] == 0:
+                apart = 0.0
+                for axis in range(3):
+                    d = abs(offset(new[q, axis], old[p, axis], shape[2 - axis]))
+                    apart = apart + d * d if d <= window else np.inf
+                if apart < least:
+                    best, least = q, apart
+        if best >= 0:
+            new_ids[best] = old_ids[p]
+            for k in range(CARRY, new.shape[1]):
+                new[best, k] = old[p, k]
+    free = 1
+    for q in range(n_new):
+        if new_ids[q] == 0:
+            while _among(free, old_ids, n_old) or _among(free, new_ids, n_new):
+                free += 1
+            new_ids[q] = free
+
+
+@njit(cache=True, nogil=True)
+def advance(rows, n, shape, distance, turn, arc, divide, moves, yaws):
+    """Where packets go: rows are moved on, what `shift` needs is written to moves and yaws. cells, rad.
+
+    arc: the way is one, so its chord points along the heading in the middle of it; else straight on, as in the papers. divide:
+    layers of a packet head differently, which shortens and turns its way by the mean of exp(i theta); the move is divided by
+    that complex number.
+    """
+    unit = 2.0 * np.pi / shape[0]
+    bend = turn / 2 if arc else 0.0
+    chord = distance * np.sin(bend) / bend if bend != 0.0 else distance
+    for p in range(n):
+        row = rows[p]
+        heading = unit * (row[THETA] + row[CARRY + 2]) + bend
+        to_x, to_y = chord * np.cos(heading), chord * np.sin(heading)
+        if divide:
+            agreement = max(row[COS] ** 2 + row[SIN] ** 2, LEAST_AGREEMENT**2)
+            moves[p, 0] = (to_x * row[COS] + to_y * row[SIN]) / agreement
+            moves[p, 1] = (to_y * row[COS] - to_x * row[SIN]) / agreement
+        else:
+            moves[p, 0], moves[p, 1] = chord * np.cos(bend), chord * np.sin(bend)
+            to_x = moves[p, 0] * row[COS] - moves[p, 1] * row[SIN]
+            to_y = moves[p, 0] * row[SIN] + moves[p, 1] * row[COS]
+        moves[p, 2], moves[p, 3] = row[CARRY], row[CARRY + 1]
+        yaws[p] = turn / unit + row[CARRY + 2]
+        row[X] = (row[X] + to_x + row[CARRY]) % shape[2]
+        row[Y] = (row[Y] + to_y + row[CARRY + 1]) % shape[1]
+        row[THETA] = (row[THETA] + yaws[p]) % shape[0]
+        row[CARRY:] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def _half_way_to_the_next(rows, packets, shape):
+    """Squares of half the distance from each packet to the nearest other: within, no other can be nearer."""
+    own = np.full(packets, np.inf)
+    for p in range(packets):
+        for q in range(p):
+            apart = 0.0
+            for axis in range(3):
+                apart += offset(rows[p, axis], rows[q, axis], shape[2 - axis]) ** 2
+            own[p], own[q] = min(own[p], apart / 4), min(own[q], apart / 4)
+    return own
+
+
+@njit(cache=True, nogil=True)
+def weigh(cells, values, n, shape, reach, rows, packets, sign):
+    """Add sign times each packet's centre, as the offset from where its row says, to the row's carry.
+
+    A cell counts for the nearest packet, up to `reach` away along each axis: the same cells of the torus before and after the
+    attractor, however packets grow and shrink.
+    """
+    n_theta, n_y, n_x = shape
+    wx, wy, wt = min(reach, (n_x - 1) // 2), min(reach, (n_y - 1) // 2), min(reach, (n_theta - 1) // 2)
+    sums = np.zeros((packets, 4))
+    own = _half_way_to_the_next(rows, packets, shape)
+    mine = -1
+    for i in range(n):
+        before, mine, least = mine, -1, np.inf
+        x = y = t = 0.0
+        for k in range(packets):
+            p = k if before < 0 else (before + k) % packets  # most often the nearest is that of the cell before
+            dx = offset(cells[i, X], rows[p, X], n_x)
+            dy = offset(cells[i, Y], rows[p, Y], n_y)
+            dt = offset(cells[i, THETA], rows[p, THETA], n_theta)
+            apart = dx * dx + dy * dy + dt * dt
+            if apart < least and abs(dx) <= wx and abs(dy) <= wy and abs(dt) <= wt:
+                mine, least = p, apart
+                x, y, t = dx, dy, dt
+                if apart < own[p]:
+                    break
+        if mine >= 0:
+            v = values[i]
+            sums[mine, X] += v * x
+            sums[mine, Y] += v * y
+            sums[mine, THETA] += v * t
+            sums[mine, MASS] += v
+    for p in range(packets):
+        for axis in range(3):
+            if sums[p, MASS] > 0.0:
+                rows[p, CARRY + axis] += sign * sums[p, axis] / sums[p, MASS]

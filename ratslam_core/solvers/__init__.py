@@ -1,0 +1,1 @@
+"""Sparse systems and shortest ways, which know nothing of RatSLAM."""

@@ -1,0 +1,258 @@
+"""Sparse Laplacian systems, solved exactly by taking one node after the other out of the net (star-mesh transform).
+
+A net of springs or resistors: what a node is asked is answered by moving it and, over its links, all others. Taking out a
+node joins its neighbours directly, link by link the product of their weights over the sum; that is Gaussian elimination,
+with nothing but sums of positive numbers. The node with the fewest neighbours goes first, which keeps nets of chains,
+as maps are, nearly as sparse as they were. What is left at last, where most hang together with many, is solved as a dense
+matrix.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+SPARE = 2  # neighbours that a node has room for from the beginning, beside its own
+DENSE = 8  # a rest whose nodes each hang together with an eighth of it or more
+LARGEST = 4000  # nodes of such a rest: two seconds and 250 MB
+BLOCK = 32  # columns of it that are taken off at once
+DENSE_IS_QUICKER = 100  # times, a product in a dense matrix than one of two links
+
+
+class Elimination(NamedTuple):
+    """What is left of a net of n nodes: `start[v]` to `start[v] + used[v]` are v's neighbours as it was taken out."""
+
+    order: NDArray[np.int64]  # the nodes that were taken out; the first stays where it is
+    start: NDArray[np.int64]
+    used: NDArray[np.int64]
+    other: NDArray[np.uint32]  # unsigned: no look at whether an index is negative
+    weight: NDArray[np.float64]
+    total: NDArray[np.float64]  # (n,) sum of the weights, 0 for a node without links
+    rest: NDArray[np.int64]  # (k,) nodes that were left together
+    triangle: NDArray[np.float64]  # (k, k) Cholesky's factor of their matrix
+    work: int  # products of weights that it took, or what took as long
+
+    def solve(self, asked: NDArray[np.float64]) -> NDArray[np.float64]:
+        """x with sum over the links w (x_i - x_j) = asked_i at each node i but the first, whose x is 0; shape (n,) or (n, k).
+
+        Nodes that no way of links leads to from the first are asked for nothing that could be answered.
+        """
+        out = np.array(asked, np.float64).reshape(len(asked), -1)
+        _solve(self.order, self.start, self.used, self.other, self.weight, self.total, self.rest, self.triangle, out)
+        return out.reshape(asked.shape)
+
+
+def eliminate(n: int, links: NDArray[np.int64], weights: NDArray[np.float64]) -> Elimination | None:
+    """Take the net apart. links: (m, 2) nodes from 0 to n - 1; weights: (m,), 0 or more; links that repeat add up.
+
+    None when it is so entangled that a rest of more than LARGEST nodes stays.
+    """
+    order, start, used, other, weight, total, work = _eliminate(n, links, weights, DENSE)
+    left = np.ones(n, np.bool_)
+    left[0] = left[order] = False
+    rest = np.flatnonzero(left)
+    if len(rest) > LARGEST:
+        return None
+    triangle = _matrix(n, rest, start, used, other, weight)
+    if not _cholesky(triangle):  # weights too far apart for differences; sums bear that
+        order, start, used, other, weight, total, work = _eliminate(n, links, weights, 0)
+        rest, triangle = rest[:0], np.zeros((0, 0))
+    work += len(rest) ** 3 // DENSE_IS_QUICKER
+    return Elimination(order, start, used, other, weight, total, rest, triangle, work)
+
+
+@njit(cache=True, nogil=True)
+def _eliminate(n, links, weights, dense) -> tuple[Any, ...]:
+    start, room = np.zeros(n, np.int64), np.full(n, SPARE)
+    for row in range(len(links)):
+        room[links[row, 0]] += 1
+        room[links[row, 1]] += 1
+    end = 0
+    for v in range(n):
+        start[v] = end
+        end += room[v]
+    other, weight = np.empty(2 * end, np.uint32), np.empty(2 * end)
+    used, where = np.zeros(n, np.int64), np.zeros(n, np.uint32)
+    for row in range(len(links)):
+        i, j = links[row, 0], links[row, 1]
+        if i != j and weights[row] > 0.0:
+            _join(i, j, weights[row], start, used, other, weight)
+            _join(j, i, weights[row], start, used, other, weight)
+    first, after, before = np.full(n + 1, -1), np.full(n, -1), np.full(n, -1)  # nodes by how many neighbours they have
+    for v in range(n - 1, 0, -1):
+        _put(v, used[v], first, after, before)
+    order, total = np.zeros(n - 1, np.int64), np.zeros(n)
+    fewest = work = 0
+    for step in range(n - 1):
+        while first[fewest] < 0:
+            fewest += 1
+        if fewest * dense >= n - 1 - step and n - 1 - step > dense:
+            order = order[:step]
+            break
+        v = first[fewest]
+        _take(v, fewest, first, after, before)
+        order[step] = v
+        mine, count = start[v], used[v]
+        for p in range(mine, mine + count):
+            total[v] += weight[p]
+        work += count * count
+        others, parts = other[mine : mine + count], weight[mine : mine + count]
+        for p in range(mine, mine + count):
+            a = other[p]
+            if a == 0:
+                continue
+            had = used[a]
+            _leave(a, v, start, used, other, weight)
+            if used[a] + count > room[a]:
+                room[a] = 2 * (used[a] + count)
+                if end + room[a] > len(other):
+                    other, weight = np.concatenate((other, np.empty_like(other))), np.concatenate((weight, weight))
+                for k in range(used[a]):
+                    other[end + k], weight[end + k] = other[start[a] + k], weight[start[a] + k]
+                start[a] = end
+                end += room[a]
+            share = weight[p] / total[v]
+            row = slice(start[a], start[a] + room[a])
+            used[a] = _meet(a, others, parts, share, other[row], weight[row], used[a], where)
+            if used[a] != had:
+                _take(a, had, first, after, before)
+                _put(a, used[a], first, after, before)
+                fewest = min(fewest, used[a])
+    return order, start, used, other[:end].copy(), weight[:end].copy(), total, work
+
+
+@njit(cache=True, nogil=True)
+def _meet(a, others, parts, share, own, own_weight, count, where):
+    """a's neighbours become these others too, each by so much of its weight; returns how many a has now."""
+    for q in range(count):
+        where[own[q]] = q
+    for k in range(len(others)):
+        b = others[k]
+        if b == a:
+            continue
+        q = where[b]
+        if q < count and own[q] == b:
+            own_weight[q] += share * parts[k]
+        else:
+            own[count], own_weight[count] = b, share * parts[k]
+            count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _join(i, j, more, start, used, other, weight):
+    """j becomes a neighbour of i, or a nearer one."""
+    for q in range(start[i], start[i] + used[i]):
+        if other[q] == j:
+            weight[q] += more
+            return
+    other[start[i] + used[i]], weight[start[i] + used[i]] = j, more
+    used[i] += 1
+
+
+@njit(cache=True, nogil=True)
+def _leave(i, j, start, used, other, weight):
+    """j is no neighbour of i any more."""
+    q, last = start[i], start[i] + used[i] - 1
+    while other[q] != j:
+        q += 1
+    other[q], weight[q] = other[last], weight[last]
+    used[i] = used[i] - 1
+
+
+@njit(cache=True, nogil=True)
+def _put(v, count, first, after, before):
+    """v is now one of those with so many neighbours."""
+    after[v], before[v] = first[count], -1
+    if after[v] >= 0:
+        before[after[v]] = v
+    first[count] = v
+
+
+@njit(cache=True, nogil=True)
+def _take(v, count, first, after, before):
+    if before[v] >= 0:
+        after[before[v]] = after[v]
+    else:
+        first[count] = after[v]
+    if after[v] >= 0:
+        before[after[v]] = before[v]
+
+
+@njit(cache=True, nogil=True)
+def _matrix(n, rest, start, used, other, weight):
+    at = np.full(n, -1)
+    for k in range(len(rest)):
+        at[rest[k]] = k
+    matrix = np.zeros((len(rest), len(rest)))
+    for k in range(len(rest)):
+        for q in range(start[rest[k]], start[rest[k]] + used[rest[k]]):
+            matrix[k, k] += weight[q]
+            if other[q] != 0:
+                matrix[k, at[other[q]]] -= weight[q]
+    return matrix
+
+
+@njit(cache=True, nogil=True)
+def _cholesky(matrix):
+    """Its lower triangle becomes L with L L^T = matrix, False when a pivot is not positive.
+
+    A library's would be twice as quick, but its last digits depend on how many cores there are.
+    """
+    n = len(matrix)
+    for first in range(0, n, BLOCK):
+        end = min(first + BLOCK, n)
+        for j in range(first, end):
+            if not matrix[j, j] > 0.0:
+                return False
+            root = math.sqrt(matrix[j, j])
+            for i in range(j, n):  # loops: an operation on whole arrays would take two seconds more to compile
+                matrix[i, j] /= root
+            for i in range(j + 1, n):
+                for k in range(j + 1, min(end, i + 1)):
+                    matrix[i, k] -= matrix[i, j] * matrix[k, j]
+        columns = np.empty((end - first, n - end))
+        for k in range(end - first):
+            for i in range(end, n):
+                columns[k, i - end] = matrix[i, first + k]
+        for i in range(end, n):
+            row = matrix[i, end : i + 1]
+            for k in range(end - first):
+                share, column = matrix[i, first + k], columns[k]
+                for c in range(len(row)):
+                    row[c] -= share * column[c]
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _solve(order, start, used, other, weight, total, rest, triangle, out):
+    for v in order:  # what is asked of a node is handed on to those that were left when it went
+        for q in range(start[v], start[v] + used[v]):
+            share = weight[q] / total[v]
+            for k in range(out.shape[1]):
+                out[other[q], k] += share * out[v, k]
+    out[0] = 0.0
+    x = np.empty(len(rest))
+    for k in range(out.shape[1]):
+        for i in range(len(rest)):
+            x[i] = out[rest[i], k]
+        for i in range(len(rest)):
+            for j in range(i):
+                x[i] -= triangle[i, j] * x[j]
+            x[i] /= triangle[i, i]
+        for i in range(len(rest) - 1, -1, -1):
+            x[i] /= triangle[i, i]
+            for j in range(i):
+                x[j] -= triangle[i, j] * x[i]
+        for i in range(len(rest)):
+            out[rest[i], k] = x[i]
+    for v in order[::-1]:
+        for k in range(out.shape[1]):
+            moved = out[v, k] if total[v] > 0.0 else 0.0
+            for q in range(start[v], start[v] + used[v]):
+                moved += weight[q] * out[other[q], k]
+            out[v, k] = moved / total[v] if total[v] > 0.0 else 0.0

@@ -1,0 +1,64 @@
+"""Visual association and calibration: views learn where they are seen, and put activity back. ACRA 2004 section 4, eqs. 2-4."""
+
+from __future__ import annotations
+
+from disk import kind
+from ratslam_core.local_view.view_links import ViewLinks
+from ratslam_core.params import LocalViewParams
+from ratslam_core.parts import PoseCellsPart
+from ratslam_core.types import Recognition
+
+
+@kind("visual association/1")
+class VisualAssociation:
+    """Between the active view and the pose cells, once a step."""
+
+    def __init__(self, params: LocalViewParams) -> None:
+        self.params = params
+        self.links = ViewLinks(params)
+        self.learning_rate = 0.0  # of the last association
+        self._time_s = 0.0
+        self._learnt_s: list[float] = []  # when each view was recruited
+
+    def set_params(self, params: LocalViewParams) -> None:
+        self.params = self.links.params = params
+
+    def step(self, seen: Recognition, strength: float, dt: float, pose_cells: PoseCellsPart, lost: bool) -> None:
+        """Learn what the view shows together with the packets, and inject what it is linked to.
+
+        strength: how sure the recognition is, 0 to 1; lost: the robot knows that it was carried away.
+
+        [ours] What is injected was learnt before this step, and a view younger than `rest` injects nothing: it would hold the
+        packet back where it was just learnt. The twin is `learn_first`, with `rest` 0.
+        test_slam.py::test_a_young_view_does_not_hold_the_packet_back.
+        """
+        self._time_s += dt
+        if seen.recruited:
+            self._learnt_s.append(self._time_s)
+        if seen.view < 0:
+            return
+        self.learning_rate = self._rate(strength, 0.0 if lost else min(1.0, pose_cells.winner.mass))
+        young = self._time_s - self._learnt_s[seen.view] < self.params.rest
+        if self.params.learn_first or seen.recruited:
+            self._learn(seen.view, pose_cells)
+        if young:
+            return
+        cells, injection = self.links.recall(seen.view, lost)
+        cells = cells.copy()
+        if not self.params.learn_first:
+            self._learn(seen.view, pose_cells)
+        pose_cells.inject(cells, injection)
+
+    def _learn(self, view: int, pose_cells: PoseCellsPart) -> None:
+        self.links.learn(view, *pose_cells.active, pose_cells.slot, self.learning_rate)
+
+    def _rate(self, strength: float, confidence: float) -> float:
+        """The Hebbian learning rate of this step: fixed, or adaptive.
+
+        [ours] Adaptive, which ACRA 2004 section 6.3 names as future work: twice the rate x strength of vision (1 for a view
+        like the one known, 0 at the threshold) x confidence (the winning packet's share of all activity, 0 while lost).
+        What is hardly recognised, or seen while hypotheses compete, is hardly learnt; a clear sight at a sure place is
+        learnt twice as fast. test_slam.py::test_the_adaptive_rate_follows_vision_and_confidence.
+        """
+        p = self.params
+        return 2 * p.learning_rate * strength * confidence if p.adaptive else p.learning_rate

@@ -1,0 +1,1 @@
+"""The robot's body and what it can run into, in pymunk."""

@@ -1,0 +1,180 @@
+"""Where the robot fits, and how long the shortest drive between two places is. For placing it and for judging it."""
+
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+# SciPy tells no types.
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
+
+from sim2d.geometry.connected_cells import connected
+from sim2d.geometry.segments import differing, free_cells, inside_ring, nearest_segment
+from sim2d.world.world import World
+
+CELL_M = 0.05
+MOST_CELLS = 4_000_000  # a larger floor gets larger cells
+_MOST_CHANGES = 64  # with more walls that differ all of the floor is measured anew
+# Eight neighbours and eight knight's moves, one of each opposite pair.
+_MOVES = ((1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (1, 2), (2, -1), (1, -2))
+
+
+class FreeSpace:
+    """The floor on which a disc of `radius` metres can stand and which it can reach from the world's first start."""
+
+    def __init__(
+        self, world: World, radius: float, cell_m: float | None = None, before: FreeSpace | None = None
+    ) -> None:
+        """before: of a world that may differ in a few walls; only the floor around them is measured anew."""
+        x0, y0, x1, y1 = world.bounds
+        if cell_m is None:
+            cell_m = max(CELL_M, math.sqrt((x1 - x0) * (y1 - y0) / MOST_CELLS))
+        self.world = world
+        self.radius = radius
+        self._cell = cell_m
+        self._segments = world.segments()[list(world.obstacles)]
+        self._ring = world.outline
+        self._xs = np.arange(x0 + 0.5 * cell_m, x1, cell_m)
+        self._ys = np.arange(y0 + 0.5 * cell_m, y1, cell_m)
+        self._free = self._measured(before)
+        cells = [self._open_cell(self._free, start.x, start.y) for start in world.starts]
+        seeds = np.array([cell for cell in cells if cell is not None], np.int64).reshape(-1, 2)
+        self._reachable = connected(self._free, seeds)
+
+    def _measured(self, before: FreeSpace | None) -> NDArray[np.bool_]:
+        """(n_y, n_x): cells on which the robot can stand."""
+        if before is not None and (before.radius, before._cell) != (self.radius, self._cell):
+            before = None
+        if before is None or not np.array_equal(before._ring, self._ring):
+            return free_cells(self._segments, self._ring, self._xs, self._ys, self.radius)
+        changes = differing(before._segments, self._segments)
+        if len(changes) > _MOST_CHANGES:
+            return free_cells(self._segments, self._ring, self._xs, self._ys, self.radius)
+        free = before._free.copy()
+        for x1, y1, x2, y2 in changes:
+            left, right = self._around(self._xs, x1, x2)
+            low, high = self._around(self._ys, y1, y2)
+            xs, ys, far = self._xs[left:right], self._ys[low:high], self.radius + self._cell
+            a, b = self._segments[:, :2], self._segments[:, 2:]
+            ahead, behind = (
+                np.maximum(a, b) >= (xs[0] - far, ys[0] - far),
+                np.minimum(a, b) <= (xs[-1] + far, ys[-1] + far),
+            )
+            near = self._segments[(ahead & behind).all(axis=1)]
+            free[low:high, left:right] = free_cells(near, self._ring, xs, ys, self.radius)
+        return free
+
+    def _around(self, centres: NDArray[np.float64], a: float, b: float) -> tuple[int, int]:
+        """First and last but one of the cells that something from a to b may bear on."""
+        low, high = ((p - centres[0]) / self._cell for p in (min(a, b) - self.radius, max(a, b) + self.radius))
+        return min(max(int(low) - 1, 0), len(centres) - 1), min(max(int(high) + 3, 1), len(centres))
+
+    def holds(self, world: World, radius: float) -> bool:
+        """Whether it is also true of this world."""
+        mine = self.world
+        return radius == self.radius and (world.name, world.starts, world.walls) == (
+            mine.name,
+            mine.starts,
+            mine.walls,
+        )
+
+    def is_free(self, x: float, y: float) -> bool:
+        """Whether the robot can stand there and could have driven there."""
+        return self.refusal(x, y) is None
+
+    def refusal(self, x: float, y: float) -> str | None:
+        """Why the walls do not let the robot be at (x, y), or None when they do. What else stands there: `RobotFit`."""
+        if not (math.isfinite(x) and math.isfinite(y)):
+            return f"({x}, {y}) is not a place; both must be finite"
+        if not inside_ring(self._ring, x, y):
+            x0, y0, x1, y1 = self.world.bounds
+            return f"({x:g}, {y:g}) is outside of {self.world.name}, which spans {x0:g} to {x1:g} by {y0:g} to {y1:g} m"
+        distance, wall = self.nearest_wall(x, y)
+        if distance < self.radius:
+            return f"({x:g}, {y:g}) is {distance:.3f} m from {wall}; the robot needs {self.radius:g} m"
+        if self._open_cell(self._reachable, x, y) is None:
+            return f"({x:g}, {y:g}) is closed in: no way leads there from {self.world.starts[0].name}"
+        return None
+
+    def nearest_wall(self, x: float, y: float) -> tuple[float, str]:
+        """Metres from (x, y) to the nearest wall that stands on the floor, and which that is."""
+        nearest, distance = nearest_segment(self._segments, x, y)
+        number = self.world.obstacles[nearest]
+        return distance, f"walls[{number}] ({self.world.walls[number].kind})"
+
+    def clearance(self, x: float, y: float) -> float:
+        """Metres from (x, y) to the nearest wall that stands on the floor."""
+        return self.nearest_wall(x, y)[0]
+
+    def random_point(self, rng: np.random.Generator) -> tuple[float, float]:
+        """A free place, uniform over the cells' centres."""
+        rows, columns = self._open
+        k = int(rng.integers(rows.size))
+        return float(self._xs[columns[k]]), float(self._ys[rows[k]])
+
+    def shortest_m(self, a: tuple[float, float], b: tuple[float, float]) -> float:
+        """Metres of the shortest drivable way from a to b, inf when there is none.
+
+        The grid's 16 directions make a way longer than it is, by 2.7 % at worst, and its cells by a cell at each end.
+        """
+        if not (self._touches_free(*a) and self._touches_free(*b)):
+            return math.inf
+        straight = math.dist(a, b)
+        if straight <= self.clearance(*a) - self.radius:  # b lies on the free disc around a
+            return straight
+        start, goal = self._open_cell(self._reachable, *a), self._open_cell(self._reachable, *b)
+        nodes, graph = self._graph
+        metres = dijkstra(graph, directed=False, indices=nodes[start])[nodes[goal]]
+        return max(straight, float(metres))
+
+    def _touches_free(self, x: float, y: float) -> bool:
+        """Free, or a cell too near to a wall, as for a robot that leans on it."""
+        if self.is_free(x, y):
+            return True
+        leans = inside_ring(self._ring, x, y) and self.radius > self.clearance(x, y) >= self.radius - self._cell
+        return leans and self._open_cell(self._reachable, x, y) is not None
+
+    @cached_property
+    def _open(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        rows, columns = np.nonzero(self._reachable)
+        return rows, columns
+
+    @cached_property
+    def _graph(self) -> tuple[NDArray[np.int32], csr_matrix]:
+        """Node numbers (n_y, n_x), -1 where not reachable, and the lengths between neighbours."""
+        nodes = np.full(self._reachable.shape, -1, np.int32)
+        count = self._open[0].size
+        nodes[self._open] = np.arange(count)
+        heads, tails, lengths = list[NDArray[np.int32]](), list[NDArray[np.int32]](), list[NDArray[np.float64]]()
+        for dx, dy in _MOVES:
+            here, there = _shifted(nodes, dx, dy)
+            both = (here >= 0) & (there >= 0)
+            heads.append(here[both])
+            tails.append(there[both])
+            lengths.append(np.full(heads[-1].size, math.hypot(dx, dy) * self._cell))
+        data, ends = np.concatenate(lengths), (np.concatenate(heads), np.concatenate(tails))
+        return nodes, csr_matrix((data, ends), shape=(count, count))
+
+    def _open_cell(self, is_open: NDArray[np.bool_], x: float, y: float) -> tuple[int, int] | None:
+        """Row and column of the open cell nearest to (x, y), among the one around it and that one's neighbours."""
+        x0, y0 = self.world.bounds[:2]
+        i, j = int((x - x0) / self._cell), int((y - y0) / self._cell)
+        left, low = max(i - 1, 0), max(j - 1, 0)
+        rows, columns = np.nonzero(is_open[low : j + 2, left : i + 2])
+        if rows.size == 0:
+            return None
+        rows, columns = rows + low, columns + left
+        k = int(np.argmin((self._xs[columns] - x) ** 2 + (self._ys[rows] - y) ** 2))
+        return int(rows[k]), int(columns[k])
+
+
+def _shifted(nodes: NDArray[np.int32], dx: int, dy: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Two equally large parts of the grid, the second (dx, dy) cells further; dx >= 0."""
+    n_y, n_x = nodes.shape
+    low, high = max(0, -dy), min(n_y, n_y - dy)
+    return nodes[low:high, : n_x - dx], nodes[low + dy : high + dy, dx:]

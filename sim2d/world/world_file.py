@@ -1,0 +1,172 @@
+"""World files: JSON, format 1, checked when loaded. Every complaint names file, item, line, value and what is right."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from sim2d.params import SimParams
+from sim2d.world import own_worlds
+from sim2d.world.json_lines import deeper_than, line_of
+from sim2d.world.world import World
+from sim2d.world.world_check import Fault, Where, world_faults
+from sim2d.world.world_schema import WorldFile
+from sim2d.world.world_writer import world_to_json
+
+WORLDS = Path(__file__).parents[1] / "worlds"
+DEFAULT_WORLD = "office"
+SCHEMA = WORLDS / "schema.json"  # kept equal to `schema_text` by test_world_file.py::test_schema_is_published
+MOST_BYTES = 16_000_000
+MOST_LEVELS = 20  # a point in a panel in a wall lies in the sixth
+_TOO_DEEP = f"not a world: nested too deeply; at most {MOST_LEVELS} lists or objects can lie within one another"
+
+
+class WorldError(ValueError):
+    """A world file that cannot be used, and why, in words that can be printed whatever is in the file."""
+
+    def __init__(self, words: str) -> None:
+        super().__init__(words.encode("utf-8", "backslashreplace").decode())
+
+
+@cache
+def world_names() -> tuple[tuple[str, str], ...]:
+    """(name, title) of the worlds that come with the package, the default first."""
+    names = sorted(
+        (path.stem for path in WORLDS.glob("*.json") if path != SCHEMA), key=lambda name: (name != DEFAULT_WORLD, name)
+    )
+    return tuple((name, str(json.loads((WORLDS / f"{name}.json").read_text("utf-8"))["title"])) for name in names)
+
+
+def load_world(name_or_path: str | Path = DEFAULT_WORLD, robot_radius_m: float | None = None) -> World:
+    """The world of this name, or in this file. Raises WorldError.
+
+    `robot_radius_m`: of the robot that will start in it; without it the default robot's.
+    """
+    path = _find(name_or_path)
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise WorldError(f"{path.name}: {path.stat().st_size} bytes; a world has at most {MOST_BYTES}")
+        text = path.read_text("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise WorldError(f"{path.name}: cannot be read: {error}") from error
+    return world_from_json(text, path.name, robot_radius_m)
+
+
+def holds(path: Path, world: World) -> bool:
+    """Whether the world file says just this; one that cannot be read does not."""
+    try:
+        text = path.read_text("utf-8")
+        return text == world_to_json(world) or WorldFile.model_validate(parse_json(text, path.name)).world() == world
+    except (OSError, ValueError):
+        return False
+
+
+def world_from_json(text: str, file_name: str, robot_radius_m: float | None = None) -> World:
+    """The world in the text of a file; `file_name` is for complaints alone. Raises WorldError."""
+    raw = parse_json(text, file_name)
+    try:
+        world = WorldFile.model_validate(raw).world()
+    except ValidationError as error:
+        raise WorldError(next(_schema_complaints(error, file_name, text))) from None
+    for complaint in _complaints(world, text, file_name, robot_radius_m):
+        raise WorldError(complaint)
+    return world
+
+
+def complaints(text: str, file_name: str, robot_radius_m: float | None = None) -> list[str]:
+    """All that is wrong with the text of a world file, in sentences; what needs sound walls waits until they are."""
+    try:
+        world = WorldFile.model_validate(parse_json(text, file_name)).world()
+    except ValidationError as error:
+        return list(_schema_complaints(error, file_name, text))
+    except WorldError as error:
+        return [str(error)]
+    return list(_complaints(world, text, file_name, robot_radius_m))
+
+
+def schema_text() -> str:
+    """The JSON schema of world files."""
+    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", **WorldFile.model_json_schema()}
+    return json.dumps(schema, indent=2) + "\n"
+
+
+def parse_json(text: str, file_name: str) -> Any:
+    """Raises WorldError with line and column."""
+    try:
+        raw = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise WorldError(f"{file_name}: not JSON: line {error.lineno}, column {error.colno}: {error.msg}") from error
+    except ValueError:
+        raise WorldError(f"{file_name}: a number has thousands of digits") from None
+    except RecursionError:
+        raise WorldError(f"{file_name}: {_TOO_DEEP}") from None
+    if deeper_than(MOST_LEVELS, raw):
+        raise WorldError(f"{file_name}: {_TOO_DEEP}")
+    return raw
+
+
+def item_complaint(error: ValidationError, kind: str) -> str:
+    """The first thing that is wrong with one item of a list: `walls: height: got -1; input should be ...`."""
+    return next(_schema_complaints(error, kind))
+
+
+def fault_words(fault: Fault) -> str:
+    """What is wrong and with which item, without a file."""
+    between = " " if fault.message.startswith("(") else ": "
+    return f"{_path(fault.where)}{between}{fault.message}"
+
+
+def _schema_complaints(error: ValidationError, name: str, text: str | None = None) -> Iterator[str]:
+    """`walls[3].height: got -1; input should be greater than 0 (line 12)`."""
+    for item in error.errors(include_url=False):
+        message = item["msg"][0].lower() + item["msg"][1:]
+        if item["type"] == "extra_forbidden":
+            message = "unknown key; take it out or correct its spelling"
+        got = "" if item["type"] in ("missing", "model_type", "too_long") else f" got {_short(item['input'])};"
+        line = "" if text is None else _line(text, item["loc"])
+        yield f"{name}: {_path(item['loc']) or 'file'}:{got} {message}{line}"
+
+
+def _complaints(world: World, text: str, name: str, radius_m: float | None) -> Iterator[str]:
+    radius = SimParams().robot_radius_m if radius_m is None else radius_m
+    for fault in world_faults(world, radius):
+        yield f"{name}: {fault_words(fault)}{_line(text, fault.where)}"
+
+
+def _find(name_or_path: str | Path) -> Path:
+    """One of ours by its name, one that a person saved, else a file. Who takes names from strangers must compare with
+    `world_names` and `own_worlds.names` first."""
+    text = str(name_or_path)
+    known = [name for name, _ in world_names()]
+    if text in known:
+        return WORLDS / f"{text}.json"
+    own = [name for name, _ in own_worlds.names()]
+    if text in own:
+        return own_worlds.folder() / f"{text}.json"
+    known += own
+    path = Path(name_or_path)
+    if path.suffix == ".json" and path.is_file():
+        return path
+    raise WorldError(f"no world {text!r}; expected one of: {', '.join(known)}; or the path of a .json file")
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else text[:80] + "..."
+
+
+def _path(where: Where) -> str:
+    """`walls[3].panels[0]`."""
+    path = ""
+    for part in where:
+        path += f"[{part}]" if isinstance(part, int) else f".{part}" if path else part
+    return path
+
+
+def _line(text: str, where: Where) -> str:
+    return f" (line {line_of(text, where)})"

@@ -1,0 +1,270 @@
+"""The world file as a schema (format 1): which keys there are, of which type, within which limits; and into a World."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from sim2d.world.elements import Action, Box, Daylight, Door, Event, Lamp, Person, Rgb, SlowZone
+from sim2d.world.texture import Texture
+from sim2d.world.world import Panel, Place, Start, Wall, World
+
+Element = Wall | Start | Place | Door | Lamp | Box | Person | SlowZone | Event | Daylight
+MOST_WALLS, MOST_PEOPLE, MOST_THINGS, MOST_EVENTS = 10_000, 50, 200, 1000
+MOST = {"walls": MOST_WALLS, "people": MOST_PEOPLE, "script": MOST_EVENTS, "daylight": 1, **dict.fromkeys(
+    ("starts", "places", "doors", "lamps", "boxes", "slow_zones"), MOST_THINGS
+)}  # fmt: skip
+_Kind = Literal["wall", "partition", "desk", "door", "window", "screen", "glass"]
+
+
+class _Item(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+_Number = Annotated[float, Field(ge=-10_000, le=10_000)]
+_Length = Annotated[float, Field(gt=0, le=10_000)]
+_Height = Annotated[float, Field(gt=0, le=20)]
+_Size = Annotated[float, Field(ge=0.05, le=20)]
+_Seconds = Annotated[float, Field(ge=0, le=1e6)]
+_Level = Annotated[float, Field(ge=0, le=3)]
+_Degrees = Annotated[float, Field(ge=-360, le=360)]
+_Point = Annotated[list[_Number], Field(min_length=2, max_length=2)]
+_Colour = Annotated[str, Field(pattern=r"^#[0-9a-fA-F]{6}$")]
+_Name = Annotated[str, Field(min_length=1, max_length=40)]
+
+
+class _PanelItem(_Item):
+    at: Annotated[float, Field(ge=0, le=10_000)]
+    width: _Length
+    bottom: Annotated[float, Field(ge=0, le=20)]
+    top: _Height
+    texture: Texture
+    colour: _Colour
+    seed: Annotated[int, Field(ge=0)] = 0
+    side: Literal["left", "right", "both"] = "left"
+
+
+class _WallItem(_Item):
+    start: Annotated[_Point, Field(alias="from")]
+    end: Annotated[_Point, Field(alias="to")]
+    kind: _Kind = "wall"
+    height: _Height
+    colour: _Colour
+    outer: bool = False
+    bottom: Annotated[float, Field(ge=0, le=20)] = 0.0
+    panels: Annotated[list[_PanelItem], Field(max_length=2000)] = []
+    name: Annotated[str, Field(max_length=40)] = ""
+    reflection: Annotated[float, Field(ge=0, le=1)] = 0.25
+
+
+class _StartItem(_Item):
+    name: _Name
+    x: _Number
+    y: _Number
+    heading_deg: _Degrees
+
+
+class _PlaceItem(_Item):
+    name: _Name
+    x: _Number
+    y: _Number
+
+
+class _DoorItem(_Item):
+    name: _Name
+    hinge: _Point
+    angle_deg: _Degrees
+    width: Annotated[float, Field(ge=0.3, le=6)]
+    height: _Height = 2.05
+    colour: _Colour = "#8A5A33"
+    swing_deg: Annotated[float, Field(ge=-175, le=175)] = 90.0
+    slides: bool = False
+    open: bool = True
+    period_s: _Seconds = 0.0
+    open_s: _Seconds = 0.0
+    phase_s: _Seconds = 0.0
+
+
+class _LampItem(_Item):
+    name: _Name
+    x: _Number
+    y: _Number
+    reach: Annotated[float, Field(ge=0.5, le=50)] = 4.0
+    brightness: _Level = 0.5
+    on: bool = True
+
+
+class _DaylightItem(_Item):
+    points: Annotated[
+        list[Annotated[list[float], Field(min_length=2, max_length=2)]], Field(min_length=1, max_length=100)
+    ]
+    repeat_s: _Seconds = 0.0
+
+
+class _BoxItem(_Item):
+    name: _Name
+    x: _Number
+    y: _Number
+    width: _Size
+    depth: _Size
+    height: _Height = 0.6
+    angle_deg: _Degrees = 0.0
+    colour: _Colour = "#B08956"
+    present: bool = True
+
+
+class _PersonItem(_Item):
+    name: _Name
+    path: Annotated[list[_Point], Field(min_length=1, max_length=100)]
+    speed: Annotated[float, Field(ge=0.05, le=2)] = 0.8
+    wait_s: Annotated[list[_Seconds], Field(min_length=1, max_length=100)] = [2.0]
+    loop: bool = True
+    radius: Annotated[float, Field(ge=0.1, le=0.5)] = 0.22
+    height: Annotated[float, Field(ge=0.5, le=2.5)] = 1.7
+    colour: _Colour = "#566E96"
+
+
+class _ZoneItem(_Item):
+    name: _Name
+    corners: Annotated[list[_Point], Field(min_length=3, max_length=50)]
+    factor: Annotated[float, Field(ge=0.05, le=1)]
+
+
+class _EventItem(_Item):
+    at_s: _Seconds
+    do: Action
+    name: Annotated[str, Field(max_length=40)] = ""
+    level: _Level = 1.0
+
+
+_Things = Field(max_length=MOST_THINGS)
+
+
+class WorldFile(_Item):
+    """One world file. Lengths are metres, z up; angles degrees, 0 = +x, counter-clockwise; times seconds from the start."""
+
+    format: Literal[1]
+    name: _Name
+    title: Annotated[str, Field(min_length=1, max_length=80)]
+    source: str
+    paper: Annotated[str, Field(max_length=40)] = ""
+    about: Annotated[str, Field(max_length=300)] = ""
+    floor_colour: _Colour
+    ceiling_colour: _Colour
+    walls: Annotated[list[_WallItem], Field(min_length=3, max_length=MOST_WALLS)]
+    starts: Annotated[list[_StartItem], Field(min_length=1, max_length=MOST_THINGS)]
+    places: Annotated[list[_PlaceItem], _Things] = []
+    doors: Annotated[list[_DoorItem], _Things] = []
+    lamps: Annotated[list[_LampItem], _Things] = []
+    daylight: _DaylightItem | None = None
+    boxes: Annotated[list[_BoxItem], _Things] = []
+    people: Annotated[list[_PersonItem], Field(max_length=MOST_PEOPLE)] = []
+    slow_zones: Annotated[list[_ZoneItem], _Things] = []
+    script: Annotated[list[_EventItem], Field(max_length=MOST_EVENTS)] = []
+
+    def world(self) -> World:
+        """What the simulator takes; angles become radians, colours triples."""
+        return World(
+            name=self.name,
+            title=self.title,
+            source=self.source,
+            paper=self.paper,
+            about=self.about,
+            walls=tuple(map(_wall, self.walls)),
+            starts=tuple(map(_start, self.starts)),
+            places=tuple(map(_place, self.places)),
+            floor_colour=_rgb(self.floor_colour),
+            ceiling_colour=_rgb(self.ceiling_colour),
+            doors=tuple(map(_door, self.doors)),
+            lamps=tuple(map(_lamp, self.lamps)),
+            daylight=self.daylight and _daylight(self.daylight),
+            boxes=tuple(map(_box, self.boxes)),
+            people=tuple(map(_person, self.people)),
+            slow_zones=tuple(map(_zone, self.slow_zones)),
+            script=tuple(map(_event, self.script)),
+        )
+
+
+def element_of(kind: str, item: dict[str, Any]) -> Element:
+    """One item of one of the file's lists. Raises pydantic's ValidationError."""
+    model, make = _MAKERS[kind]
+    return make(model.model_validate(item))
+
+
+def _start(item: _StartItem) -> Start:
+    return Start(item.name, item.x, item.y, math.radians(item.heading_deg))
+
+
+def _place(item: _PlaceItem) -> Place:
+    return Place(item.name, item.x, item.y)
+
+
+def _lamp(item: _LampItem) -> Lamp:
+    return Lamp(item.name, item.x, item.y, item.reach, item.brightness, item.on)
+
+
+def _zone(item: _ZoneItem) -> SlowZone:
+    return SlowZone(item.name, _points(item.corners), item.factor)
+
+
+def _wall(item: _WallItem) -> Wall:
+    (x1, y1), (x2, y2) = item.start, item.end
+    panels = tuple(
+        Panel(p.at, p.width, p.bottom, p.top, p.texture, _rgb(p.colour), p.seed, p.side) for p in item.panels
+    )
+    return Wall(
+        x1, y1, x2, y2, item.kind, item.height, _rgb(item.colour), item.outer, item.bottom, panels, item.name, item.reflection
+    )  # fmt: skip
+
+
+def _door(item: _DoorItem) -> Door:
+    x, y = item.hinge
+    return Door(
+        item.name, x, y, math.radians(item.angle_deg), item.width, item.height, _rgb(item.colour),
+        math.radians(item.swing_deg), item.slides, item.open, item.period_s, item.open_s, item.phase_s,
+    )  # fmt: skip
+
+
+def _box(item: _BoxItem) -> Box:
+    angle, colour = math.radians(item.angle_deg), _rgb(item.colour)
+    return Box(item.name, item.x, item.y, item.width, item.depth, item.height, angle, colour, item.present)
+
+
+def _person(item: _PersonItem) -> Person:
+    path = _points(item.path)
+    waits = tuple(item.wait_s) if len(item.wait_s) > 1 else (item.wait_s[0],) * len(path)
+    return Person(item.name, path, waits, item.speed, item.loop, item.radius, item.height, _rgb(item.colour))
+
+
+def _daylight(item: _DaylightItem) -> Daylight:
+    return Daylight(tuple(p[0] for p in item.points), tuple(p[1] for p in item.points), item.repeat_s)
+
+
+def _event(item: _EventItem) -> Event:
+    return Event(item.at_s, item.do, item.name, item.level)
+
+
+def _points(points: list[list[float]]) -> tuple[tuple[float, float], ...]:
+    return tuple((x, y) for x, y in points)
+
+
+def _rgb(text: str) -> Rgb:
+    return int(text[1:3], 16), int(text[3:5], 16), int(text[5:7], 16)
+
+
+_MAKERS: dict[str, tuple[type[_Item], Callable[[Any], Element]]] = {
+    "walls": (_WallItem, _wall),
+    "starts": (_StartItem, _start),
+    "places": (_PlaceItem, _place),
+    "doors": (_DoorItem, _door),
+    "lamps": (_LampItem, _lamp),
+    "boxes": (_BoxItem, _box),
+    "people": (_PersonItem, _person),
+    "slow_zones": (_ZoneItem, _zone),
+    "script": (_EventItem, _event),
+    "daylight": (_DaylightItem, _daylight),
+}
+LISTS = {kind: model for kind, (model, _) in _MAKERS.items()}  # what an item of each list of the file holds

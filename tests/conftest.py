@@ -1,0 +1,22 @@
+"""No test depends on how fast the machine is, and each run of the suite tries the same examples."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+SLOW = [HealthCheck.too_slow, HealthCheck.large_base_example]
+settings.register_profile("suite", deadline=None, derandomize=True, print_blob=True, suppress_health_check=SLOW)
+settings.register_profile("hunt", settings.get_profile("suite"), derandomize=False)  # --hypothesis-profile=hunt: others
+settings.load_profile("suite")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _a_home_of_its_own(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Nothing is read from what somebody has kept, and nothing is left in his home."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("RATSLAM_BRAINS", str(tmp_path_factory.mktemp("kept") / "brains"))
+        patch.setenv("RATSLAM_WORLDS", str(tmp_path_factory.mktemp("kept") / "worlds"))
+        yield

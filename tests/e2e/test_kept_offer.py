@@ -1,0 +1,85 @@
+"""What an earlier program kept is offered on the page, quietly; whoever answers answers for all pages."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.kept_brains.files import About, keep
+from app.session import Session
+from sim2d import load_world
+from tests.e2e.browser import calm, open_page, told, until
+from tests.e2e.program import Program
+from tests.e2e.test_accessibility import findings
+
+OFFERED = "() => document.getElementById('kept').checkVisibility()"
+GONE = "() => !document.getElementById('kept').checkVisibility()"
+ASKED = "() => performance.getEntriesByType('resource').some((one) => one.name.endsWith('/api/brain/kept'))"
+WITHIN = """() => { const box = document.getElementById('kept').getBoundingClientRect(), around =
+    document.querySelector('main').getBoundingClientRect(), views = document.querySelector('.views').getBoundingClientRect();
+    return box.left >= 0 && box.right <= innerWidth && box.top >= views.bottom && box.bottom <= around.bottom; }"""
+
+
+@pytest.fixture(scope="module")
+def known() -> Session:
+    session = Session(load_world("loop"), 7)
+    for _ in range(650):
+        session.tick()
+    return session
+
+
+@pytest.fixture
+def offering(known: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Program]:
+    monkeypatch.setenv("RATSLAM_BRAINS", str(tmp_path))
+    about = About("loop", 7, known.time_s, len(known.brain.experience_map), time.time())
+    keep("earlier", known.brain, about)
+    program = Program("--port", "0", "--paused", RATSLAM_BRAINS=str(tmp_path))
+    yield program
+    assert program.stop() == 0
+
+
+def test_the_offer_is_seen_and_taken(offering: Program, browser, known: Session) -> None:
+    count = len(known.brain.experience_map)
+    assert offering.state()["world"] == "office"
+    with open_page(browser, offering.url) as page, open_page(browser, offering.url, 390, 844, light=True) as phone:
+        for one in (page, phone):
+            until(one, OFFERED)
+            words = one.inner_text("#kept-words")
+            assert f", 1 simulated minutes, {count} experiences, kept " in words
+            calm(one)
+            assert findings(one) == []
+            assert one.evaluate(WITHIN)
+        page.focus("#kept-wake")
+        page.keyboard.press("Enter")
+        told(page, f"with {count} experiences.")
+        until(page, GONE)
+        state = offering.state()
+        assert (state["world"], state["seed"], state["tick"]) == ("loop", 7, 0)
+        assert state["experiences"] >= count > 100
+        phone.evaluate(
+            "() => document.dispatchEvent(new Event('visibilitychange'))"
+        )  # as if it had been in the background
+        until(phone, GONE)
+
+
+def test_a_broken_one_is_told_of_and_not_now_stays_gone(offering: Program, browser, tmp_path: Path) -> None:
+    (tmp_path / "earlier.npz").write_bytes(b"PK")
+    with open_page(browser, offering.url, refused=True) as page:
+        until(page, OFFERED)
+        page.click("#kept-wake")
+        told(page, "This brain cannot be woken up: ")
+        assert page.evaluate(OFFERED)
+        page.focus("#kept-wake")
+        page.keyboard.press("Tab")
+        page.keyboard.press("Space")
+        until(page, GONE)
+        page.reload()
+        page.wait_for_selector("body[data-alive]")
+        until(page, ASKED)
+        calm(page)
+        assert page.evaluate(GONE)
+    state = offering.state()
+    assert (state["world"], state["running"]) == ("office", False)

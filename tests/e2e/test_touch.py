@@ -1,0 +1,93 @@
+"""Fingers on the stage: a tap sets a goal, a drag looks around or carries the robot away."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page
+
+from sim2d import load_world
+from tests.e2e.browser import eye_of, on_screen, open_page, show, until
+from tests.e2e.test_dashboard import robot_on_stage
+from tests.patience import PATIENCE_S
+from web.viewer.fits.map_fit import MapFit, refit
+from web.viewer.plates.map_plate import NODE_Z, ORIGIN
+
+STEPS = 12
+
+
+@pytest.fixture(scope="module")
+def driven(program):
+    """A minute of exploring: a map to tap on."""
+    program.command("reset", seed=5)
+    program.command("set_speed", factor=0)
+    program.command("resume")
+    program.wait(lambda state: state["time_s"] >= 60)
+    program.command("pause")
+    return program
+
+
+@pytest.fixture
+def phone(driven, browser) -> Iterator[Page]:
+    with open_page(browser, driven.url, 390, 844) as page:
+        show(page, "map")
+        yield page
+
+
+def drag(page: Page, start: tuple[float, float], end: tuple[float, float]) -> None:
+    """One finger, as Chromium takes it from the glass."""
+    glass = page.context.new_cdp_session(page)
+    for k, (x, y) in enumerate(np.linspace(start, end, STEPS).tolist()):
+        finger = {"type": "touchMove" if k else "touchStart", "touchPoints": [{"x": x, "y": y}]}
+        glass.send("Input.dispatchTouchEvent", finger)
+        page.wait_for_timeout(80)
+    page.wait_for_timeout(500)
+    glass.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+
+def await_(page: Page, condition: Callable[[], bool]) -> None:
+    for _ in range(int(10 * PATIENCE_S)):
+        if condition():
+            return
+        page.wait_for_timeout(100)
+    raise AssertionError("it does not come to pass")
+
+
+def test_a_tap_on_the_map_sets_a_goal(driven, phone):
+    page = phone
+    whole = driven.state(full=True)["map"]
+    nodes = np.array(whole["xy"])
+    node = nodes[len(nodes) // 2]
+    x, y = refit(MapFit(), nodes, whole["turn_rad"]).to_plate(node)[0]
+    page.touchscreen.tap(*on_screen(page, "map", (ORIGIN[0] + x, ORIGIN[1] + y, ORIGIN[2] + NODE_Z)))
+    goal = driven.wait(lambda state: state["goal"] is not None)["goal"]
+    assert math.dist((goal["x"], goal["y"]), node) < 0.4
+    page.wait_for_selector("#goal:not([hidden])")
+    driven.command("cancel_goal")
+
+
+def test_a_drag_looks_around_and_sets_no_goal(driven, phone):
+    page = phone
+    before = eye_of(page)
+    canvas = page.frame_locator("#stage").locator("canvas").first.bounding_box()
+    middle = canvas["x"] + canvas["width"] / 2, canvas["y"] + canvas["height"] / 2
+    drag(page, middle, (middle[0] + 90, middle[1] + 10))
+    await_(page, lambda: bool(np.linalg.norm(eye_of(page) - before) > 1.0))
+    assert driven.state()["goal"] is None
+
+
+def test_a_finger_carries_the_robot_away(driven, phone):
+    page = phone
+    show(page, "office")
+    state = driven.state()
+    low_x, low_y, high_x, high_y = load_world(state["world"]).bounds
+    here = (state["robot"]["x"], state["robot"]["y"])
+    target = max(((low_x + 0.8, low_y + 0.8), (high_x - 0.8, high_y - 0.8)), key=lambda corner: math.dist(corner, here))
+    start, end = (on_screen(page, "office", robot_on_stage(state, *place)) for place in (here, target))
+    drag(page, start, end)
+    moved = driven.wait(lambda now: math.dist((now["robot"]["x"], now["robot"]["y"]), target) < 0.8)
+    assert moved["estimate"] == state["estimate"]
+    until(page, "() => document.getElementById('events').textContent.includes('kidnap')")

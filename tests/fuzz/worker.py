@@ -1,0 +1,44 @@
+"""One process that processes spoilt inputs, told their kinds and seeds on stdin: a line in, a line out. It may die of them."""
+
+from __future__ import annotations
+
+import json
+import resource
+import sys
+import time
+import traceback
+import warnings
+from random import Random
+
+from tests.fuzz.inputs import KINDS, warm
+from tests.fuzz.messages import MESSAGES
+
+MOST_ADDRESSES = 6 << 30  # the machine's safety; what is judged is how much memory was really used
+ALL = {name: work for name, (work, _) in KINDS.items()} | MESSAGES
+
+
+def processed(kind: str, seed: int) -> dict[str, object]:
+    """What became of one input: taken, refused in a sentence, or a traceback."""
+    began = time.process_time()  # however busy the machine is
+    try:
+        outcome, words = ALL[kind](Random(f"{kind} {seed}")), ""
+    except ValueError as error:
+        outcome, words = "refused", str(error)
+        if not words or "\n" in words.strip() or len(words) > 2000:
+            outcome = "no sentence"
+    except Exception:
+        outcome, words = "traceback", traceback.format_exc()
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> 10
+    return {"outcome": outcome, "words": words[-3000:], "seconds": time.process_time() - began, "mib": peak}
+
+
+def main() -> None:
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_ADDRESSES, MOST_ADDRESSES))
+    warnings.simplefilter("error", RuntimeWarning)
+    warm()
+    for line in sys.stdin:
+        print(json.dumps(processed(*json.loads(line))), flush=True)
+
+
+if __name__ == "__main__":
+    main()

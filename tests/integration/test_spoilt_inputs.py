@@ -1,0 +1,34 @@
+"""A small share of what `python -m tests.fuzz` does by the thousand: spoilt files and messages with fixed seeds.
+
+In a process of its own, since what is looked for may end it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from tests.fuzz.__main__ import MOST_MIB, SOUND, Worker
+from tests.fuzz.inputs import KINDS
+from tests.fuzz.messages import MESSAGES
+
+SHARES = {"brain state": 60, "brain file": 20, "session state": 60, "session file": 10, "messages": 3, "requests": 2}
+
+
+@pytest.fixture(scope="module")
+def worker() -> Iterator[Worker]:
+    made = Worker()
+    yield made
+    made.end()
+
+
+@pytest.mark.parametrize("kind", [*KINDS, *MESSAGES])
+def test_whatever_is_spoilt_is_taken_or_refused_in_a_sentence(worker: Worker, kind: str) -> None:
+    outcomes = set()
+    for seed in range(SHARES.get(kind, 25)):
+        answer = worker.ask(kind, seed)
+        assert answer["outcome"] in SOUND, f"{kind}, seed {seed}: {answer['outcome']}\n{answer['words']}"
+        assert int(str(answer["mib"])) < MOST_MIB
+        outcomes.add(answer["outcome"])
+    assert outcomes == {"taken"} if kind in MESSAGES else "refused" in outcomes

@@ -1,0 +1,29 @@
+"""An engine without a thread: what commands do to it."""
+
+from __future__ import annotations
+
+from pydantic import TypeAdapter
+
+from app.commands import carry_out
+from app.config import Config
+from app.engine.engine import Engine
+from app.engine.pace import Pace
+from app.engine.watchdog import Watchdog
+from sim2d import World
+from web import messages as m
+
+READER: TypeAdapter[m.Command] = TypeAdapter(m.Command)
+
+
+def an_engine(world: World, seed: int = 3, config: Config | None = None) -> Engine:
+    engine = Engine(world, Pace(0.0), Watchdog(1e9, lambda: None), running=False, answer=lambda *_: None)
+    engine.begin(world, seed, config or Config())
+    return engine
+
+
+def tell(engine: Engine, **fields: object) -> str:
+    """Give a command; the words on the timeline. ValueError when it is refused."""
+    outcome = carry_out(engine, READER.validate_python(fields))
+    if isinstance(outcome, m.Refused):
+        raise ValueError(outcome.reason)
+    return engine.run.event_log.events[-1].text

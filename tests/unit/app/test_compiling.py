@@ -1,0 +1,120 @@
+"""Compiling ahead: what the parts leave nothing to compile for, and when they are run at all."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import psutil
+import pytest
+
+from app.startup import compiling
+from app.startup.compile_part import PARTS
+from app.startup.compiling import Compiling, is_compiled
+from tests.patience import PATIENCE_S
+
+# Which kernels have been used for which types: before and after a real run.
+LEFT_OVER = """
+import sys
+from numba.core.dispatcher import Dispatcher
+from app.startup.compile_part import PARTS
+from app.config import Config
+from app.headless import run_headless
+from app.engine_thread import EngineThread
+from sim2d import load_world
+
+def used():
+    rooms = [module for name, module in list(sys.modules.items()) if name.startswith(("app.", "sim2d.", "ratslam_core."))]
+    kernels = {item for module in rooms for item in vars(module).values() if isinstance(item, Dispatcher)}
+    return {(kernel.py_func.__qualname__, str(types)) for kernel in kernels for types in kernel.signatures}
+
+for part, _ in PARTS.values():
+    part()
+before = used()
+run_headless(load_world(), 5, 1.0)
+engine = EngineThread(load_world(), 5, Config(), speed=0.0)  # and what the page is shown
+engine.start()
+version = 0
+while version < 5:
+    version, _ = engine.latest.wait(version, 1.0)
+engine.stop()
+print(len(before) > 40, sorted(used() - before))
+"""
+
+
+def test_after_the_parts_a_run_has_nothing_to_compile() -> None:
+    done = subprocess.run([sys.executable, "-c", LEFT_OVER], capture_output=True, text=True, timeout=600, check=True)
+    assert done.stdout == "True []\n"
+
+
+@pytest.fixture
+def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """One with a kernel that has not been compiled."""
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "ahead.py").write_text("from numba import njit\n@njit(cache=True)\ndef one():\n    return 1\n")
+    monkeypatch.delitem(sys.modules, "ahead", raising=False)
+    import ahead  # type: ignore[import-not-found]
+
+    return ahead
+
+
+def test_a_module_is_compiled_when_a_kernel_of_it_is_kept_that_is_not_older(module: ModuleType) -> None:
+    assert not is_compiled(module)
+    assert module.one() == 1
+    assert is_compiled(module)
+    os.utime(str(module.__file__), (2e9, 2e9))  # edited since
+    assert not is_compiled(module)
+
+
+def test_only_what_is_missing_is_compiled_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    missing = PARTS["cells"][1]
+    monkeypatch.setattr(compiling, "is_compiled", lambda module: module not in missing)
+    told: list[str] = []
+    began: list[str] = []
+
+    def process(parts: list[str]) -> subprocess.Popen[str]:
+        began.extend(parts)
+        return subprocess.Popen(
+            [sys.executable, "-c", "print(); print()"], stdout=subprocess.PIPE, text=True, process_group=0
+        )
+
+    monkeypatch.setattr(compiling, "_process", process)
+    work = Compiling()
+    work.wait(told.append)
+    work.stop()
+    assert (bool(work), began) == (True, ["cells"])
+    assert told == [f"{compiling.WORDS}: {words} done" for words in ("1 function", "2 functions")]
+    monkeypatch.setattr(compiling, "is_compiled", lambda _module: True)
+    assert not Compiling()
+
+
+def test_it_can_be_stopped_at_any_moment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiling, "is_compiled", lambda _module: False)
+    endless = "import time\nwhile True: print(flush=True); time.sleep(0.01)"
+    monkeypatch.setattr(
+        compiling, "_process",
+        lambda _parts: subprocess.Popen(
+            [sys.executable, "-c", endless], stdout=subprocess.PIPE, text=True, process_group=0,
+        ),
+    )  # fmt: skip
+    work = Compiling()
+    work.wait(lambda _words: work.stop())
+
+
+def test_each_part_has_a_process_of_its_own_and_all_end_together(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    work = compiling._process(list(PARTS))
+    assert work.stdout is not None
+    work.stdout.readline()  # the first kernel of the first part
+    children = psutil.Process(work.pid).children(recursive=True)
+    assert len(children) == len(PARTS)
+    os.killpg(work.pid, signal.SIGKILL)
+    work.wait()
+    _, alive = psutil.wait_procs(children, timeout=PATIENCE_S)
+    assert alive == []

@@ -1,0 +1,74 @@
+"""A robot that is stuck notices it and gets free; one that is merely slow does not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from ratslam_core import Odometry
+from sim2d import Drive, Simulator
+from sim2d.world.elements import SlowZone
+
+from .pilots import DT, FAR, STILL, Run, a_pilot
+from .worlds import EXACT, HandMadeMap, room
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("heading", [math.pi, -2.4, -math.pi / 2])
+def test_a_cornered_robot_frees_itself(heading: float, seed: int) -> None:
+    """Pressed into a corner by a hand, then left alone: it is a metre away within a minute."""
+    simulator = Simulator(room(start=(0.5, 0.5, heading)), EXACT, seed)
+    for _ in range(20):
+        simulator.step(Drive(0.3, 0.0))
+    run = Run(simulator, a_pilot(seed))
+    begin = run.truth
+    run.run(60)
+    assert max(math.dist(begin, place) for place in run.track) > 1.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_slow_floor_is_no_reason_to_back_off(seed: int) -> None:
+    """On a floor where it is slow, exploring takes long, but the robot hardly ever frees itself of nothing."""
+    world = room(start=(3.0, 2.0, 0.0))
+    x, y, right, top = world.bounds
+    zone = SlowZone("slippery", ((x, y), (right, y), (right, top), (x, top)), 0.3)
+    run = Run(Simulator(replace(world, slow_zones=(zone,)), EXACT, seed), a_pilot(seed))
+    run.run(240)
+    assert run.doing["freeing itself"] < 0.1 * sum(run.doing.values())
+    assert len({(int(x), int(y)) for x, y in run.track}) > 5
+
+
+def test_bumped_and_getting_nowhere_it_backs_off_and_turns() -> None:
+    pilot = a_pilot()
+    map_ = HandMadeMap([(0.0, 0.0)], [])
+    drives = [pilot.step(FAR, True, STILL, map_) for _ in range(45)]  # type: ignore[arg-type]
+    backs = [k for k, (speed, _) in enumerate(drives) if speed < 0]
+    assert backs[0] == pytest.approx(10, abs=1)  # a second of grace
+    begin = backs[0]
+    assert all(speed == -0.2 for speed, _ in drives[begin : begin + 10])
+    assert all(speed == 0.0 and yaw != 0.0 for speed, yaw in drives[begin + 12 : begin + 25])
+    turn = drives[begin][1]
+    assert 0.5 <= abs(turn) <= 1.0
+    assert {yaw for _, yaw in drives[begin : begin + 25]} == {turn}
+
+
+def test_getting_nowhere_without_a_bump_takes_longer() -> None:
+    pilot = a_pilot(stuck_s=3.0)
+    map_ = HandMadeMap([(0.0, 0.0)], [])
+    when = None
+    for tick in range(60):
+        pilot.step(FAR, False, STILL, map_)  # type: ignore[arg-type]
+        if pilot.doing == "freeing itself":
+            when = tick * DT
+            break
+    assert when == pytest.approx(3.0, abs=0.15)
+
+
+def test_getting_ahead_is_not_being_stuck() -> None:
+    pilot = a_pilot(stuck_s=3.0)
+    map_ = HandMadeMap([(0.0, 0.0)], [])
+    for _ in range(300):
+        pilot.step(FAR, False, Odometry(0.3, 0.0, DT), map_)  # type: ignore[arg-type]
+        assert pilot.doing != "freeing itself"

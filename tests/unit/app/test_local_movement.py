@@ -1,0 +1,109 @@
+"""The chosen arc keeps clear of what the sonars heard in the last seconds."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from app.pilot import local_movement
+from app.pilot.local_movement import LocalMovement
+from ratslam_core import Odometry, Pose2
+from tests.unit.ratslam_core import literal
+
+from .pilots import DT, NEAR, STILL, USUAL
+
+
+def sensed(*echoes: tuple[float, float]) -> LocalMovement:
+    """Obstacles at these places: bearing and distance."""
+    local = LocalMovement(np.array([bearing for bearing, _ in echoes]), USUAL.echo_ticks)
+    local.sense(np.array([distance for _, distance in echoes], np.float32), STILL, USUAL)
+    return local
+
+
+def arc(speed: float, yaw_rate: float, seconds: float) -> list[tuple[float, float]]:
+    pose, places = Pose2(0.0, 0.0, 0.0), []
+    for _ in range(round(seconds / 0.02)):
+        pose = pose.compose(Pose2(speed * 0.02, 0.0, yaw_rate * 0.02))
+        places.append((pose.x, pose.y))
+    return places
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+@pytest.mark.parametrize("bearing", [0.0, 0.5, -0.5, 1.2, -1.2, 3.0])
+def test_free_floor_is_crossed_towards_the_target(
+    bearing: float, interpreted: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if interpreted:
+        literal.interpret(local_movement, monkeypatch)
+    local = sensed((0.0, 5.0))
+    x, y = 1.5 * math.cos(bearing), 1.5 * math.sin(bearing)
+    speed, yaw_rate = local.towards(x, y, USUAL)
+    assert 0 <= speed <= 0.36
+    assert abs(yaw_rate) <= 1.0
+    if bearing == 0.0:
+        assert (speed, yaw_rate) == (0.36, 0.0)
+    else:
+        assert math.copysign(1.0, yaw_rate) == math.copysign(1.0, bearing)
+    if bearing == 3.0:
+        assert speed <= 0.11  # what lies behind is turned to first
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+@pytest.mark.parametrize("seed", range(6))
+def test_the_chosen_arc_keeps_clear_of_all_echoes(
+    seed: int, interpreted: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if interpreted:
+        literal.interpret(local_movement, monkeypatch)
+    rng = np.random.default_rng(seed)
+    for _ in range(6 if interpreted else 60):
+        echoes = [(float(b), float(d)) for b, d in zip(rng.uniform(-2, 2, 8), rng.uniform(0.3, 1.5, 8), strict=True)]
+        local = sensed(*echoes)
+        speed, yaw_rate = local.towards(*rng.uniform(-1, 1, 2), USUAL)
+        places = arc(speed, yaw_rate, 1.2)
+        nearest = min(math.dist(p, (d * math.cos(b), d * math.sin(b))) for p in places for b, d in echoes)
+        assert nearest > 0.27 - 0.03
+
+
+def test_a_wall_close_ahead_is_turned_from() -> None:
+    wall = sensed(*[(b, 0.3 / math.cos(b)) for b in (-1.2, -0.8, -0.4, 0.0, 0.4, 0.8, 1.2)])
+    speed, yaw_rate = wall.towards(1.0, 0.0, USUAL)
+    assert speed == 0.0
+    assert abs(yaw_rate) >= 0.5
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_the_free_way_is_the_distance_less_the_clearance(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if interpreted:
+        literal.interpret(local_movement, monkeypatch)
+    local = sensed((0.0, 1.0), (math.pi / 2, 0.5), (3.0, 2.0))
+    assert local.free_way(0.0, USUAL) == pytest.approx(0.73)
+    assert local.free_way(math.pi / 2, USUAL) == pytest.approx(0.23)
+    assert local.free_way(-math.pi / 2, USUAL) == pytest.approx(1.6)
+    assert local.free_way(3.0, USUAL) == pytest.approx(1.6)  # farther than it cares
+    assert sensed((0.0, 0.1)).free_way(0.0, USUAL) == 0.0
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_echoes_are_carried_along_and_forgotten(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if interpreted:
+        literal.interpret(local_movement, monkeypatch)
+    local = LocalMovement(np.array([0.0, 0.7]), USUAL.echo_ticks)
+    local.sense(np.array([1.2, 5.0], np.float32), STILL, NEAR)
+    nothing = np.array([5.0, 5.0], np.float32)
+    for _ in range(10):  # half a metre ahead
+        local.sense(nothing, Odometry(0.5, 0.0, DT), NEAR)
+    assert local.free_way(0.0, NEAR) == pytest.approx(0.5, abs=1e-6)
+    for _ in range(10):  # a quarter turn to the left: now it is on the right
+        local.sense(nothing, Odometry(0.0, math.pi / 2, DT), NEAR)
+    assert local.free_way(-math.pi / 2, NEAR) == pytest.approx(0.5, abs=1e-6)
+    assert local.free_way(0.0, NEAR) == pytest.approx(1.6)
+    for _ in range(30):  # three seconds later
+        local.sense(nothing, STILL, NEAR)
+    assert local.free_way(-math.pi / 2, NEAR) == pytest.approx(1.6)
+    local.sense(np.array([0.4, 5.0], np.float32), STILL, NEAR)
+    assert local.free_way(0.0, NEAR) < 1.0
+    local.forget()
+    assert local.free_way(0.0, NEAR) == pytest.approx(1.6)

@@ -1,0 +1,145 @@
+"""Each of the pilot's parameters changes what the pilot does, in a situation where it is what decides."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import fields
+from functools import cache
+
+import numpy as np
+import pytest
+
+from app.pilot import Pilot, PilotParams
+from app.pilot.local_movement import LocalMovement
+from app.pilot.params import DrivingParams, ExploringParams, FreeingParams, RouteParams
+from app.pilot.route_following import RouteFollower
+from ratslam_core import Odometry, Pose2
+from sim2d import Simulator
+
+from .pilots import ANGLES, DT, FAR, STILL, Run
+from .test_routes import two_ways
+from .worlds import EXACT, HandMadeMap, chain, room
+
+OTHER: dict[str, float] = {
+    "cruise_speed": 0.2, "turn_rate": 0.5, "clearance": 0.35, "echo_ticks": 1, "echo_range_m": 0.8, "arc_s": 0.6,
+    "arc_steps": 2, "arcs_a_side": 3, "medium_share": 0.8, "slow_share": 0.1, "spot_share": 1.0, "spot_s": 0.2,
+    "turn_cost": 0.0, "bearing_m": 1.0, "narrow_m": 0.4, "narrow_cost": 1.0, "escape_m2": 0.01,
+    "wall_distance": 0.9, "follow_ahead_m": 0.3, "follow_aside_m": 0.1, "blocked_ahead_m": 0.6,
+    "blocked_turn_ahead_m": 1.0, "blocked_turn_aside_m": 0.1, "corner_share": 1.2, "corner_ahead_m": 1.5,
+    "corner_aside_m": 1.5, "turned_to_rad": 0.8, "turn_patience_s": 1.0, "look_back_after_m": 3.0, "look_turn_rad": 2.0,
+    "look_back_m": 0.3, "look_back_s": 0.5, "look_stop_m": 1.5, "look_return_rad": 2.0, "cross_after_s": 12.0,
+    "cross_spread": 0.9, "cross_least_s": 0.0, "cross_most_s": 7.0, "cross_ahead_m": 0.2, "cross_stop_m": 1.0,
+    "lookahead_m": 1.5, "arrival_m": 0.6, "close_by_share": 4.0, "close_by_s": 1.0, "nearer_m": 0.5, "coast_s": 2.0,
+    "replan_s": 3.0, "credited_plans": 1.0, "near_m": 0.0, "near_speed": 2.0, "near_turn_cost": 10.0, "lost_s": 5.0,
+    "headway_s": 5.0, "trial_s": 1.0, "bar_ahead_m": 2.0, "bar_m": 0.1, "no_headway_s": 8.0, "look_around_s": 3.0,
+    "stuck_s": 3.0, "bumped_s": 2.0, "somewhere_m": 0.2, "turned_rad": 0.5, "most_turns": 0, "grip_yaw_rate": 1.0,
+    "least_grip": 0.8, "grip_s": 0.5, "back_off_s": 2.0, "back_off_speed": 0.1, "free_turn_s": 0.5, "free_turn_share": 1.0,
+}  # fmt: skip
+Trace = Iterator[object]
+
+
+def arcs(p: PilotParams) -> Trace:
+    """What is chosen among echoes of all sorts."""
+    rng = np.random.default_rng(1)
+    for _ in range(400):
+        local = LocalMovement(ANGLES, p.echo_ticks)
+        for _ in range(3):
+            ranges = rng.uniform(0.2, 6.0, 8).astype(np.float32)
+            local.sense(ranges, Odometry(float(rng.uniform(0, 0.5)), float(rng.uniform(-1, 1)), DT), p)
+        yield local.towards(*rng.uniform(-0.8, 0.8, 2), p), local.free_way(0.0, p)
+
+
+def exploring(p: PilotParams) -> Trace:
+    run = Run(Simulator(room(side=6.0, start=(3.0, 3.0, 0.0)), EXACT), Pilot(p, ANGLES, np.random.default_rng(2)))
+    for _ in range(1200):
+        run.tick()
+        yield run.truth
+
+
+def to_a_goal(run: Run, ticks: int) -> Trace:
+    run.pilot.set_goal(8)
+    for _ in range(ticks):
+        run.tick()
+        yield run.truth, run.pilot.goal_state, len(run.map.trials)
+
+
+def past_a_shut_door(p: PilotParams) -> Trace:
+    world, places, links = two_ways()
+    map_ = HandMadeMap(places, links)
+    map_.patience = 4
+    return to_a_goal(Run(Simulator(world, EXACT, 1), Pilot(p, ANGLES, np.random.default_rng(1)), map_), 900)
+
+
+def at_a_wall(p: PilotParams) -> Trace:
+    """The only way is none."""
+    map_ = HandMadeMap(*chain((1.0, 0.6), (3.0, 0.6)))
+    world = room((2.0, 0.0, 2.0, 3.0), start=(1.0, 0.6, 0.0))
+    return to_a_goal(Run(Simulator(world, EXACT, 1), Pilot(p, ANGLES, np.random.default_rng(1)), map_), 900)
+
+
+def standing(p: PilotParams) -> Trace:
+    """On a route whose links go, then near the goal, then between places that face another way."""
+    map_ = HandMadeMap(*chain((0.0, 0.0), (6.0, 0.0)))
+    goal, links, times = len(map_) - 1, map_.links, map_.link_times
+    for away in (0.5, 1.1, 3.0):
+        follower = RouteFollower(goal)
+        map_.robot = Pose2(6.0 - away, 0.1, 0.3)
+        for tick in range(600 if away == 3.0 else 80):
+            if tick == 100:
+                map_.links, map_.link_times = links[:0], times[:0]
+            yield follower.step(map_, DT, p), follower.state  # type: ignore[arg-type]
+    map_.links, map_.link_times, map_.robot = links, times, Pose2(4.8, 0.1, 0.3)
+    map_.poses[:, 2] = np.where(map_.poses[:, 0] < 4.8, 0.3, 1.5)
+    follower = RouteFollower(goal)
+    follower.step(map_, DT, p)  # type: ignore[arg-type]
+    yield follower.progress(map_).route.tolist()  # type: ignore[arg-type]
+
+
+def getting_nowhere(p: PilotParams) -> Trace:
+    """Bumped and still, then turning slower than asked for, then spinning, then creeping: over and over."""
+    pilot, map_ = Pilot(p, ANGLES, np.random.default_rng(3)), HandMadeMap([(0.0, 0.0)], [])
+    asked = (0.0, 0.0)
+    for k in range(2400):
+        slowly = Odometry(0.0, (0.3 if k < 1200 else 0.1) * asked[1], DT)
+        odometry = (STILL, slowly, Odometry(0.0, 0.9, DT), Odometry(0.05, 0.0, DT))[k // 150 % 4]
+        asked = pilot.step(FAR, k % 600 < 60, odometry, map_)  # type: ignore[arg-type]
+        yield asked
+
+
+SITUATIONS: dict[type, tuple[Callable[[PilotParams], Trace], ...]] = {
+    DrivingParams: (arcs,),
+    ExploringParams: (exploring,),
+    RouteParams: (past_a_shut_door, at_a_wall, standing),
+    FreeingParams: (getting_nowhere,),
+}
+
+
+def usual(**changes: float) -> PilotParams:
+    return PilotParams(**({"look_back_after_m": 4.0, "cross_after_s": 6.0} | changes))
+
+
+@cache
+def usually(situation: Callable[[PilotParams], Trace]) -> list[object]:
+    return list(situation(usual()))
+
+
+def differs(situation: Callable[[PilotParams], Trace], p: PilotParams) -> bool:
+    return any(one != other for one, other in zip(usually(situation), situation(p), strict=True))
+
+
+def of(name: str) -> type:
+    return next(kind for kind in SITUATIONS if name in kind.__annotations__)
+
+
+def test_every_parameter_has_another_value() -> None:
+    assert {item.name for item in fields(PilotParams)} == {*OTHER, "goal_reach_m"}  # that is in test_session.py
+
+
+@pytest.mark.parametrize("name", OTHER)
+def test_a_parameter_acts(name: str) -> None:
+    assert any(differs(situation, usual(**{name: OTHER[name]})) for situation in SITUATIONS[of(name)])
+
+
+def test_the_same_parameters_do_the_same() -> None:
+    for situation in (arcs, standing, getting_nowhere):
+        assert not differs(situation, usual())

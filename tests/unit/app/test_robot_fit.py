@@ -1,0 +1,80 @@
+"""What the ring under a dragged robot says is what the command answers: both ask `RobotFit`."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.session import Session
+from app.views.history import History
+from app.views.snapshots import Snapshots
+from sim2d import load_world
+
+
+@lru_cache(maxsize=1)
+def session() -> Session:
+    """The living office after eight seconds, a door half shut, people on their way."""
+    made = Session(load_world("living"), 3)
+    made.simulator.set_door("laboratory door", False)
+    for _ in range(80):
+        made.tick()
+    made.simulator.set_door("meeting room door", False)
+    made.tick()
+    return made
+
+
+def ring(x: float, y: float) -> str | None:
+    """What the stage is told of a place; None: teal."""
+    made = Snapshots(session(), History(session()), 1, ())
+    return made.build(running=True, speed=1.0, real_time_factor=1.0, fault=None).no_room(x, y)
+
+
+def command(x: float, y: float) -> str | None:
+    try:
+        session().kidnap(x, y, 0.0)
+    except ValueError as error:
+        return str(error)
+    return None
+
+
+near_things = st.sampled_from(
+    [(7.0, 3.3), (12.9, 4.0), (11.5, 5.4), (10.9, 5.4), (7.0, 5.4), (6.4, 5.4), (1.9, 5.9), (2.5, 5.4), (0.3, 0.3)]
+).flatmap(lambda at: st.tuples(*(st.floats(at[k] - 0.8, at[k] + 0.8) for k in (0, 1))))
+near_people = st.tuples(st.integers(0, 2), st.floats(-0.6, 0.6), st.floats(-0.6, 0.6)).map(
+    lambda who: (
+        float(session().simulator.actors.walkers.xy[who[0], 0] + who[1]),
+        float(session().simulator.actors.walkers.xy[who[0], 1] + who[2]),
+    )
+)
+anywhere = st.tuples(st.floats(-1.0, 15.0), st.floats(-1.0, 10.0))
+
+
+@settings(max_examples=400, deadline=None)
+@given(near_things | near_people | anywhere)
+def test_what_the_ring_says_is_what_the_command_answers(place: tuple[float, float]) -> None:
+    assert ring(*place) == command(*place)
+
+
+@pytest.mark.parametrize(
+    ("where", "words"),
+    [
+        ("person", r"is 0\.000 m from person 'Ada'; the robot needs 0\.22 m"),
+        ("box", r"is 0\.000 m from box 'parcel'"),
+        ("door", r"is 0\.\d+ m from doors\[2\] \(laboratory door\)"),
+        ("wall", r"from walls\[\d+\]"),
+        ("outside", "is outside of living"),
+    ],
+)
+def test_each_of_them_says_what_is_in_the_way(where: str, words: str) -> None:
+    actors = session().simulator.actors
+    x1, y1, x2, y2 = actors.segments[2].tolist()
+    x, y = {
+        "person": tuple(actors.walkers.xy[0].tolist()), "box": (7.0, 3.3), "door": ((x1 + x2) / 2, (y1 + y2) / 2 - 0.1),
+        "wall": (0.1, 0.5), "outside": (-1.0, 2.0),
+    }[where]  # fmt: skip
+    with pytest.raises(ValueError, match=words):
+        session().kidnap(x, y)
+    assert ring(x, y) == command(x, y)

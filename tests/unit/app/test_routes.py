@@ -1,0 +1,201 @@
+"""Routes are followed, coasted on, given up and taken back from walls."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.pilot import PilotParams
+from app.pilot.route_following import RouteFollower, crosses
+from ratslam_core import Pose2
+from sim2d import Simulator, World
+
+from .pilots import DT, EXPLORING, USUAL, Run, a_pilot
+from .worlds import EXACT, HandMadeMap, chain, room
+
+
+def test_progress_counts_down_along_the_links() -> None:
+    map_ = HandMadeMap(*chain((0.0, 0.0), (4.0, 0.0), (4.0, 2.0)))
+    goal = len(map_) - 1
+    follower = RouteFollower(goal)
+    etas, remaining = [], []
+    for x in (0.0, 1.0, 2.0, 3.0, 4.0):
+        map_.robot = Pose2(x, 0.1, 0.0)
+        for _ in range(11):
+            assert follower.step(map_, DT, USUAL) is not None  # type: ignore[arg-type]
+        progress = follower.progress(map_)  # type: ignore[arg-type]
+        assert progress.state == "tracking"
+        assert progress.route[-1] == goal
+        assert len(progress.route) == len(progress.arrival_s)
+        assert np.all(np.diff(progress.arrival_s) > 0)
+        etas.append(progress.eta_s)
+        remaining.append(progress.remaining_m)
+    assert etas == pytest.approx([(6.0 - x) / 0.3 for x in range(5)], abs=2.1)
+    assert remaining == pytest.approx([6.1 - x for x in range(5)], abs=0.3)
+
+
+def test_the_robot_heads_for_a_point_ahead_on_the_route() -> None:
+    map_ = HandMadeMap(*chain((0.0, 0.0), (4.0, 0.0)))
+    for heading in (0.0, 1.0, -2.5, math.pi):
+        map_.robot = Pose2(1.0, 0.2, heading)
+        target = RouteFollower(len(map_) - 1).step(map_, DT, PilotParams(lookahead_m=0.6))  # type: ignore[arg-type]
+        assert target is not None
+        there = map_.robot.compose(Pose2(*target, 0.0))
+        assert there.y == pytest.approx(0.0, abs=1e-9)
+        assert 1.6 <= there.x <= 2.3
+
+
+def test_the_quickest_of_two_ways_is_taken() -> None:
+    places, links = chain((0.0, 0.0), (4.0, 0.0))
+    middle = len(places)
+    map_ = HandMadeMap([*places, (2.0, 2.0)], [*links, (0, middle), (middle, middle - 1)])
+    for quick, expected in ((False, False), (True, True)):
+        map_.link_times[-2:] = 3.0 if quick else 30.0
+        follower = RouteFollower(middle - 1)
+        follower.step(map_, DT, USUAL)  # type: ignore[arg-type]
+        assert (middle in follower.progress(map_).route) is expected  # type: ignore[arg-type]
+
+
+def test_a_brand_new_experience_is_left_by_way_of_a_near_one() -> None:
+    """Active, alone, and not linked to anything yet."""
+    places, links = chain((0.0, 0.0), (3.0, 0.0))
+    map_ = HandMadeMap([*places, (0.3, 0.35)], links)
+    map_.robot = Pose2(0.3, 0.34, 0.0)
+    assert map_.active == len(places)
+    follower = RouteFollower(len(places) - 1)
+    assert follower.step(map_, DT, USUAL) is not None  # type: ignore[arg-type]
+    assert follower.state == "tracking"
+
+
+def test_a_lost_route_is_coasted_on_then_given_up() -> None:
+    map_ = HandMadeMap(*chain((0.0, 0.0), (6.0, 0.0)))
+    params = PilotParams(coast_s=4.0)
+    follower = RouteFollower(len(map_) - 1)
+    states = []
+    for tick in range(400):
+        if tick == 20:
+            map_.links, map_.link_times = map_.links[:0], map_.link_times[:0]
+        map_.robot = Pose2(min(0.03 * tick, 1.5), 0.0, 0.0)
+        target = follower.step(map_, DT, params)  # type: ignore[arg-type]
+        states.append(follower.state)
+        assert (target is None) == (follower.state in ("exploring", "unreachable"))
+        progress = follower.progress(map_)  # type: ignore[arg-type]
+        assert (progress.eta_s is None) == (progress.remaining_m is None) == (target is None)
+    seconds = {state: states.count(state) * DT for state in set(states)}
+    order = list(dict.fromkeys(states))
+    assert order == ["tracking", "coasting", "exploring", "unreachable"]
+    assert seconds["tracking"] + seconds["coasting"] == pytest.approx(2 + 4, abs=USUAL.replan_s + 0.2)
+    assert seconds["exploring"] == pytest.approx(USUAL.lost_s, abs=0.2)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_blocked_way_is_left(seed: int) -> None:
+    """The map takes for a way what is a wall: the robot looks around instead of pushing for ever."""
+    world = room((2.0, 0.0, 2.0, 3.0), start=(1.0, 0.6, 0.0))
+    map_ = HandMadeMap(*chain((1.0, 0.6), (3.0, 0.6)))
+    run = Run(Simulator(world, EXACT, seed), a_pilot(seed), map_)
+    run.pilot.set_goal(len(map_) - 1)
+    goal = len(map_) - 1
+    while run.pilot.goal_state == (goal, "tracking"):
+        run.tick()
+        assert len(run.track) < 10 * (6 * USUAL.no_headway_s)
+    assert len(run.track) > 10 * USUAL.no_headway_s
+    assert run.pilot.goal_state == (goal, "exploring")
+    before = Counter(run.doing)
+    while run.pilot.goal_state == (goal, "exploring"):
+        run.tick()
+        assert len(run.track) < 10 * (6 * USUAL.no_headway_s + 60)  # it may have to free itself from the corner first
+    looked = run.doing - before
+    assert sum(looked[doing] for doing in EXPLORING) > 10 * (USUAL.look_around_s - 2)
+    assert run.pilot.goal_state in ((goal, "tracking"), (goal, "arrived"))  # and tries again
+
+
+def two_ways() -> tuple[World, list[tuple[float, float]], list[tuple[int, int]]]:
+    """A wall between the robot and its goal with a door that is shut, which three rows of links pass, and a way round."""
+    world = room((2.0, 0.0, 2.0, 3.0), start=(1.0, 0.6, 0.0))
+    places, links = chain((1.0, 0.6), (3.0, 0.6))
+    goal = len(places) - 1
+    for y in (0.3, 0.95):
+        more, joined = chain((1.2, y), (2.8, y))
+        links += [(i + len(places), j + len(places)) for i, j in joined]
+        links += [(1, len(places)), (len(places) + len(more) - 1, goal - 1)]
+        places += more
+    more, joined = chain((0.8, 0.8), (0.8, 3.5), (3.2, 3.5), (3.2, 0.7))
+    links += [(i + len(places), j + len(places)) for i, j in joined]
+    links += [(0, len(places)), (len(places) + len(more) - 1, goal)]
+    return world, places + more, links
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_door_that_was_shut_is_given_up(seed: int) -> None:
+    """Every way through it fails with it, not one after the other, and the robot goes round."""
+    world, places, links = two_ways()
+    map_ = HandMadeMap(places, links)
+    map_.patience = 4
+    goal = round(2.0 / 0.25)
+    run = Run(Simulator(world, EXACT, seed), a_pilot(seed), map_)
+    run.pilot.set_goal(goal)
+    while run.pilot.goal_state != (goal, "arrived"):
+        run.tick()
+        assert len(run.track) < 10 * 120
+    truth = run.simulator.truth
+    assert math.hypot(truth.x - places[goal][0], truth.y - places[goal][1]) < 0.4
+    gone = {tuple(link) for link in links} - {(int(i), int(j)) for i, j in map_.links}
+    assert gone
+    for i, j in gone:
+        assert max(places[i][1], places[j][1]) < 1.5  # nothing of the way round
+    assert {(i, j) for i, j, well in map_.trials if well} - gone  # and what was driven has been a trial, too
+
+
+def test_what_was_driven_of_a_route_was_a_trial() -> None:
+    map_ = HandMadeMap(*chain((0.0, 0.0), (6.0, 0.0)))
+    follower = RouteFollower(len(map_) - 1)
+    for tick in range(150):
+        map_.robot = Pose2(0.03 * tick, 0.0, 0.0)
+        follower.step(map_, DT, USUAL)  # type: ignore[arg-type]
+    tried = {(i, j) for i, j, _ in map_.trials}
+    assert all(well for _, _, well in map_.trials)
+    assert len(tried) >= 8  # of the 18 that were driven; a plan may begin beyond the end of the one before
+    assert tried <= {(k, k + 1) for k in range(18)}
+
+
+@settings(max_examples=200)
+@given(st.lists(st.tuples(*[st.floats(-2, 2)] * 4), max_size=8), st.tuples(*[st.floats(-2, 2)] * 4))
+def test_crossing_a_bar_is_what_points_on_both_lines_are(lines, bar) -> None:
+    """By solving for where the two lines meet."""
+    ends = np.array(lines).reshape(-1, 4)
+    found = crosses(np.array(bar).reshape(2, 2), ends[:, :2], ends[:, 2:])
+    for (ax, ay, bx, by), answer in zip(ends, found, strict=True):
+        along = np.array([[bx - ax, bar[0] - bar[2]], [by - ay, bar[1] - bar[3]]])
+        if abs(along[0, 0] * along[1, 1] - along[0, 1] * along[1, 0]) < 1e-6:
+            continue  # parallel, or no length
+        t, u = np.linalg.solve(along, np.array([bar[0] - ax, bar[1] - ay]))
+        if min(abs(t), abs(t - 1), abs(u), abs(u - 1)) > 1e-6:  # not just touching
+            assert bool(answer) is bool(0 < t < 1 and 0 < u < 1)
+
+
+def test_headway_is_no_reason_to_look_around() -> None:
+    map_ = HandMadeMap(*chain((0.0, 0.0), (20.0, 0.0)))
+    follower = RouteFollower(len(map_) - 1)
+    for tick in range(600):
+        map_.robot = Pose2(0.03 * tick, 0.0, 0.0)
+        follower.step(map_, DT, USUAL)  # type: ignore[arg-type]
+        assert follower.state == "tracking"
+
+
+def test_close_by_and_not_getting_nearer_is_there() -> None:
+    """At a goal in a corner where the robot just does not fit."""
+    map_ = HandMadeMap(*chain((0.0, 0.0), (3.0, 0.0)))
+    params = PilotParams(arrival_m=0.3)
+    for away, arrives in ((0.5, True), (0.7, False)):
+        follower = RouteFollower(len(map_) - 1)
+        map_.robot = Pose2(3.0 - away, 0.0, 0.0)
+        for _ in range(80):
+            follower.step(map_, DT, params)  # type: ignore[arg-type]
+        assert (follower.state == "arrived") is arrives
+    assert follower.step(map_, DT, params) is not None  # type: ignore[arg-type]

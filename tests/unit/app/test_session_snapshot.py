@@ -1,0 +1,220 @@
+"""A session that is saved and loaded goes on bit for bit, wherever it was; a file that is none is refused in a sentence."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.session import Session, spread_goals
+from app.session_snapshot import load_session, read_session, restore_session, save_session, take_session
+from disk import State, write_state
+from ratslam_core import save_brain
+from sim2d import Box, Lamp, load_world
+
+DRIVEN = 60
+
+
+def driven(world: str, ticks: int = DRIVEN, seed: int = 5) -> Session:
+    session = Session(load_world(world), seed)
+    for _ in range(ticks):
+        session.tick()
+    return session
+
+
+def saved_and_loaded(session: Session) -> Session:
+    file = io.BytesIO()
+    write_state(take_session(session), file)
+    return read_session(file)
+
+
+def goes_on(session: Session, ticks: int, act: Callable[[Session, int], None] = lambda _session, _tick: None) -> None:
+    """Both at once, with the same orders; nothing of it may differ in any tick."""
+    other = saved_and_loaded(session)
+    assert other.state_hash() == session.state_hash()
+    for tick in range(ticks):
+        for each in (session, other):
+            act(each, tick)
+            each.tick()
+        assert np.array_equal(other.frame.image, session.frame.image)
+        assert other.simulator.truth == session.simulator.truth
+        assert other.state_hash() == session.state_hash(), f"parted after {tick + 1} ticks"
+
+
+@pytest.mark.parametrize("world", ["office", "living", "twins"])
+def test_it_goes_on_bit_for_bit(world: str) -> None:
+    goes_on(driven(world), 40)
+
+
+@pytest.mark.parametrize("world", ["office", "living", "twins"])
+def test_while_the_robot_touches_a_wall(world: str) -> None:
+    session = driven(world, 20)
+    x0, y0, _, _ = session.world.bounds
+    session.kidnap(x0 + 0.4, y0 + 0.5, -2.5)
+    session.set_mode("manual")
+    bumped = 0
+    for tick in range(60):
+        session.pilot.drive(0.5, 0.4 if tick % 8 == 0 else 0.0)
+        session.tick()
+        bumped += session.frame.bumped
+        if session.frame.bumped and tick % 12 == 0:
+            goes_on(session, 6, lambda each, tick: each.pilot.drive(0.4, 0.5 - 0.2 * tick))
+    assert bumped > 20
+
+
+def test_in_the_middle_of_a_route() -> None:
+    session = driven("office", 900)
+    session.pilot.set_goal(spread_goals(session, 1)[0])
+    ticks = 0
+    while session.pilot.doing != "following the route" or ticks < 30:
+        session.tick()
+        ticks += 1
+        assert ticks < 400
+    goes_on(session, 60)
+    assert session.pilot.goal is not None
+
+
+def test_while_it_frees_itself() -> None:
+    session = driven("office", 20)
+    session.set_parameter("pilot.stuck_s", 1.0)
+    ticks = 0
+    while session.pilot.doing != "freeing itself":
+        session.tick()
+        ticks += 1
+        assert ticks < 600
+    session.tick()
+    goes_on(session, 60)
+
+
+def test_after_a_kidnap_an_edit_and_other_parameters() -> None:
+    session = driven("living", 100)
+    session.simulator.set_door("laboratory door", False)
+    session.set_parameters({"robot.sensor_rate_hz": 20, "office.lamps": False, "pose_cells.n_x": 32})
+    session.tick()
+    session.kidnap(5.0, 1.5, 0.3)
+    session.edit_world(replace(session.world, lamps=(*session.world.lamps, Lamp("new", 3.0, 3.0, 2.0, 0.4))))
+    session.simulator.put_box(Box("crate", 4.0, 2.0, 0.4, 0.4, angle_rad=0.1234567))
+    session.edit_world(session.simulator.world)
+    other = saved_and_loaded(session)
+    assert (other.world, other.config, other.seed) == (session.world, session.config, session.seed)
+    goes_on(session, 40)
+    assert len(session.evaluation.kidnaps) == 1
+
+
+def do(session: Session, order: int) -> None:
+    match order:
+        case 0:
+            session.kidnap()
+        case 1:
+            session.pilot.drive(0.5, 0.7)
+        case 2:
+            session.set_mode("explore")
+        case 3:
+            session.pilot.set_goal(spread_goals(session, 2)[-1])
+        case 4:
+            session.simulator.set_door(session.world.doors[0].name, session.tick_count % 2 == 0)
+        case 5:
+            session.set_parameter("robot.light", 0.5 + session.tick_count % 2)
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.lists(st.integers(0, 8), min_size=8, max_size=20), st.integers(0, 8), st.integers(0, 2**16))
+def test_whatever_was_ordered_it_goes_on(orders: list[int], at: int, seed: int) -> None:
+    session, other = driven("living", 5, seed), None
+    for k, order in enumerate(orders):
+        if k == min(at, len(orders) - 1):
+            other = saved_and_loaded(session)
+        for each in filter(None, (session, other)):
+            do(each, order)
+            for _ in range(4):
+                each.tick()
+    assert other is not None
+    assert other.state_hash() == session.state_hash()
+
+
+def test_a_session_that_goes_on_does_not_change_what_was_taken() -> None:
+    session = driven("living", 30)
+    taken, then = take_session(session), session.state_hash()
+    for _ in range(20):
+        session.tick()
+    assert restore_session(taken).state_hash() == then != session.state_hash()
+
+
+def test_a_file_that_is_no_session_is_refused_in_a_sentence(tmp_path: Path) -> None:
+    session, path = driven("office", 3), tmp_path / "run.npz"
+    save_session(session, path)
+    assert load_session(path).state_hash() == session.state_hash()
+    with pytest.raises(ValueError, match=r"none\.npz: No such file"):
+        load_session(tmp_path / "none.npz")
+    save_brain(session.brain, tmp_path / "brain.npz")
+    whole = path.read_bytes()
+    bits = bytearray(whole)
+    bits[len(bits) // 2] ^= 1
+    for name, data, words in (
+        ("brain.npz", (tmp_path / "brain.npz").read_bytes(), "it must hold a world and a session"),
+        ("cut.npz", whole[: len(whole) // 2], "the file is not a zip file"),
+        ("empty.npz", b"", "the file is empty"),
+        ("bits.npz", bytes(bits), "."),
+    ):
+        (tmp_path / name).write_bytes(data)
+        with pytest.raises(ValueError, match=f"{name} is no session that can be taken back: .*{words}"):
+            load_session(tmp_path / name)
+
+
+def spoilt(change: Callable[[Session], None]) -> State:
+    session = driven("living", 3)
+    change(session)
+    return take_session(session)
+
+
+def change(path: str, value: object) -> Callable[[Session], None]:
+    def changed(session: Session) -> None:
+        *way, last = path.split(".")
+        owner: object = session
+        for name in way:
+            owner = getattr(owner, name)
+        object.__setattr__(owner, last, value)
+
+    return changed
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            change("simulator._robot.pose", (1.0, float("nan"), 0.0)),
+            "simulator._robot.pose.1. must be a number, got nan",
+        ),
+        (change("simulator._robot.pose", (1.0, 99.0, 0.0)), "the robot's y must be a number from 0 to 9, got 99"),
+        (change("simulator.actors.opening", np.zeros(2)), r"doors: opening must have shape \(3\)"),
+        (change("simulator.actors.walkers._towards", np.array([9, 0, 0])), "people must walk to a point of their path"),
+        (change("simulator.actors._next", 99), "the next line of the script must be a whole number"),
+        (change("simulator._frame.ranges_m", np.zeros(7, np.float32)), r"the sonars must have shape \(8\), got \(7,\)"),
+        (change("simulator._sensors._image_rng", 3), "must be a Generator, got a int"),
+        (change("pilot._local._echoes", np.zeros((3, 2))), "echoes must have shape"),
+        (change("pilot.mode", "asleep"), "the mode must be one of explore, manual, goal, got 'asleep'"),
+        (change("pilot._explorer._rng", np.random.default_rng(3)), "must draw from one generator"),
+        (change("evaluation._count", 10**6), "the path's length must be a whole number"),
+        (change("evaluation._experience", np.full(4096, 77)), "active experiences must be from 0 to"),
+        (change("brain.local_view.params", None), "local_view"),
+        (change("seed", -1), "seed must be a whole number"),
+        (change("config", None), "config must be a Config"),
+        (change("more", 1), "a session differs in more"),
+    ],
+)
+def test_a_session_that_breaks_a_law_is_refused_by_it(change: Callable[[Session], None], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        restore_session(spoilt(change))
+
+
+def test_a_world_that_is_none_is_refused() -> None:
+    taken = take_session(driven("office", 2))
+    text = taken.arrays[0].tobytes().replace(b'"to"', b'"to": [1, 1], "tO"', 1)
+    with pytest.raises(ValueError, match=r"its world: walls\[0\]\.tO: got .*; unknown key"):
+        restore_session(State(taken.tree, [np.frombuffer(text, np.uint8), *taken.arrays[1:]]))

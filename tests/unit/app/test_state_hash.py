@@ -1,0 +1,107 @@
+"""`state_hash` covers everything: each leaf of each part is changed by itself, and the hash is another one each time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.session import Session, spread_goals
+from disk.kinds import attributes, is_known
+from sim2d import load_world
+
+Put = Callable[[Any], None]
+PARTS = ("config", "simulator", "pilot", "brain", "evaluation")
+
+
+@pytest.fixture(scope="module")
+def session() -> Session:
+    """One in which everything is there: doors, people, a goal and its route, a bar, a kidnap, a laser."""
+    made = Session(load_world("living"), 5)
+    made.set_parameters({"robot.laser_beams": 11})
+    for tick in range(700):
+        if tick == 150:
+            made.kidnap()
+        if tick == 640:
+            made.pilot.set_goal(spread_goals(made, 1)[0])
+        made.tick()
+    follower = made.pilot._follower
+    assert follower is not None
+    assert follower._route is not None
+    follower._bars.append(np.zeros((2, 2)))
+    return made
+
+
+def leaves(name: str, value: Any, put: Put, seen: set[int]) -> Iterator[tuple[str, Any, Put]]:
+    """Path, value and how to put another in its place; of long lists the first two and the last."""
+    if isinstance(value, tuple):
+        for k, part in enumerate(value[:6]):
+            yield from leaves(f"{name}[{k}]", part, lambda new, k=k: put((*value[:k], new, *value[k + 1 :])), seen)
+        return
+    if id(value) in seen and (is_known(type(value)) or isinstance(value, list | dict)):
+        return
+    seen.add(id(value))
+    if is_known(type(value)):
+        for attribute, item in attributes(value).items():
+            if attribute not in getattr(value, "CACHES", ()):
+                set_it = lambda new, attribute=attribute: object.__setattr__(value, attribute, new)  # noqa: E731
+                yield from leaves(f"{name}.{attribute}", item, set_it, seen)
+    elif isinstance(value, list):
+        for k in sorted({*range(len(value))} & {0, 1, len(value) - 1}):
+            yield from leaves(f"{name}[{k}]", value[k], lambda new, k=k: value.__setitem__(k, new), seen)
+    elif isinstance(value, dict):
+        for key in [*value][:2]:
+            yield from leaves(f"{name}[{key}]", value[key], lambda new, key=key: value.__setitem__(key, new), seen)
+    else:
+        yield name, value, put
+
+
+def another(value: Any) -> Any:
+    """Of the same kind, and not the same."""
+    if value is None:
+        return 1.5
+    if isinstance(value, bool | np.bool_):
+        return not value
+    if isinstance(value, str):
+        return f"{value}."
+    if isinstance(value, int | np.integer):
+        return type(value)(int(value) ^ 1)
+    if isinstance(value, float | np.floating):
+        return type(value)(-value if np.isfinite(value) and value else 7.0)
+    if isinstance(value, np.random.Generator):
+        other = np.random.default_rng()
+        other.bit_generator.state = value.bit_generator.state
+        other.random()
+        return other
+    if isinstance(value, np.ndarray):
+        changed = value.copy()
+        if changed.size:
+            changed.flat[changed.size // 2] = another(changed.flat[changed.size // 2])
+            return changed
+        return np.zeros((*changed.shape[:-1], 1) if changed.ndim > 1 else 1, changed.dtype)
+    return type(value)([*value, 1])  # an empty set or queue
+
+
+def test_each_field_of_each_part_changes_the_hash(session: Session) -> None:
+    then, seen, count = session.state_hash(), set[int](), dict[str, int]()
+    for part in ("seed", *PARTS):
+        for name, value, put in leaves(
+            part, getattr(session, part), lambda new, p=part: setattr(session, p, new), seen
+        ):
+            put(another(value))
+            assert session.state_hash() != then, f"{name} is not in the hash"
+            put(value)
+            count[part] = count.get(part, 0) + 1
+    assert session.state_hash() == then
+    assert count["seed"] == 1
+    assert all(count[part] > least for part, least in zip(PARTS, (80, 60, 40, 80, 12), strict=True)), count
+
+
+def test_the_world_is_in_the_hash(session: Session) -> None:
+    then, world = session.state_hash(), session.world
+    session.world = load_world("office")
+    assert session.state_hash() != then
+    session.world = world
+    assert session.state_hash() == then

@@ -1,0 +1,264 @@
+"""Edits are undone and redone, and the office goes on under the running robot."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.session import Session
+from app.world_editor import MOST_UNDOS, WorldEditor, edited
+from sim2d import Place, World
+from sim2d.world.world_check import check_world
+
+from .offices import ITEMS, RADIUS, SIDE, Taken, office, order
+from .worlds import room
+
+
+def placed(kind: str, item: dict[str, Any], name: str, x: float, y: float) -> dict[str, Any]:
+    if kind == "walls":
+        return {**item, "from": [x, y], "to": [x + 0.3, y + 0.2]}
+    moved = {**item, "name": name}
+    return moved | {"x": x, "y": y} if kind in ("lamps", "boxes", "places") else moved
+
+
+@st.composite
+def some_edits(draw: st.DrawFn) -> list[Any]:
+    """Orders, good and bad ones, with undo and redo between them."""
+    place = st.floats(-1.0, SIDE + 1.0, allow_nan=False)
+    step = st.builds(
+        lambda do, kind, number, name, x, y: (
+            do,
+            kind,
+            None if do == "add" else number,
+            None if do == "delete" else placed(kind, ITEMS[kind], name, x, y),
+        ),
+        st.sampled_from(["add", "change", "delete"]), st.sampled_from(list(ITEMS)), st.integers(0, 6),
+        st.sampled_from("abcd"), place, place,
+    )  # fmt: skip
+    edit = st.lists(step, min_size=1, max_size=3).map(lambda steps: order(*steps))
+    return draw(st.lists(st.one_of(edit, edit, st.sampled_from(["undo", "redo"])), max_size=12))
+
+
+@settings(max_examples=60)
+@given(some_edits(), st.lists(st.booleans(), min_size=12, max_size=12))
+def test_undo_goes_back_to_the_first_world_and_redo_to_the_last(edits: list[Any], refuses: list[bool]) -> None:
+    first = office()
+    editor, taken = WorldEditor(first), Taken()
+    worlds = [first]  # what undo must find, a second way: by keeping all of them in a plain list
+    at = 0
+    for edit, taken.refuses in zip(edits, refuses, strict=False):
+        before, edition = editor.world, editor.edition
+        try:
+            if edit == "undo":
+                editor.undo(taken)
+                at -= 1
+            elif edit == "redo":
+                editor.redo(taken)
+                at += 1
+            else:
+                editor.edit(edit, RADIUS, taken)
+                worlds, at = [*worlds[: at + 1], editor.world], at + 1
+        except ValueError:
+            assert editor.world is before
+            assert editor.edition == edition
+            continue
+        assert editor.world is worlds[at] is taken.world
+        assert editor.edition.number > edition.number
+        check_world(editor.world, RADIUS)
+    taken.refuses = False
+    for _ in range(at):
+        editor.undo(taken)
+    assert editor.world is first
+    assert first == office()
+    assert editor.edition.saved
+    with pytest.raises(ValueError, match="nothing to undo"):
+        editor.undo(taken)
+    for _ in worlds[1:]:
+        editor.redo(taken)
+    assert editor.world is worlds[-1]
+    with pytest.raises(ValueError, match="nothing to redo"):
+        editor.redo(taken)
+
+
+def drive_to(session: Session, x: float, y: float) -> None:
+    session.simulator.teleport(x, y, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("step", "reason"),
+    [
+        (("add", "walls", None, {"from": [0.5, 1.0], "to": [1.5, 1.0]}), r"walls\[4\] \(wall\) would cover the robot"),
+        (("add", "boxes", None, {**ITEMS["boxes"], "x": 1.0, "y": 1.0}), r"box 'b' would cover the robot"),
+        (("add", "doors", None, {**ITEMS["doors"], "hinge": [0.9, 0.5]}), r"doors\[0\] \(d\) would cover the robot"),
+    ],
+)
+def test_what_would_cover_the_robot_is_refused(step: Any, reason: str) -> None:
+    session = Session(office(), 3)
+    drive_to(session, 1.0, 1.0)
+    editor, before = WorldEditor(session.world), session.state_hash()
+    with pytest.raises(ValueError, match=reason):
+        editor.edit(order(step), RADIUS, session.edit_world)
+    assert session.state_hash() == before
+    assert session.simulator.world is session.world is editor.world
+
+
+def test_undo_that_would_cover_the_robot_is_refused_and_can_be_tried_again() -> None:
+    walled = room((0.5, 1.0, 1.5, 1.0), side=SIDE, start=(3.0, 3.0, 0.0))
+    session = Session(walled, 3)
+    editor = WorldEditor(walled)
+    editor.edit(order(("delete", "walls", 4, None)), RADIUS, session.edit_world)
+    drive_to(session, 1.0, 1.0)
+    with pytest.raises(ValueError, match="would cover the robot"):
+        editor.undo(session.edit_world)
+    drive_to(session, 3.0, 3.0)
+    editor.undo(session.edit_world)
+    assert session.world is walled
+
+
+def test_the_robot_keeps_its_brain_and_the_same_edits_at_the_same_ticks_give_the_same_run() -> None:
+    def run() -> tuple[str, int, int]:
+        session = Session(office(), 3)
+        editor = WorldEditor(session.world)
+        orders = [
+            order(("add", kind, None, ITEMS[kind])) for kind in ("walls", "doors", "people", "boxes", "slow_zones")
+        ]
+        for k in range(60):
+            if k % 10 == 5 and orders:
+                editor.edit(orders.pop(), RADIUS, session.edit_world)
+            if k == 57:
+                editor.undo(session.edit_world)
+            session.tick()
+        return session.state_hash(), session.tick_count, len(session.brain.experience_map)
+
+    first = run()
+    assert first == run()
+    assert first[1:] == (60, first[2])
+    assert first[2] > 1
+
+
+def test_a_person_drawn_onto_the_robot_waits_until_it_is_gone() -> None:
+    session = Session(office(), 3)
+    WorldEditor(session.world).edit(
+        order(("add", "people", None, {"name": "q", "path": [[3.0, 3.0]]})), RADIUS, session.edit_world
+    )
+    assert not session.simulator.actors.walkers.present.any()
+
+
+def test_an_edit_of_an_older_edition_is_refused() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    editor.edit(order(("add", "walls", None, ITEMS["walls"]), edition=1), RADIUS, taken)
+    with pytest.raises(ValueError, match="somebody has changed the office since"):
+        editor.edit(order(("delete", "walls", 4, None), edition=1), RADIUS, taken)
+    assert len(editor.world.walls) == 5
+
+
+def test_what_others_do_to_the_office_is_a_step_of_its_own() -> None:
+    session = Session(office(), 3)
+    editor = WorldEditor(session.world)
+    editor.edit(order(("add", "boxes", None, ITEMS["boxes"])), RADIUS, session.edit_world)
+    session.simulator.remove_box("b")
+    editor.follow(session.simulator.world)
+    assert editor.edition.undo == "box put down or taken away"
+    editor.undo(session.edit_world)
+    assert [box.name for box in session.simulator.world.boxes] == ["b"]
+    assert editor.edition.undo == "box drawn"
+
+
+def test_a_reset_keeps_the_edits_and_another_world_has_none() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    editor.edit(order(("add", "walls", None, ITEMS["walls"])), RADIUS, taken)
+    mine = editor.world
+    editor.begin(mine)
+    assert editor.edition.undo == "wall drawn"
+    editor.follow(edited(mine, order(("add", "boxes", None, ITEMS["boxes"])).steps))
+    editor.begin(mine)  # a reset takes the box away
+    assert editor.world is mine
+    assert (editor.edition.undo, editor.edition.saved) == ("wall drawn", False)
+    editor.begin(room(start=(2.0, 2.0, 0.0)))
+    assert (editor.edition.undo, editor.edition.redo, editor.edition.saved) == ("", "", True)
+
+
+def test_saving_gives_the_world_its_name() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    editor.edit(order(("add", "places", None, ITEMS["places"])), RADIUS, taken)
+    was = editor.world
+    named = World(**{**{f: getattr(was, f) for f in was.__dataclass_fields__}, "name": "mine", "title": "Mine"})
+    editor.named(was, named, taken)
+    assert editor.edition.saved
+    assert taken.world is editor.world is named
+    editor.undo(taken)
+    assert not editor.edition.saved
+    editor.named(was, named, taken)  # it was edited again while it was written
+    assert not editor.edition.saved
+
+
+def test_who_takes_an_edit_back_keeps_the_name() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    first = editor.world
+    editor.edit(order(("add", "places", None, ITEMS["places"])), RADIUS, taken)
+    editor.named(editor.world, replace(editor.world, name="mine", title="Mine"), taken)
+    saved = editor.world
+    editor.undo(taken)
+    assert editor.world == replace(first, name="mine", title="Mine")
+    editor.redo(taken)
+    assert editor.world is saved
+    assert editor.edition.saved
+
+
+def test_what_is_in_no_file_counts_as_unsaved() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    other = room(start=(2.0, 2.0, 0.0))
+    editor.unfiled("room")  # deleted
+    assert not editor.edition.saved
+    editor.filed("room")  # brought back
+    assert editor.edition.saved
+    editor.unfiled("room")
+    editor.begin(replace(other, name="else"))
+    assert editor.edition.saved
+    editor.begin(replace(other, name="room"))
+    assert not editor.edition.saved
+    editor.filed("room")
+    assert not editor.edition.saved  # what came back is another one
+    editor.named(editor.world, editor.world, taken)
+    assert editor.edition.saved
+
+
+def test_undo_reaches_a_long_way_back_but_not_for_ever() -> None:
+    editor, taken = WorldEditor(office()), Taken()
+    for k in range(MOST_UNDOS + 5):
+        order_k = order(
+            ("add" if k == 0 else "change", "places", None if k == 0 else 0, {"name": f"p{k}", "x": 1, "y": 1})
+        )
+        editor.edit(order_k, RADIUS, taken)
+    for _ in range(MOST_UNDOS):
+        editor.undo(taken)
+    assert editor.world.places == (Place("p4", 1.0, 1.0),)
+
+
+def test_a_line_of_the_script_is_added_and_fires_in_its_tick_alone() -> None:
+    """Drawn at 1 s, one line is of the past and one to come: the first waits for a restart."""
+    session = Session(office(), 3)
+    for _ in range(10):
+        session.tick()
+    editor, living = WorldEditor(session.world), lambda: session.simulator.actors
+    dim, dark = {"at_s": 0.5, "do": "daylight", "level": 0.7}, {"at_s": 1.5, "do": "daylight", "level": 0.2}
+    words = editor.edit(order(("add", "script", None, dark), ("add", "script", None, dim)), RADIUS, session.edit_world)
+    assert words == "line of the script added and 1 more change"
+    levels = []
+    for _ in range(10):
+        session.tick()
+        levels.append(living().daylight)
+    assert levels == [1.0] * 4 + [0.2] * 6
+    again = Session(editor.world, 3)
+    levels = []
+    for _ in range(20):
+        again.tick()
+        levels.append(again.simulator.actors.daylight)
+    assert levels == [1.0] * 4 + [0.7] * 10 + [0.2] * 6
+    editor.undo(session.edit_world)  # no line is left that has set it
+    session.tick()
+    assert living().daylight == 1.0

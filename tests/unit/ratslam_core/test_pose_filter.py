@@ -1,0 +1,94 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ratslam_core import Pose2, PoseFilterParams
+from ratslam_core.extensions.pose_filter import LatestLook, PoseFilter
+
+P = PoseFilterParams()
+
+
+def believing(local: Pose2, sigma_m: float) -> PoseFilter:
+    belief = PoseFilter(P)
+    belief.local, belief.sigma_m = local, sigma_m
+    return belief
+
+
+near = st.builds(Pose2, st.floats(-0.6, 0.6), st.floats(-0.6, 0.6), st.floats(-0.7, 0.7))
+sigmas = st.floats(0.001, 0.9)
+
+
+@given(near, sigmas, sigmas)
+def test_a_look_and_odometry_are_weighed_by_their_variances(look: Pose2, own: float, sigma: float) -> None:
+    belief = believing(Pose2(0.0, 0.0, 0.0), own)
+    belief.see(look, sigma)
+    own = max(own, P.least_sigma_m)
+    share = (1 / sigma**2) / (1 / sigma**2 + 1 / own**2)
+    assert belief.local.x == pytest.approx(share * look.x, abs=1e-9)
+    assert belief.local.y == pytest.approx(share * look.y, abs=1e-9)
+    assert belief.local.heading_rad == pytest.approx(share * look.heading_rad, abs=1e-9)
+    assert 1 / belief.sigma_m**2 == pytest.approx(1 / sigma**2 + 1 / own**2, rel=1e-6)
+
+
+def test_a_doubtful_look_moves_the_belief_little() -> None:
+    moved = []
+    for sigma in (0.02, 0.1, 0.3, 1.0):
+        belief = believing(Pose2(0.0, 0.0, 0.0), 0.1)
+        belief.see(Pose2(0.5, 0.0, 0.4), sigma)
+        moved.append(belief.local.x)
+        assert belief.sigma_m < 0.1
+    assert moved == sorted(moved, reverse=True)
+    assert moved[0] > 0.45
+    assert moved[-1] < 0.01
+
+
+@pytest.mark.parametrize(
+    "look", [Pose2(P.snap_m + 0.01, 0.0, 0.0), Pose2(0.0, -1.5, 0.0), Pose2(0.0, 0.0, -P.snap_rad - 0.01)]
+)
+def test_a_look_that_disagrees_altogether_is_believed_at_once(look: Pose2) -> None:
+    belief = believing(Pose2(0.0, 0.0, 0.0), 0.05)
+    belief.see(look, 0.4)
+    assert (belief.local, belief.sigma_m) == (look, 0.4)
+
+
+def test_a_perfect_look_is_taken_at_its_word() -> None:
+    belief = believing(Pose2(0.1, 0.2, 0.3), 0.2)
+    belief.see(Pose2(0.0, 0.0, 0.0), 0.0)
+    assert (belief.local, belief.sigma_m) == (Pose2(0.0, 0.0, 0.0), 0.0)
+
+
+def test_doubt_grows_with_the_way() -> None:
+    belief = believing(Pose2(0.0, 0.0, math.pi / 2), 0.1)
+    belief.move(Pose2(1.0, 0.0, 0.2), 0.03)
+    assert (belief.local.x, belief.local.y) == pytest.approx((0.0, 1.0))
+    assert belief.local.heading_rad == pytest.approx(math.pi / 2 + 0.2)
+    assert belief.sigma_m == pytest.approx(0.13)
+
+
+def test_headings_are_weighed_the_shorter_way_round() -> None:
+    belief = believing(Pose2(0.0, 0.0, math.pi - 0.1), 0.1)
+    belief.see(Pose2(0.0, 0.0, -math.pi + 0.1), 0.1)
+    assert abs(belief.local.heading_rad) == pytest.approx(math.pi)
+
+
+def test_who_was_carried_is_lost_until_it_sees_something_known() -> None:
+    for belief in (PoseFilter(P), LatestLook(P)):
+        belief.forget(100.0)
+        belief.move(Pose2(1.0, 0.0, 0.0), 0.1)
+        assert belief.lost
+        belief.see(Pose2(0.5, 0.0, 0.0), 0.2)
+        assert not belief.lost
+
+
+@given(near, sigmas)
+def test_the_plain_twin_is_where_it_was_seen_last_and_where_the_wheels_brought_it(look: Pose2, sigma: float) -> None:
+    belief = LatestLook(P)
+    belief.move(Pose2(3.0, 1.0, 0.5), 0.1)
+    assert belief.see(look, sigma)
+    assert belief.local == look
+    belief.move(Pose2(0.2, 0.0, 0.1), 0.1)
+    assert belief.local == look.compose(Pose2(0.2, 0.0, 0.1))

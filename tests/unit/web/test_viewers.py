@@ -1,0 +1,103 @@
+"""A viewer for each theme: built when it is asked for, equal in what people have switched on, idle when nobody looks."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from viser import _messages
+from websockets.sync.client import ClientConnection, connect
+
+from tests.fake_snapshots import fake_snapshot
+from tests.patience import until
+from tests.unit.web.doubles import StubEngine
+from tests.unit.web.test_viser_server import PROTOCOL, camera
+from web.latest import Latest
+from web.messages import Snapshot
+from web.viewer import Viewer, Viewers
+from web.viewer.viser_server import SECRET_HEADER
+
+
+class Both:
+    """A dark and a light viewer that run."""
+
+    def __init__(self) -> None:
+        self.latest: Latest[Snapshot] = Latest()
+        self.viewers = Viewers(self.latest, StubEngine().submit)
+        self.viewers.start()
+        self.dark, self.light = self.viewers.of("dark"), self.viewers.of("light")
+
+
+@pytest.fixture(scope="module")
+def both() -> Iterator[Both]:
+    made = Both()
+    yield made
+    made.viewers.stop()
+
+
+def look(viewer: Viewer) -> ClientConnection:
+    """A browser at a viewer; it must be read from or closed."""
+    url, secret = f"ws://127.0.0.1:{viewer.port}/", {SECRET_HEADER: viewer.secret}
+    browser = connect(url, subprotocols=[PROTOCOL], additional_headers=secret, max_size=None, max_queue=None)
+    browser.send(camera())
+    until(viewer.server.get_clients)
+    return browser
+
+
+def told(viewer: Viewer, kind: type[Any], name: str = "") -> list[Any]:
+    """What whoever comes now is told of this kind, of one node or of all."""
+    kept = list(viewer.server._websock_server._broadcast_buffer.message_from_id.values())
+    return [one for one in kept if isinstance(one, kind) and name in ("", getattr(one, "name", ""))]
+
+
+def test_the_second_is_built_when_it_is_asked_for_and_stays(both: Both) -> None:
+    assert both.viewers.of("light") is both.light is not both.dark
+    assert both.viewers.of("dark") is both.dark
+
+
+def test_each_shows_its_own_theme(both: Both) -> None:
+    for viewer, dark in ((both.dark, True), (both.light, False)):
+        (theme,) = told(viewer, _messages.ThemeConfigurationMessage)
+        assert theme.dark_mode is dark
+    skies = [told(viewer, _messages.BackgroundImageMessage)[0].rgb_data for viewer in (both.dark, both.light)]
+    assert skies[0] != skies[1]
+
+
+def test_what_is_switched_off_is_off_at_both(both: Both) -> None:
+    def shown(viewer: Viewer) -> bool:
+        return told(viewer, _messages.SetSceneNodeVisibilityMessage, "/map/occupancy")[-1].visible
+
+    both.latest.put(fake_snapshot(430))
+    with look(both.dark), look(both.light):
+        for on in (False, True):
+            both.viewers.switches.turn("occupancy", on)
+            until(lambda on=on: shown(both.dark) is shown(both.light) is on)
+    until(lambda: not both.dark.server.get_clients() and not both.light.server.get_clients())
+
+
+def test_only_the_one_that_is_looked_at_draws(both: Both) -> None:
+    def arrow(viewer: Viewer) -> list[Any]:
+        return [message.position for message in told(viewer, _messages.SetPositionMessage, "/map/arrow")]
+
+    before = arrow(both.dark)
+    with look(both.light):
+        for tick in range(530, 534):
+            was = arrow(both.light)
+            both.latest.put(fake_snapshot(tick))
+            until(lambda was=was: arrow(both.light) != was)
+    assert arrow(both.dark) == before
+    until(lambda: not both.light.server.get_clients())
+
+
+def test_after_the_end_there_is_none_and_no_thread_is_left() -> None:
+    before = set(threading.enumerate())
+    viewers = Viewers(Latest(), StubEngine().submit)
+    viewers.of("light")
+    viewers.start()
+    viewers.stop()
+    viewers.stop()
+    with pytest.raises(ConnectionError):
+        viewers.of("light")
+    until(lambda: not set(threading.enumerate()) - before)

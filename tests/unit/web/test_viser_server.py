@@ -1,0 +1,168 @@
+"""viser's port: closed to all but the proxy, and nothing that a browser sends is kept."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import msgspec
+import pytest
+import websockets.asyncio.server
+from viser import ViserServer
+from viser.infra import _infra
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+
+from tests.patience import until
+from tests.unit.web.doubles import OURS, PAGE, StubEngine, house
+from web.latest import Latest
+from web.switches import Switches
+from web.viewer import Viewer
+from web.viewer.viser_server import SECRET_HEADER, guarded_server
+
+PROTOCOL: Any = "viser-v1.1.1"
+
+
+@pytest.fixture(scope="module")
+def stage() -> Iterator[Viewer]:
+    made = Viewer(Latest(), StubEngine().submit, Switches())
+    made.start()
+    yield made
+    made.stop()
+
+
+def say(port: int, *lines: str) -> bytes:
+    """What comes back to a request of these lines."""
+    with socket.create_connection(("127.0.0.1", port), timeout=30) as connection:
+        connection.sendall("\r\n".join((*lines, "", "")).encode("latin-1"))
+        parts = []
+        with contextlib.suppress(ConnectionResetError):
+            while part := connection.recv(65536):
+                parts.append(part)
+        return b"".join(parts)
+
+
+UPGRADE = (
+    "Upgrade: websocket",
+    "Connection: Upgrade",
+    "Sec-WebSocket-Version: 13",
+    "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
+    f"Sec-WebSocket-Protocol: {PROTOCOL}",
+)
+
+
+@pytest.mark.parametrize(
+    "origin",
+    ["", "null", "http://evil.example", "http://127.0.0.1:{port}", "http://127.0.0.1:8000", "http://localhost:{port}"],
+)
+@pytest.mark.parametrize("host", ["127.0.0.1:{port}", "127.0.0.1:8000", "evil.example"])
+@pytest.mark.parametrize("upgrade", [(), UPGRADE, tuple(line.lower() for line in UPGRADE)], ids=["page", "ws", "lower"])
+def test_a_raw_socket_gets_neither_page_nor_websocket(stage: Viewer, upgrade, host, origin) -> None:
+    lines = ["GET / HTTP/1.1", f"Host: {host}", *([f"Origin: {origin}"] if origin else []), *upgrade]
+    answer = say(stage.port, *(line.replace("{port}", str(stage.port)) for line in lines))
+    assert answer.startswith(b"HTTP/1.1 403 "), answer[:200]
+    assert len(answer) < 500
+
+
+@pytest.mark.parametrize(
+    "path", ["/index.html", "/../../pyproject.toml", "/%2e%2e/%2e%2e/etc/passwd", "/..\\..\\x", "//etc/passwd"]
+)
+def test_no_path_leads_past_the_secret_and_none_to_a_file(stage: Viewer, path: str) -> None:
+    assert say(stage.port, f"GET {path} HTTP/1.1", "Host: x").startswith(b"HTTP/1.1 403 ")
+    knowing = say(stage.port, f"GET {path} HTTP/1.1", "Host: x", f"{SECRET_HEADER}: {stage.secret}")
+    assert knowing.startswith(b"HTTP/1.1 426 "), knowing[:200]
+
+
+def near_misses(secret: str) -> list[list[str]]:
+    other = "A" if secret[0] != "A" else "B"
+    wrong = ["", "x", secret[:-1], secret + "A", other + secret[1:], secret.swapcase(), "\xff" + secret, f'"{secret}"']
+    return [[text] for text in wrong] + [[secret, secret], [secret, "x"], ["x", secret]]
+
+
+def test_a_near_miss_of_the_secret_is_refused(stage: Viewer) -> None:
+    for given in near_misses(stage.secret):
+        lines = [f"{SECRET_HEADER}: {text}" for text in given]
+        answer = say(stage.port, "GET / HTTP/1.1", "Host: x", *UPGRADE, *lines)
+        assert answer.startswith(b"HTTP/1.1 403 "), (given, answer[:200])
+
+
+def test_who_knows_the_secret_enters_and_each_server_has_its_own(stage: Viewer) -> None:
+    url = f"ws://127.0.0.1:{stage.port}/"
+    with connect(url, subprotocols=[PROTOCOL], additional_headers={SECRET_HEADER: stage.secret}) as talk:
+        assert talk.recv(timeout=30)
+    other, secret = guarded_server()
+    other.stop()
+    assert secret != stage.secret
+    assert len(stage.secret) >= 32 * 4 / 3
+    with (
+        pytest.raises(InvalidStatus),
+        connect(url, subprotocols=[PROTOCOL], additional_headers={SECRET_HEADER: secret}),
+    ):
+        pass
+
+
+def test_a_viser_that_cannot_be_guarded_is_not_let_loose(monkeypatch) -> None:
+    """One that has taken hold of its server's maker before: the check never gets in."""
+    made: list[ViserServer] = []
+    init = ViserServer.__init__
+
+    def noted(self: ViserServer, *arguments: Any, **options: Any) -> None:
+        init(self, *arguments, **options)
+        made.append(self)
+
+    maker = SimpleNamespace(server=SimpleNamespace(serve=websockets.asyncio.server.serve))
+    monkeypatch.setattr(_infra, "websockets", SimpleNamespace(asyncio=maker))
+    monkeypatch.setattr(ViserServer, "__init__", noted)
+    with pytest.raises(ValueError, match=r"viser>=1.1,<1.2"):
+        guarded_server()
+    with pytest.raises(OSError):
+        socket.create_connection(("127.0.0.1", made[0].get_port()), timeout=30).close()
+
+
+# ---------------------------------------------------------------- what a browser sends is not kept
+
+
+def message(kind: str, **fields: object) -> bytes:
+    return msgspec.msgpack.encode({"type": kind, **fields})
+
+
+def camera(height: float = 9.0) -> bytes:
+    place: dict[str, object] = {
+        "position": (0.0, 0.0, height),
+        "look_at": (0.0, 0.0, 0.0),
+        "up_direction": (0.0, 0.0, 1.0),
+    }
+    lens = {"fov": 1.0, "near": 0.1, "far": 900.0, "image_height": 80, "image_width": 120}
+    return message("ViewerCameraMessage", wxyz=(1.0, 0.0, 0.0, 0.0), **place, **lens)
+
+
+def test_nothing_that_is_uploaded_through_the_proxy_is_kept(stage: Viewer) -> None:
+    gui, buffer = stage.server.gui, stage.server._websock_server._broadcast_buffer
+    box = "a form that somebody makes up"
+    with house(stage=stage) as server:  # type: ignore[arg-type]
+        with server.client.websocket_connect(f"/viser/ws/{PAGE}", subprotocols=[PROTOCOL], headers=OURS) as browser:
+            browser.send_bytes(camera())
+            until(stage.server.get_clients)
+            kept = len(buffer.message_from_id)
+            upload = {"source_component_uuid": box, "transfer_uuid": "one"}
+            start = {"filename": "f", "mime_type": "m", "part_count": 1000, "size_bytes": 10**9}
+            browser.send_bytes(message("FileTransferStartUpload", **upload, **start))
+            for part in range(200):
+                browser.send_bytes(message("FileTransferPart", **upload, part_index=part, content=b"p" * 50_000))
+                browser.send_bytes(message("GuiFormDirtyMessage", uuid=f"form {part}"))
+                browser.send_bytes(message("ShareUrlRequest"))
+            browser.send_bytes(message("GuiUpdateMessage", uuid=box, updates={"value": True}))
+            browser.send_bytes(camera(7.0))
+            (client,) = stage.server.get_clients().values()
+            until(lambda: client.camera.position[2] == 7.0)  # they are taken in order: all of the above has been by now
+            states = (
+                gui._current_file_upload_states,
+                *(c.gui._current_file_upload_states for c in stage.server.get_clients().values()),
+            )
+            assert states == ({}, {})
+            assert len(buffer.message_from_id) <= kept + 1
+            assert stage.server._share_tunnel is None
+        until(lambda: not stage.server.get_clients())

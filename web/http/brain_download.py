@@ -1,0 +1,78 @@
+"""The brain on its way to whoever asks for it: made once, by one thread, for all that ask meanwhile; one in memory at a time."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+
+from starlette.responses import Response
+from starlette.types import Receive, Scope, Send
+
+from disk import encode
+from ratslam_core import RatSlam
+from web.http.asking import NoAnswer, Submit, told
+from web.http.brain_files import packed
+from web.http.commands import Malformed
+from web.messages import ReadBrain
+
+FRESH_S = 10.0  # so old may be what is sent to one who asks now
+SENT_WITHIN_S = 300.0  # who does not take it keeps nobody else from it for longer
+COPY_TIMEOUT_S = 10.0  # the engine copies between two ticks
+
+
+class BrainDownload:
+    """For one event loop."""
+
+    def __init__(self, submit: Submit) -> None:
+        self._submit = submit
+        self._file: asyncio.Task[bytes] | None = None
+        self._asked_s = 0.0
+        self._wanted = 0  # by so many
+
+    async def answer(self, headers: dict[str, str]) -> Response:
+        """The file as an answer. Raises NoAnswer when the engine gives none, or an older one is still being sent."""
+        if self._file is not None and time.monotonic() - self._asked_s > FRESH_S:
+            raise NoAnswer.of(429, "the brain is being sent to somebody; wait until it is there and ask again")
+        if self._file is None:
+            self._file, self._asked_s = asyncio.create_task(self._make()), time.monotonic()
+        self._wanted += 1
+        try:
+            data = await asyncio.shield(self._file)
+        except BaseException:
+            self.done()
+            raise
+        return _Sent(self, data, headers)
+
+    def done(self) -> None:
+        """One less wants it; the last one lets it go."""
+        self._wanted -= 1
+        if self._wanted == 0:
+            self._file = None
+
+    async def _make(self) -> bytes:
+        try:
+            copy = (await told(self._submit, ReadBrain(), COPY_TIMEOUT_S)).result
+        except Malformed as error:
+            raise NoAnswer.of(503, str(error)) from None
+        assert isinstance(copy, RatSlam)
+        try:
+            return await asyncio.to_thread(_packed, copy)
+        except ValueError as error:
+            raise NoAnswer.of(507, f"this brain cannot be sent: {error}") from None
+
+
+class _Sent(Response):
+    def __init__(self, download: BrainDownload, data: bytes, headers: dict[str, str]) -> None:
+        super().__init__(data, 200, headers, "application/octet-stream")
+        self._download = download
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        try:
+            async with asyncio.timeout(SENT_WITHIN_S):
+                await super().__call__(scope, receive, send)
+        finally:
+            self._download.done()
+
+
+def _packed(copy: RatSlam) -> bytes:
+    return packed(encode(copy))

@@ -1,0 +1,112 @@
+"""The brain of an earlier program, offered to whoever opens the page: woken up, or put aside for good."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from fastapi import FastAPI, Request
+from fastapi.responses import Response
+from pydantic import BaseModel
+
+from ratslam_core import RatSlam
+from sim2d import World, load_world
+from web.http.asking import Submit, told
+from web.http.bodies import ERRORS, Body, checked_body, json_response, takes
+from web.http.commands import Malformed, wrong
+from web.http.security import Limits
+from web.http.state import to_json
+from web.latest import Latest
+from web.messages import ReadFiled, Snapshot, UseBrain
+
+WAKE_TIMEOUT_S = 60.0  # in a world of 10,000 walls
+
+
+@dataclass(frozen=True, slots=True)
+class Offered:
+    """Of what it is. `read` gives the brain, or raises ValueError with a sentence that names the file; it waits for the disk."""
+
+    world: str
+    seed: int
+    time_s: float  # simulated
+    experiences: int
+    kept_at: float  # seconds since 1970
+    read: Callable[[], RatSlam]
+
+
+class AnswerOffer(Body):
+    """`use`: begin anew with this brain, in its world and with its seed. Else it is not offered again."""
+
+    use: bool
+
+
+class KeptBrain(BaseModel):
+    """A brain that an earlier program kept."""
+
+    world: str
+    title: str
+    seed: int
+    time_s: float
+    experiences: int
+    kept_at: float
+
+
+class Answered(BaseModel):
+    used: bool
+
+
+class KeptOffer:
+    """One brain, or none. Whoever answers first answers for all."""
+
+    def __init__(self, offered: Offered | None, latest: Latest[Snapshot], submit: Submit) -> None:
+        self._offered, self._latest, self._submit = offered, latest, submit
+        self._limits, self._answering = Limits(), asyncio.Lock()
+
+    def told(self) -> bytes:
+        """What it is of as JSON, or null."""
+        kept = self._offered
+        if kept is None:
+            return b"null"
+        _, snapshot = self._latest.get()
+        title = dict(snapshot.worlds if snapshot is not None else ()).get(kept.world, kept.world)
+        return to_json(KeptBrain(
+            world=kept.world, title=title, seed=kept.seed, time_s=kept.time_s, experiences=kept.experiences,
+            kept_at=kept.kept_at,
+        ).model_dump())  # fmt: skip
+
+    async def take(self, request: Request) -> bytes:
+        use = (await checked_body(request, AnswerOffer, self._limits)).use
+        async with self._answering:
+            if self._offered is None:
+                raise Malformed([wrong("use", use, "no brain is offered, or somebody has answered already")])
+            if use:
+                await self._wake(self._offered)
+            self._offered = None
+        return to_json({"used": use})
+
+    async def _wake(self, kept: Offered) -> None:
+        """A new run with it, or Malformed and all is as before."""
+        world = (await told(self._submit, ReadFiled(kept.world))).result
+        try:
+            if not isinstance(world, World):
+                world = await asyncio.to_thread(load_world, kept.world)
+            brain = await asyncio.to_thread(kept.read)
+        except ValueError as error:
+            raise Malformed([wrong("use", True, f"this brain cannot be woken up: {error}")]) from None
+        await told(self._submit, UseBrain(brain, world, kept.seed), WAKE_TIMEOUT_S)
+
+
+def add_kept_offer(app: FastAPI, offered: Offered | None, latest: Latest[Snapshot], submit: Submit) -> None:
+    offer = KeptOffer(offered, latest, submit)
+
+    @app.get("/api/brain/kept", tags=["brain"], responses={200: {"model": KeptBrain | None}})
+    async def kept() -> Response:
+        """The brain that an earlier program kept last; null when there is none, or somebody has answered the offer."""
+        return json_response(offer.told())
+
+    @app.post("/api/brain/kept", tags=["brain"], openapi_extra=takes(AnswerOffer),
+              responses={200: {"model": Answered}, **ERRORS})  # fmt: skip
+    async def answer(request: Request) -> Response:
+        """Begin anew with the kept brain in its world and seed, or put it aside: it is not offered again."""
+        return json_response(await offer.take(request))

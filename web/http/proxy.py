@@ -1,0 +1,259 @@
+"""viser's client and websocket through our own port, to the viewer of each page's theme, and which of its clients is whose.
+
+viser listens on loopback on a port of its own and lets in who knows its secret: everything reaches it through here, after the
+guard. Its client is a single page, so that one path is all that is served of it: there is nothing to traverse.
+Every page brings an unguessable id; viser numbers its clients when their first camera message arrives, so that message
+is let through one page at a time and the number that appears then is that page's.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import gzip
+import hashlib
+import re
+from collections.abc import Awaitable, Callable
+from typing import Any, Protocol
+
+import websockets
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
+from websockets.asyncio.client import ClientConnection
+
+from web.switches import Switches
+from web.themes import Theme, Themes
+from web.viewer.camera_views import Camera
+from web.viewer.viser_server import SECRET_HEADER, client_page
+
+VIEWS = ("all", "office", "pose", "map")
+PROTOCOL = re.compile(r"viser-v[\w.+-]{1,32}", re.ASCII)  # the client's version; viser refuses another than its own
+PAGE_ID = re.compile(r"[A-Za-z0-9_-]{22,64}")
+SEND_TIMEOUT_S = 10.0
+CLOSE_TIMEOUT_S = 1.0
+PAIRING_S = 2.0
+MOST_CLIENTS = 32
+
+
+class ViewerLike(Protocol):
+    """What the page needs from a 3-D viewer."""
+
+    on_connect: Callable[[int], None] | None  # set by us; called with viser's client number when a browser is there
+    on_complaint: Callable[[int, str], None] | None  # set by us; called with that number and why something was refused
+
+    @property
+    def port(self) -> int: ...
+    @property
+    def secret(self) -> str: ...  # what viser's port asks for
+    def fly(self, client_id: int, view: str, at_once: bool = False, turned: Camera | None = None) -> None: ...
+    def turned(self, client_id: int) -> Camera | None: ...  # where somebody has turned this camera to
+
+
+class ViewersLike(Protocol):
+    """A viewer for each theme."""
+
+    def of(self, theme: Theme) -> ViewerLike: ...  # may take a second; raises ConnectionError after `stop`
+    def start(self) -> None: ...
+    def stop(self) -> None: ...
+    @property
+    def switches(self) -> Switches: ...  # for all who look
+
+
+class Cameras:
+    """Which viser client is whose, the view each page asked for last, and where it had turned its camera when it left."""
+
+    def __init__(self) -> None:
+        self._one_at_a_time = asyncio.Lock()
+        self._arrival: tuple[ViewerLike, asyncio.Future[int]] | None = None
+        self._overdue: dict[str, ViewerLike] = {}  # pages whose message got no number in time
+        self._client_of: dict[str, tuple[ViewerLike, int]] = {}
+        self._wanted: dict[str, str] = {}
+        self._turned: dict[str, Camera] = {}
+        self.on_notice: Callable[[str, str], None] | None = None  # called with a page and what it should be told
+
+    def listen(self, viewer: ViewerLike) -> None:
+        """Hear of a viewer's new clients and of refusals (in other threads) from now on, in the running loop."""
+        loop = asyncio.get_running_loop()
+        viewer.on_connect = lambda client_id: _call(loop, self._arrived, viewer, client_id)
+        viewer.on_complaint = lambda client_id, text: _call(loop, self._complained, viewer, client_id, text)
+
+    async def show(self, page: str, view: str) -> None:
+        """Fly this page's camera; remembered when its viewer is not there yet."""
+        self._turned.pop(page, None)
+        _remember(self._wanted, page, view)
+        if page in self._client_of:
+            viewer, client_id = self._client_of[page]
+            await asyncio.to_thread(viewer.fly, client_id, view)
+
+    async def pair(self, page: str, viewer: ViewerLike, pass_on: Callable[[], Awaitable[None]]) -> bool:
+        """Let one message of this page through (`pass_on`); True when viser numbered its client on it."""
+        async with self._one_at_a_time:
+            number: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+            self._arrival = viewer, number
+            self._overdue.pop(page, None)
+            try:
+                await pass_on()
+                async with asyncio.timeout(PAIRING_S):
+                    client_id = await number
+                self._client_of[page] = viewer, client_id
+            except TimeoutError:
+                self._overdue[page] = viewer
+                return False
+            finally:
+                self._arrival = None
+        if page in self._wanted:  # it comes to this viewer from another, or comes back: no flight
+            turned = self._turned.pop(page, None)
+            await asyncio.to_thread(viewer.fly, client_id, self._wanted[page], at_once=True, turned=turned)
+        return True
+
+    def paired(self, page: str) -> bool:
+        return page in self._client_of
+
+    def unpair(self, page: str, viewer: ViewerLike) -> None:
+        """This page has left this viewer; it may be at another by now."""
+        if page in self._client_of and self._client_of[page][0] is viewer:
+            turned = viewer.turned(self._client_of.pop(page)[1])
+            if turned is not None:
+                _remember(self._turned, page, turned)
+        if self._overdue.get(page) is viewer:
+            del self._overdue[page]
+
+    def _arrived(self, viewer: ViewerLike, client_id: int) -> None:
+        late = [page for page, its in self._overdue.items() if its is viewer]
+        if self._arrival is not None and self._arrival[0] is viewer and not self._arrival[1].done():
+            self._arrival[1].set_result(client_id)
+        elif len(late) == 1:  # and there is no doubt whose it is
+            del self._overdue[late[0]]
+            self._client_of[late[0]] = viewer, client_id
+
+    def _complained(self, viewer: ViewerLike, client_id: int, text: str) -> None:
+        for page, (its, number) in self._client_of.items():
+            if its is viewer and number == client_id and self.on_notice is not None:
+                self.on_notice(page, text)
+
+
+def _remember(kept: dict[str, Any], page: str, what: object) -> None:
+    kept.pop(page, None)
+    kept[page] = what
+    if len(kept) > 2 * MOST_CLIENTS:
+        del kept[next(iter(kept))]  # of the page that has been quiet for longest
+
+
+class ViserProxy:
+    """The two ways to viser: its page and its websocket."""
+
+    def __init__(self, viewers: ViewersLike, cameras: Cameras, themes: Themes) -> None:
+        self._viewers, self._cameras, self._themes = viewers, cameras, themes
+        self._client_page: tuple[bytes, bytes, str] | None = None  # as it is, gzipped, its ETag
+        self._open = 0
+
+    @property
+    def full(self) -> bool:
+        return self._open >= MOST_CLIENTS
+
+    async def page(self, request: Request) -> Response:
+        """viser's client, read once."""
+        if self._client_page is None:
+            body = await asyncio.to_thread(client_page)
+            tag = f'"{hashlib.sha256(body).hexdigest()[:24]}"'
+            self._client_page = body, await asyncio.to_thread(gzip.compress, body), tag
+        body, packed, tag = self._client_page
+        headers = {"ETag": tag, "Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
+        if request.headers.get("if-none-match") == tag:
+            return Response(status_code=304, headers=headers)
+        if "gzip" in request.headers.get("accept-encoding", ""):
+            return Response(packed, headers={**headers, "Content-Encoding": "gzip"}, media_type="text/html")
+        return Response(body, headers=headers, media_type="text/html")
+
+    async def relay(self, browser: WebSocket, page: str) -> None:
+        """Both directions until one side ends or the page wants the other theme: then its browser comes again at once.
+
+        The guard has checked Host and Origin before this.
+        """
+        self._open += 1
+        try:
+            with self._themes.shown(page) as (theme, turned):
+                viewer = await asyncio.to_thread(self._viewers.of, theme)
+                await self._relay(browser, page, viewer, turned)
+        except (
+            OSError,
+            websockets.InvalidHandshake,
+            WebSocketDisconnect,
+        ):  # viser is gone or going: the browser tries again
+            with contextlib.suppress(WebSocketDisconnect):  # unless it has gone, too
+                await browser.close(1013)
+        finally:
+            self._open -= 1
+            await close_quietly(browser)
+
+    async def _relay(self, browser: WebSocket, page: str, viewer: ViewerLike, turned: asyncio.Event) -> None:
+        self._cameras.listen(viewer)
+        async with websockets.connect(
+            f"ws://127.0.0.1:{viewer.port}/",
+            subprotocols=spoken(browser),
+            additional_headers={SECRET_HEADER: viewer.secret},
+            compression=None,
+            max_size=None,
+            max_queue=1,  # what a browser does not take waits in viser, where the newest wins
+            ping_interval=None,
+            close_timeout=CLOSE_TIMEOUT_S,
+            proxy=None,
+        ) as viser:
+            await browser.accept(subprotocol=viser.subprotocol)
+            tasks = {
+                asyncio.create_task(self._to_viser(browser, viser, page, viewer)),
+                asyncio.create_task(_to_browser(viser, browser)),
+                asyncio.create_task(turned.wait()),
+            }
+            try:
+                await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            finally:
+                await end_all(tasks)
+                self._cameras.unpair(page, viewer)
+
+    async def _to_viser(self, browser: WebSocket, viser: ClientConnection, page: str, viewer: ViewerLike) -> None:
+        while True:
+            try:
+                message = await browser.receive_bytes()
+            except (WebSocketDisconnect, KeyError):  # KeyError: text, which viser's client never sends
+                return
+            if self._cameras.paired(page):
+                await viser.send(message)
+            else:
+                await self._cameras.pair(page, viewer, lambda data=message: viser.send(data))
+
+
+def spoken(browser: WebSocket) -> list[websockets.Subprotocol]:
+    """Those of the subprotocols a browser offers that viser may understand."""
+    return [websockets.Subprotocol(name) for name in browser.scope["subprotocols"] if PROTOCOL.fullmatch(name)]
+
+
+async def _to_browser(viser: ClientConnection, browser: WebSocket) -> None:
+    async for message in viser:
+        data = message if isinstance(message, bytes) else message.encode()
+        async with asyncio.timeout(SEND_TIMEOUT_S):  # not wait_for, which may swallow a cancellation
+            await browser.send_bytes(data)
+
+
+async def end_all(tasks: set[asyncio.Task[Any]]) -> None:
+    """Cancel these tasks and see them end; what they raised concerned a browser that is gone."""
+    for task in tasks:
+        task.cancel()
+    await asyncio.wait(tasks)
+    for task in tasks:
+        if not task.cancelled():
+            task.exception()
+
+
+async def close_quietly(socket: WebSocket, code: int = 1000) -> None:
+    """Say goodbye to a browser that is still there, without waiting for one that takes nothing."""
+    if socket.client_state is WebSocketState.CONNECTED:
+        with contextlib.suppress(Exception):
+            async with asyncio.timeout(CLOSE_TIMEOUT_S):
+                await socket.close(code)
+
+
+def _call(loop: asyncio.AbstractEventLoop, function: Callable[..., None], *arguments: object) -> None:
+    if not loop.is_closed():
+        loop.call_soon_threadsafe(function, *arguments)

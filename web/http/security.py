@@ -1,0 +1,182 @@
+"""Who may talk to the server: exact Host and Origin, JSON only, bounded bodies, and the headers that bind the browser.
+
+A local server is reachable by every page its user has open (DNS rebinding, cross-site websockets), so the check is pure
+ASGI: it runs before a websocket is accepted, which ordinary HTTP middleware does not. The rules:
+
+- Host must be one of ours with our port, once. Missing or repeated: 400. Anything else: 403.
+- Origin, where there is one, must be "http://" + that Host. A websocket must have one (browsers always send it, so
+  whoever leaves it out is a program and can add it); other requests may come without, as curl's do.
+- What costs much, a brain, a whole map or a world, is not read for another site either (Sec-Fetch-Site).
+- A request that is neither GET nor HEAD must not be cross-site (Sec-Fetch-Site) and must carry JSON of at most 64 KiB,
+  24 MiB with plans; a brain that is uploaded is application/octet-stream (no form can send that either) of at most 256 MiB.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from web.http.commands import Declined, problem, wrong
+
+MAX_BODY_BYTES = 64 * 1024
+BRAIN_PATH, MAX_BRAIN_BYTES = "/api/brain", 256 * 1024 * 1024
+PLAN_PATH, MAX_PLAN_BYTES = "/api/worlds/open", 24 * 1024 * 1024  # a picture of 16 MB in base64
+COSTLY_PATHS = (BRAIN_PATH, "/api/state", "/api/experience/", "/api/world")
+HOST_NAMES = ("127.0.0.1", "localhost", "[::1]")
+
+PAGE_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self' ws://{host}; "
+    "frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'"
+)
+# viser's client is one page that unpacks its own code and style with WebAssembly, whose glue makes functions out of
+# text, and runs its socket in a blob worker. Nothing that a person types ever becomes part of it.
+VISER_POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval' blob:; style-src 'unsafe-inline'; "
+    "img-src 'self' data: blob:; font-src data:; connect-src 'self' data: blob: ws://{host}; worker-src blob: data:; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'self'"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    status: int
+    reason: str
+
+
+class Guard:
+    """ASGI middleware in front of everything; see the module's rules."""
+
+    def __init__(self, app: ASGIApp, port: int) -> None:
+        self._app = app
+        self._hosts = own_hosts(port)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        refusal = refusal_of(scope, self._hosts)
+        if refusal is not None:
+            await _refuse(scope, receive, send, refusal)
+        elif scope["type"] == "websocket":
+            await self._app(scope, receive, send)
+        else:
+            await self._http(scope, receive, send)
+
+    async def _http(self, scope: Scope, receive: Receive, send: Send) -> None:
+        host = Headers(scope=scope)["host"]
+        policy = VISER_POLICY if scope["path"].startswith("/viser") else PAGE_POLICY
+
+        async def send_with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                _bind_browser(MutableHeaders(scope=message), policy.format(host=host))
+            await send(message)
+
+        await self._app(scope, receive, send_with_headers)
+
+
+def own_hosts(port: int) -> frozenset[str]:
+    """Every spelling of our own address in a Host header; port 80 is left out by browsers."""
+    hosts = {f"{name}:{port}" for name in HOST_NAMES}
+    return frozenset(hosts | set(HOST_NAMES) if port == 80 else hosts)
+
+
+def refusal_of(scope: Scope, hosts: frozenset[str]) -> Refusal | None:
+    """Why this request may not enter, or None."""
+    headers = Headers(scope=scope)
+    host, origin = headers.getlist("host"), headers.getlist("origin")
+    if len(host) != 1 or len(origin) > 1:
+        return Refusal(400, "a request needs one Host header and at most one Origin header")
+    if host[0] not in hosts:
+        return Refusal(403, f"this server answers to {', '.join(sorted(hosts))} only; open it by one of these names")
+    if origin and origin[0] != f"http://{host[0]}":
+        return Refusal(403, f"requests from another origin are refused; the right one is http://{host[0]}")
+    if scope["type"] == "websocket":
+        return None if origin else Refusal(403, f"a websocket needs the header Origin: http://{host[0]}")
+    if scope["method"] in ("GET", "HEAD"):
+        costly = scope["path"].startswith(COSTLY_PATHS) and _from_elsewhere(headers)
+        return Refusal(403, "another site may not have this computed") if costly else None
+    return _refusal_of_change(headers, scope["path"])
+
+
+def _from_elsewhere(headers: Mapping[str, str]) -> bool:
+    return headers.get("sec-fetch-site", "none") not in ("same-origin", "none")
+
+
+def _refusal_of_change(headers: Mapping[str, str], path: str) -> Refusal | None:
+    if _from_elsewhere(headers):
+        return Refusal(403, "changes from another site are refused")
+    brain = path == BRAIN_PATH
+    kind, most = ("application/octet-stream", MAX_BRAIN_BYTES) if brain else ("application/json", MAX_BODY_BYTES)
+    most = MAX_PLAN_BYTES if path == PLAN_PATH else most
+    if headers.get("content-type", "").partition(";")[0].strip().lower() != kind:
+        what = "a brain" if brain else "a JSON body"
+        return Refusal(415, f"a change needs {what} with the header Content-Type: {kind}")
+    length = headers.get("content-length", "0")
+    if not (length.isascii() and length.isdigit()):
+        return Refusal(400, "Content-Length must be a whole number")
+    if len(length) > 9 or int(length) > most:
+        return Refusal(413, f"a body may have at most {most} bytes")
+    return None
+
+
+async def _refuse(scope: Scope, receive: Receive, send: Send, refusal: Refusal) -> None:
+    response = Response(problem(refusal.reason), status_code=refusal.status, media_type="application/json")
+    _bind_browser(response.headers, "default-src 'none'; frame-ancestors 'none'")
+    if scope["type"] == "websocket" and "websocket.http.response" not in scope.get("extensions", {}):
+        await send({"type": "websocket.close", "code": 1008, "reason": refusal.reason[:120]})
+    else:  # starlette turns this into the websocket's denial response
+        await response(scope, receive, send)
+
+
+def _bind_browser(headers: MutableHeaders, policy: str) -> None:
+    headers["Content-Security-Policy"] = policy
+    headers["X-Content-Type-Options"] = "nosniff"
+    headers["Referrer-Policy"] = "no-referrer"
+    headers["X-Frame-Options"] = "SAMEORIGIN"
+    headers["Cross-Origin-Opener-Policy"] = "same-origin"
+    headers["Cross-Origin-Resource-Policy"] = "same-origin"
+    headers["Permissions-Policy"] = "camera=(), microphone=(), geolocation=(), payment=(), usb=()"
+
+
+class Bucket:
+    """A token bucket: `rate_hz` a second on average, up to one second's worth at once."""
+
+    def __init__(self, rate_hz: float) -> None:
+        self._rate_hz = rate_hz
+        self._tokens = rate_hz
+        self._at_s = time.monotonic()
+
+    def take(self) -> bool:
+        """True when one more is within the limit."""
+        now_s = time.monotonic()
+        self._tokens = min(self._rate_hz, self._tokens + (now_s - self._at_s) * self._rate_hz)
+        self._at_s = now_s
+        if self._tokens < 1.0:
+            return False
+        self._tokens -= 1.0
+        return True
+
+
+class Limits:
+    """One sender's limits: drive 60 a second, all other commands 10 a second."""
+
+    def __init__(self) -> None:
+        self._drive = Bucket(60.0)
+        self._other = Bucket(10.0)
+
+    def refusal(self, kind: str) -> str | None:
+        """Why a command of this type may not go on now, or None."""
+        if kind == "drive":
+            return None if self._drive.take() else "at most 60 drive commands a second; send them less often"
+        return None if self._other.take() else "at most 10 commands a second; wait a moment and send it again"
+
+    def pass_on(self, kind: str) -> None:
+        """Raises Declined when a command of this type may not go on now."""
+        refusal = self.refusal(kind)
+        if refusal is not None:
+            raise Declined([wrong("type", kind, refusal)], 429)

@@ -1,0 +1,211 @@
+"""A snapshot as JSON: the contract of `/api/state` word for word, and what the page itself needs beside it.
+
+Numbers that are not finite become null; the speed "as fast as possible" (infinite) becomes 0, as in `set_speed`.
+Every text is computed once per snapshot, whoever asks.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import orjson
+
+from web.messages import (
+    CellReport,
+    Event,
+    ExperienceReport,
+    Goal,
+    LivingLayer,
+    MapLayer,
+    OfficeEdition,
+    Pose,
+    Report,
+    Snapshot,
+    TickWalk,
+    ViewReport,
+)
+
+_OPTIONS = orjson.OPT_SERIALIZE_NUMPY
+
+
+def state(snapshot: Snapshot) -> dict[str, Any]:
+    """The fields of the contract, without the map."""
+    return {
+        "tick": snapshot.tick,
+        "time_s": snapshot.time_s,
+        "mode": snapshot.mode,
+        "running": snapshot.running,
+        "speed": snapshot.speed if math.isfinite(snapshot.speed) else 0,
+        "world": snapshot.world.name,
+        "seed": snapshot.seed,
+        "robot": _pose(snapshot.truth),
+        "estimate": _pose(snapshot.estimate),
+        "pose_cells": {
+            "shape": snapshot.pose_cells.shape,
+            "packets": [
+                {"x": packet.x, "y": packet.y, "heading_rad": packet.heading_rad, "mass": packet.mass}
+                for packet in snapshot.pose_cells.packets
+            ],
+        },
+        "views": snapshot.views,
+        "experiences": snapshot.experiences,
+        "links": snapshot.links,
+        "relocalisations": snapshot.relocalisations,
+        "goal": None if snapshot.goal is None else _goal(snapshot.goal),
+        "error_m": {"map": snapshot.error_map_m, "odometry": snapshot.error_odometry_m},
+        "living": None if snapshot.living is None else _living(snapshot.living),
+    }
+
+
+def map_fields(layer: MapLayer, turn_rad: float) -> dict[str, Any]:
+    """The map's nodes: ids and places (map frame, metres) row by row, and the turn in which the page shows them."""
+    return {"ids": layer.ids, "xy": layer.xy, "turn_rad": turn_rad}
+
+
+def page_fields(snapshot: Snapshot) -> dict[str, Any]:
+    """What the header and the timeline show beyond the contract. The map's size lets a page notice a new one."""
+    return {
+        "run": snapshot.run,
+        "doing": snapshot.doing,
+        "lost": snapshot.lost,
+        "fault": snapshot.fault,
+        "real_time_factor": snapshot.real_time_factor,
+        "title": snapshot.world.title,
+        "worlds": snapshot.worlds,
+        "places": snapshot.world.places,
+        "office": None if snapshot.office is None else office_fields(snapshot.office),
+        "inspected": None if snapshot.inspected is None else _inspected(snapshot.inspected),
+        "walk": None if snapshot.walk is None else _walk(snapshot.walk),
+        "moving": None if snapshot.living is None else _moving(snapshot.living),
+    }
+
+
+def office_fields(office: OfficeEdition) -> dict[str, Any]:
+    return {"edition": office.number, "undo": office.undo, "redo": office.redo, "saved": office.saved}
+
+
+def _inspected(report: Report) -> str:
+    match report:
+        case ExperienceReport():
+            return f"experience #{report.id}"
+        case ViewReport():
+            return f"view #{report.id}"
+        case CellReport():
+            return f"pose cells at {report.x}, {report.y}"
+
+
+def _walk(walk: TickWalk) -> dict[str, Any]:
+    stage = walk.stages[walk.at]
+    return {"at": walk.at + 1, "of": len(walk.stages), "title": stage.title, "words": stage.words}
+
+
+def event_fields(event: Event) -> dict[str, Any]:
+    return {"number": event.number, "time_s": event.time_s, "kind": event.kind, "text": event.text}
+
+
+def experience_fields(report: ExperienceReport) -> dict[str, Any]:
+    """`/api/experience/{id}`. Its view's strongest links to pose cells as rows theta', y', x' with their strengths."""
+    x, y, theta = report.cell
+    return {
+        "id": report.id,
+        "active": report.active,
+        "energy": report.energy,
+        "pose_cells": {"x": x, "y": y, "theta": theta},
+        "zone": {"xy": report.zone_xy, "theta": report.zone_theta},
+        "map": _pose(report.pose),
+        "view": report.view,
+        "picture": report.picture,
+        "links": [
+            {
+                "from": link.start,
+                "to": link.end,
+                "distance_m": link.distance_m,
+                "bearing_rad": link.bearing_rad,
+                "facing_rad": link.facing_rad,
+                "time_s": link.time_s,
+                "behaviour": link.behaviour,
+                "passages": link.passages,
+                "trials": link.trials,
+                "confidence": link.confidence,
+            }
+            for link in report.links
+        ],
+        "view_links": {
+            "count": report.hebbian.count,
+            "cells": report.hebbian.cells,
+            "strength": report.hebbian.strength,
+        },
+        "first_s": report.times.first_s,
+        "last_s": report.times.last_s,
+        "visits": report.times.visits,
+    }
+
+
+def to_json(document: object) -> bytes:
+    """Compact JSON; NaN and infinities become null."""
+    return orjson.dumps(document, option=_OPTIONS)
+
+
+class StateText:
+    """The newest snapshot's texts, each made at most once."""
+
+    def __init__(self) -> None:
+        self._snapshot: Snapshot | None = None
+        self._texts: dict[str, bytes] = {}
+        self._shown: tuple[MapLayer, float] | None = None
+        self._map: bytes = b""
+
+    def light(self, snapshot: Snapshot) -> bytes:
+        """`/api/state`."""
+        return self._once(snapshot, "light")
+
+    def full(self, snapshot: Snapshot) -> bytes:
+        """`/api/state?map=1`."""
+        shown = (snapshot.map, snapshot.map_turn_rad)
+        if self._shown is None or self._shown[0] is not shown[0] or self._shown[1] != shown[1]:
+            self._map, self._shown = to_json(map_fields(*shown)), shown
+        return self.light(snapshot)[:-1] + b',"map":' + self._map + b"}"
+
+    def page(self, snapshot: Snapshot) -> bytes:
+        """What the page needs beside the contract."""
+        return self._once(snapshot, "page")
+
+    def _once(self, snapshot: Snapshot, kind: str) -> bytes:
+        if snapshot is not self._snapshot:
+            self._snapshot, self._texts = snapshot, {}
+        if kind not in self._texts:
+            self._texts[kind] = to_json(state(snapshot) if kind == "light" else page_fields(snapshot))
+        return self._texts[kind]
+
+
+def _pose(pose: Pose) -> dict[str, float]:
+    return {"x": pose.x, "y": pose.y, "heading_rad": pose.heading_rad}
+
+
+def _living(layer: LivingLayer) -> dict[str, Any]:
+    """Doors from 0 (shut) to 1, lamps that shine, how many people and boxes are there, daylight (1 = as painted)."""
+    return {
+        "doors": dict(zip(layer.door_names, layer.door_opening.tolist(), strict=True)),
+        "lamps": dict(zip(layer.lamp_names, (layer.lamps[:, 3] > 0).tolist(), strict=True)),
+        "people": len(layer.people),
+        "boxes": len(layer.boxes),
+        "daylight": layer.daylight,
+    }
+
+
+def _moving(layer: LivingLayer) -> dict[str, Any]:
+    """Where people are (x, y, heading) by name, and the names of the boxes that are there."""
+    places = layer.people[:, :3].round(3).tolist()
+    return {"walkers": dict(zip(layer.person_names, places, strict=True)), "boxes": layer.box_names}
+
+
+def _goal(goal: Goal) -> dict[str, Any]:
+    return {
+        "experience": goal.experience,
+        "x": goal.x,
+        "y": goal.y,
+        "state": goal.state,
+        "eta_s": goal.eta_s,
+        "remaining_m": goal.remaining_m,
+    }

@@ -1,0 +1,232 @@
+"""The page's websocket: the newest state to everyone, ten to twenty times a second, and commands back.
+
+Out: {"type": "hello", ...} once, {"type": "waking", "doing"} before the first tick, {"type": "state", "state": <contract>,
+"page": ...}, {"type": "events", ...}, {"type": "panel", ...}: what the open tabs of the side panel show, framed with arrays
+(web/panel), {"type": "answer", "id", ...} to whatever carried an id or went wrong, and {"type": "notice", "text"}: why something
+done on this page's plates was refused. In: any command of `POST /api/commands` with an optional "id"; three that concern this
+page alone: {"type": "view", "name"}, {"type": "theme", "name"} and {"type": "tabs", "names"}, those of the side panel that it has
+open: nobody is sent what nobody sees; and {"type": "switch", "name", "on"}, for all who look.
+Each browser has its own sender, newest wins; one that takes nothing for five seconds is let go. A page that connects with
+`got=1` says {"type": "got"} after each state and gets no other before: a slow one never falls behind in what lies in buffers.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import time
+from typing import Any
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from web.http.asking import Submit, told
+from web.http.client import Client
+from web.http.commands import Declined, Malformed, check, read_object, wrong
+from web.http.proxy import VIEWS, Cameras, close_quietly, end_all
+from web.http.state import StateText, event_fields, to_json
+from web.latest import Latest
+from web.messages import Command, Drive, Snapshot
+from web.panel.panel import TABS, Panel, PanelReader
+from web.switches import NAMES, Switches
+from web.themes import THEMES, Themes
+
+PERIOD_S = 0.045  # at x1 the engine ticks ten times a second; what a command changes need not wait for that
+MOST_CLIENTS = 32
+
+
+class Stream:
+    """All pages that listen to one session."""
+
+    def __init__(
+        self, latest: Latest[Snapshot], submit: Submit, cameras: Cameras, themes: Themes, switches: Switches
+    ) -> None:
+        self.text = StateText()
+        self._launch = secrets.token_urlsafe(12)
+        self._latest, self._submit = latest, submit
+        self._cameras, self._themes, self._switches = cameras, themes, switches
+        cameras.on_notice = self.notify
+        self._panel = Panel(switches)
+        self._clients: set[Client] = set()
+        self._driver: Client | None = None
+
+    @property
+    def full(self) -> bool:
+        return len(self._clients) >= MOST_CLIENTS
+
+    async def publish(self) -> None:
+        """Wake every client's sender when there is a newer snapshot; runs for as long as the server does."""
+        seen = 0
+        while True:
+            version, snapshot = await asyncio.to_thread(self._latest.wait, seen, 0.25)
+            if version == seen:
+                if version == 0:
+                    self._wake()  # to say how far the start has come
+                continue
+            seen = version
+            if snapshot is not None:
+                self._panel.remember(snapshot)
+            self._wake()
+            await asyncio.sleep(PERIOD_S)
+
+    async def serve(self, socket: WebSocket, page: str, confirms: bool = False) -> None:
+        """One page from its arrival to its end."""
+        await socket.accept()
+        client = Client(socket, page, confirms, PanelReader(self._panel))
+        self._clients.add(client)
+        client.news.set()
+        tasks = {asyncio.create_task(self._tell(client)), asyncio.create_task(self._listen(client))}
+        try:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._clients.discard(client)
+            self._stop_robot_of(client)
+            await end_all(tasks | client.tasks)
+            await close_quietly(socket)
+
+    # ------------------------------------------------------------ out
+
+    def notify(self, page: str, text: str) -> None:
+        """A sentence for one page alone."""
+        for client in self._clients:
+            if client.page == page:
+                client.background(client.send(_text({"type": "notice", "text": text})))
+
+    def _wake(self) -> None:
+        for client in self._clients:
+            client.news.set()
+
+    async def _tell(self, client: Client) -> None:
+        await client.send(
+            _text({"type": "hello", "launch": self._launch, "themes": THEMES, "views": VIEWS, "tabs": TABS})
+        )
+        said, last = "", None
+        while True:
+            await client.wait_for_news(client.reader.soon_s)
+            _, snapshot = self._latest.get()
+            if snapshot is None:
+                if said != self._latest.waking:
+                    said = self._latest.waking
+                    await client.send(_text({"type": "waking", "doing": said}))
+                continue
+            if snapshot is not last:
+                client.got.clear()
+                await self._tell_state(client, snapshot)
+            for message in client.reader.news(snapshot, time.monotonic()):
+                await client.send(message)
+            if snapshot is not last and client.confirms:
+                await client.got.wait()
+            last = snapshot
+
+    async def _tell_state(self, client: Client, snapshot: Snapshot) -> None:
+        state, page = self.text.light(snapshot).decode(), self.text.page(snapshot).decode()
+        await client.send(f'{{"type":"state","state":{state},"page":{page}}}')
+        tail = self._events_for(client, snapshot)
+        if tail is not None:
+            await client.send(tail)
+
+    def _events_for(self, client: Client, snapshot: Snapshot) -> str | None:
+        run, number = client.events_of
+        fresh = run != snapshot.run
+        news = [event_fields(event) for event in snapshot.events if fresh or event.number > number]
+        if not news and not fresh:
+            return None
+        client.events_of = (snapshot.run, news[-1]["number"] if news else -1)
+        return _text({"type": "events", "run": snapshot.run, "fresh": fresh, "events": news})
+
+    # ------------------------------------------------------------ in
+
+    async def _listen(self, client: Client) -> None:
+        while True:
+            try:
+                text = await client.socket.receive_text()
+            except (WebSocketDisconnect, KeyError):  # KeyError: a binary message, which no page sends
+                return
+            identity = None
+            try:
+                document = read_object(text)
+                identity = document.pop("id", None)
+                await self._take(client, document, identity)
+            except Declined as error:
+                await client.send(_answer(identity, error))
+
+    async def _take(self, client: Client, document: dict[str, Any], identity: object) -> None:
+        kind = document.get("type")
+        if kind == "got":
+            client.got.set()
+            await self._confirm(client, identity)
+            return
+        client.limits.pass_on(kind if isinstance(kind, str) else "")
+        if kind == "view":
+            client.background(self._cameras.show(client.page, _choice(document, VIEWS)))
+            await self._confirm(client, identity)
+        elif kind == "theme":
+            self._themes.choose(client.page, "light" if _choice(document, THEMES) == "light" else "dark")
+            await self._confirm(client, identity)
+        elif kind == "tabs":
+            client.reader.tabs = _tabs(document)
+            client.news.set()
+            await self._confirm(client, identity)
+        elif kind == "switch":
+            self._turn(document)
+            await self._confirm(client, identity)
+        else:
+            command = check(document)
+            if isinstance(command, Drive):
+                client.moving = command.speed != 0 or command.yaw_rate != 0
+                self._driver = client
+            client.background(self._command(client, command, identity))
+
+    async def _command(self, client: Client, command: Command, identity: object) -> None:
+        try:
+            answer = await told(self._submit, command)
+        except Declined as error:
+            await client.send(_answer(identity, error))
+            return
+        if identity is not None:
+            await client.send(_text({"type": "answer", "id": identity, "accepted": True, "tick": answer.tick}))
+
+    def _turn(self, document: dict[str, Any]) -> None:
+        name, on = document.get("name"), document.get("on")
+        for known in NAMES:
+            if document == {"type": "switch", "name": known, "on": on} and isinstance(on, bool):
+                self._switches.turn(known, on)
+                self._wake()
+                return
+        raise Malformed([wrong("name", name, f"switch takes on, true or false, and name, one of: {', '.join(NAMES)}")])
+
+    async def _confirm(self, client: Client, identity: object) -> None:
+        """A message about pages alone has been taken; whoever gave it an id hears of it."""
+        if identity is not None:
+            _, snapshot = self._latest.get()
+            tick = None if snapshot is None else snapshot.tick
+            await client.send(_text({"type": "answer", "id": identity, "accepted": True, "tick": tick}))
+
+    def _stop_robot_of(self, client: Client) -> None:
+        if self._driver is client:
+            self._driver = None
+            if client.moving:
+                self._submit(Drive(type="drive", speed=0.0, yaw_rate=0.0))
+
+
+def _choice(document: dict[str, Any], names: tuple[str, ...]) -> str:
+    for name in names:
+        if document == {"type": document["type"], "name": name}:
+            return name
+    reason = f"{document['type']} takes name, one of: {', '.join(names)}"
+    raise Malformed([wrong("name", document.get("name"), reason)])
+
+
+def _tabs(document: dict[str, Any]) -> frozenset[str]:
+    names = document.get("names")
+    if document != {"type": "tabs", "names": names} or not isinstance(names, list) or not all(n in TABS for n in names):
+        raise Malformed([wrong("names", names, f"tabs takes names, a list of: {', '.join(TABS)}")])
+    return frozenset(names)
+
+
+def _answer(identity: object, declined: Declined) -> str:
+    fields = {"type": "answer", "id": identity, "accepted": False, "status": declined.status}
+    return _text({**fields, "detail": declined.wrongs})
+
+
+def _text(document: object) -> str:
+    return to_json(document).decode()

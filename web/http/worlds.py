@@ -1,0 +1,159 @@
+"""The world as a file: read it, download it, open what somebody drops on the page, and begin an empty one.
+
+Importing runs in a thread of its own, one at a time; the engine only hears of worlds that are sound.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import binascii
+import os
+from typing import Annotated
+
+from fastapi import FastAPI, Request
+from fastapi.responses import Response
+from pydantic import BaseModel, Field
+
+from sim2d import World, WorldError, WorldText, own_worlds, world_names
+from sim2d.importers import import_world
+from sim2d.importers.empty_room import empty_room
+from web.http.asking import Submit, told, world_now
+from web.http.bodies import ERRORS, Body, Name, Title, checked_body, json_response, takes
+from web.http.commands import Declined, Malformed, Problem, wrong
+from web.http.saved_worlds import add_saved_worlds, not_taken
+from web.http.security import MAX_PLAN_BYTES, PLAN_PATH, Limits
+from web.http.state import office_fields, to_json
+from web.latest import Latest
+from web.messages import OpenWorld, Snapshot
+
+OPEN_TIMEOUT_S = 30.0  # a world of 10,000 walls is painted in seconds
+
+
+class UploadedFile(Body):
+    name: Name
+    data: str  # base64
+
+
+class OpenFiles(Body):
+    """Files that belong together: a world or a vector map (.json), a picture, or a map_server .yaml with its picture."""
+
+    files: Annotated[list[UploadedFile], Field(min_length=1, max_length=4)]
+    scale_m: float | None = None  # metres a pixel, for a plain picture
+    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] = 0  # of the looks that bare walls get
+
+
+class NewWorld(Body):
+    """An empty room, from (0, 0) to (width, depth) metres."""
+
+    name: Name
+    title: Title | None = None
+    width_m: float
+    depth_m: float
+
+
+class Opened(BaseModel):
+    """The session begins anew in it."""
+
+    name: str
+    title: str
+    walls: int
+    starts: int
+    size_m: list[float]
+
+
+def add_worlds(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
+    limits, importing, text = Limits(), asyncio.Lock(), WorldText()
+    add_saved_worlds(app, submit, limits)
+
+    @app.get("/api/world", tags=["worlds"], responses={503: {"model": Problem}})
+    async def world() -> Response:
+        """The office as it is now, as a world file, and which edition of it that is."""
+        return json_response(await _read(submit, text))
+
+    @app.get("/api/world/file", tags=["worlds"], responses={503: {"model": Problem}})
+    async def world_file() -> Response:
+        """The same as a file to keep."""
+        now, _ = await world_now(submit)
+        written = await asyncio.to_thread(text.of, now)
+        safe = "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "-" for c in now.name)
+        headers = {"Content-Disposition": f'attachment; filename="{safe}.json"', "Cache-Control": "no-store"}
+        return Response(written, headers=headers, media_type="application/json")
+
+    @app.post(PLAN_PATH, tags=["worlds"], openapi_extra=takes(OpenFiles),
+              responses={200: {"model": Opened}, **ERRORS})  # fmt: skip
+    async def open_files(request: Request) -> Response:
+        """Begin anew in a world or plan. When it cannot be, the session stays as it was."""
+        if importing.locked():
+            raise Declined.of(429, "another plan is being imported; wait until it is there")
+        async with importing:
+            return json_response(await _open(request, latest, submit, limits))
+
+    @app.post("/api/worlds/new", tags=["worlds"], openapi_extra=takes(NewWorld),
+              responses={200: {"model": Opened}, **ERRORS})  # fmt: skip
+    async def new(request: Request) -> Response:
+        """Begin anew in an empty room. It is in no file until it is saved."""
+        return json_response(await _new(request, submit, limits))
+
+
+async def _read(submit: Submit, text: WorldText) -> bytes:
+    now, edition = await world_now(submit)
+    written = await asyncio.to_thread(text.of, now)
+    head = to_json({**office_fields(edition), "yours": dict(own_worlds.names()), "ours": dict(world_names())})
+    return head[:-1] + b',"world":' + written.encode() + b"}"
+
+
+async def _open(request: Request, latest: Latest[Snapshot], submit: Submit, limits: Limits) -> bytes:
+    wish = await checked_body(request, OpenFiles, limits, MAX_PLAN_BYTES)
+    files = {_plain(file.name): _bytes(file) for file in wish.files}
+    _, snapshot = latest.get()
+    radius = None if snapshot is None else snapshot.world.robot_radius_m
+    try:
+        world = await asyncio.to_thread(import_world, _main(files), files, wish.scale_m, wish.seed, radius)
+    except WorldError as error:
+        raise Malformed([wrong("files", list(files), str(error))]) from None
+    return await _begin(submit, world, filed=True)
+
+
+async def _new(request: Request, submit: Submit, limits: Limits) -> bytes:
+    wish = await checked_body(request, NewWorld, limits)
+    not_taken(wish.name)
+    try:
+        world = empty_room(wish.name, wish.title or wish.name, wish.width_m, wish.depth_m)
+    except ValueError as error:
+        raise Malformed([wrong("width_m, depth_m", [wish.width_m, wish.depth_m], str(error))]) from None
+    return await _begin(submit, world, filed=False)
+
+
+async def _begin(submit: Submit, world: World, filed: bool) -> bytes:
+    name = (await told(submit, OpenWorld(world, filed), OPEN_TIMEOUT_S)).result
+    x0, y0, x1, y1 = world.bounds
+    size = [round(x1 - x0, 3), round(y1 - y0, 3)]
+    return to_json(
+        {"name": name, "title": world.title, "walls": len(world.walls), "starts": len(world.starts), "size_m": size}
+    )
+
+
+def _plain(name: str) -> str:
+    """The name alone of what a browser calls a file."""
+    return os.path.basename(name.replace("\\", "/")) or name
+
+
+def _bytes(file: UploadedFile) -> bytes:
+    try:
+        return base64.b64decode(file.data, validate=True)
+    except (binascii.Error, ValueError) as error:
+        raise Malformed([wrong("files", file.name, f"{file.name}: data must be base64: {error}")]) from None
+
+
+def _main(files: dict[str, bytes]) -> str:
+    """The file that refers to the others: the map_server one where there is one, else the only one."""
+    yaml = [name for name in files if name.lower().endswith((".yaml", ".yml"))]
+    if len(yaml) == 1:
+        return yaml[0]
+    if len(files) == 1:
+        return next(iter(files))
+    reason = (
+        f"got {len(files)} files, {', '.join(files)}; drop one plan at a time: a .yaml with its picture, or one file"
+    )
+    raise Malformed([wrong("files", list(files), reason)])

@@ -1,0 +1,74 @@
+"""Memory: what the network has stored, where it wants to go, when it snapped, which packets compete."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from web.messages import Goal, PoseCellLayer, Snapshot
+from web.panel.part import Content
+from web.panel.words import clock, number, table, thousands
+
+LOG = 8
+SNAP_KINDS = ("snap", "kidnap", "recovered", "lost")
+
+
+def memory(snapshot: Snapshot) -> Content:
+    cells = snapshot.pose_cells
+    tables = [_counts(snapshot), _packets(cells), _attractor(cells), _goal(snapshot.goal), _log(snapshot)]
+    return Content({"tables": tables})
+
+
+def _counts(snapshot: Snapshot) -> dict[str, Any]:
+    counts = {
+        "local view cells": snapshot.views,
+        "experiences": snapshot.experiences,
+        "links between them": snapshot.links,
+        "relocalisations": snapshot.relocalisations,
+    }
+    if snapshot.goal_memory is not None:
+        counts["links of the goal memory"] = snapshot.goal_memory.links
+    return table("Stored", [(name, thousands(value)) for name, value in counts.items()])
+
+
+def _packets(layer: PoseCellLayer) -> dict[str, Any]:
+    rows = []
+    for packet in layer.packets:
+        x, y, turn = packet.x * layer.cell_m, packet.y * layer.cell_m, math.degrees(packet.heading_rad) % 360
+        rows.append((f"{packet.id}: {100 * packet.mass:.0f} %", f"x′ {x:.1f} m, y′ {y:.1f} m, θ′ {turn:.0f}°"))
+    return table("Packets: share of the activity, place", rows, "no activity yet")
+
+
+def _attractor(layer: PoseCellLayer) -> dict[str, Any]:
+    """What excitation, inhibition and normalisation leave as it is, checked here and now. ACRA 2004 eqs. 10-12."""
+    whole, positive = abs(layer.total - 1) < 1e-4, layer.least >= 0
+    verdict = "broken" if not positive else "holds" if whole else "not normalised yet"
+    rows = [
+        ("sum of all activity", f"{layer.total:.6f}"),
+        ("least of an active cell", f"{layer.least:.1e}"),
+        ("active cells", f"{thousands(layer.active_cells)} of {thousands(math.prod(layer.shape))}"),
+        ("sum 1, nothing below 0", verdict),
+    ]
+    return table("Attractor", rows)
+
+
+def _goal(goal: Goal | None) -> dict[str, Any]:
+    if goal is None:
+        return table("Goal", [], "none: click on the map and the robot goes there")
+    rows = [("state", goal.state), ("experience", f"#{goal.experience}")]
+    rows += [("time to get there", number(goal.eta_s, "s", 0)), ("way to go", number(goal.remaining_m, "m"))]
+    return table("Goal", [*rows, ("place in the map", f"{goal.x:.2f}, {goal.y:.2f} m")])
+
+
+def _log(snapshot: Snapshot) -> dict[str, Any]:
+    snaps = [event for event in snapshot.events if event.kind in SNAP_KINDS][-LOG:]
+    rows = [(clock(event.time_s), event.text) for event in reversed(snaps)]
+    return table("Snaps", rows, _no_snaps(snapshot))
+
+
+def _no_snaps(snapshot: Snapshot) -> str:
+    if snapshot.relocalisations:
+        return f"none of late: {snapshot.relocalisations} so far"
+    if snapshot.revisit_consistency is None:
+        return "none yet: nothing seen before has come into view again"
+    return "none yet: what it saw again was where it believed to be, so nothing had to jump"

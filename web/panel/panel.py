@@ -1,0 +1,152 @@
+"""The side panel as data: which part is filled with what, how often, and what one page has been told of it.
+
+A part's message is {"type": "panel", "part", "data"}, framed with its arrays where it has some (packing.py). Only the parts of
+open tabs are sent, only what has changed, and of its arrays only those that have; each is made once for all who look.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from typing import Any
+
+import orjson
+
+from web.messages import Snapshot
+from web.panel.inspected import active, inspected
+from web.panel.memory import memory
+from web.panel.office import office
+from web.panel.packing import Packed, framed, packed
+from web.panel.part import Content
+from web.panel.senses import RecentViews, cells, views
+from web.panel.tick import timings, walk
+from web.panel.truth import numbers, series
+from web.panel.tune import tune
+from web.switches import SWITCHES, Switches
+from web.throttle import Throttle
+
+TABS = ("Senses", "Memory", "Inspect", "Tick", "Truth", "Office", "Tune")
+SOON_S = 0.05  # when what came too early is looked at again
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sight:
+    """All that the panel is made of at one moment."""
+
+    snapshot: Snapshot
+    recent: tuple[int, ...]  # views
+    on: frozenset[str]  # switches
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    tab: str
+    name: str
+    hz: float
+    of: Callable[[Sight], tuple[Any, ...]]  # what it is made of: made again when one is another object
+    make: Callable[..., Content]
+
+
+def _switches(on: frozenset[str]) -> Content:
+    rows = [{"name": s.name, "tab": s.tab, "words": s.words, "hint": s.hint, "on": s.name in on} for s in SWITCHES]
+    return Content({"switches": rows})
+
+
+PARTS = (
+    Part("Senses", "views", 6, lambda s: (s.snapshot.senses,), views),
+    Part("Senses", "cells", 3, lambda s: (s.snapshot, s.recent), cells),
+    Part("Memory", "switches", 10, lambda s: (s.on,), _switches),
+    Part("Memory", "memory", 2, lambda s: (s.snapshot,), memory),
+    Part("Inspect", "switches", 10, lambda s: (s.on,), _switches),
+    Part("Inspect", "active", 4, lambda s: (s.snapshot,), active),
+    Part("Inspect", "inspected", 4, lambda s: (s.snapshot.inspected,), inspected),
+    Part("Tick", "walk", 10, lambda s: (s.snapshot.walk,), walk),
+    Part("Tick", "timings", 1, lambda s: (s.snapshot.timings, s.snapshot.parameters), timings),
+    Part("Truth", "numbers", 2, lambda s: (s.snapshot,), numbers),
+    Part("Truth", "series", 1, lambda s: (s.snapshot.series,), series),
+    Part("Office", "office", 5, lambda s: _office(s.snapshot), office),
+    Part("Tune", "tune", 5, lambda s: (s.snapshot.parameters,), tune),
+)
+
+
+def _office(snapshot: Snapshot) -> tuple[Any, ...]:
+    return snapshot.living, snapshot.parameters, snapshot.presets, snapshot.preset, snapshot.switches
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Made:
+    """A part's content as it travels."""
+
+    data: bytes
+    arrays: dict[str, Packed]
+
+
+class Panel:
+    """What there is to show, for all pages: each content is made once."""
+
+    def __init__(self, switches: Switches) -> None:
+        self._switches = switches
+        self._recent = RecentViews()
+        self._made: dict[str, tuple[tuple[Any, ...], Made]] = {}
+
+    def remember(self, snapshot: Snapshot) -> None:
+        """Keeps what the newest snapshot alone does not tell. For every snapshot that is sent."""
+        self._recent.remember(snapshot)
+
+    def sight(self, snapshot: Snapshot) -> Sight:
+        return Sight(snapshot, self._recent.numbers, self._switches.on)
+
+    def made(self, part: Part, of: tuple[Any, ...]) -> Made:
+        known = self._made.get(part.name)
+        if known is not None and all(a is b for a, b in zip(known[0], of, strict=True)):
+            return known[1]
+        content = part.make(*of)
+        data = orjson.dumps(content.data, option=orjson.OPT_SERIALIZE_NUMPY)
+        made = Made(data, {name: packed(array) for name, array in content.arrays.items()})
+        self._made[part.name] = of, made
+        return made
+
+
+class PanelReader:
+    """One page: the tabs that it has open, and what it has been told."""
+
+    def __init__(self, panel: Panel) -> None:
+        self.tabs: Collection[str] = ()
+        self._panel = panel
+        self._told: dict[str, Made] = {}
+        self._news: list[str | bytes] = []
+        self._throttles = {part: Throttle(part.hz, self._teller(part)) for part in PARTS}
+
+    def news(self, snapshot: Snapshot, now_s: float) -> list[str | bytes]:
+        """The messages that are due: text, or bytes where there are arrays."""
+        self._news, sight = [], self._panel.sight(snapshot)
+        for part, throttle in self._throttles.items():
+            if part.tab in self.tabs:
+                throttle.offer(now_s, *part.of(sight))
+        return self._news
+
+    @property
+    def soon_s(self) -> float | None:
+        """When to ask again although nothing may be new: something came too early."""
+        waiting = any(throttle.waiting for part, throttle in self._throttles.items() if part.tab in self.tabs)
+        return SOON_S if waiting else None
+
+    def _teller(self, part: Part) -> Callable[..., None]:
+        def tell(*of: Any) -> None:
+            self._tell(part, self._panel.made(part, of))
+
+        return tell
+
+    def _tell(self, part: Part, made: Made) -> None:
+        before = self._told.get(part.name)
+        self._told[part.name] = made
+        arrays = made.arrays
+        if before is not None:
+            arrays = {name: array for name, array in arrays.items() if array != before.arrays.get(name)}
+            if not arrays and made.data == before.data and made.arrays.keys() == before.arrays.keys():
+                return
+        head = {"type": "panel", "part": part.name, "data": orjson.Fragment(made.data), "has": list(made.arrays)}
+        if arrays:
+            self._news.append(framed(head, arrays))
+        else:
+            self._news.append(orjson.dumps(head).decode())

@@ -1,0 +1,97 @@
+"""Senses: what the camera sees, the best view it reminds of, how different they are, which cells are active."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from web.cell_owners import owners
+from web.messages import PoseCellLayer, Senses, Snapshot
+from web.panel.part import Content
+
+RECENT = 60
+MOST = 65535  # the strongest column of pose cells
+
+
+class RecentViews:
+    """The views that were active lately, oldest first."""
+
+    def __init__(self) -> None:
+        self.numbers: tuple[int, ...] = ()
+        self._kept: deque[int] = deque(maxlen=RECENT)
+        self._run = -1
+
+    def remember(self, snapshot: Snapshot) -> None:
+        if snapshot.run != self._run:
+            self._run = snapshot.run
+            self._kept.clear()
+        active = snapshot.senses.active_view
+        if active >= 0 and (not self._kept or self._kept[-1] != active):
+            self._kept.append(active)
+        if len(self._kept) != len(self.numbers) or (self._kept and self._kept[-1] != self.numbers[-1]):
+            self.numbers = tuple(self._kept)
+
+
+def views(senses: Senses) -> Content:
+    """Camera and verdict, what the front end makes of it and the best match, and the difference against its threshold."""
+    data = {
+        "active": senses.active_view,
+        "verdict": _verdict(senses),
+        "seen": {"title": f"{senses.front_end} now", "words": f"the present view: {senses.seen_words}"},
+        "best": None,
+        "difference": _difference(senses),
+    }
+    pictures: dict[str, NDArray[Any]] = {"camera": senses.camera, "seen": senses.seen}
+    if senses.best is not None:
+        words = f"the stored view {senses.best_view}: {senses.best_words}"
+        data["best"] = {"view": senses.best_view, "words": words}
+        pictures["best"] = senses.best
+    return Content(data, pictures)
+
+
+def _verdict(senses: Senses) -> dict[str, str]:
+    """Whether the active view is new, and how that is to be taken."""
+    if senses.false_positive:
+        words = f"false positive {senses.false_positives}: rightly #{senses.best_view}"
+        return {"tone": "false", "words": words}
+    if senses.active_view < 0:
+        return {"tone": "none", "words": "nothing to see"}
+    return (
+        {"tone": "new", "words": "new: recruited"}
+        if senses.recruited
+        else {"tone": "known", "words": "known: recalled"}
+    )
+
+
+def _difference(senses: Senses) -> dict[str, Any]:
+    """Full scale is twice the threshold."""
+    known = senses.difference <= senses.threshold
+    if not math.isfinite(senses.difference):
+        return {"words": "difference: nothing to compare with", "share": 1.0, "known": known}
+    words = f"difference to the best view {senses.difference:.1f} (threshold {senses.threshold:.1f})"
+    share = min(max(senses.difference / max(2 * senses.threshold, 1e-9), 0.0), 1.0)
+    return {"words": words, "share": round(share, 3), "known": known}
+
+
+def cells(snapshot: Snapshot, recent: tuple[int, ...]) -> Content:
+    """Local view cells; pose cells from above, and by heading."""
+    layer, active = snapshot.pose_cells, snapshot.senses.active_view
+    places, packets, strength = from_above(layer)
+    turns = np.bincount(layer.cells[:, 0], weights=layer.activity, minlength=layer.shape[0]).astype(np.float32)
+    data = {"views": snapshot.views, "active": active, "recent": recent, "size": (layer.shape[1], layer.shape[2])}
+    return Content(data, {"places": places, "packets": packets, "strength": strength, "by_heading": turns})
+
+
+def from_above(layer: PoseCellLayer) -> tuple[NDArray[np.uint32], NDArray[np.uint8], NDArray[np.uint16]]:
+    """Each packet's activity summed over theta': rows of x' y' (y' n_x + x'), the packet's rank, and how much of the most."""
+    _, n_y, n_x = layer.shape
+    place = layer.cells[:, 1] * n_x + layer.cells[:, 2]
+    rank = np.minimum(owners(layer), 255)
+    pairs, row = np.unique(rank * (n_y * n_x) + place, return_inverse=True)
+    sums = np.bincount(row.ravel(), weights=layer.activity, minlength=len(pairs))
+    share = np.rint(sums / max(float(sums.max(initial=0.0)), 1e-12) * MOST)
+    return (pairs % (n_y * n_x)).astype(np.uint32), (pairs // (n_y * n_x)).astype(np.uint8), share.astype(np.uint16)

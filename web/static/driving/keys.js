@@ -1,0 +1,58 @@
+// Which keys mean what, caught before viser sees them, in the page and in the stage's frame alike.
+
+import { within } from "../elements/dom.js";
+import { directionOf, meaningOf } from "../model/key_meanings.js";
+
+// Widgets that use arrows, space or letters themselves.
+const TYPING =
+  "input:not([type='checkbox']), textarea, select, [contenteditable='true'], [role='textbox'], [role='combobox'], [role='listbox'], [role='application']";
+const ARROWS =
+  "[role='slider'], [role='tab'], [role='radio'], [role='menuitem'], [role='spinbutton'], [role='separator']";
+const PRESSING = "button, summary, a[href], input[type='checkbox'], [role='button'], [role='tab']";
+
+export class Keys {
+  /**
+   * `drive(name, down)` for the driving keys, `act(name)` for all others, which says whether it meant something, `allUp()` when
+   * keys may have been let go unseen.
+   * @typedef {import("../model/key_meanings.js").Direction} Direction
+   * @param {{ drive: (name: Direction, down: boolean) => void, act: (name: string) => boolean, allUp: () => void }} calls
+   */
+  constructor({ drive, act, allUp }) {
+    this.calls = { drive, act, allUp };
+    this.listen(window);
+    document.addEventListener("visibilitychange", () => document.hidden && allUp());
+    window.addEventListener("pagehide", allUp);
+  }
+
+  /** @param {Window} target */
+  listen(target) {
+    target.addEventListener("keydown", (event) => this.down(event), true);
+    target.addEventListener("keyup", (event) => this.up(event), true);
+    // Focus that only moves between the page and its frame is no loss: both are listened to.
+    target.addEventListener("blur", () => setTimeout(() => document.hasFocus() || this.calls.allUp()), true);
+  }
+
+  /** @param {KeyboardEvent} event */
+  down(event) {
+    const is = (/** @type {string} */ kind) => within(event, kind) !== null;
+    const dialog = document.querySelector("dialog[open]") !== null;
+    const meaning = meaningOf(event, { typing: is(TYPING), arrows: is(ARROWS), pressing: is(PRESSING), dialog });
+    if (!meaning) return;
+    if ("drive" in meaning) {
+      swallow(event);
+      if (!event.repeat) this.calls.drive(meaning.drive, true);
+    } else if (!event.repeat && this.calls.act(meaning.act)) swallow(event);
+  }
+
+  /** @param {KeyboardEvent} event */
+  up(event) {
+    const drive = directionOf(event.code);
+    if (drive) this.calls.drive(drive, false);
+  }
+}
+
+/** @param {Event} event */
+function swallow(event) {
+  event.preventDefault();
+  event.stopImmediatePropagation();
+}

@@ -1,0 +1,197 @@
+// The daylight against time: a small picture of the curve, and its points to type in.
+
+import { $, field, find, within } from "../elements/dom.js";
+import { keepingPlace, levelInput, make, mark, removeButton, timeInput } from "../elements/elements.js";
+import { svg } from "../elements/icons.js";
+import { BOTTOM, DaylightCurve, HEIGHT, LEFT, RIGHT, TOP, WIDTH } from "../model/daylight_curve.js";
+import { NO_TIME, isLevel, seconds, time } from "../model/script.js";
+
+export const NO_LEVEL = (/** @type {string} */ text) =>
+  `“${text}” is no level; write a number from 0, which is dark, to 3. 1 is as painted.`;
+
+export class DaylightForm {
+  /** @param {import("./world_client.js").WorldClient} office @param {Tell} tell */
+  constructor(office, tell) {
+    this.office = office;
+    this.tell = tell;
+    this.list = $("daylight-points");
+    this.form = $("daylight-add");
+    this.now_s = 0;
+    this.level = 1;
+    /** @type {DaylightItem | null} */
+    this.day = null;
+    this.curve = new DaylightCurve(null);
+    this.shown = ""; // the world's daylight and script as they were drawn
+    find(this.form, ".row").append(timeInput("Time of another point", "0:00"), levelInput("Level, 1 is as painted", 1));
+    this.list.addEventListener("change", (event) => this.change(field(event)));
+    this.list.addEventListener("click", (event) => {
+      const row = within(event, ".remove")?.closest("li");
+      if (row)
+        this.send(
+          this.points.filter((_, k) => k !== Number(row.dataset.number)),
+          "Point deleted. Ctrl+Z brings it back.",
+        );
+    });
+    $("daylight-repeat").addEventListener("change", (event) => this.repeat(field(event)));
+    this.form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.add();
+    });
+  }
+
+  get points() {
+    return this.day?.points ?? [];
+  }
+
+  /** @param {World} world */
+  show(world) {
+    const text = JSON.stringify([world.daylight ?? null, world.script ?? null]);
+    if (text === this.shown) return;
+    this.shown = text;
+    this.day = world.daylight ?? null;
+    this.curve = new DaylightCurve(this.day);
+    const rows = this.points.map(([at_s, level], number) => {
+      const row = make(
+        "li",
+        {},
+        timeInput("Time", time(at_s)),
+        levelInput("Level", level),
+        removeButton(`Delete the point at ${time(at_s)}`),
+      );
+      row.dataset.number = String(number);
+      return row;
+    });
+    keepingPlace(this.list, this.form, () => this.list.replaceChildren(...rows));
+    const repeat = $("daylight-repeat");
+    $("daylight-again").hidden = !this.day;
+    $("daylight-none").hidden = this.day !== null;
+    mark(repeat, false);
+    if (!repeat.dataset.typed) repeat.value = this.day?.repeat_s ? time(this.day.repeat_s) : "";
+    const scripted = (world.script ?? []).filter((item) => item.do === "daylight").map((item) => item.at_s);
+    $("daylight-note").hidden = !this.day || !scripted.length;
+    $("daylight-note").textContent =
+      `From ${time(Math.min(...scripted, Infinity))} on the script sets the daylight; the curve counts until then.`;
+    this.draw();
+  }
+
+  /** @param {number} time_s @param {number} level */
+  at(time_s, level) {
+    if (time_s === this.now_s && level === this.level) return;
+    this.now_s = time_s;
+    this.level = level;
+    this.drawNow();
+  }
+
+  // ---------------------------------------------------------------- the picture
+
+  draw() {
+    const { curve } = this;
+    const label = (/** @type {number} */ x, /** @type {number} */ y, /** @type {string} */ words, anchor = "end") =>
+      svg("text", { x, y, "text-anchor": anchor }, words);
+    const [right, floor, end] = [WIDTH - RIGHT, HEIGHT - BOTTOM, time(Math.round(curve.span_s))];
+    $("daylight-curve").replaceChildren(
+      svg("path", { d: `M${LEFT} ${curve.y(1)}H${right}`, class: "painted" }),
+      svg("path", { d: `M${LEFT} ${TOP}V${floor}H${right}`, class: "axis" }),
+      svg("path", { d: `${curve.path}V${floor}H${LEFT}Z`, class: "under" }),
+      svg("path", { d: curve.path, class: "curve" }),
+      ...this.points.map(([at_s, level]) =>
+        svg("circle", { cx: curve.x(at_s), cy: curve.y(level), r: 4, class: "point" }),
+      ),
+      label(LEFT - 6, curve.y(1) + 4, "1"),
+      label(LEFT - 6, floor + 4, "0"),
+      label(LEFT, HEIGHT - 4, "0:00", "start"),
+      label(right, HEIGHT - 4, curve.repeat_s ? `${time(curve.repeat_s)}, then again` : end),
+      svg("path", { class: "when" }),
+      svg("circle", { r: 4.5, class: "here" }),
+    );
+    this.drawNow();
+  }
+
+  drawNow() {
+    const [when, here] = [".when", ".here"].map((kind) => $("daylight-curve").querySelector(kind));
+    if (!when || !here) return;
+    const x = this.curve.now(this.now_s);
+    when.setAttribute("d", `M${x.toFixed(1)} ${TOP}V${HEIGHT - BOTTOM}`);
+    here.setAttribute("cx", x.toFixed(1));
+    here.setAttribute("cy", this.curve.y(this.level).toFixed(1));
+    const words = `Daylight against time. Now: ${this.level.toFixed(2)}`;
+    if ($("daylight-curve").getAttribute("aria-label") !== words) $("daylight-curve").setAttribute("aria-label", words);
+    if ($("daylight-now").textContent !== this.level.toFixed(2)) $("daylight-now").textContent = this.level.toFixed(2);
+  }
+
+  // ---------------------------------------------------------------- what is done
+
+  /**
+   * A point as a row or the form says it, or null when it says none.
+   * @param {HTMLElement} place
+   * @param {number} [number] its own, so that it may stay where it is
+   * @returns {Point | null}
+   */
+  read(place, number = -1) {
+    /** @type {HTMLInputElement[]} */
+    const [when, level] = [find(place, ".when"), find(place, ".level")];
+    const at_s = seconds(when.value);
+    const taken = this.points.some(([other], k) => other === at_s && k !== number);
+    mark(when, Number.isNaN(at_s) || taken);
+    mark(level, !isLevel(level.value));
+    if (Number.isNaN(at_s)) this.tell(NO_TIME(when.value), true);
+    else if (taken) this.tell(`There is a point at ${time(at_s)} already; change that one.`, true);
+    else if (!isLevel(level.value)) this.tell(NO_LEVEL(level.value), true);
+    else return [at_s, Number(level.value)];
+    return null;
+  }
+
+  /** @param {Point[]} points @param {string} words @param {number} [repeat_s] */
+  async send(points, words, repeat_s = this.day?.repeat_s ?? 0) {
+    const item = { points: [...points].sort((a, b) => a[0] - b[0]), repeat_s };
+    const done = await this.office.edit(() => {
+      if (!points.length) return [{ do: "delete", list: "daylight", number: 0 }];
+      return [this.day ? { do: "change", list: "daylight", number: 0, item } : { do: "add", list: "daylight", item }];
+    });
+    if (done) this.tell(words, false);
+    return done;
+  }
+
+  async add() {
+    const point = this.read(this.form);
+    if (!point || !(await this.send([...this.points, point], `Added: daylight ${point[1]} at ${time(point[0])}.`)))
+      return;
+    /** @type {HTMLInputElement} */
+    const when = find(this.form, ".when");
+    when.focus();
+    when.select();
+  }
+
+  /** @param {HTMLInputElement} target */
+  async change(target) {
+    delete target.dataset.typed;
+    const row = target.closest("li");
+    if (!row) return;
+    const number = Number(row.dataset.number);
+    const point = this.read(row, number);
+    if (!point) return;
+    if (
+      !(await this.send(
+        this.points.map((was, k) => (k === number ? point : was)),
+        "Changed. Ctrl+Z takes it back.",
+      ))
+    )
+      mark(target, true);
+  }
+
+  /** @param {HTMLInputElement} input */
+  async repeat(input) {
+    delete input.dataset.typed;
+    const repeat_s = input.value.trim() === "" ? 0 : seconds(input.value);
+    mark(input, Number.isNaN(repeat_s));
+    if (Number.isNaN(repeat_s)) this.tell(NO_TIME(input.value), true);
+    else if (
+      !(await this.send(
+        this.points,
+        repeat_s ? `The daylight begins again every ${time(repeat_s)}.` : "The daylight stays at its last point.",
+        repeat_s,
+      ))
+    )
+      mark(input, true);
+  }
+}

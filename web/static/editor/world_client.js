@@ -1,0 +1,92 @@
+// The office as the engine has it: read again after each change; edits one after the other, undo and redo.
+
+import { plainly, sentence } from "../model/sentences.js";
+
+export class WorldClient {
+  /**
+   * @param {import("../net/connection.js").Connection} link
+   * @param {(other: boolean) => void} shows when it has been read; whether it is another world
+   * @param {(text: string) => void} wrong when an edit was refused
+   */
+  constructor(link, shows, wrong) {
+    this.link = link;
+    this.shows = shows;
+    this.wrong = wrong;
+    /** @type {World | null} */
+    this.world = null;
+    /** @type {number | null} */
+    this.edition = null;
+    this.again = false; // somebody has asked since the last answer
+    /** @type {Promise<void> | null} */
+    this.loading = null;
+    /** @type {Promise<boolean>} */
+    this.busy = Promise.resolve(true);
+  }
+
+  // Resolves when it has been read as it is now: who asks while an answer is under way waits for one more.
+  load() {
+    this.again = true;
+    this.loading ??= (async () => {
+      while (this.again) {
+        this.again = false;
+        await this.fetch();
+      }
+      this.loading = null;
+    })();
+    return this.loading;
+  }
+
+  async fetch() {
+    try {
+      const { world, edition } = await (await fetch("/api/world")).json();
+      if (!world) return;
+      const other = this.world?.name !== world.name;
+      this.world = world;
+      this.edition = edition;
+      this.shows(other);
+    } catch {
+      // the connection is lost, which the page says; it is read again with the next state
+      this.edition = null;
+    }
+  }
+
+  /**
+   * One edit: the steps that `makes(world)` gives, or a sentence that says why there are none. Resolves to whether it was done.
+   * @param {(world: World) => EditStep[] | string} makes
+   */
+  edit(makes) {
+    return this.send(() => {
+      if (!this.world) return null;
+      const steps = makes(this.world);
+      if (typeof steps === "string") this.wrong(steps);
+      return typeof steps === "string" || !steps.length ? null : { type: "edit_world", steps, edition: this.edition };
+    });
+  }
+
+  undo() {
+    return this.send(() => ({ type: "undo_edit" }));
+  }
+
+  redo() {
+    return this.send(() => ({ type: "redo_edit" }));
+  }
+
+  /** @param {() => Command | null} command */
+  async send(command) {
+    const before = this.busy;
+    this.busy = (async () => {
+      await before; // edits that follow each other quickly are made on what the one before left
+      const wish = command();
+      if (!wish) return false;
+      const answer = await this.link.ask(wish, { quiet: true });
+      if (answer.accepted) await this.load();
+      else
+        this.wrong(
+          answer.detail.map((/** @type {Wrong} */ wrong) => sentence(plainly(wrong.reason))).join(" ") ||
+            "The connection is lost; nothing was changed.",
+        );
+      return answer.accepted;
+    })();
+    return this.busy;
+  }
+}

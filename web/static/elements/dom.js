@@ -1,0 +1,34 @@
+// The page's elements.
+
+/**
+ * The element with this id. The type check knows which ids index.html has, and of what.
+ * @template {keyof IndexIds} K
+ * @param {K} id
+ * @returns {IndexIds[K]}
+ */
+export const $ = (id) => /** @type {any} */ (document.getElementById(id));
+
+/**
+ * What a selector finds in a place where it is known to be.
+ * @template {Element} [T=HTMLElement]
+ * @param {ParentNode} place
+ * @param {string} selector
+ * @returns {T}
+ */
+export const find = (place, selector) => /** @type {any} */ (place.querySelector(selector));
+
+/**
+ * The field that an event is about.
+ * @param {Event} event
+ * @returns {HTMLInputElement}
+ */
+export const field = ({ target }) => /** @type {any} */ (target);
+
+/**
+ * What of the kind of a selector an event was in, if anything.
+ * @param {Event} event
+ * @param {string} selector
+ * @returns {HTMLElement | null}
+ */
+export const within = ({ target }, selector) =>
+  target && "closest" in target ? /** @type {HTMLElement} */ (target).closest(selector) : null;

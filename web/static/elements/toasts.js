@@ -1,0 +1,61 @@
+// Short sentences over the stage: what was done, what was refused, what is to be known. Text only, never HTML.
+// One stays until it can be read at leisure, and for as long as somebody points at it; a click or Escape takes it away.
+
+import { $ } from "./dom.js";
+import { icon } from "./icons.js";
+
+const MOST = 4;
+const place = $("messages");
+let count = 0; // of all that there were
+
+/** @param {string} text @param {{ bad?: boolean, notice?: boolean, stays?: boolean }} [kind] */
+export function toast(text, { bad = false, notice = false, stays = false } = {}) {
+  for (const other of all()) if (other.dataset.text === text) other.remove();
+  const box = document.createElement("div");
+  box.className = bad ? "toast bad" : "toast";
+  Object.assign(box.dataset, { text, number: String(++count) });
+  const close = document.createElement("button");
+  Object.assign(close, { type: "button", className: "bare", title: "Dismiss (Escape)" });
+  close.setAttribute("aria-label", "Dismiss");
+  close.append(icon("close"));
+  box.append(
+    icon(bad ? "warn" : notice ? "info" : "check"),
+    Object.assign(document.createElement("span"), { textContent: text }),
+    close,
+  );
+  box.addEventListener("click", () => box.remove());
+  $(bad ? "alerts" : "toasts").append(box);
+  makeRoom();
+  if (stays) box.dataset.stays = "";
+  else leave(box, 4000 + 80 * text.length);
+  return box;
+}
+
+// True when there was one: the newest goes.
+export function dismissToast() {
+  const newest = all().at(-1);
+  newest?.remove();
+  return newest !== undefined;
+}
+
+// Oldest first.
+const all = () => {
+  /** @type {NodeListOf<HTMLElement>} */
+  const boxes = place.querySelectorAll(".toast");
+  return [...boxes].sort((a, b) => Number(a.dataset.number) - Number(b.dataset.number));
+};
+
+/** @param {HTMLElement} box @param {number} after_ms */
+function leave(box, after_ms) {
+  const unread = () => document.hidden || box.matches(":hover, :focus-within");
+  setTimeout(() => box.isConnected && (unread() ? leave(box, after_ms) : box.remove()), after_ms);
+}
+
+// No more than there is room for; those that stay go last.
+function makeRoom() {
+  for (;;) {
+    const boxes = all();
+    if (boxes.length < 2 || (boxes.length <= MOST && place.scrollHeight <= place.clientHeight)) return;
+    (boxes.slice(0, -1).find((box) => !("stays" in box.dataset)) ?? boxes[0]).remove();
+  }
+}

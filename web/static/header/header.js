@@ -1,0 +1,106 @@
+// The header: what the session does, and the controls of time, world and goal.
+
+import { $, find } from "../elements/dom.js";
+import { setIcon } from "../elements/icons.js";
+import { clock } from "../model/clock.js";
+import { goalWords, statusOf } from "../model/status.js";
+import { toast } from "../elements/toasts.js";
+
+export class Header {
+  constructor() {
+    this.worlds = "";
+    /** @type {string | null} */
+    this.fault = null;
+    /** @type {HTMLElement | null} */
+    this.faultToast = null;
+  }
+
+  /** @param {State} state @param {PageFields} page */
+  show(state, page) {
+    $("clock").textContent = clock(state.time_s);
+    $("clock").title = `Simulated time, now ${page.real_time_factor.toFixed(1)} times as fast as real time`;
+    const playing = state.running;
+    setIcon($("play"), playing ? "pause" : "play");
+    $("play").setAttribute("aria-label", playing ? "Pause" : "Play");
+    $("play").title = playing ? "Pause (space)" : "Play (space)";
+    if (document.activeElement !== $("speed")) choose($("speed"), String(state.speed));
+    $("seed").textContent = String(state.seed);
+    this.showWorlds(state.world, page.worlds);
+    this.showStatus(state, page);
+    this.showGoal(state.goal);
+    this.showWalk(page.walk);
+    this.showFault(page.fault, state.running);
+  }
+
+  // Before the first tick there is no state, but much to do.
+  /** @param {string} doing */
+  waking(doing) {
+    find($("status"), "span").textContent = doing;
+  }
+
+  /** @param {string} world @param {[string, string][]} worlds */
+  showWorlds(world, worlds) {
+    const text = JSON.stringify(worlds);
+    if (text !== this.worlds) {
+      this.worlds = text;
+      $("world").replaceChildren(...worlds.map(([name, title]) => new Option(title, name)));
+    }
+    if (document.activeElement !== $("world")) $("world").value = world;
+  }
+
+  /** @param {State} state @param {PageFields} page */
+  showStatus(state, page) {
+    const [icon, tone, text] = statusOf(state, page);
+    const chip = $("status");
+    setIcon(chip, icon);
+    chip.dataset.tone = tone;
+    chip.title = page.doing;
+    const words = find(chip, "span");
+    if (words.textContent !== text) words.textContent = text; // a changed text is read aloud: only then
+  }
+
+  // A fault has too many words for a chip.
+  /** @param {string | null} fault @param {boolean} goesOn */
+  showFault(fault, goesOn) {
+    if (fault === this.fault) return;
+    this.fault = fault;
+    this.faultToast?.remove();
+    const words = goesOn ? `In a long tick: ${fault}` : `Stopped by a fault. ${fault}`;
+    this.faultToast = fault ? toast(words, { bad: true, stays: true }) : null;
+  }
+
+  // One tick, stage by stage.
+  /** @param {Walk | null} walk */
+  showWalk(walk) {
+    const box = $("walk");
+    box.hidden = !walk;
+    if (!walk) return;
+    find(box, ".which").textContent = `${walk.at} of ${walk.of}`;
+    $("walk-back").disabled = walk.at === 1;
+    $("walk-next").textContent = walk.at === walk.of ? "Next tick" : "Next stage";
+    const title = find(box, ".title");
+    if (title.textContent === walk.title && find(box, ".words").textContent === walk.words) return;
+    title.textContent = walk.title; // a changed text is read aloud: only then
+    find(box, ".words").textContent = walk.words;
+  }
+
+  /** @param {Goal | null} goal */
+  showGoal(goal) {
+    const chip = $("goal");
+    chip.hidden = goal === null;
+    if (goal === null) return;
+    const words = goalWords(goal);
+    setIcon(chip, words.icon);
+    chip.title = words.title;
+    find(chip, ".what").textContent = words.what;
+    find(chip, ".what").classList.toggle("always", !words.metres && !words.seconds);
+    find(chip, ".metres").textContent = words.metres;
+    find(chip, ".seconds").textContent = words.seconds;
+  }
+}
+
+/** @param {HTMLSelectElement} select @param {string} value */
+function choose(select, value) {
+  if (![...select.options].some((option) => option.value === value)) select.add(new Option(`× ${value}`, value));
+  select.value = value;
+}

@@ -1,0 +1,40 @@
+// The kinds of events: what each is called, how much it counts where there is no room for all, and its mark. The colours are
+// in page.css. A kind that is not here goes by its own name. No DOM.
+
+/** @param {number} r */
+const circle = (r) => `M${-r} 0a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
+
+/** @type {Record<EventKind, { name: string, weight: number, d: string, open?: boolean }>} */
+const KINDS = {
+  kidnap: { name: "kidnap", weight: 5, d: "M0-7l6 7-6 7-6-7z" },
+  lost: { name: "lost", weight: 3, d: "M-5-5l10 10M5-5l-10 10", open: true },
+  recovered: { name: "recovered", weight: 3, d: circle(5), open: true },
+  snap: { name: "snap", weight: 0, d: circle(5) },
+  goal: { name: "goal set", weight: 4, d: "M-4 7v-15l10 4-8.4 4v7z" },
+  arrived: { name: "arrived", weight: 4, d: "M-6 0l4 5 8-10", open: true },
+  unreachable: { name: "no way", weight: 4, d: "M-5-5l10 10M5-5l-10 10", open: true },
+  packet: { name: "packet put in", weight: 2, d: "M-5-5h10v10h-10z" },
+  brain: { name: "brain loaded", weight: 3, d: "M-5-5h10v10h-10z", open: true },
+  office: { name: "office changed", weight: 1, d: "M0-6v12", open: true },
+  parameter: { name: "setting", weight: 1, d: "M0-6v12M-3-6h6M-3 6h6", open: true },
+  link: { name: "link lost", weight: 2, d: "M-4-4l8 8M-4 4l8-8", open: true },
+  place: { name: "places", weight: 1, d: `${circle(5)}M-2 0h4`, open: true },
+  false: { name: "false positive", weight: 1, d: circle(4) },
+  warning: { name: "note", weight: 2, d: "M0-8l8 14h-16z", open: true },
+  fault: { name: "fault", weight: 6, d: "M0-8l8 14h-16z" },
+};
+const UNKNOWN = { weight: 1, d: "M0-5l5 5-5 5-5-5z", open: true };
+
+export const kinds = /** @type {EventKind[]} */ (Object.keys(KINDS));
+
+/** @param {string} kind */
+const known = (kind) => (Object.hasOwn(KINDS, kind) ? KINDS[/** @type {EventKind} */ (kind)] : null);
+
+/** @param {string} kind */
+export const nameOf = (kind) => known(kind)?.name ?? kind.replaceAll("_", " ");
+
+/** @param {string} kind */
+export const weightOf = (kind) => (known(kind) ?? UNKNOWN).weight;
+
+/** The outline of its mark, and whether it is only a line. @param {string} kind @returns {{ d: string, open?: boolean }} */
+export const markOf = (kind) => known(kind) ?? UNKNOWN;

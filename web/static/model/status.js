@@ -1,0 +1,45 @@
+// The words of the header: what the session does, and how it stands with the goal. No DOM.
+
+/** @typedef {[icon: string, tone: string, words: string]} Chip */
+
+/** @type {Record<GoalState, Chip>} */
+const GOALS = {
+  tracking: ["flag", "goal", "going to the goal"],
+  coasting: ["flag", "goal", "by dead reckoning"],
+  exploring: ["compass", "goal", "looking for a way"],
+  arrived: ["check", "goal", "at the goal"],
+  unreachable: ["warn", "bad", "no way to the goal"],
+};
+
+/**
+ * @param {Pick<State, "running" | "mode" | "goal" | "pose_cells">} state
+ * @param {Pick<PageFields, "fault" | "lost">} page
+ * @returns {Chip}
+ */
+export function statusOf(state, page) {
+  if (page.fault) return ["warn", "bad", state.running ? "in a long tick" : "stopped by a fault"];
+  if (!state.running) return ["pause", "", "paused"];
+  const packets = state.pose_cells.packets.length;
+  if (page.lost) return ["lost", "lost", packets > 1 ? `lost: ${packets} packets` : "lost"];
+  if (state.mode === "manual") return ["hand", "hand", "driving by hand"];
+  if (state.goal && state.mode === "goal") return GOALS[state.goal.state];
+  return ["compass", "good", "exploring"];
+}
+
+/** @param {Goal} goal */
+export function goalWords({ state, experience, remaining_m, eta_s }) {
+  const [icon, , words] = GOALS[state];
+  const [ended, ahead] = [state === "arrived" ? "arrived" : "no way", state !== "arrived" && state !== "unreachable"];
+  return {
+    icon,
+    title: `${words}, experience ${experience}`,
+    what: ahead ? "goal" : ended,
+    metres: ahead && remaining_m !== null ? `${remaining_m.toFixed(remaining_m < 100 ? 1 : 0)} m` : "",
+    seconds: ahead && eta_s !== null ? duration(eta_s) : "",
+  };
+}
+
+/** As the flag on the map says it. @param {number} seconds */
+export function duration(seconds) {
+  return seconds < 120 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`;
+}

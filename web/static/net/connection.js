@@ -1,0 +1,90 @@
+// The page's websocket: comes back by itself, hands out what arrives, sends commands and finds their answers.
+
+import { unframed } from "../model/frames.js";
+
+const RETRY_MS = [150, 400, 800, 1000];
+
+export class Connection extends EventTarget {
+  /** @param {string} page this page's own id */
+  constructor(page) {
+    super();
+    this.page = page;
+    this.open = false;
+    /** @type {Map<number, { resolve: (answer: Answer) => void, quiet: boolean }>} */
+    this.waiting = new Map(); // by the id of the command
+    this.lastId = 0;
+    this.tries = 0;
+    this.socket = this.connect();
+  }
+
+  connect() {
+    const socket = new WebSocket(`ws://${location.host}/api/stream?got=1&page=${this.page}`);
+    socket.binaryType = "arraybuffer"; // a part of the panel with its arrays
+    const slow = setTimeout(() => socket.close(), 3000);
+    socket.onopen = () => {
+      clearTimeout(slow);
+      this.tries = 0;
+      this.open = true;
+    };
+    socket.onmessage = (event) => {
+      const message = typeof event.data === "string" ? JSON.parse(event.data) : unframed(event.data);
+      if (message.type === "answer") this.settle(message);
+      else this.dispatchEvent(new CustomEvent(message.type, { detail: message }));
+      if (message.type === "state") this.tell({ type: "got" }); // the next, please: the newest there is by then
+    };
+    socket.onclose = () => {
+      clearTimeout(slow);
+      const was = this.open;
+      this.open = false;
+      for (const { resolve } of this.waiting.values()) resolve({ accepted: false, detail: [] });
+      this.waiting.clear();
+      if (was) this.dispatchEvent(new Event("lost"));
+      setTimeout(
+        () => {
+          this.socket = this.connect();
+        },
+        RETRY_MS[Math.min(this.tries++, RETRY_MS.length - 1)],
+      );
+    };
+    return socket;
+  }
+
+  /** @param {Answer} answer */
+  settle(answer) {
+    const { id = 0 } = answer;
+    const waiting = this.waiting.get(id);
+    this.waiting.delete(id);
+    if (!answer.accepted && !waiting?.quiet) this.dispatchEvent(new CustomEvent("refused", { detail: answer }));
+    waiting?.resolve(answer);
+  }
+
+  /**
+   * Calls back with what each message of a kind holds.
+   * @template T
+   * @param {string} kind
+   * @param {(detail: T) => void} take
+   */
+  on(kind, take) {
+    this.addEventListener(kind, (event) => take(/** @type {CustomEvent<T>} */ (event).detail));
+  }
+
+  /**
+   * Fire and forget: what is sent often, or concerns this page alone. Only a refusal is answered.
+   * @param {(Command | PageMessage) & { id?: number }} command
+   */
+  tell(command) {
+    if (this.open) this.socket.send(JSON.stringify(command));
+    return this.open;
+  }
+
+  /**
+   * Resolves to the answer; never rejects. quiet: whoever asks tells of a refusal.
+   * @param {Command | PageMessage} command
+   * @returns {Promise<Answer>}
+   */
+  ask(command, { quiet = false } = {}) {
+    const id = ++this.lastId;
+    if (!this.tell({ ...command, id })) return Promise.resolve({ accepted: false, detail: [] });
+    return new Promise((resolve) => this.waiting.set(id, { resolve, quiet }));
+  }
+}

@@ -1,0 +1,36 @@
+// A change that is no command: JSON to one of the routes.
+
+import { sentence } from "../model/sentences.js";
+
+/**
+ * Resolves to what the server told; what was wrong is in `wrong`, in sentences, and `field` says where.
+ * @param {string} path
+ * @param {object} body
+ * @returns {Promise<Told>}
+ */
+export async function post(path, body) {
+  try {
+    const answer = await fetch(path, {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify(body),
+    });
+    const told = await answer.json();
+    if (answer.ok) return told;
+    return { wrong: reasons(told), field: told.detail[0].field };
+  } catch {
+    return { wrong: "The connection is lost; nothing was changed.", field: null };
+  }
+}
+
+/** The worlds that have been saved, and those that come with the program: titles by name. @returns {Promise<WorldTitles>} */
+export async function worlds() {
+  try {
+    return await (await fetch("/api/worlds")).json();
+  } catch {
+    return { yours: {}, ours: {} };
+  }
+}
+
+/** What is wrong, in sentences. @param {{ detail: Wrong[] }} told */
+export const reasons = ({ detail }) => detail.map((wrong) => sentence(wrong.reason)).join(" ");

@@ -1,0 +1,48 @@
+// Pictures in canvases: pixels as they come, enlarged without smoothing.
+
+import { make } from "../elements/elements.js";
+import { rgb } from "../model/pixels.js";
+import { picture } from "../model/pixels.js";
+
+/** A colour of the page's theme. @param {string} name of a custom property, without its dashes */
+export const colourOf = (name) => rgb(getComputedStyle(document.documentElement).getPropertyValue(`--${name}`));
+
+export class Picture {
+  constructor() {
+    this.canvas = make("canvas", { width: 1, height: 1, className: "pixels" });
+    this.canvas.setAttribute("role", "img");
+    this.turn = 0; // of what was asked to be shown last: a picture that is unpacked later than a newer one is dropped
+  }
+
+  /** @param {string} words for who cannot see it */
+  says(words) {
+    if (this.canvas.getAttribute("aria-label") !== words) this.canvas.setAttribute("aria-label", words);
+    return this;
+  }
+
+  /** @param {import("../model/pixels.js").Pixels} pixels */
+  draw({ width, height, rgba }) {
+    this.turn += 1;
+    this.size(width, height);
+    this.canvas.getContext("2d")?.putImageData(new ImageData(rgba, width, height), 0, 0);
+  }
+
+  /** @param {import("../model/frames.js").Parcel | undefined} parcel */
+  async show(parcel) {
+    if (!parcel) return;
+    if (parcel.kind !== "jpeg") return this.draw(picture(parcel.values, parcel.shape));
+    const turn = ++this.turn;
+    const image = await createImageBitmap(new Blob([parcel.values], { type: "image/jpeg" }));
+    if (turn === this.turn) {
+      this.size(image.width, image.height);
+      this.canvas.getContext("2d")?.drawImage(image, 0, 0);
+    }
+    image.close();
+  }
+
+  /** @param {number} width @param {number} height */
+  size(width, height) {
+    if (this.canvas.width !== width) this.canvas.width = width;
+    if (this.canvas.height !== height) this.canvas.height = height;
+  }
+}

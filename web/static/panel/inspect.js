@@ -1,0 +1,82 @@
+// Inspect: one experience, view or column of pose cells, chosen on the plates, by number or by what is active now.
+
+import { make } from "../elements/elements.js";
+import { InjectForm } from "./inject_form.js";
+import { note } from "./parts.js";
+import { Report } from "./report.js";
+import { SwitchList } from "./switch_list.js";
+
+const NOTHING =
+  "Nothing is chosen. Hold shift and click on the map: the experience there is shown, with all that the robot knows of it. " +
+  "Click into the pose cells: what is active there, and which views lead there.";
+
+export class InspectTab {
+  /** @param {import("./panel.js").Ask} ask @param {(text: string) => void} complain */
+  constructor(ask, complain) {
+    this.ask = ask;
+    this.complain = complain;
+    this.switches = new SwitchList("Inspect", ask);
+    this.active = { experience: -1, view: -1 };
+    this.experience = this.number("experience");
+    this.view = this.number("view");
+    this.nothing = note(NOTHING);
+    this.report = new Report((wish) => this.look(wish));
+    this.inject = new InjectForm(ask);
+    const now = make(
+      "div",
+      { className: "buttons" },
+      ...["experience", "view", "nothing"].map((kind) => this.button(kind)),
+    );
+    now.setAttribute("role", "group");
+    now.setAttribute("aria-label", "Look at what is active now");
+    const numbers = make("div", { className: "pair" }, this.experience.label, this.view.label);
+    const choose = make("div", { className: "choose" }, make("span", { textContent: "active now" }), now);
+    this.box = make("div", {}, this.switches.box, choose, numbers, this.nothing, this.report.box, this.inject.box);
+  }
+
+  /** @param {Record<string, number>} wish by the fields of `inspect` */
+  look(wish) {
+    this.ask({ type: "inspect", ...wish });
+  }
+
+  /** @param {string} kind */
+  number(kind) {
+    const input = make("input", { type: "number", min: "0", step: "1", value: "0" });
+    input.addEventListener("change", () => input.value !== "" && this.look({ [kind]: Number(input.value) }));
+    const label = make("label", { className: "knob" }, make("span", { textContent: `${kind} #` }), input);
+    label.title = `Look at the ${kind} of this number.`;
+    return { input, label };
+  }
+
+  /** @param {string} kind */
+  button(kind) {
+    const button = make("button", { type: "button", textContent: kind });
+    button.addEventListener("click", () => {
+      const number = kind === "view" ? this.active.view : this.active.experience;
+      if (kind === "nothing") this.look({});
+      else if (number >= 0) this.look({ [kind]: number });
+      else this.complain(`Nothing to inspect: there is no ${kind} yet.`);
+    });
+    return button;
+  }
+
+  /** @param {any} data @param {import("./senses.js").Arrays} arrays */
+  inspected(data, arrays) {
+    this.nothing.hidden = data.kind !== null;
+    this.report.show(data, arrays);
+    this.inject.show(data.kind === "cell" ? data : null);
+    const field = data.kind === "experience" ? this.experience : data.kind === "view" ? this.view : null;
+    if (field && document.activeElement !== field.input) field.input.value = String(data.id);
+  }
+
+  get parts() {
+    return {
+      switches: this.switches.show.bind(this.switches),
+      /** @param {{ experience: number, view: number }} data */
+      active: (data) => {
+        this.active = data;
+      },
+      inspected: this.inspected.bind(this),
+    };
+  }
+}

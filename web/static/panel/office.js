@@ -1,0 +1,109 @@
+// Office: what this world has and whether it lives, one switch each; the robot's presets. A refusal takes a switch back.
+
+import { make } from "../elements/elements.js";
+import { Knob } from "./knob.js";
+import { heading, note, renew, say } from "./parts.js";
+
+const OWN = "own settings";
+
+/** @typedef {{ input: HTMLInputElement, box: HTMLElement }} Leaf */
+
+export class OfficeTab {
+  /** @param {import("./panel.js").Ask} ask */
+  constructor(ask) {
+    this.ask = ask;
+    this.words = note("");
+    this.preset = make("select");
+    this.preset.setAttribute("aria-label", "preset");
+    this.preset.addEventListener("change", () => this.choose());
+    this.robot = make(
+      "section",
+      {},
+      heading("Robot"),
+      make(
+        "label",
+        { className: "knob", title: "Sets the robot's sensors and encoders; the Tune tab shows to what." },
+        make("span", { textContent: "preset" }),
+        this.preset,
+      ),
+    );
+    this.lives = make("section");
+    this.doors = make("section");
+    this.lamps = make("section");
+    this.box = make("div", {}, this.words, this.robot, this.lives, this.doors, this.lamps);
+    /** @type {Map<string, Knob>} */
+    this.knobs = new Map();
+    /** @type {any} as the session last said */
+    this.data = null;
+  }
+
+  /** @param {any} data */
+  office(data) {
+    this.data = data;
+    say(this.words, data.words);
+    this.robot.hidden = data.presets.length === 0;
+    renew(this.preset, data.presets, () => [OWN, ...data.presets].map((name) => new Option(name)));
+    if (document.activeElement !== this.preset) this.preset.value = data.preset || OWN;
+    const names = data.knobs.map((/** @type {{ name: string }} */ { name }) => name);
+    renew(this.lives, names, () => this.build(data.knobs));
+    for (const parameter of data.knobs) this.knobs.get(parameter.name)?.show(parameter);
+    this.leaves(this.doors, "Doors", data.doors, "Open or shut; a click on the leaf does the same.", (name, on) => ({
+      type: "set_door",
+      name,
+      open: on,
+    }));
+    this.leaves(this.lamps, "Lamps", data.lamps, "On or off.", (name, on) => ({ type: "set_lamp", name, on }));
+  }
+
+  async choose() {
+    const name = this.preset.value;
+    if (name !== OWN) await this.ask({ type: "use_preset", name });
+    this.preset.value = this.data.preset || OWN; // the session says which one it is
+    this.preset.blur();
+  }
+
+  /** @param {import("../model/knobs.js").Parameter[]} parameters */
+  build(parameters) {
+    this.knobs = new Map(parameters.map((parameter) => [parameter.name, new Knob(parameter, this.ask)]));
+    const boxes = [...this.knobs.values()].map(({ box }) => box);
+    return boxes.length ? [heading("What lives"), ...boxes] : [];
+  }
+
+  /**
+   * Switches of one kind.
+   * @param {HTMLElement} box @param {string} title @param {[string, boolean][]} leaves @param {string} hint
+   * @param {(name: string, on: boolean) => Command} command
+   */
+  leaves(box, title, leaves, hint, command) {
+    renew(
+      box,
+      leaves.map(([name]) => name),
+      () => {
+        const drawn = leaves.map(([name]) => this.leaf(name, hint, command));
+        return drawn.length ? [heading(title), ...drawn] : [];
+      },
+    );
+    const inputs = box.querySelectorAll("input");
+    leaves.forEach(([, on], k) => {
+      if (!inputs[k].dataset.asking) inputs[k].checked = on;
+    });
+  }
+
+  /** @param {string} name @param {string} hint @param {(name: string, on: boolean) => Command} command */
+  leaf(name, hint, command) {
+    const input = make("input", { type: "checkbox" });
+    input.dataset.key = name;
+    input.addEventListener("change", async () => {
+      const wanted = input.checked;
+      input.dataset.asking = "yes";
+      const answer = await this.ask(command(name, wanted));
+      delete input.dataset.asking;
+      if (!answer.accepted) input.checked = !wanted;
+    });
+    return make("label", { className: "check", title: hint }, input, make("span", { textContent: name }));
+  }
+
+  get parts() {
+    return { office: this.office.bind(this) };
+  }
+}

@@ -1,0 +1,139 @@
+// The side panel: seven tabs, of which one is open. What it shows comes over the page's stream, for the open tab alone.
+
+import { labelled, make } from "../elements/elements.js";
+import { icon } from "../elements/icons.js";
+import { InspectTab } from "./inspect.js";
+import { MemoryTab } from "./memory.js";
+import { OfficeTab } from "./office.js";
+import { SensesTab } from "./senses.js";
+import { TabList } from "./tablist.js";
+import { TickTab } from "./tick.js";
+import { TruthTab } from "./truth.js";
+import { TuneTab } from "./tune.js";
+
+/**
+ * @typedef {(command: Command | PageMessage) => Promise<Answer>} Ask
+ * @typedef {import("./senses.js").Arrays} Arrays
+ * @typedef {Record<string, (data: any, arrays: Arrays) => void>} Parts
+ * @typedef {{ part: string, data: any, has: string[], arrays?: Arrays }} Message
+ */
+
+const EVERY_MS = 150; // the server takes ten messages a second
+const narrow = window.matchMedia("(max-width: 1000px)"); // there it would leave too little of the plates: a sheet over them
+
+export class Panel {
+  /**
+   * @param {HTMLElement} box
+   * @param {import("../net/connection.js").Connection} link
+   * @param {(text: string) => void} complain
+   */
+  constructor(box, link, complain) {
+    this.box = box;
+    this.link = link;
+    /** @type {Ask} */
+    const ask = (command) => link.ask(command);
+    const inspect = (/** @type {Record<string, number>} */ wish) => void ask({ type: "inspect", ...wish });
+    this.truth = new TruthTab();
+    /** @type {Record<string, { box: HTMLElement, parts: Parts }>} */
+    this.views = {
+      Senses: new SensesTab(inspect),
+      Memory: new MemoryTab(ask),
+      Inspect: new InspectTab(ask, complain),
+      Tick: new TickTab(ask),
+      Truth: this.truth,
+      Office: new OfficeTab(ask),
+      Tune: new TuneTab(ask),
+    };
+    this.tabs = new TabList(Object.keys(this.views), (name) => this.open(name));
+    /** @type {Map<string, Message>} what was told last of each part, with all its arrays */
+    this.told = new Map();
+    /** @type {string | null | undefined} */
+    this.looked = undefined;
+    this.opened = "Senses";
+    this.next_ms = 0;
+    this.later = 0;
+    this.shown = !narrow.matches;
+    this.build();
+    this.open("Senses");
+    this.show(this.shown);
+    narrow.addEventListener("change", () => this.show(!narrow.matches));
+    document.addEventListener("visibilitychange", () => this.tell());
+    link.on("hello", () => {
+      this.told.clear(); // another line: the server tells all of it again
+      this.tell();
+    });
+    link.on("panel", (/** @type {Message} */ message) => this.take(message));
+    new MutationObserver(() => this.recolour()).observe(document.documentElement, { attributeFilter: ["data-theme"] });
+  }
+
+  build() {
+    const close = labelled(
+      "Hide the panel (p)",
+      make("button", { type: "button", className: "bare close" }, icon("close")),
+    );
+    close.addEventListener("click", () => this.show(false));
+    const panels = Object.entries(this.views).map(([name, view]) => {
+      Object.assign(view.box, { id: `panel-${name.toLowerCase()}`, tabIndex: 0 });
+      view.box.classList.add("tabpanel");
+      view.box.setAttribute("role", "tabpanel");
+      view.box.setAttribute("aria-labelledby", `tab-${name.toLowerCase()}`);
+      return view.box;
+    });
+    this.box.append(make("div", { className: "head" }, this.tabs.box, close), ...panels);
+  }
+
+  /** @param {string} name */
+  open(name) {
+    this.opened = name;
+    this.tabs.select(name);
+    for (const [other, { box }] of Object.entries(this.views)) box.hidden = other !== name;
+    this.tell();
+  }
+
+  /** @param {boolean} on */
+  show(on) {
+    this.shown = on;
+    document.body.dataset.panels = String(on);
+    for (const button of document.querySelectorAll("[data-shows-panel]"))
+      button.setAttribute("aria-expanded", String(on));
+    this.tell();
+  }
+
+  /** Nobody sees what a hidden panel shows. Whoever runs through the tabs with a held key says where he has come to. */
+  tell() {
+    clearTimeout(this.later);
+    const wait_ms = this.next_ms - performance.now();
+    if (wait_ms > 0) {
+      this.later = window.setTimeout(() => this.tell(), wait_ms);
+      return;
+    }
+    this.next_ms = performance.now() + EVERY_MS;
+    this.link.tell({ type: "tabs", names: this.shown && !document.hidden ? [this.opened] : [] });
+  }
+
+  /** @param {Message} message */
+  take({ part, data, has, arrays = {} }) {
+    const before = this.told.get(part)?.arrays ?? {};
+    const whole = Object.fromEntries(has.map((name) => [name, arrays[name] ?? before[name]]));
+    this.told.set(part, { part, data, has, arrays: whole });
+    this.draw(part, data, whole);
+  }
+
+  /** @param {string} part @param {any} data @param {Arrays} arrays */
+  draw(part, data, arrays) {
+    for (const { parts } of Object.values(this.views)) parts[part]?.(data, arrays);
+  }
+
+  recolour() {
+    const cells = this.told.get("cells");
+    if (cells?.arrays) this.draw("cells", cells.data, cells.arrays);
+    this.truth.recolour();
+  }
+
+  /** Whoever chooses something sees what is told of it; a page that has just come shows what it showed. @param {string | null} name */
+  inspected(name) {
+    const before = this.looked;
+    this.looked = name;
+    if (name !== null && before !== undefined && name !== before) this.open("Inspect");
+  }
+}

@@ -1,0 +1,87 @@
+// Senses: what the camera sees, the best view it reminds of, how different they are, which cells are active.
+
+import { make } from "../elements/elements.js";
+import { fromAbove } from "../model/pixels.js";
+import { Picture, colourOf } from "./canvases.js";
+import { Histogram } from "./histogram.js";
+import { Bar, caption, say } from "./parts.js";
+import { ViewStrip } from "./view_strip.js";
+
+const PACKETS = ["packet-1", "packet-2", "packet-3", "packet-4"];
+
+/** @typedef {Record<string, import("../model/frames.js").Parcel>} Arrays */
+
+export class SensesTab {
+  /** @param {(wish: Record<string, number>) => void} inspect */
+  constructor(inspect) {
+    this.camera = new Picture().says("what the robot's camera sees");
+    this.seen = new Picture();
+    this.best = new Picture();
+    this.above = new Picture().says("pose cells seen from above, x′ to the right");
+    this.seenTitle = caption("");
+    this.bestTitle = caption("best match");
+    this.difference = caption("");
+    this.cells = caption("");
+    this.number = make("p", { className: "number" });
+    this.words = make("span");
+    this.verdict = make("p", { className: "verdict" }, make("i"), this.words);
+    this.view = -1;
+    this.match = make("button", { type: "button", className: "picture" }, this.best.canvas);
+    this.match.addEventListener("click", () => inspect({ view: this.view }));
+    this.none = make("p", { className: "blank", textContent: "none yet: every view is new" });
+    this.bar = new Bar(0.5);
+    this.strip = new ViewStrip(inspect);
+    this.turns = new Histogram("activity by heading");
+    this.box = make(
+      "div",
+      {},
+      row([caption("camera"), this.camera.canvas], [caption("active view"), this.number, this.verdict]),
+      row([this.seenTitle, this.seen.canvas], [this.bestTitle, this.match, this.none]),
+      this.difference,
+      this.bar.box,
+      this.cells,
+      this.strip.box,
+      row([caption("pose cells from above"), this.above.canvas], [caption("by heading θ′"), this.turns.box]),
+    );
+  }
+
+  /** @param {any} data @param {Arrays} arrays */
+  views(data, arrays) {
+    this.camera.show(arrays.camera);
+    say(this.number, data.active >= 0 ? `#${data.active}` : "none");
+    say(this.words, data.verdict.words);
+    this.verdict.dataset.tone = data.verdict.tone;
+    say(this.seenTitle, data.seen.title);
+    this.seen.says(data.seen.words).show(arrays.seen);
+    this.match.hidden = data.best === null;
+    this.none.hidden = data.best !== null;
+    say(this.bestTitle, data.best ? `best match #${data.best.view}` : "best match");
+    if (data.best) {
+      this.view = data.best.view;
+      this.match.setAttribute("aria-label", `Inspect ${data.best.words}`);
+      this.best.says(data.best.words).show(arrays.best);
+    }
+    say(this.difference, data.difference.words);
+    this.bar.show(data.difference.share, data.difference.known ? "known" : "new");
+  }
+
+  /** @param {any} data @param {Arrays} arrays */
+  poseCells(data, arrays) {
+    const shown = data.active >= 0 ? `active #${data.active} of ${data.views}` : `none active of ${data.views}`;
+    say(this.cells, `local view cells (${shown})`);
+    this.strip.show(data);
+    const [places, packets, strength] = [arrays.places, arrays.packets, arrays.strength].map(({ values }) => values);
+    this.above.draw(fromAbove(data.size, places, packets, strength, PACKETS.map(colourOf), colourOf("second")));
+    this.turns.show(arrays.by_heading.values);
+  }
+
+  /** What to do with each part, by its name. */
+  get parts() {
+    return { views: this.views.bind(this), cells: this.poseCells.bind(this) };
+  }
+}
+
+/** Two columns of equal width. @param {Node[]} left @param {Node[]} right */
+function row(left, right) {
+  return make("div", { className: "pair" }, make("div", {}, ...left), make("div", {}, ...right));
+}

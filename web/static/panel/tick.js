@@ -1,0 +1,76 @@
+// Tick: one tick stage by stage, and what the parts of a tick cost.
+
+import { make } from "../elements/elements.js";
+import { partWords, shareOf, tickWords } from "../model/timings.js";
+import { Bar, heading, note, say } from "./parts.js";
+
+const NOTHING = "Press next stage: the session pauses, and you go through one tick and see what each stage did.";
+const TRUE =
+  "The tick is computed as always, whole and in this order; pose cells and map show how they were at each stage.";
+/** @type {Record<string, Command>} */
+const ORDERS = {
+  back: { type: "step_stage", back: true },
+  "next stage": { type: "step_stage" },
+  tick: { type: "step" },
+  play: { type: "resume" },
+};
+
+export class TickTab {
+  /** @param {import("./panel.js").Ask} ask */
+  constructor(ask) {
+    const buttons = Object.entries(ORDERS).map(([words, order]) => {
+      const button = make("button", { type: "button", textContent: words });
+      button.addEventListener("click", () => ask(order));
+      return button;
+    });
+    const go = make("div", { className: "buttons", title: "The keys: comma and full stop." }, ...buttons);
+    go.setAttribute("role", "group");
+    go.setAttribute("aria-label", "Go");
+    this.title = heading("");
+    this.list = make("ol", { className: "stages" });
+    this.words = note("");
+    this.cost = heading("");
+    this.timings = make("div", { className: "timings" });
+    const how = note("Mean and worst of the last hundred ticks, measured beside the engine.");
+    this.box = make("div", {}, go, this.title, this.list, this.words, this.cost, how, this.timings);
+    /** @type {{ name: HTMLElement, words: HTMLElement, bar: Bar }[]} */
+    this.rows = [];
+  }
+
+  /** @param {{ at: number | null, stages: [string, string][] }} data */
+  walk({ at, stages }) {
+    say(this.title, at === null ? "One tick, stage by stage" : `Stage ${at + 1} of ${stages.length}`);
+    say(this.words, at === null ? NOTHING : TRUE);
+    const rows = stages.map(([title, words], k) => {
+      const row = make("li", {}, make("b", { textContent: title }), make("span", { textContent: words }));
+      row.className = words ? "" : "to-come";
+      if (k === at) row.setAttribute("aria-current", "step");
+      return row;
+    });
+    this.list.replaceChildren(...rows);
+    this.list.hidden = at === null;
+    if (at !== null) rows[at].scrollIntoView({ block: "nearest" });
+  }
+
+  /** @param {{ there_are_ms: number, parts: import("../model/timings.js").Timing[] }} data */
+  cost_of({ there_are_ms, parts }) {
+    say(this.cost, tickWords(parts, there_are_ms));
+    while (this.rows.length < parts.length) this.add();
+    while (this.rows.length > parts.length) this.rows.pop()?.name.parentElement?.parentElement?.remove();
+    parts.forEach((timing, k) => {
+      say(this.rows[k].name, timing[0]);
+      say(this.rows[k].words, partWords(timing));
+      this.rows[k].bar.show(shareOf(parts, timing), "known");
+    });
+  }
+
+  add() {
+    const row = { name: make("span"), words: make("span"), bar: new Bar() };
+    this.rows.push(row);
+    this.timings.append(make("div", {}, make("div", { className: "timing" }, row.name, row.words), row.bar.box));
+  }
+
+  get parts() {
+    return { walk: this.walk.bind(this), timings: this.cost_of.bind(this) };
+  }
+}

@@ -1,0 +1,118 @@
+// The plates in 3-D: viser's client in a frame of our own origin, and the view buttons.
+
+import { $ } from "../elements/dom.js";
+import { freeFingers } from "./fingers.js";
+import { spareSoftware } from "./software.js";
+import { toast } from "../elements/toasts.js";
+import { fadeDrawing, firstFrame } from "./waking.js";
+
+export const phone = window.matchMedia("(max-width: 760px)");
+
+export class Viewer extends EventTarget {
+  /** @param {import("../net/connection.js").Connection} link @param {import("../driving/keys.js").Keys} keys */
+  constructor(link, keys) {
+    super();
+    this.link = link;
+    this.keys = keys;
+    this.frame = $("stage");
+    /** @type {ViewName} */
+    this.view = phone.matches ? "map" : "all";
+    /** @type {number | string | null} */
+    this.launch = null; // of the server
+    this.buttons = /** @type {HTMLElement[]} */ ([...document.querySelectorAll("[data-view]")]);
+    for (const button of this.buttons)
+      button.addEventListener("click", () => this.show(/** @type {ViewName} */ (button.dataset.view)));
+    this.mark();
+    this.frame.addEventListener("load", () => this.loaded());
+    this.frame.src = `/viser/?websocket=ws://${location.host}/viser/ws/${link.page}&hideViserLogo`;
+    link.on("hello", (/** @type {{ launch: number | string }} */ detail) => this.hello(detail));
+  }
+
+  /** @param {ViewName} view */
+  show(view) {
+    this.view = view;
+    this.mark();
+    this.link.tell({ type: "view", name: view });
+  }
+
+  mark() {
+    for (const button of this.buttons) button.setAttribute("aria-pressed", String(button.dataset.view === this.view));
+  }
+
+  // A server that started anew knows no view; one that only lost the line still shows what it did.
+  /** @param {{ launch: number | string }} hello */
+  hello({ launch }) {
+    if (launch === this.launch) return;
+    this.launch = launch;
+    this.link.tell({ type: "view", name: this.view });
+  }
+
+  loaded() {
+    const inside = /** @type {(Window & typeof globalThis) | null} */ (this.frame.contentWindow);
+    const paper = this.frame.contentDocument;
+    if (!paper || !inside || inside.location.href === "about:blank") return;
+    // viser reconnects only while its own frame has the focus; the person looks at the page as a whole.
+    paper.hasFocus = () => !document.hidden;
+    restBeneathTheEditor(inside);
+    spareSoftware(inside);
+    freeFingers(inside);
+    this.keys.listen(inside);
+    this.dispatchEvent(new Event("inside"));
+    // viser prevents the default of a press on a draggable thing in a passive listener: without effect, but the
+    // browser notes an error each time.
+    inside.addEventListener(
+      "pointerdown",
+      (event) => {
+        if (/** @type {Element} */ (event.target).tagName === "CANVAS") event.preventDefault = () => {};
+      },
+      true,
+    );
+    const style = paper.createElement("style"); // viser has a panel even when nothing is in it
+    style.textContent = HIDE_PANEL;
+    paper.head.append(style);
+    firstFrame(inside).then(() => this.wake(paper));
+  }
+
+  /** @param {Document} paper */
+  wake(paper) {
+    this.frame.classList.add("awake");
+    fadeDrawing();
+    let looks = 20;
+    const timer = setInterval(() => (dismissSlowNotice(paper) || --looks === 0) && clearInterval(timer), 250);
+  }
+}
+
+const HIDE_PANEL =
+  ".mantine-Paper-root[style*='fixed'], [data-dock-root] > div:not(:has(> canvas)) { display: none !important; }";
+
+/** @param {Window & typeof globalThis} inside */
+// The editor covers the plates. Without a graphics card a frame of it takes a second that the editor needs: its endless round of
+// frames, known by being asked for again and again, goes once in two seconds meanwhile. All else in the frame goes on as before.
+function restBeneathTheEditor(inside) {
+  const [editor, asked, held] = [$("editor"), new WeakMap(), new Map()];
+  const [next, drop] = [inside.requestAnimationFrame.bind(inside), inside.cancelAnimationFrame.bind(inside)];
+  inside.requestAnimationFrame = (step) => {
+    asked.set(step, (asked.get(step) ?? 0) + 1);
+    if (editor.hidden || asked.get(step) < 20) return next(step);
+    const id = -inside.setTimeout(() => held.delete(id) && next(step), 2000);
+    held.set(id, step);
+    return id;
+  };
+  inside.cancelAnimationFrame = (id) => (held.delete(id) ? inside.clearTimeout(-id) : drop(id));
+  new MutationObserver(() => {
+    for (const step of editor.hidden ? held.values() : []) next(step);
+    if (editor.hidden) held.clear();
+  }).observe(editor, { attributeFilter: ["hidden"] });
+}
+
+/** @param {Document} paper */
+// viser says for good that there is no graphics card, over our view buttons; a short sentence is enough.
+function dismissSlowNotice(paper) {
+  for (const title of paper.querySelectorAll(".mantine-Notification-title")) {
+    if (!(title.textContent ?? "").startsWith("Software WebGL")) continue;
+    title.closest(".mantine-Notification-root, .mantine-Notifications-notification")?.querySelector("button")?.click();
+    toast("No graphics card in use: the plates move slowly.", { notice: true });
+    return true;
+  }
+  return false;
+}

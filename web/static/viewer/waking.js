@@ -1,0 +1,47 @@
+// A drawing of the stage in its place, from the first paint until viser has drawn a whole frame; then it fades.
+
+import { $ } from "../elements/dom.js";
+
+const WHOLE = 40; // draw calls: the plates and what is on them, not the sky alone
+const DRAWS = ["drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"];
+const LONGEST_MS = 30_000;
+const FADE_MS = 400;
+
+/**
+ * Resolves when viser has drawn a whole frame, and in any case after a while, so that what it says is seen.
+ * @param {Window & typeof globalThis} inside
+ * @returns {Promise<void>}
+ */
+export function firstFrame(inside) {
+  /** @type {any} its functions are replaced for a while */
+  const kind = inside.WebGL2RenderingContext.prototype;
+  const before = DRAWS.map((name) => kind[name]);
+  return new Promise((resolve) => {
+    let calls = 0;
+    for (const [k, name] of DRAWS.entries())
+      kind[name] = /** @this {WebGL2RenderingContext} @param {...any} rest */ function (...rest) {
+        calls += 1;
+        return before[k].apply(this, rest);
+      };
+    const done = () => {
+      for (const [k, name] of DRAWS.entries()) kind[name] = before[k];
+      inside.clearTimeout(late);
+      resolve();
+    };
+    const late = inside.setTimeout(done, LONGEST_MS);
+    const look = () => {
+      if (calls >= WHOLE) done();
+      else {
+        calls = 0;
+        inside.requestAnimationFrame(look);
+      }
+    };
+    inside.requestAnimationFrame(look);
+  });
+}
+
+export function fadeDrawing() {
+  const drawing = $("waiting");
+  drawing.classList.add("over");
+  setTimeout(() => (drawing.hidden = true), FADE_MS);
+}

@@ -1,0 +1,76 @@
+// The worlds that have been saved, in the dialog that opens files: to open, to delete, and to bring back.
+
+import { $, find } from "../elements/dom.js";
+import { icon } from "../elements/icons.js";
+import { labelled, make } from "../elements/elements.js";
+import { post, worlds } from "../net/post.js";
+
+export class OwnWorlds {
+  /**
+   * @param {() => string | undefined} now the name of the world that is open
+   * @param {(name: string, title: string) => void} open begins in another one
+   */
+  constructor(now, open) {
+    this.now = now;
+    this.open = open;
+    this.list = $("own-list");
+  }
+
+  async show() {
+    for (const part of [$("own"), $("own-wrong")]) part.hidden = true; // what was listed before may be over
+    this.list.replaceChildren();
+    const { yours } = await worlds();
+    $("own").hidden = !Object.keys(yours).length;
+    this.list.replaceChildren(...Object.entries(yours).map(([name, title]) => this.row(name, title)));
+  }
+
+  /** @param {string} name @param {string} title */
+  row(name, title) {
+    const row = make(
+      "li",
+      {},
+      make("span", {}, make("b", { textContent: title }), make("small", { textContent: name })),
+    );
+    const open = make("button", { type: "button", textContent: "Open", ariaLabel: `Open ${title}` });
+    open.addEventListener("click", () => this.open(name, title));
+    const gone = labelled(`Delete ${title}`, make("button", { type: "button", className: "square" }, icon("delete")));
+    gone.addEventListener("click", async () => (await this.agrees(name, title)) && this.remove(row, name, title));
+    row.append(this.now() === name ? make("em", { textContent: "open now" }) : open, gone);
+    return row;
+  }
+
+  /** @param {string} name @param {string} title @returns {Promise<boolean>} */
+  agrees(name, title) {
+    const dialog = $("delete-dialog");
+    $("delete-title").textContent = `Delete “${title}”?`;
+    $("delete-open").hidden = this.now() !== name;
+    dialog.returnValue = "keep";
+    dialog.showModal();
+    return new Promise((resolve) =>
+      dialog.addEventListener("close", () => resolve(dialog.returnValue === "delete"), { once: true }),
+    );
+  }
+
+  /** @param {HTMLElement} row @param {string} name @param {string} title */
+  async remove(row, name, title) {
+    if (this.fails(await post("/api/worlds/delete", { name }))) return;
+    const undo = make("button", { type: "button", textContent: "Undo", ariaLabel: `Bring ${title} back` });
+    const words = make("span", {}, make("span", { textContent: `“${title}” is deleted.` }));
+    words.setAttribute("role", "status");
+    undo.addEventListener("click", async () => {
+      if (this.fails(await post("/api/worlds/restore", { name }))) return;
+      const back = this.row(name, title);
+      row.replaceWith(back);
+      find(back, "button").focus();
+    });
+    row.replaceChildren(words, undo);
+    undo.focus();
+  }
+
+  /** @param {Told} told */
+  fails({ wrong }) {
+    $("own-wrong").hidden = !wrong;
+    $("own-wrong").textContent = wrong ?? "";
+    return Boolean(wrong);
+  }
+}

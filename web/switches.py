@@ -1,0 +1,72 @@
+"""What is switched on for all who look: layers over the plates, and what a click on the map does."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+Name = Literal["occupancy", "cell_occupancy", "goal_memory", "click_inspects"]
+NAMES: tuple[Name, ...] = get_args(Name)
+
+
+@dataclass(frozen=True)
+class Switch:
+    """One switch as the panel shows it."""
+
+    name: Name
+    tab: str
+    words: str
+    hint: str
+    on: bool  # from the start
+
+
+SWITCHES = (
+    Switch(
+        "occupancy",
+        "Memory",
+        "Occupancy on the map",
+        "Where the sonars met something, bent with the map: free is bright.",
+        True,
+    ),
+    Switch(
+        "cell_occupancy",
+        "Memory",
+        "Occupancy among the pose cells",
+        "The same in the frame of the pose cells, which wraps and jumps.",
+        False,
+    ),
+    Switch(
+        "goal_memory",
+        "Memory",
+        "Goal memory",
+        "Seconds from each pose cell to the goal, and where they fall fastest. Needs a goal.",
+        True,
+    ),
+    Switch(
+        "click_inspects",
+        "Inspect",
+        "Click inspects",
+        "A click on the map, instead of sending the robot there. With shift it always does.",
+        False,
+    ),
+)
+
+
+class Switches:
+    """From any thread. `on` is another object after each turn."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self.on: frozenset[Name] = frozenset(switch.name for switch in SWITCHES if switch.on)
+        self.on_turn: Callable[[], None] | None = None  # called after each turn, in its thread
+
+    def is_on(self, name: Name) -> bool:
+        return name in self.on
+
+    def turn(self, name: Name, on: bool) -> None:
+        with self._lock:
+            self.on = frozenset(n for n in NAMES if (on if n == name else n in self.on))
+        if self.on_turn is not None:
+            self.on_turn()

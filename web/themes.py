@@ -1,0 +1,42 @@
+"""The theme each page has chosen, and that a page which chooses another leaves the stage it is shown."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Iterator
+from typing import Literal
+
+Theme = Literal["dark", "light"]
+THEMES: tuple[Theme, ...] = ("dark", "light")
+MOST_PAGES = 1024
+
+
+class Themes:
+    """In the server's loop. A page has an id of its own each time it is loaded and says its theme when it comes."""
+
+    def __init__(self) -> None:
+        self._chosen: dict[str, Theme] = {}
+        self._turned: dict[str, asyncio.Event] = {}
+
+    def of(self, page: str) -> Theme:
+        return self._chosen.get(page, "dark")
+
+    def choose(self, page: str, theme: Theme) -> None:
+        other = self.of(page) != theme
+        self._chosen.pop(page, None)
+        self._chosen[page] = theme
+        if len(self._chosen) > MOST_PAGES:
+            del self._chosen[next(iter(self._chosen))]  # the page that has been quiet for longest
+        if other and page in self._turned:
+            self._turned[page].set()
+
+    @contextlib.contextmanager
+    def shown(self, page: str) -> Iterator[tuple[Theme, asyncio.Event]]:
+        """What a page is to be shown, and the event that it has chosen otherwise since."""
+        turned = self._turned[page] = asyncio.Event()
+        try:
+            yield self.of(page), turned
+        finally:
+            if self._turned.get(page) is turned:
+                del self._turned[page]

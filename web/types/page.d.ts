@@ -1,0 +1,95 @@
+// The shapes of what the page holds and is sent, beside those that are written from the models in Python (shared.d.ts).
+
+type Point = [number, number];
+type Pose = { x: number; y: number; heading_rad: number };
+type World = WorldFile;
+type Wall = WallItem;
+type Door = DoorItem;
+
+// The things that a pointer can take hold of: all lists of a world but those of time.
+type ThingList = Exclude<keyof Things, "script" | "daylight">;
+type Field = {
+  key: string;
+  title: string;
+  type: "number" | "text" | "checkbox" | "color" | "select";
+  low?: number;
+  high?: number;
+  of?: readonly string[];
+};
+type Kind<T> = {
+  one: string;
+  grips(item: T): Point[];
+  far(item: T, p: Point): number;
+  shift(item: T, d: Point): T;
+  pull(item: T, grip: number, p: Point): T;
+  fields: Field[];
+};
+type Place = { list: ThingList; number: number };
+type Tell = (text: string, bad: boolean) => void;
+
+type ToolName = "select" | "wall" | "door" | "lamp" | "box" | "person" | "zone" | "start" | "place" | "delete";
+type WallLooks = { kind: Wall["kind"]; height: number };
+type Tool = {
+  title: string;
+  key: string;
+  says: string[];
+  takes?: number; // points; Infinity: until Enter, with `least`
+  least?: number;
+  chain?: boolean; // the last point begins the next
+  list?: ThingList;
+  makes?(points: Point[], world: World, looks: WallLooks): EditStep[] | string;
+};
+
+// ---------------------------------------------------------------- what the server sends
+
+type GoalState = (typeof import("../static/shared.js").GOAL_STATES)[number];
+type EventKind = (typeof import("../static/shared.js").EVENT_KINDS)[number];
+type Theme = (typeof import("../static/shared.js").THEMES)[number];
+type ViewName = (typeof import("../static/shared.js").VIEWS)[number];
+type Goal = { experience: number; x: number; y: number; state: GoalState; eta_s: number | null; remaining_m: number | null };
+type Living = { doors: Record<string, number>; lamps: Record<string, boolean>; people: number; boxes: number; daylight: number };
+type State = {
+  tick: number;
+  time_s: number;
+  mode: SetMode["mode"];
+  running: boolean;
+  speed: number;
+  world: string;
+  seed: number;
+  robot: Pose;
+  estimate: Pose;
+  pose_cells: { shape: number[]; packets: (Pose & { mass: number })[] };
+  goal: Goal | null;
+  living: Living | null;
+};
+type Moving = { walkers: Record<string, [number, number, number]>; boxes: string[] };
+type Walk = { at: number; of: number; title: string; words: string };
+type OfficeFields = { edition: number; undo: string | null; redo: string | null; saved: boolean };
+type PageFields = {
+  run: number;
+  doing: string;
+  lost: boolean;
+  fault: string | null;
+  real_time_factor: number;
+  title: string;
+  worlds: [string, string][];
+  office: OfficeFields | null;
+  inspected: string | null;
+  walk: Walk | null;
+  moving: Moving | null;
+};
+type TimelineEvent = { number: number; time_s: number; kind: string; text: string };
+type Wrong = { field: string | null; value: unknown; reason: string };
+// `wrong`: sentences, where something was.
+type Told = { [key: string]: any; wrong?: string; field?: string | null };
+type Answer = { accepted: boolean; detail: Wrong[]; id?: number; tick?: number };
+type KeptOffer = { world: string; title: string; experiences: number; time_s: number; kept_at: number };
+type WorldTitles = { yours: Record<string, string>; ours: Record<string, string> };
+
+// What concerns one page alone.
+type PageMessage =
+  | { type: "got" }
+  | { type: "view"; name: ViewName }
+  | { type: "theme"; name: Theme }
+  | { type: "tabs"; names: string[] }
+  | { type: "switch"; name: string; on: boolean }; // for all who look

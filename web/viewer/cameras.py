@@ -1,0 +1,129 @@
+"""Every browser's camera: where it looks, its flights from view to view, framed anew when the window changes shape."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import cast
+
+import numpy as np
+import viser
+from numpy.typing import ArrayLike
+
+from web.viewer.camera_views import FAR, NEAR, PHONE_ASPECT, Camera, Flight, View, camera_for
+
+SCREEN_ASPECT = 1.5
+RESHAPED = 0.01  # a change of aspect that asks for another framing
+TURNED = 0.02  # as far from its view a camera has been turned by hand
+
+
+def aspect_of(camera: viser.CameraHandle) -> float:
+    """Width by height of the canvas; one without pixels, as a browser that hides it has, is taken for a screen's."""
+    width, height = camera.image_width, camera.image_height
+    return width / height if width > 0 and height > 0 else SCREEN_ASPECT
+
+
+class Cameras:
+    """Runs in the stage's thread; `post` brings work there from viser's callbacks."""
+
+    def __init__(self, server: viser.ViserServer, post: Callable[[Callable[[], None]], None]) -> None:
+        self._server, self._post = server, post
+        self._views: dict[int, View] = {}
+        self._ends: dict[int, Camera] = {}  # where the last flight of each went
+        self._flights: dict[int, Flight] = {}
+        camera, initial = camera_for("all", SCREEN_ASPECT), server.initial_camera
+        initial.position, initial.look_at, initial.fov = camera.position, camera.look_at, camera.fov_rad
+        initial.near, initial.far = NEAR, FAR
+
+    @property
+    def flying(self) -> bool:
+        return bool(self._flights)
+
+    def welcome(self, client: viser.ClientHandle) -> None:
+        """A new browser: a phone begins on the map, a screen with all three plates.
+
+        viser's client goes to the initial camera when it has drawn its first frame, which may be after our first word to
+        it: whoever is seen to stand there, and should not, is sent on once more.
+        """
+        aspect = aspect_of(client.camera)
+        self.take_off(client.client_id, "map" if aspect < PHONE_ASPECT else "all")
+
+        async def moved(camera: viser.CameraHandle) -> None:
+            nonlocal aspect
+            if abs(aspect_of(camera) / aspect - 1) > RESHAPED:
+                aspect = aspect_of(camera)
+                self._post(lambda: self.reframe(client.client_id))
+            elif self._set_back(client.client_id, camera):
+                self._post(lambda: self._send_on(client.client_id))
+
+        client.camera.on_update(moved)
+
+    def farewell(self, client_id: int) -> None:
+        self._views.pop(client_id, None)
+        self._ends.pop(client_id, None)
+        self._flights.pop(client_id, None)
+
+    def reframe(self, client_id: int) -> None:
+        if client_id in self._views:
+            self.take_off(client_id, self._views[client_id])
+
+    def turned(self, client_id: int) -> Camera | None:
+        """Where somebody has turned a camera to by hand; None when it stands at its view or is on its way. From any thread."""
+        client, view = self._server.get_clients().get(client_id), self._views.get(client_id)
+        if client is None or view is None or client_id in self._flights:
+            return None
+        camera, end = _standing(client.camera), camera_for(view, aspect_of(client.camera))
+        return None if _near(camera, end.position, end.look_at) else camera
+
+    def take_off(
+        self, client_id: int | None, view: str, now_s: float | None = None, turned: Camera | None = None
+    ) -> None:
+        """Flies one browser (or all) to a view or where it was turned from there, beginning `now_s`; without a time it jumps."""
+        for client in self._server.get_clients().values():
+            if client_id in (None, client.client_id):
+                camera, wanted = client.camera, cast(View, view)
+                self._views[client.client_id] = wanted
+                end = turned or camera_for(wanted, aspect_of(camera))
+                self._ends[client.client_id] = end
+                start = end if now_s is None else _standing(camera)
+                self._flights[client.client_id] = Flight(start, end, -math.inf if now_s is None else now_s)
+
+    def _set_back(self, client_id: int, camera: viser.CameraHandle) -> bool:
+        """Whether viser's client has gone to its initial camera by itself. From viser's thread."""
+        end, initial = self._ends.get(client_id), self._server.initial_camera
+        if end is None or client_id in self._flights:
+            return False
+        back = _near(camera, initial.position, initial.look_at)
+        return back and not _near(camera, end.position, end.look_at)
+
+    def _send_on(self, client_id: int) -> None:
+        if client_id in self._ends and client_id not in self._flights:
+            self._flights[client_id] = Flight(self._ends[client_id], self._ends[client_id], -math.inf)
+
+    def fly_on(self, now_s: float) -> None:
+        """Moves every camera in flight."""
+        if not self._flights:
+            return
+        clients = self._server.get_clients()
+        for client_id, flight in list(self._flights.items()):
+            camera, arrived = flight.at(now_s)
+            if client_id in clients:
+                _point(clients[client_id], camera)
+            if arrived or client_id not in clients:
+                del self._flights[client_id]
+
+
+def _near(camera: viser.CameraHandle | Camera, position: ArrayLike, look_at: ArrayLike) -> bool:
+    return np.allclose(camera.position, position, atol=TURNED) and np.allclose(camera.look_at, look_at, atol=TURNED)
+
+
+def _standing(camera: viser.CameraHandle) -> Camera:
+    return Camera(camera.position.copy(), camera.look_at.copy(), camera.fov)
+
+
+def _point(client: viser.ClientHandle, camera: Camera) -> None:
+    with client.atomic():
+        client.camera.position = camera.position
+        client.camera.look_at = camera.look_at
+        client.camera.up_direction = (0.0, 0.0, 1.0)
+        client.camera.fov = camera.fov_rad

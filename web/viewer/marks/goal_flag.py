@@ -1,0 +1,35 @@
+"""The goal's flag on the map: pole, pennant, two rings and a pill with the time that is left."""
+
+from __future__ import annotations
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from web.viewer.primitives import meshes
+from web.viewer.primitives.labels import Pill, add_mesh
+from web.viewer.primitives.palette import Palette
+
+HEIGHT = 1.5
+
+
+class GoalFlag:
+    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
+        self._palette = palette
+        self._frame = scene.add_frame(name, show_axes=False, visible=False)
+        for k, (radius, width) in enumerate(((0.24, 0.07), (0.44, 0.04))):
+            add_mesh(scene, f"{name}/ring_{k}", meshes.ring(radius, width, 0.12), palette.lit(palette.goal))
+        pole = meshes.extruded(meshes.rounded_rectangle(0.07, 0.07, 0.034, 4), 0.0, HEIGHT)
+        add_mesh(scene, f"{name}/pole", pole, palette.lit(palette.pole, (0.0, -1.0, 0.0)))
+        corners = np.array([(0.03, 0.0, HEIGHT), (0.03, 0.0, HEIGHT - 0.5), (0.75, 0.0, HEIGHT - 0.25)], np.float32)
+        pennant = (corners, np.array([[0, 1, 2]], np.uint32))
+        add_mesh(scene, f"{name}/pennant", pennant, palette.lit(palette.goal, (0.0, -1.0, 0.0)), side="double")
+        self._pill = Pill(scene, f"{name}/pill", 0.6, palette.goal, palette)
+
+    def show(self, at: NDArray[np.float64], words: str) -> None:
+        self._frame.position = (float(at[0]), float(at[1]), 0.0)
+        self._frame.visible = True
+        self._pill.show(words, self._palette.on_goal, (0.0, 0.0, HEIGHT + 0.46))
+
+    def hide(self) -> None:
+        self._frame.visible = False

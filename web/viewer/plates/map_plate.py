@@ -1,0 +1,211 @@
+"""The experience map's plate: what the robot built, coloured by the time to the goal (or from the robot)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import viser
+
+from web.messages import Goal, MapLayer, OccupancyPicture, Pose, Report, TimesLayer
+from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
+from web.viewer.marks.goal_flag import GoalFlag
+from web.viewer.marks.inspected import MapMark
+from web.viewer.marks.links import Links
+from web.viewer.marks.route import Route
+from web.viewer.plates.overlays import map_floor
+from web.viewer.plates.plate import FLOOR_Z, TEXT_Z, Plate
+from web.viewer.primitives import images, meshes
+from web.viewer.primitives.labels import Sign, add_mesh, add_picture
+from web.viewer.primitives.palette import Palette
+
+ORIGIN = (5.85, -2.2, 0.0)
+SHEET = (11.0, 10.0, -0.5, 0.45)
+NODE_Z, LINK_Z, ARROW_Z = 0.05, 0.03, 0.22
+ARROW = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)])
+BAR = (2.7, 0.26)
+BAR_X = 3.65
+GRID_LINES = 48
+NODE_STEP = 64
+NEAR = 0.5
+
+
+class MapPlate(Plate):
+    def __init__(self, scene: viser.SceneApi, palette: Palette) -> None:
+        super().__init__(scene, palette, "map", ORIGIN, SHEET)
+        self.fit = MapFit()
+        self._layer: MapLayer | None = None
+        self._capacity = 0
+        floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (WIDTH / 2, DEPTH / 2)
+        add_mesh(scene, f"{self.root}/floor", meshes.flat_polygon(floor, FLOOR_Z), palette.lit(palette.floor))
+        self._picture: OccupancyPicture | None = None
+        self._occupancy = add_picture(
+            scene,
+            f"{self.root}/occupancy",
+            images.sky(palette.floor, palette.floor),
+            WIDTH,
+            DEPTH,
+            position=(0, 0, FLOOR_Z + 0.005),
+            format="jpeg",
+            jpeg_quality=88,
+            visible=False,
+        )
+        self._grid = scene.add_line_segments(
+            f"{self.root}/grid", meshes.NOWHERE, palette.drawn(palette.grid), thickness=0.025
+        )
+        self._links = Links(scene, f"{self.root}/links", palette.drawn(palette.link))
+        self._reserve(NODE_STEP)
+        self._arrow = scene.add_frame(f"{self.root}/arrow", show_axes=False, visible=False)
+        add_mesh(scene, f"{self.root}/arrow/casing", _arrow(1.22, 0.0), palette.lit(palette.casing))
+        add_mesh(scene, f"{self.root}/arrow/body", _arrow(1.0, 0.02), palette.lit(palette.robot))
+        self._route = Route(scene, palette, f"{self.root}/route")
+        self._flag = GoalFlag(scene, palette, f"{self.root}/flag")
+        self._clicked = scene.add_frame(f"{self.root}/clicked", show_axes=False, visible=False)
+        for k, radius in enumerate((0.16, 0.34)):
+            add_mesh(scene, f"{self.root}/clicked/ring_{k}", meshes.ring(radius, 0.06, 0.09), palette.lit(palette.goal))
+        self._bar = add_picture(
+            scene,
+            f"{self.root}/bar",
+            images.colour_bar(palette.ramp),
+            *BAR,
+            position=(BAR_X, self.front + 1.08, TEXT_Z),
+        )
+        self._bar_ends = [Sign(scene, f"{self.root}/bar_{k}", 0.34, anchor=a) for k, a in enumerate(("left", "right"))]
+        self.mark = MapMark(scene, palette, self.root)
+        self._empty = Sign(scene, f"{self.root}/empty", 0.42, anchor="centre")
+        self._draw_grid()
+        self.set_heading("Experience map", "what it built")
+
+    def _reserve(self, nodes: int) -> None:
+        """Room for so many nodes; places and colours come apart and must be equally many."""
+        self._capacity = nodes
+        self._nodes = self.scene.add_point_cloud(
+            f"{self.root}/nodes",
+            np.full((self._capacity, 3), -50.0, np.float32),
+            np.zeros((self._capacity, 3), np.uint8),
+            point_size=0.075,
+            point_shape="circle",
+            point_shading="flat",
+        )
+
+    def set_map(self, layer: MapLayer, turn_rad: float) -> bool:
+        """Nodes and links; True when the whole map moved on the plate, so that all else on it must follow."""
+        self._layer = layer
+        before, self.fit = self.fit, refit(self.fit, layer.xy, turn_rad)
+        room = NODE_STEP * max(1, math.ceil(len(layer.xy) / NODE_STEP))
+        grew = room != self._capacity
+        if grew:
+            self._reserve(room)
+        places = meshes.stepped(self.fit.to_plate(layer.xy))
+        points = np.full((self._capacity, 3), -50.0, np.float32)
+        points[: len(places)] = meshes.lifted(places, NODE_Z)
+        self._nodes.points = points
+        self._links.show(meshes.lifted(places, LINK_Z), layer.links)
+        if len(layer.xy):
+            self._empty.hide()
+        else:
+            self._empty.show(images.text("no map yet: the robot has not moved", self.palette.text_2, 64), (0, 0, 0))
+        if self.fit.scale != before.scale:
+            self._draw_grid()
+        if self.fit is not before and self._picture is not None:
+            self.set_occupancy(self._picture)
+        return grew or self.fit is not before
+
+    def _draw_grid(self) -> None:
+        """A line each metre of the map (each five in large ones), from the middle of the plate."""
+        step = self.fit.scale * (1 if self.fit.scale > 0.35 else 5 if self.fit.scale > 0.08 else 25)
+        lines = []
+        for half, reach, flip in ((WIDTH / 2, DEPTH / 2, False), (DEPTH / 2, WIDTH / 2, True)):
+            count = int(half / step)
+            for at in np.arange(-count, count + 1) * step:
+                ends = [[at, -reach, FLOOR_Z + 0.01], [at, reach, FLOOR_Z + 0.01]]
+                lines.append([[y, x, z] for x, y, z in ends] if flip else ends)
+        self._grid.points = meshes.some(np.array(lines, np.float32), GRID_LINES)
+
+    def set_occupancy(self, picture: OccupancyPicture | None) -> None:
+        """What the sonars met, below the map; None: nothing is shown of it."""
+        self._picture = picture
+        if picture is not None:
+            self._occupancy.image = images.upright(map_floor(picture, self.fit, self.palette))
+        self._occupancy.visible = picture is not None
+
+    def set_times(self, times: TimesLayer) -> None:
+        """Colours of the nodes, and the scale with its numbers."""
+        finite = times.seconds[np.isfinite(times.seconds)]
+        longest = _round_up(float(finite.max(initial=1.0)))
+        colours = np.zeros((self._capacity, 3), np.uint8)
+        kept = times.seconds[: self._capacity]
+        colours[: len(kept)] = self.palette.times(kept, longest)
+        self._nodes.colors = colours
+        ink = self.palette.text_2
+        left, right, at = BAR_X - BAR[0] / 2, BAR_X + BAR[0] / 2, self.front + 0.62
+        self._bar_ends[0].show(images.text("0 s", ink, 64), (left, at, TEXT_Z))
+        self._bar_ends[1].show(images.text(seconds_words(longest), ink, 64), (right, at, TEXT_Z))
+        words = "time to goal" if times.to_goal else "time from robot"
+        self.set_heading("Experience map", f"what it built - colour: {words}")
+
+    def set_robot(self, estimate: Pose) -> None:
+        x, y = self.fit.to_plate(np.array([[estimate.x, estimate.y]]))[0]
+        half = (estimate.heading_rad + self.fit.turn_rad) / 2
+        self._arrow.position = (float(x), float(y), ARROW_Z)
+        self._arrow.wxyz = (math.cos(half), 0.0, 0.0, math.sin(half))
+        self._arrow.visible = True
+
+    def set_goal(self, goal: Goal | None) -> None:
+        if goal is None:
+            self._route.hide()
+            self._flag.hide()
+            return
+        at = self.fit.to_plate(np.array([[goal.x, goal.y]]))[0]
+        self._flag.show(at, _promise(goal))
+        self._route.show(self.fit.to_plate(goal.route_xy), goal.route_arrival_s, at)
+
+    def show_click(self, place: tuple[float, float] | None) -> None:
+        """The marker of a goal that was asked for (map frame) and is not there yet."""
+        self._clicked.visible = place is not None
+        if place is not None:
+            x, y = self.fit.to_plate(np.array([place]))[0]
+            self._clicked.position = (float(x), float(y), 0.0)
+
+    def set_inspected(self, report: Report | None) -> None:
+        self.mark.show(report, self._layer, self.fit)
+
+    def nearest(self, place: tuple[float, float]) -> int | None:
+        """The experience nearest to a place of the map, None when none is within half a unit of it on the plate."""
+        if self._layer is None or not len(self._layer.xy):
+            return None
+        away = np.hypot(*(self._layer.xy - place).T) * self.fit.scale
+        return int(self._layer.ids[away.argmin()]) if away.min() < NEAR else None
+
+    def map_place(self, plate_xy: tuple[float, float]) -> tuple[float, float] | None:
+        """The map-frame place under a point of the plate; None beside the floor."""
+        if abs(plate_xy[0]) > WIDTH / 2 or abs(plate_xy[1]) > DEPTH / 2:
+            return None
+        x, y = self.fit.to_map(np.array([plate_xy]))[0]
+        return float(x), float(y)
+
+    def on_sheet(self, plate_xy: tuple[float, float]) -> bool:
+        """Whether a point is on the plate, floor or not."""
+        width, depth, centre_y, _ = SHEET
+        return abs(plate_xy[0]) <= width / 2 and abs(plate_xy[1] - centre_y) <= depth / 2
+
+
+def seconds_words(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
+
+
+def _promise(goal: Goal) -> str:
+    if goal.state in ("arrived", "unreachable") or goal.eta_s is None or not math.isfinite(goal.eta_s):
+        return {"arrived": "arrived", "unreachable": "no way known"}.get(goal.state, "? s")
+    return seconds_words(goal.eta_s)
+
+
+def _arrow(size: float, z: float) -> meshes.Mesh:
+    vertices, faces = meshes.flat_fan((-0.2 * size, 0.0), ARROW[[3, 0, 1]] * size, z)
+    return vertices, faces
+
+
+def _round_up(seconds: float) -> float:
+    """To 5, 10, 30 or 60 s, so that colours do not breathe with the last node."""
+    step = 5 if seconds < 40 else 10 if seconds < 120 else 30 if seconds < 600 else 60
+    return math.ceil(seconds / step) * step

@@ -1,0 +1,148 @@
+"""The office plate: the true world, which the robot cannot know, with the robot and what its sensors reach."""
+
+from __future__ import annotations
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from web.messages import LivingLayer, Pose, Senses, WorldDrawing
+from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.marks.actors import LivingThings
+from web.viewer.marks.robot_model import RobotModel
+from web.viewer.plates.furniture import add_floor, add_furniture
+from web.viewer.plates.plate import FLOOR_Z, Plate
+from web.viewer.plates.sight import fan_of_view
+from web.viewer.primitives import meshes
+from web.viewer.primitives.labels import add_mesh
+from web.viewer.primitives.palette import Palette, mix
+from web.viewer.primitives.tone_mapping import vertex_paint
+
+ORIGIN = (-5.85, -2.2, 0.0)
+SHEET = (11.0, 10.0, -0.5, 0.45)
+TRAIL_SEGMENTS, TRAIL_STEP = 240, 0.16
+LATE = (0.0, -20.0, 16.0)  # transparent meshes are drawn by the distance of their origin: near the viewer comes last
+
+
+class OfficePlate(Plate):
+    def __init__(self, scene: viser.SceneApi, palette: Palette) -> None:
+        super().__init__(scene, palette, "office", ORIGIN, SHEET)
+        self.set_heading("Office", "the true world - the robot cannot know this")
+        self.world: WorldDrawing | None = None
+        self.fit = OfficeFit((0.0, 0.0, 10.0, 8.0))
+        self._walls = np.zeros((0, 4))
+        self.things = LivingThings(scene, palette, self.root)
+        self.robot = RobotModel(scene, palette, f"{self.root}/robot")
+        self._fan = add_mesh(
+            scene,
+            f"{self.root}/view",
+            meshes.NOTHING,
+            palette.lit(palette.wedge),
+            opacity=palette.wedge_opacity,
+            position=LATE,
+        )
+        self._fan_edges = scene.add_line_segments(
+            f"{self.root}/view_edges",
+            meshes.NOWHERE,
+            palette.drawn(palette.wedge),
+            thickness=0.025,
+        )
+        self._sonar = scene.add_line_segments(
+            f"{self.root}/sonar",
+            meshes.NOWHERE,
+            palette.drawn(palette.sonar),
+            thickness=0.022,
+        )
+        self._echoes = scene.add_point_cloud(
+            f"{self.root}/echoes",
+            np.full((8, 3), -50.0),
+            palette.sonar,
+            point_size=0.11,
+            point_shape="circle",
+            point_shading="flat",
+        )
+        self._trail = scene.add_line_segments(
+            f"{self.root}/trail",
+            meshes.NOWHERE,
+            np.zeros((1, 2, 3), np.uint8),
+            thickness=0.05,
+        )
+        self._room_for = scene.add_line_segments(
+            f"{self.root}/room",
+            meshes.closed_line(meshes.rounded_rectangle(2, 2, 1), 0.0),
+            palette.drawn(palette.sonar),
+            thickness=0.05,
+            visible=False,
+        )
+
+    def set_world(self, world: WorldDrawing) -> None:
+        """Draws another office: floor with its shadows, walls, furniture, posters."""
+        self.world, self.fit = world, OfficeFit(world.bounds)
+        opaque = [kind != "glass" for kind in world.wall_kind]
+        self._walls = np.asarray(world.walls, np.float64)[opaque]
+        self.robot.resize(self.fit.scale * max(world.robot_radius_m, 0.05))
+        add_floor(self.scene, f"{self.root}/floor", self.palette, world, self.fit, FLOOR_Z)
+        add_furniture(self.scene, f"{self.root}/furniture", self.palette, world, self.fit)
+
+    def set_living(self, layer: LivingLayer | None) -> None:
+        """Doors, boxes, people and lamps where they are now."""
+        self.things.show(layer, self.fit)
+
+    def set_robot(self, truth: Pose, senses: Senses) -> None:
+        """The robot at its true pose, with its field of view and the sonar's echoes."""
+        if self.world is None:
+            return
+        self.robot.place(self.fit.to_plate(np.array([[truth.x, truth.y]]))[0], truth.heading_rad)
+        self._draw_view(truth, self.world.camera_fov_rad)
+        self._draw_sonar(truth, self.world.sonar_angles_rad, senses.ranges_m)
+
+    def _draw_view(self, truth: Pose, fov_rad: float) -> None:
+        layer = self.things.layer
+        leaves = self._walls[:0] if layer is None else layer.doors.astype(np.float64)
+        rim = self.fit.to_plate(fan_of_view(np.vstack([self._walls, leaves]), truth, fov_rad))
+        centre = self.fit.to_plate(np.array([[truth.x, truth.y]]))[0]
+        vertices, faces = meshes.flat_fan((float(centre[0]), float(centre[1])), rim, 0.03)
+        self._fan.vertices, self._fan.faces = vertices - np.array(LATE, np.float32), faces
+        edges = meshes.lifted(np.vstack([centre, rim[0], centre, rim[-1]]), 0.035).reshape(2, 2, 3)
+        self._fan_edges.points = edges.astype(np.float32)
+
+    def _draw_sonar(self, truth: Pose, angles_rad: NDArray[np.float32], ranges_m: NDArray[np.float32]) -> None:
+        heard = np.isfinite(ranges_m)
+        angles, reach = truth.heading_rad + angles_rad[heard], ranges_m[heard]
+        ends = np.column_stack([truth.x + reach * np.cos(angles), truth.y + reach * np.sin(angles)])
+        tips = meshes.lifted(self.fit.to_plate(ends), 0.14 * self.fit.relief)
+        start = meshes.lifted(self.fit.to_plate(np.array([[truth.x, truth.y]])), 0.14 * self.fit.relief)
+        lines = np.stack([np.repeat(start, len(tips), 0), tips], 1).astype(np.float32)
+        self._sonar.points = meshes.some(lines, 8)
+        echoes = np.full((8, 3), -50.0, np.float32)
+        echoes[: len(tips)] = tips[:8]
+        self._echoes.points = echoes
+
+    def set_trail(self, trail: NDArray[np.float32]) -> None:
+        """The true path of the last two minutes, older parts fading into the floor."""
+        if len(trail) < 2:
+            self._trail.points, self._trail.colors = meshes.NOWHERE, np.zeros((1, 2, 3), np.uint8)
+            return
+        path = meshes.thinned(self.fit.to_plate(np.asarray(trail, np.float64)), TRAIL_STEP)[-TRAIL_SEGMENTS - 1 :]
+        path = meshes.lifted(path, 0.02)
+        jumps = np.hypot(*np.diff(path[:, :2], axis=0).T) > 1.2 * self.fit.scale  # a kidnap leaves no line
+        path[:, 2] += np.linspace(0.0, 0.015, len(path))  # where it crosses itself the newer part is on top
+        points = meshes.open_line(path)
+        points[jumps] = -50.0
+        ages = np.linspace(0.0, 1.0, len(points) + 1) ** 0.7
+        floor, line = np.array(self.palette.floor), np.array(self.palette.true_path)
+        tints = vertex_paint(floor + (line - floor) * (0.08 + 0.92 * ages[:, None]))
+        self._trail.points, self._trail.colors = points, np.stack([tints[:-1], tints[1:]], 1)
+
+    def show_drop(self, place: tuple[float, float] | None, room: bool, heading_rad: float) -> None:
+        """The ring under a dragged robot (office frame); teal where it fits, red where it does not."""
+        self._room_for.visible = place is not None
+        if place is None:
+            return
+        x, y = self.fit.to_plate(np.array([place]))[0]
+        radius = 1.6 * self.robot.radius
+        self._room_for.points = meshes.closed_line(meshes.circle(radius, (float(x), float(y))), 0.05)
+        self._room_for.colors = np.array(
+            self.palette.drawn(self.palette.sonar if room else mix(self.palette.robot, (255, 0, 0), 0.6)), np.uint8
+        )
+        self.robot.place(np.array([x, y]), heading_rad)

@@ -1,0 +1,58 @@
+"""A plate: a named frame with slab, sheet, rim, title and subtitle, on which one view of the session stands."""
+
+from __future__ import annotations
+
+import numpy as np
+import viser
+
+from web.viewer.primitives import images, meshes
+from web.viewer.primitives.labels import Sign, add_mesh
+from web.viewer.primitives.palette import Palette
+
+TITLE_M, SUBTITLE_M = 0.62, 0.36
+BEHIND = (0.0, 30.0, 0.0)  # opaque meshes are drawn by the distance of their origin: after what covers most of it
+SHEET_Z, RIM_Z, TEXT_Z, FLOOR_Z = -0.055, -0.05, -0.035, -0.03
+
+
+class Plate:
+    """The part that all three plates share. Children take names below `self.root`."""
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        palette: Palette,
+        name: str,
+        origin: tuple[float, float, float],
+        sheet: tuple[float, float, float, float],  # width, depth, centre y, corner radius
+    ) -> None:
+        self.scene, self.palette, self.root, self.origin = scene, palette, f"/{name}", origin
+        self.frame = scene.add_frame(self.root, show_axes=False, position=origin)
+        width, depth, centre_y, radius = sheet
+        self.left, self.front = -width / 2 + 0.5, centre_y - depth / 2
+        outline = meshes.rounded_rectangle(width, depth, radius, centre=(0.0, centre_y))
+        add_mesh(scene, f"{self.root}/slab", meshes.sides(outline, -0.32, -0.06), palette.lit(palette.slab))
+        vertices, faces = meshes.flat_polygon(outline, SHEET_Z)
+        far = (vertices - np.array(BEHIND, np.float32), faces)
+        add_mesh(scene, f"{self.root}/sheet", far, palette.lit(palette.sheet), position=BEHIND)
+        scene.add_line_segments(
+            f"{self.root}/rim", meshes.closed_line(outline, RIM_Z), palette.drawn(palette.rim), thickness=0.04
+        )
+        self._title = Sign(scene, f"{self.root}/title", TITLE_M)
+        self._subtitle = Sign(scene, f"{self.root}/subtitle", SUBTITLE_M)
+
+    def set_heading(self, title: str, subtitle: str) -> None:
+        """Title and subtitle, flat in front of the content."""
+        self._title.show(images.text(title, self.palette.text, 96, True), (self.left, self.front + 1.08, TEXT_Z))
+        self._subtitle.show(images.text(subtitle, self.palette.text_2, 64), (self.left, self.front + 0.46, TEXT_Z))
+
+
+def point_on_plane(
+    origin: np.ndarray, direction: np.ndarray, plate: tuple[float, float, float], z: float = 0.0
+) -> tuple[float, float] | None:
+    """Where a ray (world) meets the plane `z` above a plate, in the plate's frame; None when it does not."""
+    if abs(direction[2]) < 1e-9:
+        return None
+    along = (plate[2] + z - origin[2]) / direction[2]
+    if along <= 0:
+        return None
+    return float(origin[0] + along * direction[0] - plate[0]), float(origin[1] + along * direction[1] - plate[1])

@@ -1,0 +1,167 @@
+"""What people do with the pointer on the plates: a click on the map sets a goal, a drag of the robot kidnaps it.
+
+`Pointer` runs in the viewer's own thread; viser's callbacks only post to it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from web.messages import Accepted, Command, Inspect, Kidnap, Refused, SetDoor, SetGoal, Snapshot
+from web.viewer.plates.map_plate import NODE_Z, MapPlate
+from web.viewer.plates.office_plate import OfficePlate
+from web.viewer.plates.plate import point_on_plane
+
+Answer = Accepted | Refused
+PATIENCE_S = 3.0  # how long a clicked marker waits for its goal
+GRIP_Z = 0.15
+DOOR_Z = 0.25  # half as high as a leaf
+
+
+@dataclass(frozen=True)
+class Click:
+    client_id: int
+    origin: tuple[float, float, float]
+    direction: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Drag:
+    client_id: int
+    phase: Literal["start", "update", "end"]
+    turning: bool  # shift is held: the robot turns instead of moving
+    eye: tuple[float, float, float]
+    pointer: tuple[float, float, float]  # any point on the ray through the pointer
+
+
+class Pointer:
+    def __init__(
+        self, send: Callable[[Command, Callable[[Answer], None]], None], complain: Callable[[int, str, str], None]
+    ) -> None:
+        """`send` submits and has the answer brought back to this thread; `complain(client, title, body)` notifies."""
+        self._send, self._complain = send, complain
+        self._asked: tuple[tuple[float, float], float, int | None] | None = None  # place, time, tick of acceptance
+        self.dragging = False
+
+    def click(self, click: Click, plate: MapPlate, now_s: float, office: OfficePlate | None = None) -> None:
+        """On the map: the marker appears at once and the goal is asked for. On a door: it opens or shuts."""
+        if office is not None and self._click_door(click, office):
+            return
+        on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
+        place = None if on_plate is None else plate.map_place(on_plate)
+        if place is None:
+            if on_plate is not None and plate.on_sheet(on_plate):
+                self._complain(click.client_id, "No goal set", "that is beside the map; click on the map itself")
+            return
+        self._asked = (place, now_s, None)
+        plate.show_click(place)
+
+        def answered(answer: Answer) -> None:
+            if isinstance(answer, Refused):
+                self._forget_click(plate)
+                self._complain(click.client_id, "No goal set", answer.reason)
+            elif self._asked is not None and self._asked[0] == place:
+                self._asked = (place, now_s, answer.tick)
+
+        self._send(SetGoal(type="set_goal", x=place[0], y=place[1]), answered)
+
+    def _click_door(self, click: Click, office: OfficePlate) -> bool:
+        origin, direction = np.array(click.origin), np.array(click.direction)
+        at = point_on_plane(origin, direction, office.origin, DOOR_Z * office.fit.relief)
+        door = None if at is None else office.things.door_at(at, office.fit)
+        if door is None:
+            return False
+
+        def answered(answer: Answer) -> None:
+            if isinstance(answer, Refused):
+                self._complain(click.client_id, "The door stays as it is", answer.reason)
+
+        self._send(SetDoor(type="set_door", name=door[0], open=door[1]), answered)
+        return True
+
+    def experience_at(self, click: Click, plate: MapPlate) -> int | None:
+        """The experience that a click on the map means, None for none."""
+        on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
+        place = None if on_plate is None else plate.map_place(on_plate)
+        return None if place is None else plate.nearest(place)
+
+    def inspect(self, client_id: int, **wish: int | None) -> None:
+        """What to look at, by the fields of `Inspect`; the panel tells of it."""
+
+        def answered(answer: Answer) -> None:
+            if isinstance(answer, Refused):
+                self._complain(client_id, "Nothing to inspect", answer.reason)
+
+        self._send(Inspect(type="inspect", **wish), answered)  # type: ignore[arg-type]
+
+    def settle(self, snapshot: Snapshot, plate: MapPlate, now_s: float) -> None:
+        """Takes the clicked marker away when its goal is there, or when nothing came of it."""
+        if self._asked is None:
+            return
+        _, asked_s, accepted = self._asked
+        arrived = accepted is not None and snapshot.tick >= accepted and snapshot.goal is not None
+        if arrived or now_s - asked_s > PATIENCE_S:
+            self._forget_click(plate)
+
+    def moved(self, plate: MapPlate) -> None:
+        """The map has another fit: the marker follows."""
+        if self._asked is not None:
+            plate.show_click(self._asked[0])
+
+    def _forget_click(self, plate: MapPlate) -> None:
+        self._asked = None
+        plate.show_click(None)
+
+    def drag(self, drag: Drag, plate: OfficePlate, snapshot: Snapshot) -> None:
+        """While dragged the ring shows whether the robot fits; dropped, it is kidnapped."""
+        ray = np.array(drag.pointer) - np.array(drag.eye)
+        on_plate = point_on_plane(np.array(drag.eye), ray, plate.origin, GRIP_Z)
+        if on_plate is None:
+            return self._drop_beside(drag, plate) if drag.phase == "end" else None
+        x, y = (float(v) for v in plate.fit.to_office(np.array([on_plate]))[0])
+        truth, heading = snapshot.truth, snapshot.truth.heading_rad
+        if drag.turning:
+            heading = math.atan2(y - truth.y, x - truth.x)
+            x, y = truth.x, truth.y
+        self.dragging = True
+        plate.show_drop((x, y), snapshot.no_room(x, y) is None, heading)
+        if drag.phase == "end":
+            self._drop(drag, plate, (x, y, heading))
+        return None
+
+    def _drop(self, drag: Drag, plate: OfficePlate, pose: tuple[float, float, float]) -> None:
+        def answered(answer: Answer) -> None:
+            self._let_go(plate)
+            if isinstance(answer, Refused):
+                self._complain(drag.client_id, "The robot stays where it is", answer.reason)
+
+        self._send(Kidnap(type="kidnap", x=pose[0], y=pose[1], heading_rad=pose[2]), answered)
+
+    def _drop_beside(self, drag: Drag, plate: OfficePlate) -> None:
+        self._let_go(plate)
+        self._complain(
+            drag.client_id, "The robot stays where it is", "that is beside the office; drop it on free floor"
+        )
+
+    def _let_go(self, plate: OfficePlate) -> None:
+        self.dragging = False
+        plate.show_drop(None, False, 0.0)
+
+
+def ask(submit: Callable[[Command], Future[Answer]], command: Command, bring: Callable[[Answer], None]) -> None:
+    """Submits; `bring` gets the answer in whatever thread it comes, a failure as a refusal."""
+
+    def done(future: Future[Answer]) -> None:
+        error = None if future.cancelled() else future.exception()
+        if future.cancelled() or error is not None:
+            bring(Refused("command", command.type, str(error or "the session has ended")))
+        else:
+            bring(future.result())
+
+    submit(command).add_done_callback(done)

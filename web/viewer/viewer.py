@@ -1,0 +1,260 @@
+"""A viewer in one theme: one viser server on the loopback, one thread that draws the newest snapshot and takes what people do.
+
+viser's callbacks only post to `_inbox`; everything that touches handles happens in the one thread.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+import threading
+import time
+from collections.abc import Callable, Coroutine
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import viser
+
+from web.latest import Latest
+from web.messages import Accepted, Command, MapLayer, OccupancyLayer, OccupancyPicture, Refused, Snapshot
+from web.switches import Switches
+from web.themes import Theme
+from web.throttle import Throttle
+from web.viewer.camera_views import VIEWS, Camera
+from web.viewer.cameras import Cameras
+from web.viewer.plates.map_plate import MapPlate
+from web.viewer.pointer import Answer, Click, Drag, Pointer, ask
+from web.viewer.primitives.palette import Palette, palette_of
+from web.viewer.scenery import Scenery
+from web.viewer.viser_server import guarded_server
+
+DragEvent = viser.SceneNodeDragEvent[viser.MeshHandle]
+FRAME_S = 1 / 30  # no faster than this, however fast snapshots come
+IDLE_S = 0.05  # how long a click waits at most
+
+
+class Viewer:
+    """Draws what `latest` holds and hands commands to `submit`, which must return at once."""
+
+    def __init__(
+        self,
+        latest: Latest[Snapshot],
+        submit: Callable[[Command], Future[Accepted | Refused]],
+        switches: Switches,
+        theme: Theme = "dark",
+    ) -> None:
+        self.on_connect: Callable[[int], None] | None = None
+        self.on_complaint: Callable[[int, str], None] | None = None
+        self._latest, self._submit, self._switches = latest, submit, switches
+        self._inbox: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._stopping = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._snapshot: Snapshot | None = None
+        self.server, self.secret = guarded_server()
+        self.port = self.server.get_port()
+        self._cameras = Cameras(self.server, self._inbox.put)
+        self._pointer = Pointer(self._send, self._complain)
+        self._artist = ThreadPoolExecutor(1, "artist")  # for what takes longer than a frame
+        self._now_s = 0.0
+        self.drawing = False  # something is being drawn in another thread
+        self._set_up(palette_of(theme))
+        self._listen()
+
+    # ------------------------------------------------------------ from any thread
+
+    def start(self) -> None:
+        self._thread = threading.Thread(target=self._work, name="viewer", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Joins the thread and closes the server; may be called twice."""
+        self._stopping.set()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+        self._artist.shutdown(cancel_futures=True)
+        self.server.stop()
+
+    def turned(self, client_id: int) -> Camera | None:
+        """Where somebody has turned this browser's camera to by hand, if he has."""
+        return self._cameras.turned(client_id)
+
+    def fly(self, client_id: int | None, view: str, at_once: bool = False, turned: Camera | None = None) -> None:
+        """Takes one browser's camera (or everyone's) to a view: "all", "office", "pose" or "map"; `at_once` it is there.
+
+        `turned`: it had been turned from that view to this."""
+        if view not in VIEWS:
+            raise ValueError(f"unknown view {view!r}; expected one of: {', '.join(VIEWS)}")
+        now_s = None if at_once else time.monotonic()
+        self._inbox.put(lambda: self._cameras.take_off(client_id, view, now_s, turned))
+
+    def click(self, click: Click, inspecting: bool = False) -> None:
+        """Somebody has clicked on the plates; `inspecting`: with shift."""
+        self._inbox.put(lambda: self._click(click, inspecting))
+
+    def drag(self, drag: Drag) -> None:
+        """Somebody drags the robot."""
+        self._inbox.put(lambda: self._drag(drag))
+
+    # ------------------------------------------------------------ the thread
+
+    def _work(self) -> None:
+        seen = 0
+        while not self._stopping.is_set():
+            began_s = time.monotonic()
+            seen, snapshot = self._latest.wait(seen, FRAME_S if self._cameras.flying else IDLE_S)
+            self.tick(snapshot, time.monotonic(), watched=bool(self.server.get_clients()))
+            self._stopping.wait(max(0.0, FRAME_S - (time.monotonic() - began_s)))
+
+    def tick(self, snapshot: Snapshot | None, now_s: float, watched: bool = True) -> None:
+        """One round: what people did, cameras in flight, and the layers that are new and due."""
+        self._now_s = now_s
+        if snapshot is not None:
+            self._snapshot = snapshot
+        with contextlib.suppress(queue.Empty):
+            while True:
+                self._inbox.get_nowait()()
+        self._cameras.fly_on(now_s)
+        if self._snapshot is not None and watched:
+            self._draw(self._snapshot, now_s)
+
+    def _draw(self, snapshot: Snapshot, now_s: float) -> None:
+        offer, cells = self._layers, snapshot.pose_cells
+        with self.server.atomic():
+            if offer["world"].offer(now_s, snapshot.world):
+                self._forget("robot", "trail", "living")
+            offer["living"].offer(now_s, snapshot.living)
+            if self._pointer.dragging:
+                self._forget("robot")  # it goes back to the truth when it is let go
+            else:
+                offer["robot"].offer(now_s, snapshot.truth, snapshot.senses)
+            offer["trail"].offer(now_s, snapshot.trail)
+            self._draw_overlays(snapshot, now_s)
+            offer["cells"].offer(now_s, cells)
+            offer["path"].offer(now_s, cells.path, cells.shape)
+            offer["glow"].offer(now_s, cells, self._scenery.cells.under)
+            offer["map"].offer(now_s, snapshot.map, snapshot.map_turn_rad)
+            offer["times"].offer(now_s, snapshot.times)
+            offer["estimate"].offer(now_s, snapshot.estimate)
+            offer["goal"].offer(now_s, snapshot.goal)
+            self._pointer.settle(snapshot, self._scenery.map, now_s)
+
+    def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
+        if self._scenery.map.set_map(layer, turn_rad):
+            self._forget("times", "estimate", "goal", "inspected")
+            self._pointer.moved(self._scenery.map)
+
+    def _draw_overlays(self, snapshot: Snapshot, now_s: float) -> None:
+        """What is switched on; None takes it away."""
+        offer, is_on, cells = self._layers, self._switches.is_on, snapshot.pose_cells
+        goal = snapshot.goal_memory if is_on("goal_memory") else None
+        beneath = snapshot.occupancy if is_on("cell_occupancy") else None
+        offer["cell_floor"].offer(now_s, cells.shape, beneath, goal, snapshot.inspected)
+        offer["zone"].offer(now_s, snapshot.inspected, cells.shape)
+        offer["inspected"].offer(now_s, snapshot.inspected)
+        offer["way"].offer(now_s, cells, goal)
+        if not self.drawing:
+            offer["occupancy"].offer(now_s, snapshot.occupancy if is_on("occupancy") else None)
+
+    def _draw_occupancy(self, layer: OccupancyLayer | None) -> None:
+        """In another thread, since it may take longer than a frame; what comes back too late for its switch is dropped."""
+        if layer is None:
+            self._scenery.map.set_occupancy(None)
+            return
+        plate, self.drawing = self._scenery.map, True
+
+        def drawn(future: Future[OccupancyPicture]) -> None:
+            if not future.cancelled():
+                self._inbox.put(lambda: self._lay_occupancy(plate, future))
+
+        self._artist.submit(layer.draw_map).add_done_callback(drawn)
+
+    def _lay_occupancy(self, plate: MapPlate, future: Future[OccupancyPicture]) -> None:
+        self.drawing = False
+        if plate is self._scenery.map and self._switches.is_on("occupancy"):
+            plate.set_occupancy(future.result())
+
+    def _forget(self, *layers: str) -> None:
+        for name in layers:
+            self._layers[name].forget()
+
+    # ------------------------------------------------------------ setting up
+
+    def _set_up(self, palette: Palette) -> None:
+        """Builds the plates in a palette."""
+        self._scenery = Scenery(self.server.scene, palette)
+        self.server.gui.configure_theme(dark_mode=palette.dark, show_logo=False, show_share_button=False)
+        office, cells, map_plate = self._scenery.office, self._scenery.cells, self._scenery.map
+        self._layers: dict[str, Throttle] = {
+            "world": Throttle(5, office.set_world),
+            "robot": Throttle(15, office.set_robot),
+            "trail": Throttle(2, office.set_trail),
+            "living": Throttle(12, office.set_living),
+            "cells": Throttle(6, cells.set_cells),
+            "path": Throttle(2, cells.set_path),
+            "glow": Throttle(3, cells.set_glow),
+            "map": Throttle(2, self._draw_map),
+            "times": Throttle(3, map_plate.set_times),
+            "estimate": Throttle(15, map_plate.set_robot),
+            "goal": Throttle(3, map_plate.set_goal),
+            "cell_floor": Throttle(2, cells.set_floor),
+            "zone": Throttle(4, cells.set_inspected),
+            "inspected": Throttle(4, map_plate.set_inspected),
+            "way": Throttle(5, cells.set_way),
+            "occupancy": Throttle(0.6, self._draw_occupancy),
+        }
+        for part in office.robot.parts:
+            part.on_drag("left")(self._dragged(False))
+            part.on_drag("left", modifier="shift")(self._dragged(True))
+
+    def _listen(self) -> None:
+        self.server.on_client_connect(self._connected)
+        self.server.on_client_disconnect(self._disconnected)
+        self.server.scene.on_click()(self._clicked)
+        self.server.scene.on_click(modifier="shift")(self._clicked)
+
+    # ------------------------------------------------------------ callbacks of viser: post, never draw
+
+    def _clicked(self, event: viser.SceneClickEvent) -> None:
+        self.click(Click(event.client_id, event.ray_origin, event.ray_direction), event.modifier == "shift")
+
+    def _dragged(self, turning: bool) -> Callable[[DragEvent], Coroutine[Any, Any, None]]:
+        async def dragged(event: DragEvent) -> None:  # async: keeps their order
+            x, y, z = event.client.camera.position.tolist()
+            self.drag(Drag(event.client_id, event.phase, turning, (x, y, z), event.end_position))
+
+        return dragged
+
+    def _connected(self, client: viser.ClientHandle) -> None:
+        self._inbox.put(lambda: self._welcome(client))
+
+    def _disconnected(self, client: viser.ClientHandle) -> None:
+        self._inbox.put(lambda: self._cameras.farewell(client.client_id))
+
+    # ------------------------------------------------------------ in the thread
+
+    def _click(self, click: Click, inspecting: bool) -> None:
+        column = self._scenery.cells.column_at(np.array(click.origin), np.array(click.direction))
+        if column is not None:
+            self._pointer.inspect(click.client_id, x=column[0], y=column[1])
+        elif inspecting or self._switches.is_on("click_inspects"):
+            self._pointer.inspect(click.client_id, experience=self._pointer.experience_at(click, self._scenery.map))
+        else:
+            self._pointer.click(click, self._scenery.map, self._now_s, self._scenery.office)
+
+    def _drag(self, drag: Drag) -> None:
+        if self._snapshot is not None:
+            self._pointer.drag(drag, self._scenery.office, self._snapshot)
+
+    def _send(self, command: Command, answered: Callable[[Answer], None]) -> None:
+        ask(self._submit, command, lambda answer: self._inbox.put(lambda: answered(answer)))
+
+    def _complain(self, client_id: int, title: str, body: str) -> None:
+        if self.on_complaint is not None:
+            self.on_complaint(client_id, f"{title}: {body}")
+
+    def _welcome(self, client: viser.ClientHandle) -> None:
+        self._cameras.welcome(client)
+        if self.on_connect is not None:
+            self.on_connect(client.client_id)
