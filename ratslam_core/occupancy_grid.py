@@ -19,8 +19,6 @@ from ratslam_core.params import OccupancyParams
 from ratslam_core.types import Packet, Pose2, require_finite, wrap_angle
 
 MOST_CELLS = 1024  # along one side of a metric picture; a larger map is drawn with larger cells
-SAME_PLACE_M = 0.1  # a scan as near as this to the newest of its experience, and
-SAME_FACING_RAD = math.radians(10)  # facing as it does, takes its place
 
 
 @kind("occupancy grid/1")
@@ -107,8 +105,8 @@ class MapGrid:
             self._count = np.concatenate([self._count, np.zeros_like(self._count)])
         count = int(self._count[experience])
         newest = self._scans[experience, (count - 1) % self._kept]
-        moved = math.hypot(x - newest[0], y - newest[1]) > SAME_PLACE_M
-        if count == 0 or moved or abs(wrap_angle(heading - newest[2])) > SAME_FACING_RAD:
+        moved = math.hypot(x - newest[0], y - newest[1]) > self.params.same_place_m
+        if count == 0 or moved or abs(wrap_angle(heading - newest[2])) > self.params.same_facing:
             newest = self._scans[experience, count % self._kept]
             self._count[experience] += 1
         newest[:3] = x, y, heading

@@ -17,9 +17,7 @@ from ratslam_core.solvers.laplacian import eliminate
 if TYPE_CHECKING:
     from ratslam_core.experience_map.experience_map import ExperienceMap
 
-WORK_AN_EXPERIENCE = 90.0
-ENTANGLED = 1e9  # work, so that it is long until somebody tries again
-LEAST_STRENGTH = 1e-9  # below it no loop tells the bias from a bent way
+LEAST_STRENGTH = 1e-9  # below it rounding is all that tells the bias from a bent way
 
 
 @kind("relaxation/1")
@@ -166,26 +164,26 @@ def solve(
     moves: NDArray[np.float64],
     weights: NDArray[np.float64],
     turning_s: NDArray[np.float64] | None = None,
-    rounds: int = 2,
+    params: SolverParams | None = None,
 ) -> Solution:
     """The fixed point of the sweeps, in place: headings, then positions, each a sparse Laplacian with the first node fixed.
 
     A map that is too entangled for that is left to the sweeps. Every experience must be linked, over others, to the first.
-    Headings are linear once their residuals are wrapped; `rounds` lets the wrapping settle.
+    Headings are linear once their residuals are wrapped; `params.rounds` lets the wrapping settle.
     """
-    n = len(poses)
+    p, n = params or SolverParams(), len(poses)
     if n < 2 or len(links) == 0:
         return Solution(0.0, 0.0)
     i, j = links[:, 0], links[:, 1]
-    net = eliminate(n, links, weights)
+    net = eliminate(n, links, weights, p.largest)
     if net is None:
-        return Solution(0.0, ENTANGLED)
+        return Solution(0.0, p.entangled_work)
     seconds = np.zeros(len(links)) if turning_s is None else turning_s
     drift = net.solve(_asked(n, links, weights * seconds))  # headings that a unit of bias would bend the map to
     unexplained = seconds - drift[j] + drift[i]
     strength = float(np.sum(weights * seconds * unexplained))
     bias = 0.0
-    for _ in range(rounds):
+    for _ in range(p.rounds):
         error = poses[i, 2] + moves[:, 2] - bias * seconds - poses[j, 2]
         error -= 2 * math.pi * np.round(error / (2 * math.pi))
         more = float(np.sum(weights * unexplained * error)) / strength if strength > LEAST_STRENGTH else 0.0
@@ -195,7 +193,7 @@ def solve(
     off = weights[:, None] * disagreement(poses, links, moves)[:, :2]
     across, up = np.ascontiguousarray(off.T)
     poses[:, :2] += net.solve(np.stack([_asked(n, links, across), _asked(n, links, up)], axis=1))
-    return Solution(bias, net.work + WORK_AN_EXPERIENCE * n)
+    return Solution(bias, net.work + p.work_an_experience * n)
 
 
 @njit(cache=True, nogil=True)

@@ -47,7 +47,7 @@ class ExactSolver:
             t.believed[rows] *= relaxation.trust(
                 poses, ends, moves, t.weight[rows], t.chain[rows], p.odometry_sigma, self.params
             )
-        more, work = relaxation.solve(poses, ends, moves, t.believed[rows], turning)
+        more, work = relaxation.solve(poses, ends, moves, t.believed[rows], turning, self.params)
         if turning is not None:
             map_.yaw_bias += more
             moves[:, 2] -= more * turning

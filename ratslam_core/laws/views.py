@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ratslam_core.laws.measures import apart, array, number, true, whole, within
 from ratslam_core.local_view.front_ends.complex_cells import ComplexCells
+from ratslam_core.local_view.front_ends.hue_saturation import HueSaturation
 from ratslam_core.local_view.matcher import Matcher
 from ratslam_core.local_view.recogniser import LocalView
 from ratslam_core.local_view.view_links import ViewLinks
@@ -24,9 +25,10 @@ def local_view(view: LocalView) -> None:
         array("the last features", view._last, np.uint8, (size,))
     number("surprise", view.image_change, 0.0)
     whole("false positives", view.false_positives)
-    if isinstance(view.front_end, ComplexCells):
-        pairs = zip(view.front_end._pairs, ComplexCells()._pairs, strict=True)
-        true(all(np.array_equal(a, b) for a, b in pairs), "the filters must be those of complex cells")
+    if isinstance(view.front_end, ComplexCells | HueSaturation):
+        fresh, front_end = type(view.front_end)(view.params), view.front_end
+        same = all(np.array_equal(value, vars(fresh)[name]) for name, value in vars(front_end).items())
+        true(same, "the front end must be that of the parameters")
     _recognition(view.recognition, count)
     _matcher(view._matcher, Matcher(view.front_end.columns, view.front_end.rows))
 

@@ -18,7 +18,6 @@ from ratslam_core.params import LocalViewParams
 from ratslam_core.types import Recognition
 
 NOTHING = -1
-TURNS = (0, 1, -1, 2, -2, 3, -3)  # columns by which one tick of turning may shift the image
 
 
 @kind("local view/1")
@@ -125,8 +124,8 @@ class LocalView:
         limit = self.front_end.surprise(self.params)
         if self._last is None or not self.params.enabled or math.isinf(limit):
             return 0.0
-        turns = TURNS if self.front_end.shifts else (0,)
-        least = self.front_end.scale * min(self._apart(features, self._last, turn) for turn in turns)
+        most = self.params.turn_shift if self.front_end.shifts else 0
+        least = self.front_end.scale * min(self._apart(features, self._last, turn) for turn in range(-most, most + 1))
         if limit == 0:
             return math.inf if least > 0 else 0.0
         return least / limit

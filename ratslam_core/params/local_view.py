@@ -129,6 +129,60 @@ class LocalViewParams:
         meaning="share of the recognised views that are taken for another known one",
         source="D 5.1",
     )
+    turn_shift: int = param(
+        3, unit="columns", low=0, high=11, meaning="how far one tick of turning may shift the image", source="ours"
+    )
+    edge_neighbourhood: int = param(
+        9,
+        unit="pixels",
+        low=1,
+        high=35,
+        meaning="width of the neighbourhood whose brightness complex cells divide an edge by",
+        source="A 3.3; value ours",
+        live=False,
+    )
+    edge_dark: float = param(
+        8.0,
+        unit="grey levels",
+        low=0.1,
+        high=255.0,
+        meaning="added to that brightness, so that noise in the dark is not amplified",
+        source="ours",
+        live=False,
+    )
+    edge_gain: float = param(
+        600.0,
+        unit="levels",
+        low=1.0,
+        high=1e5,
+        meaning="what a complex cell answers to an edge as strong as the brightness around it",
+        source="ours",
+        live=False,
+    )
+    full_saturation: float = param(
+        0.5,
+        low=0.01,
+        high=1.0,
+        meaning="saturation from which on all falls into the last bin",
+        source="ours",
+        live=False,
+    )
+    certain_saturation: float = param(
+        0.1,
+        low=1e-3,
+        high=1.0,
+        meaning="saturation from which on a hue is taken at its word",
+        source="ours",
+        live=False,
+    )
+    full_bin: float = param(
+        1 / 6,
+        low=0.01,
+        high=1.0,
+        meaning="share of the image that fills a bin of hue and saturation",
+        source="ours",
+        live=False,
+    )
     enabled: bool = param(True, meaning="vision; off = path integration only", source="A figures 9, 10")
 
     def __post_init__(self) -> None:

@@ -32,6 +32,22 @@ class OccupancyParams:
     bound: float = param(
         5.0, low=0.5, high=20.0, meaning="log odds stay within ± this, so that the picture can change", source="ours"
     )
+    same_place_m: float = param(
+        0.1,
+        unit="m",
+        low=0.0,
+        high=5.0,
+        meaning="a scan as near as this to the newest of its experience, and facing as it does, takes its place",
+        source="ours",
+    )
+    same_facing: float = param(
+        math.radians(10),
+        unit="rad",
+        low=0.0,
+        high=3.2,
+        meaning="the turn up to which it faces as it does",
+        source="ours",
+    )
     scans: int = param(
         6,
         low=1,

@@ -70,6 +70,13 @@ class PoseCellParams:
     divide_spread: bool = param(
         True, meaning="the way of a packet is not shortened by the spread of its headings", source="ours"
     )
+    least_agreement: float = param(
+        0.25,
+        low=0.01,
+        high=1.0,
+        meaning="agreement of a packet's headings, 1 = all the same, below which its way is lengthened no further",
+        source="ours",
+    )
     arc: bool = param(
         True,
         meaning="the way points along the heading in the middle of the movement; off = at its beginning",

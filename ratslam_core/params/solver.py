@@ -23,6 +23,27 @@ class SolverParams:
         meaning="what exact corrections may cost a step on average; 100,000 are half a millisecond or so",
         source="ours",
     )
+    work_an_experience: float = param(
+        90.0, low=0.0, high=1e6, meaning="what each experience adds to the work of an exact correction", source="ours"
+    )
+    largest: int = param(
+        4000,
+        unit="experiences",
+        low=1,
+        high=20_000,
+        meaning="a map of which more than these hang together inextricably is left to the sweeps; 4,000 take 2 s, 250 MB",
+        source="ours",
+    )
+    entangled_work: float = param(
+        1e9,
+        low=0.0,
+        high=1e12,
+        meaning="what an attempt on such a map counts as, so that the next comes late",
+        source="ours",
+    )
+    rounds: int = param(
+        2, low=1, high=20, meaning="times that headings are solved, so that their wrapping settles", source="ours"
+    )
     rad_per_m: float = param(
         0.7,
         unit="rad/m",

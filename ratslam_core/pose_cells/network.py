@@ -149,8 +149,9 @@ class PoseCells:
         self._way += abs(along)
         p = self.params
         packet_kernels.advance(
-            self._rows, self._found, self.shape, along, turn_rad, p.arc, p.divide_spread, self._moves, self._yaws
-        )
+            self._rows, self._found, self.shape, along, turn_rad,
+            p.arc, p.divide_spread, p.least_agreement, self._moves, self._yaws,
+        )  # fmt: skip
         self._make_room(self._n * 8)
         m = kernels.shift(
             self._cells, self._values, self._n, self._owner, self._moves, self._yaws, self._headings,

@@ -12,7 +12,6 @@ from ratslam_core.pose_cells.activity_kernels import THETA, X, Y, offset
 
 MASS, COS, SIN, CARRY = 3, 4, 5, 6  # columns after x, y, theta; CARRY is three columns
 ROW = 9
-LEAST_AGREEMENT = 0.25  # of headings: what is spread wider is not a packet that could be kept at its pace
 
 
 @njit(cache=True, nogil=True)
@@ -120,12 +119,12 @@ def follow(old, old_ids, n_old, new, new_ids, n_new, shape, window):
 
 
 @njit(cache=True, nogil=True)
-def advance(rows, n, shape, distance, turn, arc, divide, moves, yaws):
+def advance(rows, n, shape, distance, turn, arc, divide, least_agreement, moves, yaws):
     """Where packets go: rows are moved on, what `shift` needs is written to moves and yaws. cells, rad.
 
     arc: the way is one, so its chord points along the heading in the middle of it; else straight on, as in the papers. divide:
     layers of a packet head differently, which shortens and turns its way by the mean of exp(i theta); the move is divided by
-    that complex number.
+    that complex number, whose size is taken for `least_agreement` at least.
     """
     unit = 2.0 * np.pi / shape[0]
     bend = turn / 2 if arc else 0.0
@@ -135,7 +134,7 @@ def advance(rows, n, shape, distance, turn, arc, divide, moves, yaws):
         heading = unit * (row[THETA] + row[CARRY + 2]) + bend
         to_x, to_y = chord * np.cos(heading), chord * np.sin(heading)
         if divide:
-            agreement = max(row[COS] ** 2 + row[SIN] ** 2, LEAST_AGREEMENT**2)
+            agreement = max(row[COS] ** 2 + row[SIN] ** 2, least_agreement**2)
             moves[p, 0] = (to_x * row[COS] + to_y * row[SIN]) / agreement
             moves[p, 1] = (to_y * row[COS] - to_x * row[SIN]) / agreement
         else:

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 SPARE = 2  # neighbours that a node has room for from the beginning, beside its own
 DENSE = 8  # a rest whose nodes each hang together with an eighth of it or more
-LARGEST = 4000  # nodes of such a rest: two seconds and 250 MB
 BLOCK = 32  # columns of it that are taken off at once
 DENSE_IS_QUICKER = 100  # times, a product in a dense matrix than one of two links
 
@@ -46,16 +45,18 @@ class Elimination(NamedTuple):
         return out.reshape(asked.shape)
 
 
-def eliminate(n: int, links: NDArray[np.int64], weights: NDArray[np.float64]) -> Elimination | None:
+def eliminate(
+    n: int, links: NDArray[np.int64], weights: NDArray[np.float64], largest: int = 4000
+) -> Elimination | None:
     """Take the net apart. links: (m, 2) nodes from 0 to n - 1; weights: (m,), 0 or more; links that repeat add up.
 
-    None when it is so entangled that a rest of more than LARGEST nodes stays.
+    None when it is so entangled that a rest of more than `largest` nodes stays.
     """
     order, start, used, other, weight, total, work = _eliminate(n, links, weights, DENSE)
     left = np.ones(n, np.bool_)
     left[0] = left[order] = False
     rest = np.flatnonzero(left)
-    if len(rest) > LARGEST:
+    if len(rest) > largest:
         return None
     triangle = _matrix(n, rest, start, used, other, weight)
     if not _cholesky(triangle):  # weights too far apart for differences; sums bear that

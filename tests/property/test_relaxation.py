@@ -44,7 +44,7 @@ class Graph:
 
     def solved(self, rounds: int = 2) -> np.ndarray:
         poses = self.poses.copy()
-        solve(poses, self.links, self.moves, self.weights, rounds=rounds)
+        solve(poses, self.links, self.moves, self.weights, params=SolverParams(rounds=rounds))
         return poses
 
     def turned_energy(self, poses: np.ndarray) -> float:

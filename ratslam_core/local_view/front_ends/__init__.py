@@ -51,9 +51,13 @@ class FrontEnd(Protocol):
 
 def named_front_end(params: LocalViewParams) -> FrontEnd:
     """The one that the parameters name."""
-    return {
-        "template": Template,
-        "complex cells": ComplexCells,
-        "hue and saturation": HueSaturation,
-        "scene numbers": SceneNumbers,
-    }[params.front_end]()
+    match params.front_end:
+        case "template":
+            return Template()
+        case "complex cells":
+            return ComplexCells(params)
+        case "hue and saturation":
+            return HueSaturation(params)
+        case "scene numbers":
+            return SceneNumbers()
+    raise ValueError(f"front_end must be one that is known, got {params.front_end!r}")

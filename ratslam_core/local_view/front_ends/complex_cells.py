@@ -16,9 +16,6 @@ from ratslam_core.params import LocalViewParams
 WIDTH, HEIGHT = 48, 36  # pixels at which the filters work
 ORIENTATIONS, BANDS = 4, 2  # 8 bytes a column: a band above and one below the horizon
 WAVELENGTH, SIGMA, REACH = 6.0, 2.4, 5  # pixels
-NEIGHBOURHOOD = 9  # pixels over which brightness is taken, to divide by
-DARK = 8.0  # grey levels: what is darker all over is not amplified
-GAIN = 600.0  # grey levels of the features for an edge as strong as the brightness around it
 GLYPH = 9  # pixels of the small picture that stands for one place
 
 
@@ -29,18 +26,19 @@ class ComplexCells:
     columns, rows = COLUMNS, ROWS
     shifts, scale, vague = True, 1.0, 0.0
 
-    def __init__(self) -> None:
+    def __init__(self, params: LocalViewParams) -> None:
+        self._neighbourhood, self._dark, self._gain = params.edge_neighbourhood, params.edge_dark, params.edge_gain
         self._pairs = [gabor_pair(math.pi * k / ORIENTATIONS) for k in range(ORIENTATIONS)]
 
     def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None) -> Features:
         seen = cv2.resize(grey(image), (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA).astype(np.float32)
-        around = cv2.blur(seen, (NEIGHBOURHOOD, NEIGHBOURHOOD), borderType=cv2.BORDER_REFLECT) + DARK
+        around = cv2.blur(seen, (self._neighbourhood,) * 2, borderType=cv2.BORDER_REFLECT) + self._dark
         features = np.empty((COLUMNS, BANDS, ORIENTATIONS), np.float32)
         for k, (even, odd) in enumerate(self._pairs):
             a, b = (cv2.filter2D(seen, cv2.CV_32F, f, borderType=cv2.BORDER_REFLECT) for f in (even, odd))
             edges = cv2.magnitude(a, b) / around
             features[:, :, k] = cv2.resize(edges, (COLUMNS, BANDS), interpolation=cv2.INTER_AREA).T
-        return np.minimum(np.rint(GAIN * features), 255).astype(np.uint8).ravel()
+        return np.minimum(np.rint(self._gain * features), 255).astype(np.uint8).ravel()
 
     def bland(self, features: Features, params: LocalViewParams) -> bool:
         """A wall at arm's length has no edges."""

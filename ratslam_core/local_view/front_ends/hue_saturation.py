@@ -12,9 +12,6 @@ from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
 from ratslam_core.params import LocalViewParams
 
 HUES, SATURATIONS = COLUMNS, ROWS  # bins
-MOST_SATURATION = 0.5  # more counts as this
-FULL = 1 / 6  # a bin with this share of the image is full
-CERTAIN = 0.1  # saturation from which on a hue is taken at its word
 WIDTH, HEIGHT = 32, 24  # pixels: smaller than the camera's, which quiets its noise
 
 
@@ -25,18 +22,22 @@ class HueSaturation:
     columns, rows = COLUMNS, ROWS
     shifts, scale, vague = False, 2.5, 0.0
 
+    def __init__(self, params: LocalViewParams) -> None:
+        self._full_bin = params.full_bin
+        self._full, self._certain = params.full_saturation, params.certain_saturation
+
     def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None) -> Features:
         rgb = checked(image)
         if rgb.ndim == 2:
             raise ValueError(f"image must be in colour, shape (h, w, 3), for hue and saturation, got {rgb.shape}")
         small = cv2.resize(rgb.astype(np.float32) / 255, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
         hsv = np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2HSV), np.float32)
-        shares = histogram(hsv[..., 0].ravel(), hsv[..., 1].ravel())
-        return np.minimum(np.rint(255 / FULL * shares), 255).astype(np.uint8).ravel()
+        shares = histogram(hsv[..., 0].ravel(), hsv[..., 1].ravel(), self._full, self._certain)
+        return np.minimum(np.rint(255 / self._full_bin * shares), 255).astype(np.uint8).ravel()
 
     def bland(self, features: Features, params: LocalViewParams) -> bool:
         """Grey all over."""
-        return FULL / 255 * float(features.reshape(HUES, SATURATIONS)[:, 1:].sum()) < params.min_colour
+        return self._full_bin / 255 * float(features.reshape(HUES, SATURATIONS)[:, 1:].sum()) < params.min_colour
 
     def threshold(self, params: LocalViewParams) -> float:
         return params.colour_threshold
@@ -56,21 +57,25 @@ class HueSaturation:
         return f"mostly hue {hue * 360 // HUES}° at saturation {saturation} of {SATURATIONS - 1}"
 
 
-def histogram(hue_deg: NDArray[np.float32], saturation: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Shares of the bins, shape (12, 8), sum 1. Every pixel is shared by the two nearest hues and the two nearest saturations.
+def histogram(
+    hue_deg: NDArray[np.float32], saturation: NDArray[np.float32], full: float, certain: float
+) -> NDArray[np.float64]:
+    """Shares of the bins, shape (12, 8), sum 1. Every pixel is shared by the two nearest hues and the two nearest saturations;
+    `full` and more are the last.
 
-    [ours] The greyer a pixel, the more evenly it is spread over all hues: none jumps from one hue to another by noise.
+    [ours] The greyer a pixel below `certain`, the more evenly it is spread over all hues: none jumps from one hue to another
+    by noise.
     test_front_ends.py::test_grey_has_no_hue.
     """
-    level = np.minimum(saturation / MOST_SATURATION, 1.0) * (SATURATIONS - 1)
+    level = np.minimum(saturation / full, 1.0) * (SATURATIONS - 1)
     low = np.minimum(level.astype(np.int64), SATURATIONS - 2)
     turn = hue_deg * (HUES / 360.0)
     left = np.floor(turn).astype(np.int64)
-    certain = np.minimum(saturation / CERTAIN, 1.0)
+    sure = np.minimum(saturation / certain, 1.0)
     shares = np.zeros((HUES, SATURATIONS))
     for row, by_level in ((low, low + 1 - level), (low + 1, level - low)):
-        shares += np.bincount(row, by_level * (1 - certain), SATURATIONS) / HUES
+        shares += np.bincount(row, by_level * (1 - sure), SATURATIONS) / HUES
         for column, by_hue in ((left, left + 1 - turn), (left + 1, turn - left)):
             bins = column % HUES * SATURATIONS + row
-            shares += np.bincount(bins, by_level * by_hue * certain, HUES * SATURATIONS).reshape(HUES, SATURATIONS)
+            shares += np.bincount(bins, by_level * by_hue * sure, HUES * SATURATIONS).reshape(HUES, SATURATIONS)
     return np.maximum(shares, 0) / len(hue_deg)

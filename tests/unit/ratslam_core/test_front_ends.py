@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from ratslam_core import LocalView, LocalViewParams, Odometry, RatSlam, RatSlamParams
 from ratslam_core.local_view.front_ends import named_front_end
-from ratslam_core.local_view.front_ends.complex_cells import DARK, GAIN, NEIGHBOURHOOD, REACH, ComplexCells, gabor_pair
-from ratslam_core.local_view.front_ends.hue_saturation import CERTAIN, MOST_SATURATION, HueSaturation, histogram
+from ratslam_core.local_view.front_ends.complex_cells import REACH, ComplexCells, gabor_pair
+from ratslam_core.local_view.front_ends.hue_saturation import HueSaturation, histogram
 
 Image = NDArray[np.uint8]
 FRONT_ENDS = ("template", "complex cells", "hue and saturation", "scene numbers")
 SEEING = FRONT_ENDS[:3]
+P = LocalViewParams()
 
 
 def office(seed: int, light: float = 1.0, turned: int = 0) -> Image:
@@ -146,7 +147,7 @@ def test_complex_cells_are_the_energy_of_quadrature_pairs_by_loops() -> None:
     image = np.random.default_rng(1).integers(0, 256, (36, 48)).astype(np.uint8)
     grey = image.astype(np.float64)
     mirrored = np.pad(grey, REACH, mode="symmetric")
-    half = NEIGHBOURHOOD // 2
+    half = P.edge_neighbourhood // 2
     expected = np.zeros((12, 2, 4))
     for k in range(4):
         even, odd = (f.astype(np.float64) for f in gabor_pair(math.pi * k / 4))
@@ -154,16 +155,16 @@ def test_complex_cells_are_the_energy_of_quadrature_pairs_by_loops() -> None:
             for x in range(48):
                 patch = mirrored[y : y + 2 * REACH + 1, x : x + 2 * REACH + 1]
                 inner = patch[REACH - half : REACH + half + 1, REACH - half : REACH + half + 1]
-                energy = math.hypot((patch * even).sum(), (patch * odd).sum()) / (inner.mean() + DARK)
+                energy = math.hypot((patch * even).sum(), (patch * odd).sum()) / (inner.mean() + P.edge_dark)
                 expected[x // 4, y // 18, k] += energy / (4 * 18)
-    got = ComplexCells().look(image).astype(float)
-    assert np.abs(got - np.clip(GAIN * expected.ravel(), 0, 255)).max() <= 0.51
+    got = ComplexCells(P).look(image).astype(float)
+    assert np.abs(got - np.clip(P.edge_gain * expected.ravel(), 0, 255)).max() <= 0.51
 
 
 @pytest.mark.parametrize("k", range(4))
 def test_each_complex_cell_has_its_orientation_and_no_phase(k: int) -> None:
     wavelength = 6.0
-    seen = np.array([ComplexCells().look(grating(45 * k, p, wavelength)) for p in np.arange(0, 2 * math.pi, 0.5)])
+    seen = np.array([ComplexCells(P).look(grating(45 * k, p, wavelength)) for p in np.arange(0, 2 * math.pi, 0.5)])
     energy = seen.reshape(len(seen), 12, 2, 4).astype(float)[:, 2:-2]  # away from the borders
     mine = energy[..., k]
     others = np.delete(energy, k, axis=-1)
@@ -176,7 +177,7 @@ def test_gabor_pairs_are_blind_to_brightness() -> None:
         even, odd = gabor_pair(math.pi * k / 4)
         assert abs(even.sum()) < 1e-6 > abs(odd.sum())
         assert (even**2).sum() == pytest.approx((odd**2).sum(), rel=1e-5)
-    assert ComplexCells().look(np.full((36, 48), 200, np.uint8)).max() == 0
+    assert ComplexCells(P).look(np.full((36, 48), 200, np.uint8)).max() == 0
 
 
 # ---------------------------------------------------------------- hue and saturation
@@ -185,8 +186,8 @@ def test_gabor_pairs_are_blind_to_brightness() -> None:
 def literal_histogram(hue: list[float], saturation: list[float]) -> NDArray[np.float64]:
     shares = np.zeros((12, 8))
     for h, s in zip(hue, saturation, strict=True):
-        level = min(s / MOST_SATURATION, 1.0) * 7
-        certain = min(s / CERTAIN, 1.0)
+        level = min(s / P.full_saturation, 1.0) * 7
+        certain = min(s / P.certain_saturation, 1.0)
         for row in range(8):
             by_level = max(0.0, 1 - abs(level - row))
             for column in range(12):
@@ -199,7 +200,7 @@ def test_the_histogram_is_that_of_the_loops() -> None:
     rng = np.random.default_rng(2)
     hue = np.concatenate([rng.uniform(0, 360, 200), [0, 30, 359.99, 360 - 1e-3]]).astype(np.float32)
     saturation = np.concatenate([rng.uniform(0, 1, 200), [0, 0.5, 1, 0.07]]).astype(np.float32)
-    got = histogram(hue, saturation)
+    got = histogram(hue, saturation, P.full_saturation, P.certain_saturation)
     assert got == pytest.approx(literal_histogram(hue.tolist(), saturation.tolist()), abs=1e-5)
     assert got.sum() == pytest.approx(1.0, abs=1e-6)
 
@@ -208,7 +209,10 @@ def test_grey_has_no_hue() -> None:
     """A grey pixel that leans to red or to green by noise is the same grey; a red one is not a green one."""
 
     def apart(saturation: float) -> float:
-        red, green = (histogram(np.float32([hue]), np.float32([saturation])) for hue in (0, 120))
+        red, green = (
+            histogram(np.float32([hue]), np.float32([saturation]), P.full_saturation, P.certain_saturation)
+            for hue in (0, 120)
+        )
         return float(np.abs(red - green).sum())
 
     assert apart(0.0) == 0.0
@@ -219,7 +223,7 @@ def test_grey_has_no_hue() -> None:
 @pytest.mark.parametrize("hue", [0.0, 0.2, 0.55, 0.99])
 def test_the_picture_shows_the_hue_where_it_is(hue: float) -> None:
     rgb = np.rint(255 * np.array(colorsys.hsv_to_rgb(hue, 0.45, 0.8))).astype(np.uint8)
-    end = HueSaturation()
+    end = HueSaturation(P)
     picture = end.picture(end.look(np.tile(rgb, (48, 64, 1)))).astype(int)
     row, column = np.unravel_index(int(picture.sum(2).argmax()), picture.shape[:2])
     assert abs(math.remainder(column - 12 * hue, 12)) <= 1
@@ -318,3 +322,19 @@ def test_a_view_takes_no_more_than_150_bytes() -> None:
     for scene in range(4000):
         local_view.observe(None, scene)
         assert local_view.memory_bytes <= max(150 * (scene + 1), 1024 * 96)
+
+
+@pytest.mark.parametrize(
+    ("kind", "changed"),
+    [
+        ("complex cells", {"edge_neighbourhood": 3}),
+        ("complex cells", {"edge_dark": 80.0}),
+        ("complex cells", {"edge_gain": 60.0}),
+        ("hue and saturation", {"full_saturation": 0.1}),
+        ("hue and saturation", {"certain_saturation": 0.9}),
+        ("hue and saturation", {"full_bin": 0.9}),
+    ],
+)
+def test_each_parameter_changes_what_is_seen(kind: str, changed: dict[str, float]) -> None:
+    plain, other = view_of(kind), view_of(kind, **changed)
+    assert not np.array_equal(plain.front_end.look(office(1), None), other.front_end.look(office(1), None))
