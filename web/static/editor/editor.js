@@ -93,12 +93,12 @@ export class Editor {
     $("edit-redo").disabled = !redo;
     $("edit-undo").title = undo ? `Undo: ${undo} (Ctrl+Z)` : "Nothing to undo";
     $("edit-redo").title = redo ? `Redo: ${redo} (Ctrl+Shift+Z)` : "Nothing to redo";
-    $("edit-name").textContent = page.title;
     $("edit-unsaved").hidden = saved !== false;
     this.plan.showLive({ doors: state.living?.doors, lamps: state.living?.lamps, ...page.moving });
     this.plan.drawRobot(state.robot);
     this.time.at(state.time_s, state.living?.daylight ?? 1);
     if (page.office && edition !== this.office.edition) this.office.load();
+    else $("edit-name").textContent = page.title; // of the plan that is shown: keys pressed now draw on it
   }
 
   /** @param {boolean} other */
