@@ -42,7 +42,8 @@ def check_ranges(params: Any) -> None:
         kind = type(item.default)
         fits = isinstance(value, kind) or (kind is float and type(value) is int)
         if not fits or (kind is int and isinstance(value, bool)):
-            raise ValueError(f"{item.name} must be {kind.__name__}, got {value!r}")
+            got = " ".join(repr(value).split())  # an array has lines
+            raise ValueError(f"{item.name} must be {kind.__name__}, got {got}")
         if kind is bool:
             continue
         if kind is str:

@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -98,3 +99,8 @@ def test_text_is_one_of_its_choices() -> None:
     check_ranges(Chosen(way="right"))
     with pytest.raises(ValueError, match="way must be one of 'left', 'right', got 'up'"):
         check_ranges(Chosen(way="up"))
+
+
+def test_whatever_a_wrong_value_is_the_error_is_one_line() -> None:
+    with pytest.raises(ValueError, match=r"^carry must be bool, got array\(\[\[.*\]\], shape=\(60, 60\)\)$"):
+        PoseCellParams(carry=np.zeros((60, 60)))  # type: ignore[arg-type]
