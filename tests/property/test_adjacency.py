@@ -25,6 +25,7 @@ class Lists:
 
 @settings(max_examples=150)
 @given(st.data())
+@pytest.mark.slow
 def test_links_come_and_go_as_in_lists(data: st.DataObject) -> None:
     """Nodes, links, removals, and rows used again, in any order; links from a node to itself and parallel ones, too."""
     adjacency, lists = Adjacency(), Lists()

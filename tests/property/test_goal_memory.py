@@ -76,6 +76,7 @@ weights = st.sampled_from([0.0, 0.1, 0.25, 1.0])
 
 @settings(max_examples=150)
 @given(histories(), weights, weights, weights, st.sampled_from([0.05, 0.2, 1.0]), st.sampled_from([0.05, 0.5, 0.9]))
+@pytest.mark.slow
 def test_it_is_the_equations(
     history: tuple[int, int, list[tuple[float, Iteration]]],
     time: float,
@@ -113,6 +114,7 @@ def test_it_is_the_equations(
 
 @settings(max_examples=15)
 @given(st.integers(40, 80), st.integers(0, 2**32 - 1))
+@pytest.mark.slow
 def test_growing_keeps_what_was_learnt(count: int, seed: int) -> None:
     """Tables grow several times over a few thousand links."""
     rng = np.random.default_rng(seed)

@@ -61,6 +61,7 @@ def test_the_attractor_is_that_of_the_papers(
 
 @settings(max_examples=20)
 @given(activities(), st.floats(0.05, 0.9))
+@pytest.mark.slow
 def test_local_inhibition_is_a_second_wider_gaussian_taken_away(dense: np.ndarray, gain: float) -> None:
     pose_cells = network(dense, local_inhibit=gain)
     pose_cells.attract()
@@ -146,6 +147,7 @@ def test_every_active_cell_belongs_to_one_cluster_within_the_window(dense: np.nd
 
 @EXAMPLES
 @given(activities(), st.floats(-1.0, 1.0), st.floats(-3, 3), st.sampled_from([0.0, 0.3]))
+@pytest.mark.slow
 def test_carry_is_what_the_attractor_took_from_each_packet(
     dense: np.ndarray, cells: float, layers: float, local: float
 ) -> None:

@@ -113,6 +113,7 @@ def test_a_sweep_never_raises_the_residual(graph: Graph, alpha: float) -> None:
 
 @settings(max_examples=30)
 @given(graphs())
+@pytest.mark.slow
 def test_sweeps_and_solution_agree(graph: Graph) -> None:
     disturb(graph, 0.5, 0.3)
     solved = graph.solved(rounds=4)

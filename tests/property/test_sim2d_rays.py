@@ -101,6 +101,7 @@ def test_the_index_finds_what_looking_at_all_finds(
 
 @given(clear_segments, heading, st.sampled_from([0.8, 6.2]), st.data())
 @settings(max_examples=80)
+@pytest.mark.slow
 def test_the_camera_sees_the_same_through_the_index(
     walls: np.ndarray, angle: float, fov: float, data: st.DataObject
 ) -> None:

@@ -137,6 +137,7 @@ def change(map_: Links, data: st.DataObject) -> None:
 
 
 @pytest.mark.parametrize("interpreted", [False, True])
+@pytest.mark.slow
 def test_a_map_that_was_mended_is_as_good_as_new(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """The same goal again and again, while the map changes: the papers' times, SciPy's, and bits of a fresh answer."""
     if interpreted:

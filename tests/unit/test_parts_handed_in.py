@@ -36,6 +36,7 @@ def brain_with(name: str, **more: Any) -> RatSlam:
 
 
 @pytest.mark.parametrize("name", PARTS)
+@pytest.mark.slow
 def test_it_goes_on_from_its_file_as_if_it_had_never_stopped(name: str, tmp_path: Path) -> None:
     circle, brain = Circle(1), brain_with(name)
     circle.advance(brain, 340)
@@ -51,6 +52,7 @@ def test_it_goes_on_from_its_file_as_if_it_had_never_stopped(name: str, tmp_path
 
 
 @pytest.mark.parametrize("name", PARTS)
+@pytest.mark.slow
 def test_the_closed_loop_runs_with_it_twice_alike(name: str) -> None:
     reports = []
     for _ in range(2):

@@ -34,6 +34,7 @@ def test_worlds_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert "10 x 8 m; ACRA 2006: " in lines[0]
 
 
+@pytest.mark.slow
 def test_a_plan_is_checked_imported_and_driven_in(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     picture, world = tmp_path / "plan.pgm", tmp_path / "plan.json"
     picture.write_bytes(b"P5\n80 60\n255\n" + b"\x00" * 80 + (b"\x00" + b"\xff" * 78 + b"\x00") * 58 + b"\x00" * 80)
@@ -80,6 +81,7 @@ def test_the_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out == (WORLDS / "schema.json").read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_headless_prints_its_report(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["headless", "--minutes", "0.1", "--seed", "3", "--world", "loop"]) == 0
     out = capsys.readouterr().out
@@ -87,6 +89,7 @@ def test_headless_prints_its_report(capsys: pytest.CaptureFixture[str]) -> None:
     assert (report["world"], report["seed"], report["ticks"]) == ("loop", 3, 60)
 
 
+@pytest.mark.slow
 def test_headless_writes_its_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "report.json"
     command = ["headless", "--minutes", "0.3", "--goals", "1", "--kidnap-at", "3", "7.5", "--report", str(file)]
@@ -100,6 +103,7 @@ def test_headless_writes_its_report(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert str(file) in out
 
 
+@pytest.mark.slow
 def test_parameters_reach_the_run(tmp_path: Path) -> None:
     reports = []
     for options in ([], ["--set", "pilot.cruise_speed=0.2"]):
@@ -205,6 +209,7 @@ def test_help_is_not_a_run(capsys: pytest.CaptureFixture[str]) -> None:
     assert "headless" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_it_runs_as_a_module() -> None:
     done = subprocess.run(
         [sys.executable, "-c", "import sys; from app.cli.command_line import main; sys.exit(main())", "worlds"],
@@ -214,6 +219,7 @@ def test_it_runs_as_a_module() -> None:
     assert done.stdout.startswith("office ")
 
 
+@pytest.mark.slow
 def test_control_c_ends_quietly(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_args: object, **_more: object) -> None:
         raise KeyboardInterrupt

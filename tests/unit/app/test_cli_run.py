@@ -141,6 +141,7 @@ def test_a_first_start_serves_while_it_compiles_and_says_so(
     assert "RatSLAM wakes up: compiling the engine for this machine, once" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_an_engine_that_cannot_begin_ends_the_program_with_a_sentence(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -46,6 +46,7 @@ print(len(before) > 40, sorted(used() - before))
 """
 
 
+@pytest.mark.slow
 def test_after_the_parts_a_run_has_nothing_to_compile() -> None:
     done = subprocess.run([sys.executable, "-c", LEFT_OVER], capture_output=True, text=True, timeout=600, check=True)
     assert done.stdout == "True []\n"
@@ -105,6 +106,7 @@ def test_it_can_be_stopped_at_any_moment(monkeypatch: pytest.MonkeyPatch) -> Non
     work.wait(lambda _words: work.stop())
 
 
+@pytest.mark.slow
 def test_each_part_has_a_process_of_its_own_and_all_end_together(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -30,6 +30,7 @@ def values(name: str) -> st.SearchStrategy:
 
 @settings(max_examples=60)
 @given(st.data())
+@pytest.mark.slow
 def test_toml_there_and_back_is_the_identity(data: st.DataObject) -> None:
     config = Config()
     for name in data.draw(st.lists(st.sampled_from(NAMES), max_size=12, unique=True)):

@@ -48,6 +48,7 @@ sys.meta_path.insert(0, Finder())
         ("run", "uvicorn", "SIGINT"),
     ],
 )
+@pytest.mark.slow
 def test_a_signal_while_starting_ends_it(command: str, module: str, number: str, tmp_path: Path) -> None:
     file = str(tmp_path / "report.json")
     arguments = ["headless", "--report", file] if command == "headless" else ["run", "--no-browser", "--port", "0"]
@@ -76,11 +77,13 @@ app.cli.command_line.main = {what}
 
 
 @pytest.mark.parametrize("what", ["deaf", "cross"])
+@pytest.mark.slow
 def test_a_signal_that_a_library_holds_back_ends_it_all_the_same(what: str) -> None:
     done = ratslam(before=SWALLOWS.format(what=what))
     assert (done.returncode, done.stderr) == (143, "ratslam: stopped\n")
 
 
+@pytest.mark.slow
 def test_a_full_disk_beneath_the_output_is_a_sentence() -> None:
     with open("/dev/full", "w", encoding="utf-8") as full:
         done = ratslam("config", stdout=full)
@@ -88,6 +91,7 @@ def test_a_full_disk_beneath_the_output_is_a_sentence() -> None:
     assert done.stderr == "ratslam: standard output: No space left on device; make room, or choose another place\n"
 
 
+@pytest.mark.slow
 def test_nobody_reads_on() -> None:
     reader, writer = os.pipe()
     os.close(reader)
@@ -96,6 +100,7 @@ def test_nobody_reads_on() -> None:
     assert (done.returncode, done.stderr) == (141, "")
 
 
+@pytest.mark.slow
 def test_nobody_can_be_told() -> None:
     with open("/dev/full", "w", encoding="utf-8") as full:
         assert ratslam("headless", "--world", "castle", stderr=full).returncode == 2
@@ -126,6 +131,7 @@ def quick_bench(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("quick_bench")
 @pytest.mark.parametrize("command", [report, brain, imported, bench])
+@pytest.mark.slow
 def test_a_full_disk_leaves_no_half_file(
     command: Callable[[Path], list[str]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -62,6 +62,7 @@ def test_running_pauses_and_resumes_at_any_speed(start: Callable[..., EngineThre
     assert engine.session.state_hash() == alone.state_hash()
 
 
+@pytest.mark.slow
 def test_the_real_time_factor_is_measured(start: Callable[..., EngineThread]) -> None:
     engine = start(running=True)
     assert wait_for(engine, lambda now: now.real_time_factor > 0).tick > 0

@@ -29,6 +29,7 @@ def test_a_cornered_robot_frees_itself(heading: float, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.slow
 def test_a_slow_floor_is_no_reason_to_back_off(seed: int) -> None:
     """On a floor where it is slow, exploring takes long, but the robot hardly ever frees itself of nothing."""
     world = room(start=(3.0, 2.0, 0.0))

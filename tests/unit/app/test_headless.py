@@ -19,6 +19,7 @@ KEYS = [
 ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_report_has_its_shape() -> None:
     told: list[tuple[float, str]] = []
     report = run_headless(OFFICE, 2, 0.5, goals=2, kidnap_at_s=[20, 5], progress=lambda s, what: told.append((s, what)))
@@ -84,6 +85,7 @@ def test_a_brain_that_grows_too_large_for_a_file_is_told_of_in_time(
     assert capsys.readouterr().err == words  # once
 
 
+@pytest.mark.slow
 def test_a_saved_brain_finds_its_way_again(tmp_path: Path) -> None:
     world, file = load_world("office"), tmp_path / "brain.npz"
     brain_file = BrainFile(file)

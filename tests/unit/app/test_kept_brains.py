@@ -166,6 +166,7 @@ def test_a_brain_that_grows_too_large_is_told_of_in_time(
     assert newest().about.time_s == 60.5  # type: ignore[union-attr]
 
 
+@pytest.mark.slow
 def test_leaving_keeps_it_once_more_and_does_not_wait_for_ever(
     start: Callable[..., EngineThread],
     brains: Path,

@@ -136,6 +136,7 @@ def test_every_parameter_has_another_value() -> None:
 
 
 @pytest.mark.parametrize("name", OTHER)
+@pytest.mark.slow
 def test_a_parameter_acts(name: str) -> None:
     assert any(differs(situation, usual(**{name: OTHER[name]})) for situation in SITUATIONS[of(name)])
 

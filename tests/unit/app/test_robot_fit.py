@@ -54,6 +54,7 @@ anywhere = st.tuples(st.floats(-1.0, 15.0), st.floats(-1.0, 10.0))
 
 @settings(max_examples=400, deadline=None)
 @given(near_things | near_people | anywhere)
+@pytest.mark.slow
 def test_what_the_ring_says_is_what_the_command_answers(place: tuple[float, float]) -> None:
     assert ring(*place) == command(*place)
 

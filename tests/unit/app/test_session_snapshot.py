@@ -53,6 +53,7 @@ def test_it_goes_on_bit_for_bit(world: str) -> None:
 
 
 @pytest.mark.parametrize("world", ["office", "living", "twins"])
+@pytest.mark.slow
 def test_while_the_robot_touches_a_wall(world: str) -> None:
     session = driven(world, 20)
     x0, y0, _, _ = session.world.bounds
@@ -68,6 +69,7 @@ def test_while_the_robot_touches_a_wall(world: str) -> None:
     assert bumped > 20
 
 
+@pytest.mark.slow
 def test_in_the_middle_of_a_route() -> None:
     session = driven("office", 900)
     session.pilot.set_goal(spread_goals(session, 1)[0])
@@ -80,6 +82,7 @@ def test_in_the_middle_of_a_route() -> None:
     assert session.pilot.goal is not None
 
 
+@pytest.mark.slow
 def test_while_it_frees_itself() -> None:
     session = driven("office", 20)
     session.set_parameter("pilot.stuck_s", 1.0)
@@ -92,6 +95,7 @@ def test_while_it_frees_itself() -> None:
     goes_on(session, 60)
 
 
+@pytest.mark.slow
 def test_after_a_kidnap_an_edit_and_other_parameters() -> None:
     session = driven("living", 100)
     session.simulator.set_door("laboratory door", False)
@@ -125,6 +129,7 @@ def do(session: Session, order: int) -> None:
 
 @settings(max_examples=10, deadline=None)
 @given(st.lists(st.integers(0, 8), min_size=8, max_size=20), st.integers(0, 8), st.integers(0, 2**16))
+@pytest.mark.slow
 def test_whatever_was_ordered_it_goes_on(orders: list[int], at: int, seed: int) -> None:
     session, other = driven("living", 5, seed), None
     for k, order in enumerate(orders):

@@ -84,6 +84,7 @@ def another(value: Any) -> Any:
     return type(value)([*value, 1])  # an empty set or queue
 
 
+@pytest.mark.slow
 def test_each_field_of_each_part_changes_the_hash(session: Session) -> None:
     then, seen, count = session.state_hash(), set[int](), dict[str, int]()
     for part in ("seed", *PARTS):

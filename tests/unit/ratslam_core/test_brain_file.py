@@ -50,6 +50,7 @@ def driven(ticks: int = 420) -> tuple[Circle, RatSlam]:
 
 
 @pytest.mark.parametrize("ticks", [1, 250, 420])
+@pytest.mark.slow
 def test_a_restored_brain_goes_on_as_if_it_had_never_stopped(tmp_path: Path, ticks: int) -> None:
     circle, brain = driven(ticks)
     if ticks == 420:
@@ -311,6 +312,7 @@ def test_what_could_not_be_read_again_is_not_written(
         assert "fills more than half of the" in (snapshot.outgrowing or "")
 
 
+@pytest.mark.slow
 def test_nothing_in_the_json_grows_with_the_map() -> None:
     circle, brain = driven(300)
     sizes = []
@@ -326,6 +328,7 @@ def test_nothing_in_the_json_grows_with_the_map() -> None:
     | st.lists(st.tuples(st.integers(-5, 2**63), st.integers(0, 9)), max_size=60)
     | st.lists(st.integers(0, 3) | st.booleans() | st.floats() | st.text(max_size=3), max_size=60)
 )  # fmt: skip
+@pytest.mark.slow
 def test_lists_and_tables_come_back_as_they_were(items: list[Any]) -> None:
     for value in (items, dict(enumerate(items)), {item: k for k, item in enumerate(items)}):
         writer = _Writer()

@@ -50,6 +50,7 @@ params = st.builds(
 
 @settings(max_examples=300)
 @given(st.sampled_from(SHAPES), params, states, states)
+@pytest.mark.slow
 def test_energy_is_that_of_the_papers(shape, p: ExperienceMapParams, made, now) -> None:
     known = Experiences(shape)
     known.add(Packet(*made[:3], 1.0), made[3], Pose2(0.0, 0.0, 0.0))
@@ -60,6 +61,7 @@ def test_energy_is_that_of_the_papers(shape, p: ExperienceMapParams, made, now) 
 
 @settings(max_examples=300)
 @given(st.sampled_from(SHAPES), params, st.lists(states, max_size=40), states)
+@pytest.mark.slow
 def test_the_choice_is_that_of_a_loop_over_all(shape, p: ExperienceMapParams, made, now) -> None:
     """The oldest of those with the most energy, by view or by pose cells, however the buckets lie."""
     known = Experiences(shape)

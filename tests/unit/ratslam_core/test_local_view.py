@@ -50,6 +50,7 @@ def literal_match(new: Image, known: list[Image], most: int) -> tuple[float, int
 
 
 @pytest.mark.parametrize("most", [0, 1, 2, 5])
+@pytest.mark.slow
 def test_matching_is_the_least_sum_of_absolute_differences(most: int) -> None:
     rng = np.random.default_rng(most)
     scenes = [panorama(seed) for seed in range(12)]

@@ -40,6 +40,7 @@ def test_the_nearest_view_is_that_of_the_loops_bit_for_bit(seed: int, most: int,
 
 
 @pytest.mark.parametrize("interpreted", [False, True])
+@pytest.mark.slow
 def test_the_nearest_of_many_blocks(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if interpreted:
         literal.interpret(view_match, monkeypatch)

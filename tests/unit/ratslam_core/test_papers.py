@@ -50,6 +50,7 @@ def in_step(params: RatSlamParams, ticks: int, seed: int) -> tuple[RatSlam, Pape
 
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("energy", ["2006", "2005"])
+@pytest.mark.slow
 def test_a_run_is_that_of_the_literal_twin(energy: str, seed: int) -> None:
     params = with_values(preset("paper-2006"), {**SMALL, "experience_map.energy": energy})
     brain, twin = in_step(params, 260, seed)
@@ -58,6 +59,7 @@ def test_a_run_is_that_of_the_literal_twin(energy: str, seed: int) -> None:
     assert any(t.passages > 1 for t in twin.transitions)
 
 
+@pytest.mark.slow
 def test_links_are_deleted_as_in_the_twin() -> None:
     params = with_values(
         preset("paper-2006"), {**SMALL, "experience_map.link_confidence": 0.6, "experience_map.link_trials": 2}
@@ -66,6 +68,7 @@ def test_links_are_deleted_as_in_the_twin() -> None:
     assert any(t.deleted for t in twin.transitions)
 
 
+@pytest.mark.slow
 def test_a_biased_loop_is_corrected_as_in_the_twin() -> None:
     """More sweeps, another rate: the map bends as printed."""
     in_step(

@@ -96,6 +96,7 @@ rows = st.lists(st.tuples(metre, metre, angle, cell, cell, angle), max_size=30)
 
 @settings(max_examples=300)
 @given(rows, st.sampled_from(SHAPES), st.sampled_from([0.3, 0.5, 1.5]), st.sampled_from([0.5, 2.0, 20.0]))
+@pytest.mark.slow
 def test_places_are_those_of_a_loop_over_all(made, shape, radius: float, zone: float) -> None:
     known = a_map(made, shape, zone_xy=zone, zone_theta=min(zone, 5.0))
     agree(find_places(known, radius), literal_places(known, radius))

@@ -582,6 +582,7 @@ def test_large_networks_take_less_than_six_bytes_a_cell(n: int) -> None:
     assert 4 * n * n * 36 <= pose_cells.memory_bytes <= 6 * n * n * 36
 
 
+@pytest.mark.slow
 def test_standing_still_for_ever_does_not_drift() -> None:
     """100,000 steps, or fewer when the whole state comes back bit for bit: from there on nothing new can happen."""
     pose_cells = settled(5, 60, 30)

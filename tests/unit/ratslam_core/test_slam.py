@@ -347,6 +347,7 @@ def test_the_fixed_rate_is_fixed() -> None:
     assert brain.association.learning_rate == brain.params.local_view.learning_rate
 
 
+@pytest.mark.slow
 def test_a_step_allocates_no_more_with_time() -> None:
     """Known ground, lap after lap: what steps allocate goes again, and the tenth lap needs no more than the third."""
     circle, brain = start()

@@ -463,6 +463,7 @@ def test_same_seed_same_office() -> None:
     assert one.digest() != state
 
 
+@pytest.mark.slow
 def test_never_a_centimetre_into_anybody() -> None:
     """Six minutes of wild driving in a crowd, through a door that works all the time."""
     people = tuple(

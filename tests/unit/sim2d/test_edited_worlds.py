@@ -81,6 +81,7 @@ def some_history(draw: st.DrawFn) -> list[World]:
 
 @settings(max_examples=150)
 @given(some_history(), st.sampled_from([0.05, 0.13]))
+@pytest.mark.slow
 def test_where_the_robot_fits_after_edits(worlds: list[World], cell_m: float) -> None:
     free = None
     for world in worlds:
@@ -138,6 +139,7 @@ def test_the_text_after_edits(worlds: list[World]) -> None:
 
 @settings(max_examples=40)
 @given(some_history(), st.integers(0, 999))
+@pytest.mark.slow
 def test_all_senses_and_the_drive_after_edits(worlds: list[World], seed: int) -> None:
     lamps = (Lamp("a", 1.2, 1.0, 1.5, 0.6), Lamp("b", 4.0, 4.2, 2.5, 0.4))
     worlds = [replace(world, lamps=lamps) for world in worlds]
@@ -150,6 +152,7 @@ def test_all_senses_and_the_drive_after_edits(worlds: list[World], seed: int) ->
 
 
 @pytest.mark.parametrize("name", ["living", "suburb"])
+@pytest.mark.slow
 def test_edits_of_a_large_and_of_a_living_world(name: str) -> None:
     """Texels of a large world grow with its walls, all of them; a living one has walls that move behind the others."""
     world, rng = load_world(name), np.random.default_rng(3)

@@ -47,6 +47,7 @@ def meta(path: Path, scale_m: float | None) -> MapYaml:
 
 
 @pytest.mark.parametrize(("path", "scale_m"), [*PICTURES, *((path, None) for path in VECTORS)], ids=name_of)
+@pytest.mark.slow
 def test_it_loads_with_places_to_start_from(path: Path, scale_m: float | None) -> None:
     world = import_file(path, scale_m)
     assert 100 < len(world.walls) <= 4000

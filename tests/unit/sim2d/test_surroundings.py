@@ -55,6 +55,7 @@ def test_boxes_stand_in_it_only_while_they_are_there() -> None:
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.7, -1.2])
+@pytest.mark.slow
 def test_pressed_into_a_corner_a_copy_goes_on_bit_for_bit(turn: float) -> None:
     """Two contacts at once, where a solver that remembers earlier ticks would part from one that does not."""
     world = load_world("office")

@@ -33,6 +33,7 @@ def test_default_comes_first_and_all_are_titled() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.slow
 def test_shipped_worlds(name: str) -> None:
     world = load_world(name)
     assert world.name == name

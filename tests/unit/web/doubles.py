@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from http import HTTPStatus
+from types import MappingProxyType
 from typing import Any
 
 from starlette.testclient import TestClient
@@ -26,7 +27,7 @@ from web.viewer.viser_server import knows
 PORT = 8000
 ORIGIN = f"http://127.0.0.1:{PORT}"
 PAGE = "p" * 22
-OURS = {"Host": f"127.0.0.1:{PORT}", "Origin": ORIGIN}  # of a websocket that may enter
+OURS = MappingProxyType({"Host": f"127.0.0.1:{PORT}", "Origin": ORIGIN})  # of a websocket that may enter
 
 
 class StubEngine:
@@ -105,7 +106,7 @@ class House:
         return answer.status_code, answer.json()
 
     def stream(self, path: str = f"/api/stream?page={PAGE}") -> Any:
-        return self.client.websocket_connect(path, headers=OURS)
+        return self.client.websocket_connect(path, headers=dict(OURS))
 
 
 @contextlib.contextmanager

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import psutil
+import pytest
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect as connect_now
@@ -90,6 +91,7 @@ async def visits(made: Dashboard, rounds: int) -> None:
         await asyncio.gather(*(visit(made, number * AT_ONCE + seat) for seat in range(AT_ONCE)))
 
 
+@pytest.mark.slow
 def test_a_thousand_connections_leave_no_thread_task_or_file_behind() -> None:
     stage = StubViewer()
     with viser_double(stage), served(StubViewers(stage)) as made:  # type: ignore[arg-type]
@@ -111,6 +113,7 @@ def settled(look: Callable[[], dict[str, int]]) -> dict[str, int]:
     return seen[-1]
 
 
+@pytest.mark.slow
 def test_a_browser_that_takes_nothing_of_the_stage_keeps_nobody_waiting(monkeypatch) -> None:
     """Far more is drawn than fits between the stage and the one that stalls."""
     monkeypatch.setattr(proxy, "SEND_TIMEOUT_S", 1e6)  # it is never let go

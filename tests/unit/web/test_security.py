@@ -147,6 +147,7 @@ def routes(server) -> dict[str, set[str]]:
     }
 
 
+@pytest.mark.slow
 def test_whatever_is_only_looked_at_changes_nothing(monkeypatch, tmp_path):
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(asking, "ANSWER_TIMEOUT_S", 0.01)

@@ -233,6 +233,7 @@ print(*(f"{command.type} {command.speed}" for command in engine.commands), "ende
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+@pytest.mark.slow
 def test_a_signal_stops_the_robot_closes_the_sockets_and_ends_with_code_0(name):
     """With a page that drives, a stage that is looked at, one that nobody looks at, and a browser that takes nothing."""
     from websockets.exceptions import ConnectionClosed

@@ -224,7 +224,7 @@ def test_at_most_32_pages(server):
 @pytest.mark.parametrize("page", ["short", "p" * 65, "p" * 21 + "/", "%00" * 22])
 def test_a_page_s_id_is_checked(server, page):
     with pytest.raises(WebSocketDenialResponse) as refused:
-        server.client.websocket_connect(f"/api/stream?page={page}", headers=OURS).__enter__()
+        server.client.websocket_connect(f"/api/stream?page={page}", headers=dict(OURS)).__enter__()
     assert refused.value.status_code == 422
 
 

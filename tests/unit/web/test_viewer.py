@@ -145,6 +145,7 @@ def test_the_newest_wins_and_rates_are_kept(bench: Bench) -> None:
     assert bench.show(as_new(fake_snapshot(540)), 5.0) == Counter()
 
 
+@pytest.mark.slow
 def test_nodes_and_backlog_stay_the_same_over_two_hundred_snapshots(bench: Bench) -> None:
     backlog = bench.viewer.server._websock_server._broadcast_buffer.message_from_id
     sizes, waiting = set(), []

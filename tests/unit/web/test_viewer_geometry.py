@@ -107,6 +107,7 @@ def test_a_path_around_the_torus_is_not_drawn_across_the_box() -> None:
 
 @given(st.floats(0.05, 9.95), st.floats(0.05, 7.95), angles, st.floats(0.2, 3.0))
 @settings(max_examples=60)
+@pytest.mark.slow
 def test_the_view_never_passes_a_wall(x: float, y: float, heading: float, fov: float) -> None:
     walls = np.asarray(WORLD.walls, np.float64)
     rim = fan_of_view(walls, Pose(x, y, heading), fov, rays=31)

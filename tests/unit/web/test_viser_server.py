@@ -143,7 +143,9 @@ def test_nothing_that_is_uploaded_through_the_proxy_is_kept(stage: Viewer) -> No
     gui, buffer = stage.server.gui, stage.server._websock_server._broadcast_buffer
     box = "a form that somebody makes up"
     with house(stage=stage) as server:  # type: ignore[arg-type]
-        with server.client.websocket_connect(f"/viser/ws/{PAGE}", subprotocols=[PROTOCOL], headers=OURS) as browser:
+        with server.client.websocket_connect(
+            f"/viser/ws/{PAGE}", subprotocols=[PROTOCOL], headers=dict(OURS)
+        ) as browser:
             browser.send_bytes(camera())
             until(stage.server.get_clients)
             kept = len(buffer.message_from_id)
