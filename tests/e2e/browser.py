@@ -27,6 +27,7 @@ KEEP_TOASTS = """if (window === top) {
     const look = () => document.querySelectorAll(".toast").forEach((toast) => toasted.add(toast.textContent));
     new MutationObserver(look).observe(document, { subtree: true, childList: true, characterData: true });
 }"""
+NO_STAGE = "<!doctype html><canvas style='position: fixed; inset: 0; width: 100%; height: 100%'></canvas>"
 _told_camera: weakref.WeakKeyDictionary[Page, dict[str, Any]] = weakref.WeakKeyDictionary()
 
 
@@ -66,7 +67,7 @@ def open_page(
     page.on("websocket", lambda socket: None if socket.url.startswith(own) else faults.append(socket.url))
     page.on("websocket", lambda socket: _hear_camera(page, socket))
     if not stage:
-        page.route("**/viser/**", lambda route: route.fulfill(content_type="text/html", body="<!doctype html>"))
+        page.route("**/viser/**", lambda route: route.fulfill(content_type="text/html", body=NO_STAGE))
     try:
         page.goto(url)
         if stage:

@@ -100,7 +100,7 @@ def test_a_click_on_a_far_node_brings_the_robot_there(explored, browser):
 def test_a_held_key_drives_and_letting_go_stops(program, browser, where):
     program.command("set_speed", factor=1)
     program.command("resume")
-    with open_page(browser, program.url) as page:
+    with open_page(browser, program.url, stage=where == "stage") as page:
         if where == "stage":
             page.mouse.click(640, 400)  # the focus is in viser's frame now
         page.keyboard.down("ArrowLeft")
@@ -138,7 +138,7 @@ LEAVE = """async (end) => {
 @pytest.mark.parametrize("end", ["blur", "pagehide", "gone"])
 def test_the_robot_stops_when_the_page_cannot_hold_it(program, browser, end):
     program.command("resume")
-    with open_page(browser, program.url) as page:
+    with open_page(browser, program.url, stage=False) as page:
         page.keyboard.down("d")
         turned(program, program.wait(lambda state: state["mode"] == "manual")["robot"]["heading_rad"])
         if end == "gone":
@@ -150,7 +150,7 @@ def test_the_robot_stops_when_the_page_cannot_hold_it(program, browser, end):
 
 def test_the_pad_drives_while_it_is_held(program, browser):
     program.command("resume")
-    with open_page(browser, program.url, 390, 844) as page:
+    with open_page(browser, program.url, 390, 844, stage=False) as page:
         pad = page.locator("[data-drive=left]").bounding_box()
         assert pad is not None
         assert min(pad["width"], pad["height"]) >= 52
@@ -193,14 +193,14 @@ MANY_STEPS = (
 
 
 def test_a_refusal_is_a_sentence_on_the_page(program, browser):
-    with open_page(browser, program.url) as page:
+    with open_page(browser, program.url, stage=False) as page:
         page.evaluate(MANY_STEPS)
         told(page, "At most 10 commands a second")
 
 
 def test_speed_and_restart(program, browser):
     program.command("step")
-    with open_page(browser, program.url) as page:
+    with open_page(browser, program.url, stage=False) as page:
         for speed in (4, 0, 1):
             page.select_option("#speed", str(speed))
             program.wait(lambda state, wanted=speed: state["speed"] == wanted)

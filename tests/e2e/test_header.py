@@ -108,7 +108,7 @@ def stage_room(page: Page) -> dict[str, Any]:
 def test_in_a_narrow_window_the_panel_comes_only_when_called(fake, browser, size) -> None:
     engine, url = fake
     engine.shown = PLAIN
-    with open_page(browser, url, *size) as page:
+    with open_page(browser, url, *size, stage=size[0] == 800) as page:
         until(page, "() => document.getElementById('stage').contentDocument.querySelector('canvas').clientWidth > 0")
         room = stage_room(page)
         assert not room["panel"]
@@ -148,7 +148,7 @@ def test_all_tabs_of_the_panel_stand_on_one_row_in_full(fake, browser, size) -> 
 
 
 def test_the_hints_go_where_the_pose_cells_need_their_place(fake, browser) -> None:
-    with open_page(browser, fake[1]) as page:
+    with open_page(browser, fake[1], stage=False) as page:
         hints = page.locator(".hints").bounding_box()
         assert hints is not None
         assert hints["x"] + hints["width"] <= on_screen(page, "all", (-SHEET[0] / 2, ORIGIN[1], 0.0))[0]

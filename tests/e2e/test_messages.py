@@ -90,7 +90,7 @@ def test_what_was_done_what_went_wrong_and_a_notice_have_signs_of_their_own(fake
 
 @pytest.mark.parametrize("size", [(1280, 800), (1024, 700), (1440, 900)])
 def test_a_toast_stands_beneath_the_plates(fake, browser, size) -> None:
-    with open_page(browser, fake[1], *size) as page:
+    with open_page(browser, fake[1], *size, stage=False) as page:
         page.evaluate("() => document.querySelectorAll('.toast').forEach((toast) => toast.remove())")
         page.evaluate(SAY, ["No graphics card in use: the stage moves slowly.", {"notice": True, "stays": True}])
         toast = page.locator(".toast").bounding_box()

@@ -263,7 +263,7 @@ def test_the_keyboard_alone_draws_a_wall(program, browser):
 
 
 def test_edits_of_two_pages_meet(program, browser):
-    with open_page(browser, program.url, 1280, 800) as page:
+    with open_page(browser, program.url, 1280, 800, stage=False) as page:
         edit(page)
         step = {"do": "add", "list": "places", "item": {"name": "somewhere", "x": 5.0, "y": 5.0}}
         program.command("edit_world", steps=[step])
@@ -337,7 +337,7 @@ def test_what_cannot_be_opened_says_why_and_the_session_goes_on(program, browser
 
 
 def test_leaving_an_edited_office_asks_first(program, browser):
-    with open_page(browser, program.url, 1280, 800) as page:
+    with open_page(browser, program.url, 1280, 800, stage=False) as page:
         edit(page)
         page.click("[data-tool=place]")
         click(page, (5.0, 5.0))
