@@ -1,4 +1,4 @@
-"""The command `ratslam`, also as `python -m app`. What it needs is loaded within reach of `ended`: that takes a second."""
+"""The command `ratslam`, also `python -m app`. Imports take a second, so they run inside `ended`: it handles Ctrl+C."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The closed loop without a server, as fast as it goes, and its report."""
+"""The closed loop without a server, as fast as possible, and its report."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from sim2d import World
 
 GOAL_TIMEOUT_S = 180.0
 NEAR_ENOUGH_M = 1.0
-LOOK_AFTER = 600  # ticks, at how large the brain has become
+LOOK_AFTER = 600  # ticks between two checks of the brain's size
 
 
 class BrainFile:
-    """Where the brain is saved in the end. Saving it comes after the report, which is not lost when it fails."""
+    """Where the brain is saved at the end. It is saved after the report, so that a failure does not lose the report."""
 
     def __init__(self, path: Path) -> None:
         self._path, self._warned = path, False
         self._brain: RatSlam | None = None
 
     def look(self, brain: RatSlam) -> None:
-        """From time to time: says so when it grows too large for a file."""
+        """Remember the brain, and warn once if it is becoming too large for a file. Called from time to time."""
         self._brain = brain
         warning = None if self._warned else encode(brain).outgrowing
         if warning is not None:
@@ -36,7 +36,7 @@ class BrainFile:
             print(f"ratslam: note: {warning}", file=sys.stderr)
 
     def save(self) -> None:
-        """The brain that was looked at last. OSError, ValueError: it cannot be saved."""
+        """Save the brain that was passed to `look` last. OSError, ValueError: it cannot be saved."""
         if self._brain is not None:
             save_brain(self._brain, self._path)
 
@@ -53,10 +53,11 @@ def run_headless(
     brain_file: BrainFile | None = None,
     progress: Callable[[float, str], None] = lambda _simulated_s, _what: None,
 ) -> dict[str, Any]:
-    """Explore for so many simulated minutes, kidnapped at these times, then visit `goals` places; the report as a dict.
+    """Explore for `minutes` of simulated time, then visit `goals` places. Returns the report as a dict.
 
-    brain: one that knows places already. brain_file: is shown the brain, in the end, too; the caller saves it.
-    progress: called about once a simulated second with the simulated seconds since the last call and what goes on.
+    kidnap_at_s: simulated times (s) at which the robot is kidnapped. brain: one that already knows places. brain_file:
+    is shown the brain now and then and at the end; the caller saves it. progress: called about once a simulated second
+    with the simulated seconds since the last call and what is being done.
     """
     session = Session(world, seed, config, brain)
     ticks = round(minutes * 60 / session.frame.dt)
@@ -81,7 +82,7 @@ def run_headless(
 
 
 def _visit(session: Session, goal: int, progress: Callable[[float], None]) -> dict[str, Any]:
-    """Send the robot to an experience and judge by truth: within 1 m of where that experience was made."""
+    """Send the robot to an experience. Reached means truly within 1 m of where that experience was made."""
     truth = session.simulator.truth
     made_at = session.evaluation.made_at(goal, session.brain.experience_map)
     shortest = session.simulator.free_space.shortest_m((truth.x, truth.y), made_at)
@@ -136,5 +137,5 @@ def _report(session: Session, wall: float, visits: list[dict[str, Any]]) -> dict
 
 
 def _number(value: float | None) -> float | None:
-    """Millimetres are enough; what is not finite has no place in JSON."""
+    """Rounded to millimetres (or milliseconds); None if not finite, since JSON has no such number."""
     return round(value, 3) if value is not None and math.isfinite(value) else None

@@ -20,7 +20,7 @@ from ratslam_core import Estimate, Odometry, RatSlam
 from ratslam_core.slam import STAGES
 from sim2d import SONAR_ANGLES_RAD, Drive, SensorFrame, Simulator, World, WorldText
 
-PARTS = ("pilot", "office and senses", *STAGES, "judging")  # of a tick; the judges compare with the truth
+PARTS = ("pilot", "office and senses", *STAGES, "judging")  # of a tick; "judging" compares the estimate with the truth
 
 
 @kind("session/1")
@@ -33,9 +33,10 @@ class Session:
         self, world: World, seed: int = 0, config: Config | None = None, brain: RatSlam | None = None,
         before: Session | None = None,
     ) -> None:  # fmt: skip
-        """brain: one that knows places already and has to find out where it woke up, or a new one of parts of one's own.
+        """brain: one that already knows places and has to find out where it is, or a new one built from the caller's
+        parts.
 
-        before: another session, so that the same walls need not be measured and painted again. It changes nothing.
+        before: another session; what was computed from the same walls is taken over. It does not change the result.
         """
         self.world, self.seed, self.config = world, seed, config or Config()
         brain_seed, pilot_seed = np.random.SeedSequence([seed, 1]).spawn(2)
@@ -45,7 +46,7 @@ class Session:
             brain = RatSlam(self.config.engine, np.random.default_rng(brain_seed), sonar_angles_rad=SONAR_ANGLES_RAD)
         else:
             brain.set_params(self.config.engine)
-            if len(brain.experience_map) > 0:  # else there is nothing to find again
+            if len(brain.experience_map) > 0:  # an empty map holds no place to be found again
                 brain.declare_kidnapped()
         self.brain = brain
         self.pilot = Pilot(self.config.pilot, np.array(SONAR_ANGLES_RAD), np.random.default_rng(pilot_seed))
@@ -55,7 +56,7 @@ class Session:
         self.estimate: Estimate = self._think(self.stopwatch.lap)
 
     def settle(self, world: World) -> None:
-        """All that follows from a world: for one that came back from a state (session_snapshot.py)."""
+        """Compute the caches anew in a session that was restored from a state (session_snapshot.py)."""
         self.world = world
         self.simulator.settle(world)
         self._look()
@@ -74,7 +75,7 @@ class Session:
         return self.frame.time_s
 
     def tick(self, watch: Callable[[str], None] | None = None) -> None:
-        """One tenth of a second. watch: called after each stage of the engine, to look and not to touch."""
+        """Run one tick, one sensor period. watch: called after each stage of RatSLAM; it must not change anything."""
         clock = self.stopwatch
         clock.start()
 
@@ -82,7 +83,7 @@ class Session:
             clock.lap(stage)
             if watch is not None:
                 watch(stage)
-                clock.start()  # watching is no part of it
+                clock.start()  # the time of watching does not count
 
         speed, yaw_rate = self.pilot.step(
             self.frame.ranges_m, self.frame.bumped, self._odometry(), self.brain.experience_map
@@ -94,15 +95,15 @@ class Session:
         clock.lap("judging")
         clock.finish()
 
-    # ------------------------------------------------------------ orders; ValueError says why one cannot be
+    # ------------------------------------------------------------ orders; ValueError says why one cannot be carried out
 
     def set_goal(self, x: float, y: float) -> int:
-        """Go to the experience that is nearest to this place of the map; returns it."""
+        """Go to the experience nearest to (x, y), metres in the map's frame. Returns that experience."""
         poses = self.brain.experience_map.poses
         away = np.hypot(poses[:, 0] - x, poses[:, 1] - y)
         nearest = int(np.argmin(away))
         reach = self.pilot.params.goal_reach_m
-        if not away[nearest] <= reach:  # not a number is nowhere
+        if not away[nearest] <= reach:  # written so that NaN is refused, too
             raise ValueError(
                 f"({x:g}, {y:g}) is off the map: the nearest experience is {away[nearest]:.1f} m away, "
                 f"at ({poses[nearest, 0]:.1f}, {poses[nearest, 1]:.1f}); choose a place within {reach:g} m of one"
@@ -114,7 +115,7 @@ class Session:
         self.pilot.set_mode(mode)
 
     def kidnap(self, x: float | None = None, y: float | None = None, heading_rad: float | None = None) -> None:
-        """Put the robot elsewhere (office frame) without telling it; without a place, a free one by chance."""
+        """Put the robot at (x, y), metres in the office's frame, untold. Without a place: a random free one."""
         if x is None and y is None:
             x, y, by_chance = self.simulator.random_free_pose()
             heading_rad = by_chance if heading_rad is None else heading_rad
@@ -126,16 +127,16 @@ class Session:
         self.evaluation.kidnapped(self.time_s, self.brain.experience_map)
 
     def set_parameter(self, name: str, value: Value) -> bool:
-        """Change one parameter; True when it acts at once, False when it waits for the next reset."""
+        """Change one parameter. True if it takes effect at once, False if at the next reset."""
         self.set_parameters({name: value})
         return next(item.metadata["live"] for dotted, item, _ in self.config.items() if dotted == name)
 
     def set_parameters(self, values: Mapping[str, Value]) -> list[str]:
-        """Change several, all or none; the names of those that are new and wait for the next reset."""
+        """Change several parameters, all or none. Returns the names of those that wait for the next reset."""
         config = self.config
         for name, value in values.items():
             config = config.with_value(name, value)
-        changes: dict[str, dict[str, Value]] = {"robot": {}}  # first: it alone may have no room for what is asked
+        changes: dict[str, dict[str, Value]] = {"robot": {}}  # robot first: only it can refuse (no room)
         waiting: list[str] = []
         for (dotted, item, old), (_, _, new) in zip(self.config.items(), config.items(), strict=True):
             section, key = dotted.split(".")
@@ -150,18 +151,18 @@ class Session:
         return waiting
 
     def edit_world(self, world: World) -> None:
-        """Go on in an edited world, and begin in it after a reset. ValueError when it would cover the robot."""
+        """Go on in an edited world; a reset begins in it, too. ValueError if something in it would cover the robot."""
         self.simulator.set_world(world)
         self.world = world
 
     def state_hash(self) -> str:
-        """Digest of everything that decides the future, and what will be judged: equal for equal runs."""
+        """A digest of everything that decides the future, and of the evaluation. Equal runs have equal hashes."""
         parts = self.world_text, self.seed, self.config, self.simulator, self.pilot, self.brain, self.evaluation
         return hashlib.sha256("".join(encode(part).digest() for part in parts).encode()).hexdigest()
 
     @property
     def world_text(self) -> str:
-        """The world as it is now, as its file would say it."""
+        """The current world as the text of its file."""
         return self._text.of(self.world)
 
     # ------------------------------------------------------------ inside
@@ -170,8 +171,8 @@ class Session:
         return Odometry(self.frame.odometry_speed, self.frame.odometry_yaw_rate, self.frame.dt)
 
     def _think(self, watch: Callable[[str], None]) -> Estimate:
-        """One step of the brain. The scene number is made from the true pose: it stays out of the brain unless its front end is
-        made of such numbers, which the papers' own simulator gave its robot."""
+        """One step of the brain. The scene number is made from the true pose, so the brain gets it only if its front
+        end is "scene numbers", as in the papers' own simulator."""
         self.odometry = odometry = self._odometry()
         numbers = self.brain.params.local_view.front_end == "scene numbers"
         estimate = self.brain.step(
@@ -186,7 +187,7 @@ class Session:
         return estimate
 
     def _take(self, section: str, change: dict[str, Value]) -> None:
-        """Hand live parameters of a section to whoever uses it; the others keep what they run with."""
+        """Hand the changed live parameters of a section to the part that uses them."""
         brain = self.brain
         if section == "robot":
             self.simulator.set_params(replace(self.simulator.params, **change))  # type: ignore[arg-type]
@@ -199,7 +200,7 @@ class Session:
 
 
 def spread_goals(session: Session, count: int) -> list[int]:
-    """Experiences spread over the map: each the farthest from the robot and from those before it."""
+    """`count` experiences spread over the map. Each is the one farthest from the robot and from those chosen before."""
     poses = session.brain.experience_map.poses
     robot = session.brain.experience_map.robot
     away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
@@ -211,6 +212,6 @@ def spread_goals(session: Session, count: int) -> list[int]:
 
 
 def is_lost(session: Session) -> bool:
-    """Whether the robot knows that it was carried away, or a second packet holds at least a fifth of the activity."""
+    """Whether the brain has declared itself lost, or a second packet holds more than a fifth of the activity."""
     packets = session.brain.pose_cells.packets
     return session.brain.lost or (len(packets) > 1 and packets[1].mass > 0.2)

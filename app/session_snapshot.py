@@ -1,6 +1,7 @@
-"""A whole session as a state and as a file: office, robot, brain, pilot and what they are judged by. It goes on bit for bit.
+"""A whole session as a state and as a file: office, robot, brain, pilot and evaluation. A restored one goes on bit for
+bit.
 
-The world is kept as the text of its file, which is checked as any; everything else must keep the laws of session_laws.py.
+The world is kept as the text of its file and checked like any world file. The rest must keep the laws in session_laws.
 """
 
 from __future__ import annotations
@@ -19,17 +20,17 @@ from disk.state_reading import words_of
 from ratslam_core.laws.measures import array
 from sim2d import SimParams, world_from_json
 
-SMALLEST = SimParams(robot_radius_m=0.05)  # robot: whoever edits a world may have another one later
+SMALLEST = SimParams(robot_radius_m=0.05)  # the world is checked for the smallest robot: its radius can be changed
 
 
 def take_session(session: Session) -> State:
-    """The whole state, copied: the session may go on."""
+    """The whole state, as a copy: the session may go on."""
     text = np.frombuffer(session.world_text.encode(), np.uint8)
     return encode((text, copy_state(session)))
 
 
 def restore_session(state: State) -> Session:
-    """A session in this state, which keeps the state's arrays. ValueError says why there is none."""
+    """A session in this state. It uses the state's arrays, not copies. ValueError says what is wrong with the state."""
     try:
         return _settled(state)
     except BROKEN as error:
@@ -37,9 +38,9 @@ def restore_session(state: State) -> Session:
 
 
 def save_session(session: Session, path: Path | str) -> None:
-    """Write a session to one file (.npz: arrays, and JSON as bytes), which is there whole or as it was before.
+    """Write a session to one file (.npz: arrays, and JSON as bytes). After a failure the file is as it was before.
 
-    OSError names the file; ValueError: it is too large to be read again.
+    OSError names the file. ValueError: the session is too large to be read again.
     """
     save_state(take_session(session), path)
 

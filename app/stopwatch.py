@@ -1,4 +1,4 @@
-"""What the parts of a tick cost. Reads the clock; nothing that the session does depends on what it says."""
+"""The time that each part of a tick takes. Nothing that the session does depends on it."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import time
 
 import numpy as np
 
-KEPT = 100  # ticks
+KEPT = 100  # ticks that means and worst times are taken over
 
 
 class Stopwatch:
-    """`start`, then `lap(part)` after each part, and `finish`; a part that comes twice counts together."""
+    """Call `start`, then `lap(part)` after each part, then `finish`. If a part comes twice, its times are added."""
 
     def __init__(self, parts: tuple[str, ...]) -> None:
         self.parts = parts
@@ -21,7 +21,7 @@ class Stopwatch:
         self._then = time.perf_counter()
 
     def start(self) -> None:
-        """A tick begins; or it goes on after something that does not belong to it."""
+        """A tick begins, or goes on after an interruption that is not to be counted."""
         self._then = time.perf_counter()
 
     def lap(self, part: str) -> None:
@@ -37,7 +37,7 @@ class Stopwatch:
 
     @property
     def mean_and_worst_ms(self) -> dict[str, tuple[float, float]]:
-        """Of each part over the last hundred ticks, milliseconds."""
+        """Mean and worst time of each part over the last hundred ticks, in milliseconds."""
         kept = 1e3 * self._kept_s[: min(self._ticks, KEPT)]
         if len(kept) == 0:
             return dict.fromkeys(self.parts, (0.0, 0.0))

@@ -1,1 +1,1 @@
-"""The command `ratslam`: a file for each of its verbs."""
+"""The command `ratslam`: one file for each verb."""

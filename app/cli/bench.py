@@ -13,8 +13,8 @@ from disk import require_writable, write_whole
 
 
 def add_bench(commands: Verbs) -> None:
-    bench = commands.add_parser("bench", help="measure the engine, each work beside a reference")
-    bench.add_argument("--json", type=Path, metavar="FILE", help="write the rows there as JSON, too")
+    bench = commands.add_parser("bench", help="measure the speed of the engine, each part beside a reference")
+    bench.add_argument("--json", type=Path, metavar="FILE", help="also write the rows to FILE as JSON")
     bench.set_defaults(do=_bench)
 
 

@@ -14,7 +14,7 @@ from app.startup.ending import ended
 
 
 def main(argv: list[str] | None = None) -> int:
-    """The exit code; ending.py says what it means."""
+    """Run one command and return its exit code; ending.py says what the codes mean."""
     parser = _parser()
     arguments = list(sys.argv[1:] if argv is None else argv)
     if not arguments or (arguments[0].startswith("-") and arguments[0] not in ("-h", "--help")):

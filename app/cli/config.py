@@ -10,7 +10,7 @@ from app.config import Config, to_markdown, to_toml
 
 def add_config(commands: Verbs) -> None:
     config = commands.add_parser("config", help="print every parameter as TOML with symbol, unit and source")
-    config.add_argument("--table", action="store_true", help="as a Markdown table")
+    config.add_argument("--table", action="store_true", help="print them as Markdown tables instead")
     add_config_options(config)
     config.set_defaults(do=_config)
 

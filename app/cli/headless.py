@@ -14,14 +14,14 @@ from disk import require_writable, write_whole
 
 
 def add_headless(commands: Verbs) -> None:
-    headless = commands.add_parser("headless", help="the same closed loop without a server, as fast as it goes")
+    headless = commands.add_parser("headless", help="run the same closed loop without a server, as fast as possible")
     add_session_options(headless)
     headless.add_argument("--minutes", type=float, default=20.0, help="simulated minutes of exploring (default 20)")
     headless.add_argument("--goals", type=int, default=0, metavar="K", help="then visit K places spread over the map")
     headless.add_argument("--kidnap-at", type=float, nargs="*", default=[], metavar="S", help="kidnap at these seconds")
-    headless.add_argument("--save-brain", type=Path, metavar="FILE", help="write there what the robot knows in the end")
+    headless.add_argument("--save-brain", type=Path, metavar="FILE", help="save the brain to FILE at the end")
     headless.add_argument(
-        "--report", type=Path, metavar="FILE", help="write the report there as JSON (default: print it)"
+        "--report", type=Path, metavar="FILE", help="write the report to FILE as JSON (default: print it)"
     )
     headless.set_defaults(do=_headless)
 

@@ -1,4 +1,4 @@
-"""Options that several commands take, and what is made of them."""
+"""The options that several commands share, and how they become a world, a config and a brain."""
 
 from __future__ import annotations
 
@@ -21,18 +21,16 @@ def add_session_options(parser: argparse.ArgumentParser) -> None:
         "--world",
         default=DEFAULT_WORLD,
         metavar="NAME|FILE",
-        help=f"default: {DEFAULT_WORLD}; any plan that can be imported",
+        help=f"a world by name, or a file: a world or any plan that can be imported (default {DEFAULT_WORLD})",
     )
-    parser.add_argument("--scale", type=float, metavar="M", help="metres a pixel, when the world is a plain picture")
+    parser.add_argument("--scale", type=float, metavar="M", help="metres per pixel, if the world is a plain picture")
     parser.add_argument("--seed", type=int, default=1, help="same seed, same run (default 1)")
-    parser.add_argument("--brain", type=Path, metavar="FILE", help="start with what another robot knows (--save-brain)")
+    parser.add_argument("--brain", type=Path, metavar="FILE", help="start with a saved brain (see --save-brain)")
     add_config_options(parser)
 
 
 def add_config_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--preset", metavar="NAME", help=f"a paper's engine, or a robot as it was: {', '.join(PRESETS)}"
-    )
+    parser.add_argument("--preset", metavar="NAME", help=f"the engine of a paper, or a robot: {', '.join(PRESETS)}")
     parser.add_argument("--config", type=Path, metavar="FILE", help="parameters as written by `ratslam config`")
     parser.add_argument("--set", nargs="*", default=[], metavar="NAME=VALUE", help="change single parameters")
 

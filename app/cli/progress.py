@@ -1,4 +1,4 @@
-"""A bar for long runs."""
+"""A progress bar for long runs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ Result = TypeVar("Result")
 
 
 def with_progress(seconds: float, work: Callable[[Callable[[float, str], None]], Result]) -> Result:
-    """work: is given a function that takes simulated seconds and what goes on."""
+    """Do `work` beside a progress bar of `seconds` simulated seconds.
+
+    work: is given a function to report progress by: simulated seconds since the last call, and what is being done.
+    """
     from tqdm import tqdm
 
     with tqdm(total=round(seconds), unit="s", unit_scale=True, disable=not sys.stderr.isatty()) as bar:

@@ -20,20 +20,20 @@ from sim2d import World, own_worlds
 if TYPE_CHECKING:
     from app.kept_brains.files import KeptBrain
 
-ENGINE_PATIENCE_S = 2.0  # a tick that hangs does not keep anybody from leaving
+ENGINE_PATIENCE_S = 2.0  # how long leaving waits for a tick that hangs
 
 
 def add_run(commands: Verbs) -> None:
     run = commands.add_parser("run", help="open the dashboard (this is what `ratslam` alone does)")
     add_session_options(run)
-    run.add_argument("--port", type=_port, default=8000, help="port on 127.0.0.1, 0 for any free one (default 8000)")
+    run.add_argument("--port", type=_port, default=8000, help="port on 127.0.0.1; 0 = any free one (default 8000)")
     run.add_argument("--no-browser", action="store_true", help="only print the address")
-    run.add_argument("--paused", action="store_true", help="wait for play")
+    run.add_argument("--paused", action="store_true", help="start paused")
     run.add_argument(
         "--speed", type=float, default=1.0, help="simulated seconds per second, 0.25 to 16; 0 = as fast as possible"
     )
     run.add_argument(
-        "--resume-brain", action="store_true", help="go on with the brain, world and seed that were kept last"
+        "--resume-brain", action="store_true", help="go on with the brain kept last, in its world and with its seed"
     )
     run.set_defaults(do=_run)
 
@@ -53,7 +53,7 @@ def _run(args: argparse.Namespace) -> int:
     own_worlds.tidy()
     kept = _resume(args)
     world, config, brain = session_of(args)
-    compiling = Compiling()  # side by side with loading what follows
+    compiling = Compiling()  # runs in the background while the rest is loaded
     try:
         return _serve(args, (world, config, brain), compiling, kept)
     finally:
@@ -100,7 +100,7 @@ def _tell(args: argparse.Namespace, url: str) -> None:
 
 
 def _resume(args: argparse.Namespace) -> KeptBrain | None:
-    """Take the brain that was kept last, or say that there is one, and offer it."""
+    """The brain kept last: with --resume-brain set up to be run, without it returned, to be offered on the page."""
     from app.kept_brains.files import folder, newest
 
     kept = newest()
@@ -110,7 +110,7 @@ def _resume(args: argparse.Namespace) -> KeptBrain | None:
         print(f"There is {kept.words}: go on with it by `ratslam run --resume-brain`", flush=True)
         return kept
     if args.brain is not None:
-        raise ValueError(f"--resume-brain takes the brain that was kept last; leave --brain {args.brain} away")
+        raise ValueError(f"--resume-brain takes the brain that was kept last; do not give --brain {args.brain} with it")
     if kept is None:
         raise ValueError(f"--resume-brain: no brain is kept in {folder()}")
     args.brain, args.world, args.seed = kept.path, kept.about.world, kept.about.seed

@@ -1,4 +1,4 @@
-"""`ratslam worlds`: list those that come with it, check a file, import a plan, print the schema."""
+"""`ratslam worlds`: list the worlds that come with the program, check a file, import a plan, print the schema."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from sim2d.world.world_file import complaints, parse_json, schema_text
 
 
 def add_worlds(commands: Verbs) -> None:
-    worlds = commands.add_parser("worlds", help="list the worlds that come with it; check or import one of your own")
+    worlds = commands.add_parser("worlds", help="list the worlds; check or import one of your own")
     worlds.set_defaults(do=_list)
     verbs = worlds.add_subparsers(title="commands")
 
-    check = verbs.add_parser("check", help="say everything that is wrong with a world, by line and value")
+    check = verbs.add_parser("check", help="report every fault of a world file, by line and value")
     check.add_argument("file", type=Path, metavar="FILE", help="a world, or anything that can be imported")
-    check.add_argument("--scale", type=float, metavar="M", help="metres a pixel, for a plain picture")
+    check.add_argument("--scale", type=float, metavar="M", help="metres per pixel, for a plain picture")
     check.set_defaults(do=_check)
 
-    take = verbs.add_parser("import", help="make a world of a map_server file, a vector map or a picture")
+    take = verbs.add_parser("import", help="make a world from a map_server file, a vector map or a picture")
     take.add_argument("file", type=Path, metavar="FILE", help=".yaml, .json (list of segments), .pgm, .png, ...")
-    take.add_argument("--scale", type=float, metavar="M", help="metres a pixel, for a plain picture")
-    take.add_argument("--seed", type=int, default=0, help="of the walls' looks (default 0)")
+    take.add_argument("--scale", type=float, metavar="M", help="metres per pixel, for a plain picture")
+    take.add_argument("--seed", type=int, default=0, help="seed for the looks of the walls (default 0)")
     take.add_argument("-o", "--output", type=Path, required=True, metavar="WORLD.json")
     take.set_defaults(do=_import)
 
@@ -54,7 +54,7 @@ def _check(args: argparse.Namespace) -> int:
 
 
 def _complaints(path: Path, scale_m: float | None) -> list[str]:
-    """All that is wrong with a world file; of what is imported the first."""
+    """Every fault of a world file; of a plan that is imported, only the first."""
     try:
         if path.suffix.lower() == ".json":
             text = path.read_text("utf-8")

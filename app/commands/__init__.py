@@ -1,4 +1,4 @@
-"""One handler a command: found by the command's class in `table.py`."""
+"""One handler for each command; `table.py` finds it by the command's class."""
 
 from app.commands.outcome import Later
 from app.commands.table import carry_out

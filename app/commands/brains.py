@@ -1,4 +1,4 @@
-"""The brain out and in."""
+"""Reading the brain, and replacing it by another."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def read_brain(engine: Engine, _: m.ReadBrain) -> Outcome:
 
 
 def use_brain(engine: Engine, request: m.UseBrain) -> Outcome:
-    """A new run with a foreign brain; the old run goes on when that cannot be."""
+    """Begin a new run with a foreign brain. If that fails, the old run goes on."""
     session, brain = engine.run.session, request.brain
     seed = session.seed if request.seed is None else request.seed
     world = session.world

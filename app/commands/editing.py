@@ -1,4 +1,4 @@
-"""The office edited under the running robot, and edits taken back."""
+"""Editing the office while the robot drives, undo and redo."""
 
 from __future__ import annotations
 
@@ -25,6 +25,6 @@ def redo_edit(engine: Engine, command: m.RedoEdit) -> Outcome:
 
 
 def _done(engine: Engine, field: str, value: object, edit: Callable[[], str]) -> Outcome:
-    """edit: says what was done."""
+    """edit: makes the edit and returns what was done, in words, for the event log."""
     engine.editor.follow(engine.run.session.simulator.world)
     return attempt(field, value, lambda: engine.run.event_log.note("office", edit()))

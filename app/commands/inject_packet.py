@@ -1,4 +1,4 @@
-"""A packet of activity put among the pose cells by hand, to watch it compete. A demonstration: no sense says it."""
+"""Put a packet of activity into the pose cells by hand and watch it compete. A demonstration: no sensor asks for it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ratslam_core.pose_cells.attractor_kernels import gaussian
 from ratslam_core.types import wrap_angle
 from web.messages import InjectPacket
 
-SIGMA, REACH = 1.2, 3  # cells and layers
+SIGMA, REACH = 1.2, 3  # in cells along x' and y', in layers along theta'
 
 
 def inject_packet(engine: Engine, command: InjectPacket) -> Outcome:
@@ -22,13 +22,17 @@ def inject_packet(engine: Engine, command: InjectPacket) -> Outcome:
 
     def inject() -> None:
         run.event_log.note("packet", put_packet(run.session, command))
-        run.snapshots.walk = None  # which shows how it was before
+        run.snapshots.walk = None  # it shows the pose cells as they were before the packet
 
     return attempt("x, y", (command.x, command.y), inject)
 
 
 def put_packet(session: Session, command: InjectPacket) -> str:
-    """Do it and say so: a packet from now on, which competes from the next tick on. ValueError outside the pose cells."""
+    """Inject a packet, which competes from the next tick on. Returns what was done, in words. ValueError outside the
+    pose cells.
+
+    `command.share` is the packet's share of all activity once it is in.
+    """
     pose_cells = session.brain.pose_cells
     n_theta, n_y, n_x = pose_cells.shape
     if not (command.x < n_x and command.y < n_y):
@@ -44,7 +48,7 @@ def put_packet(session: Session, command: InjectPacket) -> str:
 
 
 def _blob(shape: tuple[int, int, int], layer: int, y: int, x: int) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """Cells (flat indices) around one of them, round the torus, and their weights."""
+    """The cells (flat indices) within REACH of one cell, wrapped on the torus, and their Gaussian weights."""
     n_theta, n_y, n_x = shape
     around, weights = np.arange(-REACH, REACH + 1), gaussian(SIGMA, REACH).astype(np.float64)
     thetas, ys, xs = np.meshgrid((layer + around) % n_theta, (y + around) % n_y, (x + around) % n_x, indexing="ij")

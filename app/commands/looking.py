@@ -1,4 +1,4 @@
-"""What people look at: it changes nothing in the robot. And what they are told."""
+"""Choosing what to inspect, and warnings to the page. Nothing here changes the robot."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from web import messages as m
 
 
 def inspect(engine: Engine, command: m.Inspect) -> Outcome:
-    """From now on everybody looks at this."""
+    """Show this on every page from now on."""
     run = engine.run
     chosen = command.model_dump(exclude={"type"}, exclude_none=True)
 

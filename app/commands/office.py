@@ -1,4 +1,4 @@
-"""What a person does to the office: doors, lamps, boxes."""
+"""Commands that change the office: doors, lamps, boxes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What becomes of a command."""
+"""The outcome of a command: accepted, refused, or answered later."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from web.messages import Accepted, Refused
 
 @dataclass(frozen=True, slots=True)
 class Later:
-    """It is answered when so many ticks are done."""
+    """The command is answered after `ticks` more ticks."""
 
     ticks: int
 
 
-Outcome = Accepted | Refused | Later | None  # None: it has taken effect, and there is nothing more to tell
+Outcome = Accepted | Refused | Later | None  # None: accepted, with no result to return
 
 
 def attempt(field: str, value: object, order: Callable[[], object]) -> Refused | None:
-    """Do it; where it cannot be, the field to blame, its value and the reason."""
+    """Call `order`. If it raises ValueError, return a refusal with this field, its value and the reason."""
     try:
         order()
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""Where the robot is to go, by whom it is driven, and that it is carried away."""
+"""Commands to the robot: goal, mode, driving by hand, kidnapping."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who carries out what. A command is told by people, a request asked by the server; both go the same way."""
+"""Which handler carries out which command. People give commands, the server makes requests; both are handled alike."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.commands.outcome import Later, Outcome
 from app.engine.engine import Engine
 from web import messages as m
 
-Handler = Callable[[Engine, Any], Outcome]  # of the class that it stands beside
+Handler = Callable[[Engine, Any], Outcome]  # Any: an instance of the class that is the key in the table
 
 COMMANDS: dict[type, Handler] = {
     m.SetGoal: robot.set_goal,
@@ -52,7 +52,7 @@ REQUESTS: dict[type, Handler] = {
 
 
 def carry_out(engine: Engine, command: m.Command | m.EngineRequest) -> m.Accepted | m.Refused | Later:
-    """Do what it says, between two ticks; or the field, its value and the reason why it cannot be."""
+    """Carry out a command between two ticks. A refusal names the field, its value and the reason."""
     kind = type(command)
     if kind in REQUESTS:
         outcome = REQUESTS[kind](engine, command)
@@ -64,7 +64,7 @@ def carry_out(engine: Engine, command: m.Command | m.EngineRequest) -> m.Accepte
 
 
 def _commanded(engine: Engine, handler: Handler, command: object) -> Outcome:
-    """What it has changed is looked at anew, and what the parameters warn of since is noted."""
+    """Call the handler, then rebuild what the snapshot shows and log every new warning of the config."""
     run, before = engine.run, engine.run.session.config.warnings
     outcome = handler(engine, command)
     if outcome is None:

@@ -1,4 +1,4 @@
-"""Play, pause, one tick, one stage of a tick, how fast, and anew."""
+"""Pause, resume, single ticks, single stages of a tick, speed, reset."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def set_speed(engine: Engine, command: m.SetSpeed) -> Outcome:
 
 
 def step_stage(engine: Engine, command: m.StepStage) -> Outcome:
-    """The next stage of the tick that is shown, or the first of another tick; or the one before."""
+    """Show the next or the previous stage of the recorded tick. After the last stage, run and record another tick."""
     refused = engine.pause_for(command.type)
     if refused is not None:
         return refused

@@ -1,4 +1,4 @@
-"""Worlds in and out of files, as far as the engine has to know of them."""
+"""What the engine has to know of world files that the server opens, saves, deletes and restores."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def read_filed(engine: Engine, request: m.ReadFiled) -> Outcome:
 
 
 def open_world(engine: Engine, request: m.OpenWorld) -> Outcome:
-    """A world from a file, or one that is new."""
+    """Begin a run in a world that was read from a file, or in a new one."""
     world = engine.library.named(request.world)
     session = engine.run.session
     try:
@@ -33,7 +33,7 @@ def open_world(engine: Engine, request: m.OpenWorld) -> Outcome:
 
 
 def world_saved(engine: Engine, request: m.WorldSaved) -> Outcome:
-    """The present world is in a file now."""
+    """The current world has been written to a file."""
     session = engine.run.session
     engine.editor.named(request.was, request.world, session.edit_world)
     engine.library.saved(request.world)

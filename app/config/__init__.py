@@ -1,4 +1,4 @@
-"""All parameters in one frozen tree; TOML out and in; presets."""
+"""All parameters in one frozen tree, written to and read from TOML, and presets."""
 
 from app.config.table import to_markdown
 from app.config.toml_file import from_toml, parse_value, to_toml

@@ -1,4 +1,4 @@
-"""Named settings: the engine of each paper and ours, and robots as they were. What a preset leaves out stays as it is."""
+"""Named settings: the engine of each paper, our own, and two robots. A preset changes only the parameters it names."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ PRESETS: dict[str, dict[str, Value]] = {**ENGINES, **ROBOTS}
 
 
 def preset(name: str, base: Config) -> Config:
-    """The config with a preset over it. ValueError lists the presets when there is none of this name."""
+    """`base` with the values of a preset. ValueError lists the presets if none has this name."""
     for parameter, value in values_of(name).items():
         base = base.with_value(parameter, value)
     return base
 
 
 def values_of(name: str) -> dict[str, Value]:
-    """What a preset sets. Its name may be written in small letters with hyphens, as one does on a command line."""
+    """The parameters that a preset sets. Its name may be written in lower case with hyphens, as on a command line."""
     found = [values for known, values in PRESETS.items() if _plain(known) == _plain(name)]
     if not found:
         raise ValueError(f"unknown preset {name!r}; expected one of: {', '.join(PRESETS)}")
@@ -59,7 +59,7 @@ def values_of(name: str) -> dict[str, Value]:
 
 
 def preset_of(config: Config) -> str:
-    """The preset whose values these all are; a paper before a robot, and both before "ours"; "" if none."""
+    """The name of the preset whose values the config has, or "". If several fit: a paper, then a robot, then "ours"."""
     values = {name: value for name, _, value in config.items()}
     found = [name for name, wanted in PRESETS.items() if all(values[key] == value for key, value in wanted.items())]
     return next((name for name in found if name != "ours"), found[0] if found else "")

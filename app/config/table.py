@@ -1,4 +1,4 @@
-"""Parameters as a table for the documentation."""
+"""Parameters as Markdown tables for the documentation."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from app.config.tree import Config, Value
 
 
 def to_markdown(config: Config) -> str:
-    """A table of all parameters for the documentation."""
+    """All parameters, one table for each section; this is docs/parameters.md."""
     lines = [
         "# Parameters",
         "",

@@ -1,4 +1,4 @@
-"""Parameters as TOML, out and in."""
+"""Parameters written to and read from TOML."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _MOST_LEVELS = 20
 
 
 def to_toml(config: Config) -> str:
-    """The whole tree with symbol, unit, range, meaning and source as comments."""
+    """All parameters as TOML, with symbol, meaning, unit, range and source as comments."""
     document = tomlkit.document()
-    document.add(tomlkit.comment("RatSLAM: every parameter. Take it back with --config FILE."))
+    document.add(tomlkit.comment("RatSLAM: every parameter. Read it back with --config FILE."))
     section, table = "", tomlkit.table()
     for name, item, value in config.items():
         group, key = name.split(".")
@@ -41,7 +41,7 @@ def _about(item: Field[Any]) -> str:
 
 
 def from_toml(text: str, base: Config | None = None) -> Config:
-    """A config from TOML; what is left out keeps its default. ValueError lists the right keys when one is unknown."""
+    """A config from TOML; what is left out is as in `base`, or default. ValueError lists the valid keys."""
     try:
         tree = _toml(text)
     except tomllib.TOMLDecodeError as error:
@@ -50,7 +50,7 @@ def from_toml(text: str, base: Config | None = None) -> Config:
     sections = [item.name for item in fields(config)]
     for section, table in sorted(
         tree.items(), key=lambda item: item[0] != "robot"
-    ):  # what the brain is told of it stands
+    ):  # robot first: its field of view is copied to local_view, whose own value must be able to override it
         if section not in sections or not isinstance(table, dict):
             raise ValueError(f"unknown section {section!r}; expected one of: {', '.join(sections)}")
         keys = [item.name for item in fields(getattr(config, section))]
@@ -73,7 +73,7 @@ def parse_value(text: str) -> Value:
 
 
 def _toml(text: str) -> dict[str, Any]:
-    """ValueError when it is none, or nested as no parameters are: reader and complaints would recurse into it."""
+    """The parsed text. ValueError also if it is nested so deeply that reading it would exhaust the stack."""
     try:
         tree = tomllib.loads(text)
         if not deeper_than(_MOST_LEVELS, tree):

@@ -1,4 +1,4 @@
-"""One frozen tree of all parameters, by dotted names."""
+"""All parameters in one frozen tree, addressed by dotted names such as `pose_cells.inhibit`."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ class Config:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What can be set so and is likely not meant so."""
+        """Sentences about settings that are allowed but probably not intended."""
         told, true = self.local_view.field_of_view, self.robot.camera_fov_rad
         if abs(told - true) <= 1e-6:
             return ()
         return (
-            f"local_view.field_of_view is {told:g} rad but robot.camera_fov_rad {true:g}: the brain takes turns for "
-            f"{told / true:.2f} times what they are when it looks; set both alike",
+            f"local_view.field_of_view is {told:g} rad but robot.camera_fov_rad is {true:g} rad: the brain reads a "
+            f"turn from the image as {told / true:.2f} times what it is; set both to the same value",
         )
 
     @property
@@ -75,9 +75,9 @@ class Config:
                     yield f"{section.name}.{item.name}", item, getattr(params, item.name)
 
     def with_value(self, name: str, value: Value) -> Config:
-        """A copy with one parameter changed; ValueError names an unknown one, or the range.
+        """A copy with one parameter changed. ValueError names an unknown parameter, or the range of a known one.
 
-        The brain is told of another field of view: `local_view.field_of_view` follows `robot.camera_fov_rad`.
+        Setting `robot.camera_fov_rad` also sets `local_view.field_of_view`, so that the brain knows its camera.
         """
         known = {dotted: old for dotted, _, old in self.items()}
         if name not in known:

@@ -1,1 +1,1 @@
-"""What the commands act on: the run that is on, and how it is stopped and stepped."""
+"""What commands act on: the current run, and how it is stepped, paced and stopped."""

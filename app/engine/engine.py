@@ -1,4 +1,4 @@
-"""What commands act on: the run that is on, whether it plays, and who waits for ticks. Knows no queue and no page."""
+"""What commands act on: the current run, whether it plays, and who waits for ticks. It knows neither queue nor page."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from web import messages as m
 
 
 class Engine:
-    """Of one thread, whichever it is."""
+    """To be used from one thread only; which one does not matter."""
 
     def __init__(
         self,
@@ -33,7 +33,7 @@ class Engine:
         running: bool,
         answer: Callable[[m.Request, m.Accepted], None],
     ) -> None:
-        """answer: gets each request whose ticks are done, or broken off."""
+        """answer: is called for each request whose ticks are done or were broken off."""
         self.library, self.editor = Library(world), WorldEditor(world)
         self.pace, self.steps = pace, Steps()
         self.running = running
@@ -47,9 +47,9 @@ class Engine:
         return self._run
 
     def begin(self, world: World, seed: int, config: Config, brain: RatSlam | None = None) -> Run:
-        """Another run, or none of it: what fails leaves the old one as it is. ValueError says why."""
+        """Begin another run. If that fails, the old run is left as it is. ValueError says why."""
         old = self._run
-        before = None if old is None or self.fault is not None else old.session  # which may be in pieces
+        before = None if old is None or self.fault is not None else old.session  # after a fault it may be half changed
         run = Run(old.number + 1 if old else 1, world, seed, config, self.library.titles, brain, before)
         self.break_off()
         self.library.close(world.name)
@@ -63,9 +63,9 @@ class Engine:
     # ------------------------------------------------------------ ticks
 
     def tick(self, recorder: TickRecorder | None = None) -> bool:
-        """One tick; whether anything happened that is to be shown at once.
+        """Run one tick. True if something happened that has to be shown at once.
 
-        What it throws pauses the session and is shown. Of one that hung and ended there is a note.
+        An exception pauses the session and is shown as a fault. A tick that hung but ended is noted in the event log.
         """
         self._watchdog.begin()
         try:
@@ -80,14 +80,14 @@ class Engine:
         return hung
 
     def step(self) -> bool:
-        """One of the ticks that were asked for; as `tick`."""
+        """Run one of the ticks that were asked for. Returns the same as `tick`."""
         to_show = self.tick()
         if self.fault is None:
             self._accept(self.steps.ticked())
         return to_show
 
     def break_off(self) -> None:
-        """Whoever still waits for ticks gets the tick that was reached."""
+        """Drop the remaining ticks. Whoever waits for them is answered with the tick that was reached."""
         self._accept(self.steps.end())
 
     def _accept(self, requests: list[m.Request]) -> None:
@@ -97,14 +97,14 @@ class Engine:
     # ------------------------------------------------------------ stopping
 
     def pause_for(self, kind: str) -> m.Refused | None:
-        """Pause for what is asked for, which may be refused."""
+        """Pause, to carry out a command of this kind. Refused after a fault."""
         if self.fault is not None:
             return m.Refused("type", kind, f"the session stopped at a fault ({self.fault}); reset it")
         self.running = False
         return None
 
     def fail(self, error: BaseException) -> None:
-        """Stop at a fault, which is told once."""
+        """Stop at a fault. A fault that repeats is reported once."""
         words = words_of(error)
         new, self.fault, self.running = words != self.fault, words, False
         if new:

@@ -1,4 +1,4 @@
-"""What stops a session by itself: what is thrown, what stalls, what is no number any more."""
+"""Faults: an exception in words, and the check that all numbers of a session are still finite."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def words_of(error: BaseException) -> str:
 
 
 def require_finite(session: Session) -> None:
-    """FloatingPointError names what is not finite after this tick. A sum of all poses costs microseconds."""
+    """FloatingPointError names what is not finite after this tick. Summing all poses costs microseconds."""
     truth, robot, packet = session.simulator.truth, session.estimate.pose_map_robot, session.estimate.packet
     numbers = {
         "the robot's true pose": (truth.x, truth.y, truth.heading_rad),

@@ -1,4 +1,4 @@
-"""The worlds that can be opened by name: those that come with the program, those in one's own folder, those of this session."""
+"""The worlds that can be opened by name: those of the program, of the user's folder and of this session."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from sim2d import World, load_world, own_worlds, world_names
 
 
 class Library:
-    """Titles by name. A world whose file was deleted stays for as long as it is open."""
+    """Worlds and their titles, by name. A world whose file was deleted stays as long as it is open."""
 
     def __init__(self, world: World) -> None:
         self._worlds = {world.name: world}  # of this session; the others are read when they are opened
@@ -22,7 +22,7 @@ class Library:
         return tuple(self._titles.items())
 
     def world(self, name: str) -> World:
-        """ValueError when there is none, or somebody has spoilt its file."""
+        """The world of this name. ValueError if there is none, or if its file is not valid."""
         if name not in self._titles:
             known = ", ".join(self._titles)
             raise ValueError(f"unknown world {name!r}; expected one of: {known}")
@@ -32,23 +32,23 @@ class Library:
         return world
 
     def read(self, world: World) -> World:
-        """One that has just been read from its file; as it is in this session where that knows it."""
+        """Take in a world just read from its file. Returns this session's version of it, if there is one."""
         if world.name not in self._worlds:
             self._filed[world.name] = world
             self._titles.setdefault(world.name, world.title)
         return self._worlds.get(world.name, world)
 
     def filed(self, name: str) -> World | None:
-        """As it was last read from its file or written there."""
+        """The world as it was last read from its file or written to it."""
         return self._filed.get(name)
 
     def saved(self, world: World) -> None:
-        """It has been written."""
+        """The world has been written to its file."""
         self._filed[world.name] = world
         self.add(world)
 
     def named(self, world: World) -> World:
-        """The same, with a name that no other world has: plan, plan-2, plan-3."""
+        """The same world under a name that no other world has: plan, plan-2, plan-3."""
         if self._worlds.get(world.name) == world:
             return self._worlds[world.name]
         name, k = world.name, 2
@@ -61,17 +61,17 @@ class Library:
         self.restored(world.name, world.title)
 
     def restored(self, name: str, title: str) -> None:
-        """Its file is there (again)."""
+        """The world's file exists, perhaps again."""
         self._deleted.discard(name)
         self._titles[name] = title
 
     def deleted(self, name: str, open_now: str) -> None:
-        """Its file has gone."""
+        """The world's file has been deleted."""
         self._deleted.add(name)
         self.close(open_now)
 
     def close(self, open_now: str) -> None:
-        """Only this one is open: others whose files have gone are forgotten."""
+        """Forget every world whose file was deleted, except the one that is open now."""
         for name in self._deleted - {open_now}:
             self._titles.pop(name, None)
             self._worlds.pop(name, None)

@@ -1,4 +1,4 @@
-"""When the next tick is due, when the hand lets go, and how fast it really goes. Wall time paces; it decides nothing else."""
+"""When the next tick is due, when an order by hand expires, the measured speed. Wall time decides nothing else."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 import time
 
 PUBLISH_EVERY_S = 1 / 20
-HAND_EXPIRES_S = 0.3  # of wall time: what a person who lets go would expect at any speed
+HAND_EXPIRES_S = 0.3  # wall time: whoever lets go of a key expects the robot to stop, at any simulated speed
 MOST_BEHIND_S = 0.25
 LONGEST_WAIT_S = 0.5
 MEASURED_OVER_S = 1.0
@@ -33,11 +33,11 @@ class Pace:
         self._due = time.perf_counter()
 
     def wait_s(self) -> float:
-        """So long nothing is to be done while the session runs."""
+        """Seconds until the running session has something to do; negative when it is late."""
         return min(self._due, self._hand_expires) - time.perf_counter()
 
     def due(self, dt: float) -> bool:
-        """Whether a tick of `dt` seconds is due; then the one after it follows in its time."""
+        """Whether a tick of `dt` simulated seconds is due. If so, the next due time is set."""
         now = time.perf_counter()
         if now < self._due:
             return False
@@ -45,7 +45,7 @@ class Pace:
         return True
 
     def drive(self) -> None:
-        """The hand has given an order."""
+        """A drive order has come; it holds for HAND_EXPIRES_S."""
         self._hand_expires = time.perf_counter() + HAND_EXPIRES_S
 
     @property
@@ -53,14 +53,14 @@ class Pace:
         return self._hand_expires < math.inf
 
     def let_go(self) -> bool:
-        """Whether the hand's last order has just expired."""
+        """Whether the last drive order has just expired."""
         if time.perf_counter() < self._hand_expires:
             return False
         self._hand_expires = math.inf
         return True
 
     def measure(self, simulated_s: float) -> None:
-        """How fast it goes, by where simulated time is now."""
+        """Measure the multiple of real time; simulated_s: simulated time now."""
         now, (then, before_s) = time.perf_counter(), self._measured
         if now - then >= MEASURED_OVER_S:
             self.factor = max(0.0, simulated_s - before_s) / (now - then) if then else 0.0

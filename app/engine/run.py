@@ -1,4 +1,4 @@
-"""One run, from a reset to the next: a session, what happened in it, and the snapshots of both."""
+"""One run, from one reset to the next: a session, its history, and the snapshots of both."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from sim2d import World
 
 
 class Run:
-    """ValueError says why it cannot begin."""
+    """A session with its history and snapshots. ValueError says why it cannot begin."""
 
     def __init__(
         self, number: int, world: World, seed: int, config: Config, titles: tuple[tuple[str, str], ...],
@@ -26,7 +26,7 @@ class Run:
         self.session = Session(world, seed, config, brain, before)
         self.history = History(self.session)
         self.snapshots = Snapshots(self.session, self.history, number, titles)
-        if brain is not None:  # a foreign one has to be such that it can be shown
+        if brain is not None:  # a foreign brain must be one that can be shown: try it before it is accepted
             self.snapshots.build(running=False, speed=1.0, real_time_factor=0.0, fault=None)
         for words in config.warnings:
             self.event_log.note("warning", words)
@@ -40,14 +40,14 @@ class Run:
         return self.history.visits
 
     def tick(self, recorder: TickRecorder | None = None) -> None:
-        """One tick, and what is to be noted of it. What makes anything infinite or no number is thrown."""
+        """Run one tick and record it in the history. FloatingPointError if anything is no longer finite."""
         self.snapshots.walk = None
         self.session.tick(recorder)
         require_finite(self.session)
         self.history.watch()
 
     def walk(self, back: bool) -> bool:
-        """To the next stage of the tick that is shown, or to the one before; False: there is none."""
+        """Show the next stage of the recorded tick, or the previous one. False if there is none."""
         shown = self.snapshots.walk
         following = None if shown is None else shown.moved(-1 if back else 1)
         if following is None:
@@ -57,11 +57,11 @@ class Run:
         return True
 
     def recorder(self) -> TickRecorder:
-        """For the next tick, so that it can be walked through."""
+        """A recorder for the next tick, so that its stages can be shown one by one."""
         self.snapshots.refresh()
         return TickRecorder(self.session, self.snapshots.parts())
 
     def show(self, recorder: TickRecorder) -> None:
-        """The first stage of the tick that was recorded."""
+        """Show the first stage of the tick that was recorded."""
         self.snapshots.refresh()
         self.snapshots.walk = recorder.walk(self.snapshots.parts())

@@ -1,4 +1,4 @@
-"""Ticks that were asked for one by one: worked off in their order, so that other commands come between two of them."""
+"""Ticks that were asked for by number. They are worked off one by one, so that other commands come in between."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from web.messages import Request
 
 
 class Steps:
-    """Who asked for how many more. A request is answered when its ticks are done, or when they are broken off."""
+    """The requests that wait for ticks. A request is answered when its ticks are done or broken off."""
 
     def __init__(self) -> None:
         self._waiting: deque[tuple[Request, int]] = deque()
@@ -20,7 +20,7 @@ class Steps:
         self._waiting.append((request, ticks))
 
     def ticked(self) -> list[Request]:
-        """One of them is done; the request that is satisfied by it, if one is."""
+        """One tick is done. Returns the request that this completes, if any."""
         request, left = self._waiting.popleft()
         if left > 1:
             self._waiting.appendleft((request, left - 1))
@@ -28,7 +28,7 @@ class Steps:
         return [request]
 
     def end(self) -> list[Request]:
-        """The rest is not wanted any more, or cannot be; all whose requests are open."""
+        """Drop all remaining ticks. Returns the requests that still waited for them."""
         ended = [request for request, _ in self._waiting]
         self._waiting.clear()
         return ended

@@ -1,7 +1,8 @@
-"""Notices from outside that a tick hangs. It counts its own short naps: who was suspended with it has not hung.
+"""A thread that notices when a tick hangs. It measures time as a count of its own short naps, so that a process which
+was suspended as a whole does not appear to hang.
 
-Compiling is no hanging, whenever it happens: numba tells when it begins and ends. What keeps Python's one lock while it computes
-keeps the watchdog from running, too; the processor time of the tick tells afterwards.
+Compiling does not count; numba reports when it begins and ends. Code that holds Python's global lock also stops the
+watchdog; such a tick is found afterwards by the processor time it took.
 """
 
 from __future__ import annotations
@@ -12,11 +13,11 @@ from collections.abc import Callable
 
 from numba.core.event import Event, Listener, register, unregister  # pyright: ignore[reportUnknownVariableType]
 
-NAPS = 20  # in the limit
+NAPS = 20  # that make up the limit
 
 
 class Watchdog:
-    """The engine's thread says when a tick begins and ends; `on_stall` is called from another, once, while it hangs."""
+    """The engine's thread calls `begin` and `end`. If a tick hangs, another thread calls `on_stall`, once."""
 
     def __init__(self, limit_s: float, on_stall: Callable[[], None]) -> None:
         self.limit_s = limit_s
@@ -24,14 +25,14 @@ class Watchdog:
         self._nap_s = limit_s / NAPS
         self._lock = threading.Lock()
         self._woken = threading.Event()
-        self._age_s: float | None = None  # of the tick; None between two
+        self._age_s: float | None = None  # of the tick; None between two ticks
         self._stalled = False
         self._busy_since_s = 0.0
         self._compiler = _Compiler()
         self._thread = threading.Thread(target=self._watch, name="watchdog", daemon=True)
 
     def start(self) -> None:
-        """From the thread that is to be watched."""
+        """Call it from the thread that is to be watched."""
         self._compiler.of_thread = threading.get_ident()
         register("numba:compile", self._compiler)
         self._thread.start()
@@ -49,7 +50,7 @@ class Watchdog:
         self._busy_since_s = time.thread_time()
 
     def end(self) -> bool:
-        """The tick is over; whether it took too long."""
+        """The tick is over. True if it took too long."""
         busy_s = time.thread_time() - self._busy_since_s - self._compiler.took_s
         with self._lock:
             self._age_s = None
@@ -63,7 +64,7 @@ class Watchdog:
             before = now
 
     def _note(self, passed_s: float) -> None:
-        """So much time has passed. The stall is told under the lock: never of a tick that is over."""
+        """`passed_s` more have passed. The lock is held, so `on_stall` is never called for a tick that is over."""
         with self._lock:
             if self._age_s is None or self._stalled or self._compiler.busy:
                 return
@@ -74,12 +75,12 @@ class Watchdog:
 
 
 class _Compiler(Listener):
-    """Whether a kernel is being compiled in the watched thread, and what processor time that took."""
+    """Whether a kernel is being compiled in the watched thread, and how much processor time compiling took (s)."""
 
     def __init__(self) -> None:
         self.of_thread = 0
         self.took_s = 0.0
-        self._depth = 0  # a kernel compiles those that it calls
+        self._depth = 0  # nested: compiling a kernel compiles the kernels that it calls
         self._began_s = 0.0
 
     @property

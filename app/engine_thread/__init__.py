@@ -1,4 +1,4 @@
-"""The one thread that the session runs in: queue and publishing, at its pace."""
+"""The one thread in which the session runs: pace, queue and publishing."""
 
 from app.engine_thread.thread import EngineThread
 

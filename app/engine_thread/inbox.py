@@ -1,4 +1,4 @@
-"""What people and the server ask of the engine, and what it answers: every request gets an answer, also after the end."""
+"""Requests to the engine and its answers. Every request gets an answer, even after the engine has ended."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Answer = m.Accepted | m.Refused | BaseException
 
 
 class Inbox:
-    """`submit` may be called from any thread, the rest from the engine's."""
+    """`submit` and `wake` may be called from any thread, the rest only from the engine's."""
 
     def __init__(self) -> None:
         self._requests: queue.SimpleQueue[m.Request | None] = queue.SimpleQueue()
@@ -31,11 +31,11 @@ class Inbox:
         return answer
 
     def wake(self) -> None:
-        """Whoever waits for a request waits no longer."""
+        """End a `take` that is waiting."""
         self._requests.put(None)
 
     def take(self, patience_s: float) -> m.Request | None:
-        """The next request; None when none comes in this time."""
+        """The next request, or None if none comes within `patience_s`."""
         with contextlib.suppress(queue.Empty):
             return self._requests.get(block=patience_s > 0, timeout=max(patience_s, 0.0))
         return None
@@ -45,21 +45,21 @@ class Inbox:
         return bool(self._answers)
 
     def answer(self, request: m.Request, answer: Answer) -> None:
-        """To be given with the next `give`."""
+        """Keep an answer until the next `give`."""
         self._answers.append((request, answer))
 
     def give(self) -> None:
         answers, self._answers = self._answers, []
         for request, answer in answers:
             if not request.answer.set_running_or_notify_cancel():
-                continue  # nobody wants to know any more
+                continue  # whoever asked has cancelled
             if isinstance(answer, BaseException):
                 request.answer.set_exception(answer)
             else:
                 request.answer.set_result(answer)
 
     def close(self, why: str) -> None:
-        """Nothing is taken any more; what waits, and what still comes, is refused with this sentence."""
+        """Take no more requests. Those that wait and those that still come are refused with the sentence `why`."""
         with self._gate:
             self._over = why
         while not self._requests.empty():

@@ -1,6 +1,7 @@
-"""The one engine thread: takes commands between ticks, works off ticks, publishes snapshots. Waits for no browser.
+"""The one engine thread: it takes commands between ticks, runs ticks and publishes snapshots. It never waits for a
+browser.
 
-It does not die in silence: whatever is thrown in it becomes a fault that is shown, and every request gets an answer.
+It does not die silently: every exception becomes a fault that is shown, and every request gets an answer.
 """
 
 from __future__ import annotations
@@ -34,9 +35,9 @@ class EngineThread:
         self, world: World, seed: int, config: Config, *, speed: float = 1.0, running: bool = True,
         brain: RatSlam | None = None, stall_s: float = STALL_S,
     ) -> None:  # fmt: skip
-        """brain: one that knows places already. stall_s: of a tick that takes longer everybody is told."""
+        """brain: one that already knows places. stall_s: a tick that takes longer than this is shown as a fault."""
         self.latest: Latest[m.Snapshot] = Latest()
-        self.stillborn: str | None = None  # why it could not even begin; then the thread has ended ...
+        self.stillborn: str | None = None  # why the engine could not begin; then the thread has ended ...
         self.on_stillborn: Callable[[], object] = lambda: None  # ... and calls this
         self.pace = Pace(speed)
         self._first = (world, seed, config, brain)
@@ -54,14 +55,14 @@ class EngineThread:
         self._thread.start()
 
     def stop(self, patience_s: float | None = None) -> None:
-        """Ends the thread after the tick it is in. patience_s: so long a tick is waited for."""
+        """End the thread after its current tick. patience_s: how long to wait for that tick; None = until it ends."""
         self._stopping = True
         self._inbox.wake()
         if self._thread.ident is not None:  # it was started
             self._thread.join(patience_s)
 
     def submit(self, command: m.Command | m.EngineRequest) -> Future[m.Accepted | m.Refused]:
-        """Hand a command to the engine; the answer comes when it has taken effect or was refused."""
+        """Hand a command to the engine. The future is answered when the command has taken effect or was refused."""
         return self._inbox.submit(command)
 
     # ------------------------------------------------------------ the thread
@@ -82,7 +83,7 @@ class EngineThread:
         self._inbox.close("the engine has ended; start the program again")
 
     def _begin(self) -> bool:
-        """False: it could not even begin."""
+        """Begin the first run. False if that fails."""
         try:
             self._watchdog.start()
             self._engine.begin(*self._first)
@@ -100,7 +101,7 @@ class EngineThread:
     def _turn(self) -> None:
         self._take_requests()
         if self._inbox.has_answers:
-            self._publish()  # first: who reads right after the answer sees what it did
+            self._publish()  # before answering: whoever has the answer and reads the state must see its effect
             self._inbox.give()
         engine, pace, session = self._engine, self.pace, self.session
         if pace.let_go() and session.pilot.mode == "manual":
@@ -121,7 +122,7 @@ class EngineThread:
     # ------------------------------------------------------------ the queue
 
     def _take_requests(self) -> None:
-        """Carry out all commands that wait; with none, sleep until the next tick or command."""
+        """Carry out all commands that wait. If there are none, sleep until the next tick is due or a command comes."""
         wait = self.pace.wait_s() if self._engine.running else LONGEST_WAIT_S
         while True:
             idle = not self._inbox.has_answers and not self._engine.steps
@@ -131,7 +132,7 @@ class EngineThread:
             self._take(request)
 
     def _take(self, request: m.Request) -> None:
-        """A command that fails is answered with its error, and the session goes on."""
+        """Carry out one request. A command that raises is answered with its error, and the session goes on."""
         try:
             answer = carry_out(self._engine, request.command)
         except BaseException as error:
@@ -148,7 +149,7 @@ class EngineThread:
     # ------------------------------------------------------------ publishing
 
     def _publish(self) -> None:
-        """The session as it is now; when that cannot be shown, the last that could, and why."""
+        """Publish the session as it is now. If that cannot be built, publish the last good snapshot with the fault."""
         try:
             snapshot: m.Snapshot | None = self._engine.snapshot()
         except BaseException as error:
@@ -161,7 +162,7 @@ class EngineThread:
         self.pace.published()
 
     def _tell_stall(self) -> None:
-        """In the watchdog's thread: the engine's own cannot say it now."""
+        """Publish that the tick hangs. This runs in the watchdog's thread, since the engine's is busy."""
         _, last = self.latest.get()
         if last is not None:
             words = f"the tick is taking more than {self._watchdog.limit_s:g} s; the session goes on when it has ended"

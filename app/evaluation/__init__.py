@@ -1,4 +1,4 @@
-"""Truth against estimate, for judging and drawing; the robot never sees it."""
+"""The estimate compared with the truth, for judging and drawing. The robot never sees it."""
 
 from app.evaluation.alignment import align, alignment, rmse
 from app.evaluation.evaluation import Evaluation

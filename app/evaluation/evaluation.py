@@ -1,4 +1,4 @@
-"""Truth against estimate: alignment, errors, consistency, kidnaps, goals. For judging and drawing; the robot never sees it."""
+"""The estimate compared with the truth: errors, consistency, kidnaps, goals. The robot never sees it."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from disk import kind
 from ratslam_core import ExperienceMap, Odometry, Pose2
 from sim2d import Truth
 
-REVISIT_AGE_S = 20.0  # an experience this old that is active again counts as revisited
+REVISIT_AGE_S = 20.0  # an active experience that was made longer ago than this counts as revisited
 NEAR_M, NEAR_RAD = 1.0, 0.6
-CONSISTENT_M = 0.5  # a revisit is consistent when the robot truly is so near to where it believed to be
-LEAST_WAY_M = 0.5  # a shorter path, root mean square from its middle, does not tell how the map is turned
+CONSISTENT_M = 0.5  # a revisit is consistent if the robot is truly this near to where it believes itself to be
+LEAST_WAY_M = 0.5  # a path with a smaller spread (RMS distance from its middle) does not determine the map's rotation
 
 Points = NDArray[np.float64]  # (n, 2)
 
@@ -26,15 +26,15 @@ class Evaluation:
     """Keeps, tick by tick, what is needed to compare the map with the truth."""
 
     def __init__(self, known: int = 0) -> None:
-        """known: experiences that a brain brought with it; where they were made nobody here has seen."""
+        """known: how many experiences the brain brought with it. Where those were truly made is unknown."""
         self._rows: NDArray[np.float64] = np.zeros(
             (4096, 8)
-        )  # truth x y heading, local pose x y heading, odometry alone x y
+        )  # true x, y, heading; local pose x, y, heading; odometry alone x, y
         self._experience = np.zeros(4096, np.int64)
         self._count = 0
         self._made_at = np.full(
             (max(1024, known), 4), np.nan
-        )  # truth x y heading and time when each experience was made
+        )  # true x, y, heading and the time at which each experience was made
         self._odometry = Pose2(0.0, 0.0, 0.0)
         self._revisits = self._consistent = 0
         self.path_m = 0.0
@@ -43,7 +43,7 @@ class Evaluation:
     def record(
         self, time_s: float, truth: Truth, experiences: ExperienceMap, created: bool, odometry: Odometry
     ) -> None:
-        """One tick."""
+        """Record one tick. created: whether the active experience was made in it."""
         if self._count == len(self._rows):
             self._rows = np.concatenate([self._rows, np.zeros_like(self._rows)])
             self._experience = np.concatenate([self._experience, np.zeros_like(self._experience)])
@@ -66,8 +66,8 @@ class Evaluation:
         self.kidnaps.append(Kidnapping(time_s, self._map_in_office(experiences), len(experiences.poses)))
 
     def made_at(self, experience: int, experiences: ExperienceMap) -> tuple[float, float]:
-        """Where the robot truly was when it made this experience, office frame; of one that its brain brought with it, where
-        the map says, laid over the office as it fits the robot's path best."""
+        """Where the robot truly was when it made this experience (m, office frame). For an experience that the brain
+        brought with it: its place in the map, after the map has been aligned with the robot's path."""
         x, y = (float(v) for v in self._made_at[experience, :2])
         if math.isfinite(x):
             return x, y
@@ -76,17 +76,17 @@ class Evaluation:
         return place.x, place.y
 
     def heading_at(self, experience: int) -> float | None:
-        """Where the robot truly faced (rad) when it made this experience; None for one that its brain brought with it."""
+        """The robot's true heading (rad) when it made this experience; None for one that its brain brought with it."""
         heading = float(self._made_at[experience, 2])
         return heading if math.isfinite(heading) else None
 
     @property
     def revisit_consistency(self) -> float | None:
-        """Share of the time on old experiences during which the robot truly was within 0.5 m of where it believed to be."""
+        """Share of the time on old experiences in which the robot truly was within 0.5 m of its estimate."""
         return self._consistent / self._revisits if self._revisits else None
 
     def trajectories(self, experiences: ExperienceMap, every: int = 1) -> tuple[Points, Points, Points]:
-        """True path, the path through the map as it is now, and odometry alone, (n, 2) each, not aligned."""
+        """True path, path through the map as it is now, and path by odometry alone; (n, 2) each, not aligned."""
         rows, at = self._rows[: self._count : every], self._experience[: self._count : every]
         pose = experiences.poses[at]
         c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
@@ -95,7 +95,7 @@ class Evaluation:
         return rows[:, :2], np.stack([x, y], axis=1), rows[:, 6:8]
 
     def errors(self, experiences: ExperienceMap, every: int = 1) -> tuple[float, float]:
-        """RMSE (m) after SE(2) alignment of the path through the map, and of odometry alone."""
+        """RMSE (m) after SE(2) alignment: of the path through the map, and of odometry alone."""
         truth, mapped, odometry = self.trajectories(experiences, every)
         return rmse(mapped, truth), rmse(odometry, truth)
 
@@ -112,7 +112,7 @@ class Evaluation:
                 kidnap.note(time_s, way_m, self._knows(kidnap, truth, experiences))
 
     def _knows(self, kidnap: Kidnapping, truth: Truth, experiences: ExperienceMap) -> bool:
-        """Place alone would not do: who is turned on the spot is still where it was."""
+        """Whether place and heading are right. Place alone is not enough: a robot turned on the spot has not moved."""
         if experiences.active >= kidnap.known:
             return False
         robot = kidnap.map_in_office.compose(experiences.robot)
@@ -120,7 +120,7 @@ class Evaluation:
         return math.hypot(robot.x - truth.x, robot.y - truth.y) <= NEAR_M and turn <= NEAR_RAD
 
     def _map_in_office(self, experiences: ExperienceMap) -> Pose2:
-        """The map's frame as the whole path fits best; while there is hardly one, as the robot stood last."""
+        """The pose of the map's frame in the office, by aligning the path; while that is too short, by its end."""
         truth, mapped, _ = self.trajectories(experiences)
         if math.sqrt(np.var(truth, axis=0).sum()) >= LEAST_WAY_M:
             return alignment(mapped, truth)

@@ -1,4 +1,4 @@
-"""One kidnap, and how long and how far it took the robot to know again where it is."""
+"""One kidnap, and the time and distance until the robot knew again where it was."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from dataclasses import dataclass
 from disk import kind
 from ratslam_core import Pose2
 
-STAY_S = 0.5  # so long it has to know
+STAY_S = 0.5  # how long the robot must be right before it counts as recovered
 
 
 @kind("kidnapping/1")
 @dataclass(slots=True)
 class Kidnapping:
-    """One kidnap and, later, how long and how far it took until the robot knew again where it was.
+    """One kidnap and, once the robot has recovered, the time (s) and distance (m) that this took.
 
-    It knows when for half a second an experience from before the kidnap is active and its pose in the map, which is laid
-    over the office as it was before, is within 1 m and 0.6 rad of the truth.
+    It has recovered when, for half a second, an experience from before the kidnap is active and the robot's pose in the
+    map is within 1 m and 0.6 rad of the truth. The map is laid over the office as it fitted before the kidnap.
     """
 
     at_s: float
     map_in_office: Pose2
-    known: int  # experiences from before it
+    known: int  # experiences that existed before the kidnap
     after_s: float | None = None
     after_m: float | None = None
     _way_m: float = 0.0
@@ -29,7 +29,7 @@ class Kidnapping:
     _right_since_m: float = 0.0
 
     def note(self, time_s: float, way_m: float, knows: bool) -> None:
-        """One tick of it. knows: whether the robot knows where it is now; way_m: that it drove in this tick."""
+        """Note one tick. way_m: distance driven in it; knows: whether the robot knows where it is."""
         self._way_m += way_m
         if not knows:
             self._right_since_s = None

@@ -1,1 +1,1 @@
-"""Brains of running sessions, kept on the disk."""
+"""Brains of running sessions, kept on disk."""

@@ -1,7 +1,8 @@
-"""Brains of running sessions, kept in a folder of their own so that a crash loses a minute and not an hour.
+"""Brains of running sessions, kept in a folder of their own, so that a crash loses a minute of learning and not an
+hour.
 
-Each program writes files of its own: two at once never overwrite each other's. What a file is of stands in the comment of its
-first entry, in the zip's directory.
+Each process writes files of its own, so two at once never overwrite each other's. The comment of a file's first zip
+entry says which world, seed and time the brain is from; it can be read without unpacking the file.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ HEAD = "json.npy"
 
 @dataclass(frozen=True, slots=True)
 class About:
-    """Of what a kept brain is."""
+    """What a kept brain is from."""
 
     world: str
     seed: int
@@ -46,14 +47,15 @@ class KeptBrain:
 
 
 def folder() -> Path:
-    """RATSLAM_BRAINS, or `.ratslam/brains` in the home directory. It need not exist. ValueError when there is no home."""
+    """RATSLAM_BRAINS, or `.ratslam/brains` in the home directory; it need not exist. ValueError without a home."""
     return Path(os.environ.get("RATSLAM_BRAINS") or kept_folder() / "brains")
 
 
 def keep(name: str, brain: RatSlam, about: About) -> str | None:
-    """Write a brain that nobody drives, in the place of the one of this name; a warning when it grows too large.
+    """Write a brain over the one of this name. Returns a warning if it is becoming too large for a file.
 
-    OSError, ValueError: it cannot be kept, and the old one is there. A crash at any moment leaves the new file, or the old one.
+    No session may be using the brain. OSError, ValueError: it cannot be kept, and the old file stays. A crash at any
+    moment leaves either the new file or the old one.
     """
     path, snapshot = folder() / f"{name}.npz", encode(brain)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -64,16 +66,16 @@ def keep(name: str, brain: RatSlam, about: About) -> str | None:
 
 
 def newest() -> KeptBrain | None:
-    """The brain that was kept last, of all that can be read."""
+    """The brain that was kept last, among all files that can be read."""
     try:
         found = [kept for path in folder().glob("*.npz") if (kept := _read(path)) is not None]
-    except ValueError:  # no home: nothing is kept
+    except ValueError:  # no home directory: nothing is kept
         return None
     return max(found, key=lambda kept: kept.about.kept_at, default=None)
 
 
 def _read(path: Path) -> KeptBrain | None:
-    """What is kept there, told without unpacking it."""
+    """What is kept in a file, without unpacking it; None if it cannot be read."""
     try:
         with zipfile.ZipFile(path) as archive:
             return KeptBrain(path, About(**json.loads(archive.getinfo(HEAD).comment)))
@@ -82,7 +84,7 @@ def _read(path: Path) -> KeptBrain | None:
 
 
 def _prune() -> None:
-    """The newest stay; what cannot be deleted stays, too."""
+    """Delete all but the newest MOST_KEPT files. What cannot be deleted stays."""
     with contextlib.suppress(OSError):
         by_age = sorted(folder().glob("*.npz"), key=lambda path: path.stat().st_mtime, reverse=True)
         for path in by_age[MOST_KEPT:]:

@@ -1,4 +1,4 @@
-"""Keeps the brain of the running session: every minute, and when the program ends. The engine only copies it."""
+"""Keeps the brain of the running session, every minute and when the program ends. The engine only makes the copy."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from web import messages as m
 from web.latest import Latest
 
 EVERY_S = 60.0
-LEAST_S = 60.0  # of simulated time; what knows less is soon learnt again, and would push out what knows more
-PATIENCE_S = 10.0  # with the engine, which may be in a long tick
-LEAVING_S = 5.0
+LEAST_S = 60.0  # simulated time; a younger brain is soon learnt again, and would push out an older one
+PATIENCE_S = 10.0  # how long to wait for the engine, which may be in a long tick
+LEAVING_S = 5.0  # how long leaving waits for the disk
 
 Submit = Callable[[m.Command | m.EngineRequest], "Future[m.Accepted | m.Refused]"]
 
 
 class BrainKeeper:
-    """A thread of its own, which waits for the disk."""
+    """Writes in a thread of its own, so that only this thread waits for the disk."""
 
     def __init__(self, latest: Latest[m.Snapshot], submit: Submit) -> None:
         self._latest, self._submit = latest, submit
@@ -37,7 +37,7 @@ class BrainKeeper:
         self._thread.start()
 
     def stop(self) -> None:
-        """Keeps the brain once more, before the engine ends. One that is too large for that is left as it was kept last."""
+        """Keep the brain once more before the engine ends. If writing takes too long, the file kept last stays."""
         self._leaving.set()
         self._thread.join(LEAVING_S)
         if self._thread.is_alive():
@@ -49,13 +49,13 @@ class BrainKeeper:
         self.keep_now()
 
     def keep_now(self) -> None:
-        """When there is something new that is sound."""
+        """Keep the brain if it has changed, is old enough and its session has no fault."""
         _, now = self._latest.get()
         if now is None or now.fault is not None or now.time_s < LEAST_S or (now.run, now.tick) == self._kept:
             return
         try:
             answer = self._submit(m.ReadBrain()).result(PATIENCE_S)
-        except Exception as error:  # the engine has told of it, or is not there
+        except Exception as error:  # the engine has reported it already, or has ended
             self._complain("engine", f"the brain cannot be read: {error or type(error).__name__}")
             return
         if not (isinstance(answer, m.Accepted) and isinstance(answer.result, RatSlam)):
@@ -73,7 +73,7 @@ class BrainKeeper:
             self._complain(warning and "growth", warning)
 
     def _complain(self, about: str | None, words: str | None) -> None:
-        """Once, until something else is the matter or nothing."""
+        """Print and show a complaint once, until there is another one or none."""
         if words and about != self._complained:
             print(f"ratslam: {words}", file=sys.stderr, flush=True)
             self._submit(m.Warn(words))

@@ -1,4 +1,4 @@
-"""What moves the robot: explore, avoid, follow a route, obey the hand, get free."""
+"""The pilot: it explores, avoids obstacles, follows routes, obeys the hand and gets free when stuck."""
 
 from app.pilot.params import PilotParams
 from app.pilot.pilot import Mode, Pilot

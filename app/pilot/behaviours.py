@@ -1,4 +1,4 @@
-"""What the robot can be doing: a number that the experience map's links remember, and words for people."""
+"""The behaviours of the robot. Each has a number, which the links of the experience map store, and words for people."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Behaviour(Enum):
-    """Each with its number and its words. Several may bear one number; 0 is standing."""
+    """Number and words of each behaviour. Several may share a number; 0 means standing."""
 
     STARTING = 0, "starting"
     WAITING = 0, "waiting for the hand"
@@ -24,7 +24,7 @@ class Behaviour(Enum):
 
 
 def words_of(number: int) -> str:
-    """What a link remembers by this number, in the words of the first behaviour that bears it."""
+    """The words for a number stored in a link: those of the first behaviour that has it."""
     if number == 0:
         return "standing"
     return next((behaviour.words for behaviour in Behaviour if behaviour.number == number), str(number))

@@ -1,6 +1,7 @@
-"""Exploring: left-wall following, turning back to look, crossings. IROS 2005 section IV.D.
+"""Exploring: following the wall on the left, turning back to look, crossing the room. IROS 2005 section IV.D.
 
-[ours] Wall following alone never enters the middle of a room, so now and then the robot crosses it in a random direction.
+[ours] Wall following alone never enters the middle of a room, so from time to time the robot crosses it in a random
+direction.
 """
 
 from __future__ import annotations
@@ -27,28 +28,28 @@ _DOING = {
 @kind("turn/1")
 @dataclass(slots=True)
 class Turn:
-    """Turn on the spot until so many radians are left."""
+    """A turn on the spot; `left`: what is still to be turned (rad, positive to the left)."""
 
     left: float
 
 
 @kind("explorer/1")
 class Explorer:
-    """Proposes (speed, yaw rate) for each tick and says what it is doing."""
+    """Proposes (speed m/s, yaw rate rad/s) for each tick and names the behaviour."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         self._rng = rng
         self._begin_following()
         self._way = 0.0
-        self._back = 0.0  # of the way back while it looks, m
-        self._cross_in_s = math.inf  # of wall following; looking back does not put it off
+        self._back = 0.0  # what is left to drive back while looking, m
+        self._cross_in_s = math.inf  # time of wall following until the next crossing; looking back does not reset it
 
     @property
     def doing(self) -> Behaviour:
         return _DOING[self._state]
 
     def begin_crossing(self, p: PilotParams) -> None:
-        """Turn to a random direction and go."""
+        """Turn to a random direction, then drive straight ahead."""
         self._state, self._turn, self._stage = "cross", Turn(float(self._rng.uniform(-math.pi, math.pi))), 0
         self._clock, self._until = 0.0, float(self._rng.uniform(p.cross_least_s, p.cross_most_s))
         self._cross_in_s = math.inf
@@ -56,7 +57,7 @@ class Explorer:
     def step(
         self, ranges_m: NDArray[np.float32], odometry: Odometry, local: LocalMovement, p: PilotParams
     ) -> tuple[float, float]:
-        """ranges_m: (8,) sonars from left to right."""
+        """ranges_m: (8,) sonar ranges from left to right, from the robot's middle."""
         moved, turned = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
         self._clock += odometry.dt
         self._way += abs(moved)
@@ -114,7 +115,7 @@ class Explorer:
         return local.towards(p.cross_ahead_m, 0.0, p)
 
     def _look(self, moved: float, local: LocalMovement, p: PilotParams) -> tuple[float, float]:
-        """Back along the way for a metre, then round again and on."""
+        """After the half turn: drive back along the way for `look_back_m`, turn round again and go on."""
         if self._stage == 0:
             self._back -= moved
             if self._back > 0 and self._clock < p.look_back_s and local.free_way(0.0, p) > p.look_stop_m:

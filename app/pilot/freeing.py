@@ -1,6 +1,6 @@
-"""[ours] Getting free: back off and turn for a while when bumped into something or when getting nowhere.
+"""[ours] Getting free: the robot backs off and turns when it has bumped into something or makes no progress.
 
-To turn is to get somewhere, but not again and again. On a floor that makes it slow everything takes its time.
+Turning counts as progress, but only a few times in one place. On a slow floor the time without progress runs slower.
 test_freeing.py::{test_a_cornered_robot_frees_itself, test_a_slow_floor_is_no_reason_to_back_off}.
 """
 
@@ -21,20 +21,20 @@ class Freeing:
 
     def __init__(self, rng: np.random.Generator) -> None:
         self._rng = rng
-        self._place = np.array([0.0, 0.0, 0.0])  # x, y, heading by odometry, from where it last got ahead
-        self._still_s = 0.0
-        self._looked_at, self._turns = 0.0, 0  # heading when it last had turned far; how often since it got ahead
-        self._grip = 1.0  # how much of a turn that is asked for is made
-        self._left_s = 0.0  # of backing off and turning
+        self._place = np.array([0.0, 0.0, 0.0])  # x, y, heading by odometry, since it last got ahead
+        self._still_s = 0.0  # time without progress
+        self._looked_at, self._turns = 0.0, 0  # heading at the last turn that counted; turns counted since it got ahead
+        self._grip = 1.0  # which share of the yaw rate asked for the floor lets through
+        self._left_s = 0.0  # what is left of backing off and turning
         self._drive = (0.0, 0.0)
-        self.has_begun = False  # in this very tick: what it remembers of its surroundings has led it here
+        self.has_begun = False  # in this tick; the pilot then forgets its echoes, which have led it here
 
     def at_rest(self) -> None:
-        """Who means to stand is not stuck."""
+        """The robot stands on purpose, so it is not stuck."""
         self._still_s = 0.0
 
     def step(self, bumped: bool, odometry: Odometry, asked: float, p: PilotParams) -> tuple[float, float] | None:
-        """The drive while it frees itself, else None. asked: yaw rate (rad/s) of the drive before."""
+        """The drive while the robot frees itself, else None. asked: yaw rate (rad/s) of the last drive."""
         self.has_begun = False
         self._move_on(odometry, asked, p)
         if self._left_s > 0:
@@ -48,12 +48,12 @@ class Freeing:
         return None
 
     def _move_on(self, odometry: Odometry, asked: float, p: FreeingParams) -> None:
-        """Where it is by odometry, how the floor is, and how long it has been getting nowhere."""
+        """Update the place by odometry, the grip of the floor, and the time without progress."""
         x, y, heading = self._place
         heading += odometry.yaw_rate * odometry.dt
         step = odometry.speed * odometry.dt
         self._place[:] = x + step * math.cos(heading), y + step * math.sin(heading), heading
-        if abs(asked) > p.grip_yaw_rate and odometry.yaw_rate != 0:  # wheels that do not turn are not slow, but stuck
+        if abs(asked) > p.grip_yaw_rate and odometry.yaw_rate != 0:  # wheels that do not turn are stuck, not slow
             share = min(1.0, max(p.least_grip, odometry.yaw_rate / asked))
             self._grip += min(1.0, odometry.dt / p.grip_s) * (share - self._grip)
         self._still_s += odometry.dt * self._grip

@@ -1,6 +1,7 @@
-"""Local movement: of the arcs that are free now, the one that ends closest to where the robot wants to be. ACRA 2006 4.3.
+"""Local movement: of the arcs that are free, the robot takes the one that ends closest to its target. ACRA 2006 4.3.
 
-Obstacles are the sonar echoes of the last seconds, carried along by odometry, so that what slips between two cones is kept.
+Obstacles are the sonar echoes of the last seconds, moved along by odometry. An obstacle that slips between two cones is
+thus not forgotten.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ from app.pilot.params import DrivingParams
 from disk import kind
 from ratslam_core import Odometry
 
-_Array = NDArray[np.float64]  # (n, 2): places in the robot's frame
+_Array = NDArray[np.float64]  # (n, 2): points in the robot's frame, m
 
 
 class _Choice(NamedTuple):
-    """What compiled code is told of the parameters."""
+    """The parameters that compiled code needs."""
 
     speed: float
     turn_rate: float
@@ -41,12 +42,12 @@ class _Choice(NamedTuple):
 
 @kind("local movement/1")
 class LocalMovement:
-    """Remembers echoes around the robot and chooses (speed, yaw rate)."""
+    """Remembers echoes around the robot and chooses (speed m/s, yaw rate rad/s)."""
 
     CACHES = ("_choice",)
 
     def __init__(self, sonar_angles_rad: NDArray[np.float64], ticks: int) -> None:
-        """ticks: how long echoes are remembered."""
+        """sonar_angles_rad: (8,) from left to right, positive to the left. ticks: how long echoes are remembered."""
         self._angles = np.asarray(sonar_angles_rad, np.float64)
         self._ticks = ticks
         self._echoes = np.full((ticks * len(self._angles), 2), np.inf)  # in the robot's frame now
@@ -58,11 +59,11 @@ class LocalMovement:
 
     @property
     def aslant(self) -> float:
-        """An echo of the second sonar from the left, times this, is as far as a wall on the left would be."""
+        """The distance of a wall along the left side, divided by the range of the second sonar from the left."""
         return math.cos(self._angles[0] - self._angles[1])
 
     def sense(self, ranges_m: NDArray[np.float32], odometry: Odometry, p: DrivingParams) -> None:
-        """Carry the old echoes along and add the new ones. ranges_m: (8,) from the robot's middle."""
+        """Move the old echoes into the robot's new frame and add the new ones. ranges_m: (8,) from its middle."""
         n = len(self._angles)
         start = self._tick % self._ticks * n
         self._tick += 1
@@ -70,15 +71,15 @@ class LocalMovement:
         _place(self._echoes, start, ranges_m, self._angles, p.echo_range_m)
 
     def towards(self, x: float, y: float, p: DrivingParams) -> tuple[float, float]:
-        """Speed and yaw rate of the free arc that serves best to reach (x, y), metres in the robot's frame."""
+        """Speed and yaw rate of the free arc that costs least on the way to (x, y), metres in the robot's frame."""
         return _best_arc(self._echoes, x, y, self._chosen_by(p))
 
     def free_way(self, bearing: float, p: DrivingParams) -> float:
-        """How far the robot could go straight in this direction, as far as it remembers echoes."""
+        """How far (m) the robot can drive straight in this direction (rad) before it is too close to an echo."""
         return _free_way(self._echoes, bearing, p.clearance, p.echo_range_m)
 
     def _chosen_by(self, p: DrivingParams) -> _Choice:
-        """The same object for the same parameters: it is asked for in every tick."""
+        """The same object for the same parameters, since it is needed in every tick."""
         if self._choice is None or self._choice[0] is not p:
             self._choice = p, _Choice(
                 p.cruise_speed, p.turn_rate, p.clearance, p.arc_s, p.arc_steps, p.arcs_a_side, p.medium_share, p.slow_share,
@@ -110,9 +111,9 @@ def _place(echoes: _Array, start: int, ranges: NDArray[np.float32], angles: _Arr
 
 @njit(cache=True, nogil=True)
 def _best_arc(echoes: _Array, x: float, y: float, p: _Choice) -> tuple[float, float]:
-    """Speed and yaw rate of the cheapest arc that keeps clear; turning on the spot is always free."""
+    """Speed and yaw rate of the cheapest arc that keeps clear of all echoes; a turn on the spot is always clear."""
     best, best_v, best_w = np.inf, 0.0, 0.0
-    echoes = _within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m)  # with room to spare
+    echoes = _within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m)  # generously
     facing = _facing(p)
     for share in (1.0, p.medium, p.slow, 0.0):
         v = p.speed * share
@@ -132,7 +133,7 @@ def _best_arc(echoes: _Array, x: float, y: float, p: _Choice) -> tuple[float, fl
 
 @njit(cache=True, nogil=True)
 def _along(echoes: _Array, step: float, facing: _Array, p: _Choice) -> tuple[float, float, float, bool]:
-    """Where an arc ends, the square of how close it comes to an echo, and whether it keeps clear of all."""
+    """The end (m) of an arc, the squared distance (m²) of the nearest echo, and whether it keeps clear of all."""
     px = py = 0.0
     nearest = np.inf
     for k in range(p.steps):
@@ -141,7 +142,7 @@ def _along(echoes: _Array, step: float, facing: _Array, p: _Choice) -> tuple[flo
         for e in range(echoes.shape[0]):
             ex, ey = echoes[e, 0] - px, echoes[e, 1] - py
             d = ex * ex + ey * ey
-            # an echo that is too close already does not forbid to move away from it
+            # an echo that is already too close does not forbid an arc that leads away from it
             if d < p.clearance * p.clearance and d < echoes[e, 0] ** 2 + echoes[e, 1] ** 2 - p.escape_m2:
                 return px, py, nearest, False
             if d < nearest:
@@ -151,7 +152,7 @@ def _along(echoes: _Array, step: float, facing: _Array, p: _Choice) -> tuple[flo
 
 @njit(cache=True, nogil=True)
 def _cost(x: float, y: float, px: float, py: float, heading: float, nearest: float, p: _Choice) -> float:
-    """In metres: what is left to (x, y) from the arc's end, to turn there, and for passing close by."""
+    """Cost in metres: distance left from the arc's end to (x, y), angle left to turn, and passing close to an echo."""
     left = math.hypot(x - px, y - py)
     aim = math.atan2(y - py, x - px) - heading if left > p.bearing_m else math.atan2(y, x) - heading
     aim = abs(aim - 2 * math.pi * np.round(aim / (2 * math.pi)))
@@ -172,7 +173,7 @@ def _facing(p: _Choice) -> _Array:
 
 @njit(cache=True, nogil=True)
 def _within(echoes: _Array, reach: float) -> _Array:
-    """Those at most so far away, in their order: no other can matter to an arc."""
+    """The echoes within `reach`, in their order; no other can matter to an arc."""
     out = np.empty_like(echoes)
     n = 0
     for e in range(echoes.shape[0]):

@@ -1,4 +1,4 @@
-"""The pilot: explores, obeys the hand, follows routes, and frees itself. It knows sensors and the map, never the truth."""
+"""The pilot explores, obeys the hand, follows routes and gets free. It knows sensors and map, never the truth."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class Pilot:
         self._rng = rng
         self._follower: RouteFollower | None = None
         self._hand = (0.0, 0.0)  # speed, yaw rate
-        self._asked = (0.0, 0.0)  # the last drive
-        self._astray = False  # exploring because no route leads on
+        self._asked = (0.0, 0.0)  # speed, yaw rate of the last tick
+        self._astray = False  # has a goal, but explores since no route to it is known
         self._freeing = Freeing(rng)
 
     # ------------------------------------------------------------ orders
@@ -48,7 +48,7 @@ class Pilot:
 
     @property
     def behaviour(self) -> Behaviour:
-        """What it is doing; kept by its name, which a state can hold."""
+        """The current behaviour. It is stored by name, since a state can hold a name."""
         return Behaviour[self._behaviour]
 
     @behaviour.setter
@@ -57,7 +57,7 @@ class Pilot:
 
     @property
     def doing(self) -> str:
-        """In words."""
+        """The current behaviour in words."""
         return self.behaviour.words
 
     def progress(self, experiences: ExperienceMap) -> Progress | None:
@@ -73,7 +73,7 @@ class Pilot:
             self.mode = "explore"
 
     def set_mode(self, mode: Mode) -> None:
-        """ValueError when there is no goal to go to."""
+        """ValueError if the mode is "goal" and there is no goal."""
         if mode == "goal" and self._follower is None:
             raise ValueError("there is no goal to go to; set one first")
         if mode != "goal":
@@ -82,13 +82,13 @@ class Pilot:
         self._hand = (0.0, 0.0)
 
     def drive(self, speed: float, yaw_rate: float) -> None:
-        """By hand, until the next order; the engine lets an order expire when no newer one comes."""
+        """Drive by hand, until the next order. The engine ends an order that is not renewed in time."""
         self._leave_goal()
         self.mode = "manual"
         self._hand = (speed, yaw_rate)
 
     def _leave_goal(self) -> None:
-        """A goal on the way to which it is interrupted can be gone on to; one that was reached is done with."""
+        """Drop a goal that has been reached. One that was interrupted stays: the robot can go on to it later."""
         if self._follower is not None and self._follower.state == "arrived":
             self._follower = None
 
@@ -97,7 +97,7 @@ class Pilot:
     def step(
         self, ranges_m: NDArray[np.float32], bumped: bool, odometry: Odometry, experiences: ExperienceMap
     ) -> tuple[float, float]:
-        """From what was sensed at the end of the last tick."""
+        """The drive for the next tick, from what was sensed at the end of the last one. ranges_m: (8,)."""
         self._asked = self._decide(ranges_m, bumped, odometry, experiences)
         return self._asked
 
@@ -124,7 +124,7 @@ class Pilot:
     def _to_the_goal(
         self, follower: RouteFollower, dt: float, experiences: ExperienceMap
     ) -> tuple[float, float] | None:
-        """None: no route leads on; explore."""
+        """The drive towards the goal. None: no route is known, so explore."""
         target = follower.step(experiences, dt, self.params)
         if follower.state == "arrived":
             self.behaviour = Behaviour.AT_THE_GOAL

@@ -19,7 +19,7 @@ _Points = NDArray[np.float64]  # (..., 2)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Progress:
-    """Where the pilot is on its way to the goal."""
+    """How far the pilot has come on its way to the goal."""
 
     experience: int
     state: GoalState
@@ -31,24 +31,24 @@ class Progress:
 
 @kind("route follower/1")
 class RouteFollower:
-    """Keeps the quickest route to one goal and says where to head for."""
+    """Keeps the quickest route to one goal and says which point to head for."""
 
     def __init__(self, goal: int) -> None:
         self.goal = goal
         self.state: GoalState = "tracking"
         self._route: Route | None = None
-        self._age_s = math.inf  # of the route
+        self._age_s = math.inf  # time since the route was planned
         self._plan_in_s = 0.0
         self._no_route_s = 0.0
-        self._nearest_m = math.inf  # so near to the goal it was
+        self._nearest_m = math.inf  # least distance to the goal so far
         self._since_nearer_s = 0.0
-        self._least_left_s = math.inf  # of the way to the goal
+        self._least_left_s = math.inf  # least travel time left to the goal so far
         self._since_headway_s = self._look_around_s = 0.0
-        self._failed_trials = 0  # since it last got along
-        self._bars: list[NDArray[np.float64]] = []  # where it did not get through, (2, 2) each, map frame
+        self._failed_trials = 0  # since it last made headway
+        self._bars: list[NDArray[np.float64]] = []  # lines that it could not cross, (2, 2) each, map frame
 
     def step(self, experiences: ExperienceMap, dt: float, p: RouteParams) -> tuple[float, float] | None:
-        """The next point to head for, metres in the robot's frame; None when there, or when no route is known."""
+        """The next point to head for, metres in the robot's frame. None: it has arrived, or no route is known."""
         if self.state == "arrived":
             return None
         robot = experiences.robot
@@ -90,7 +90,7 @@ class RouteFollower:
         return Progress(self.goal, self.state, float(arrival[-1]), remaining, nodes, arrival)
 
     def _watch_headway(self, experiences: ExperienceMap, dt: float, p: RouteParams) -> None:
-        """Getting nowhere on the route is a failed trial of the ways ahead, and later a reason to look around.
+        """No headway on the route counts as a failed trial of the links ahead. If it lasts, the robot looks around.
 
         test_routes.py::{test_a_blocked_way_is_left, test_a_door_that_was_shut_is_given_up}.
         """
@@ -114,9 +114,10 @@ class RouteFollower:
         self._least_left_s, self._since_headway_s, self._failed_trials = math.inf, 0.0, 0
 
     def _fail(self, experiences: ExperienceMap, p: RouteParams) -> None:
-        """The robot did not get across a bar ahead of it: a failed trial of every way that does. ACRA 2006 3.4.
+        """The robot could not cross a line ahead of it, the bar: a failed trial of every link across it. ACRA 2006 3.4.
 
-        [ours] All of them, not only the route's own: a place has many experiences, and the robot would try one by one.
+        [ours] Every link counts, not only that of the route. A place has many experiences, and otherwise the robot
+        would try their links one by one.
         """
         bar = _bar_ahead(experiences.robot, math.atan2(*self._aim(experiences, p.lookahead_m)[::-1]), p)
         self._bars.append(bar)
@@ -129,13 +130,13 @@ class RouteFollower:
             self._begin_anew()
 
     def _there(self, away: float, dt: float, p: RouteParams) -> bool:
-        """Near enough; or close by and not getting nearer, as at a goal in a corner where the robot just does not fit."""
+        """Near enough; or close by and no longer getting nearer, as at a goal in a corner too tight for the robot."""
         self._since_nearer_s = 0.0 if away < self._nearest_m - p.nearer_m else self._since_nearer_s + dt
         self._nearest_m = min(self._nearest_m, away)
         return away < p.arrival_m or (away < p.close_by_share * p.arrival_m and self._since_nearer_s > p.close_by_s)
 
     def _plan(self, experiences: ExperienceMap, p: RouteParams) -> None:
-        """The quickest route, started at the active experience or, by links only thought of, at one close by."""
+        """Plan the quickest route, from the active experience or, over an imagined link, from another one nearby."""
         self._succeed(experiences, p)
         ways, robot, poses = experiences.temporal_map, experiences.robot, experiences.poses
         times = ways.times_to(self.goal)
@@ -150,21 +151,21 @@ class RouteFollower:
         self._age_s = 0.0
 
     def _near(self, experiences: ExperienceMap, away: NDArray[np.float64], p: RouteParams) -> NDArray[np.intp]:
-        """Experiences that a route may start at: the active one, and those close by that no bar lies before."""
+        """Experiences at which a route may start: the active one, and those nearby that no bar separates."""
         robot, near = experiences.robot, np.flatnonzero(away < p.near_m)
         for bar in self._bars:
             near = near[~crosses(bar, np.array([[robot.x, robot.y]]), experiences.poses[near, :2])]
         return near if experiences.active in near else np.append(near, experiences.active)
 
     def _succeed(self, experiences: ExperienceMap, p: RouteParams) -> None:
-        """What of the route was driven since the last plan was a trial, too."""
+        """Every link of the route that was driven since the last plan counts as a successful trial."""
         if self._route is None or self._age_s > p.credited_plans * p.replan_s:
             return
         for i, j in pairwise(self._route.experiences[: self._nearest(experiences) + 1]):
             experiences.tried(int(i), int(j), True)
 
     def _nearest(self, experiences: ExperienceMap) -> int:
-        """The place on the route that is nearest to the robot; the later one of equals."""
+        """Index of the route's experience that is nearest to the robot; of equals, the last."""
         assert self._route is not None
         xy = experiences.poses[self._route.experiences, :2]
         robot = experiences.robot
@@ -188,14 +189,14 @@ class RouteFollower:
 
 
 def _bar_ahead(robot: Pose2, bearing: float, p: RouteParams) -> NDArray[np.float64]:
-    """Both ends (2, 2) of a bar across the way in this direction (rad, robot's frame), map frame."""
+    """The two ends (2, 2), map frame, of a bar that lies across the way in this direction (rad, robot's frame)."""
     ahead = robot.compose(Pose2(0.0, 0.0, bearing)).compose(Pose2(p.bar_ahead_m, 0.0, 0.0))
     left, right = (ahead.compose(Pose2(0.0, side * p.bar_m / 2, 0.0)) for side in (1, -1))
     return np.array([(left.x, left.y), (right.x, right.y)])
 
 
 def crosses(bar: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which of the lines from a to b, (n, 2) each, cross the bar, (2, 2)."""
+    """Which of the segments from a to b, (n, 2) each, cross the bar, (2, 2)."""
 
     def side(start: _Points, end: _Points, point: _Points) -> _Points:
         along, to = end - start, point - start

@@ -1,6 +1,6 @@
 """What is true of the evaluation between two ticks."""
 
-# Laws look at all of a state, and take nothing for granted.
+# Laws read private attributes and do not trust annotations.
 # pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 from __future__ import annotations

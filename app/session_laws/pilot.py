@@ -1,6 +1,6 @@
 """What is true of the pilot between two ticks."""
 
-# Laws look at all of a state, and take nothing for granted.
+# Laws read private attributes and do not trust annotations.
 # pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ LONGEST_S = 1e12
 
 
 def pilot(pilot: Pilot, experiences: int) -> None:
-    """ValueError names the first law that does not hold. experiences: how many its map has."""
+    """ValueError names the first law that does not hold. experiences: how many the map has."""
     true(isinstance(pilot, Pilot), f"its pilot is a {type(pilot).__name__}")
     fresh = Pilot(PilotParams(), np.array(SONAR_ANGLES_RAD), np.random.default_rng(0))
     same_kind("pilot", pilot, fresh)

@@ -1,6 +1,6 @@
-"""What is true of a session as a whole, and of what it holds beside its parts."""
+"""What is true of a session as a whole, and of its last step."""
 
-# Laws look at all of a state, and take nothing for granted.
+# Laws read private attributes and do not trust annotations.
 # pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 from __future__ import annotations

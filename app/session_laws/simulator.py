@@ -1,6 +1,6 @@
 """What is true of the simulated robot and office between two ticks."""
 
-# Laws look at all of a state, and take nothing for granted.
+# Laws read private attributes and do not trust annotations.
 # pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ MOST_TURNED = 1e9  # rad: headings are not wrapped
 
 
 def simulator(simulator: Simulator, world: World) -> None:
-    """ValueError names the first law that does not hold. world: the one that it is in."""
+    """ValueError names the first law that does not hold. world: the world that the robot is in."""
     true(isinstance(simulator, Simulator), f"its simulator is a {type(simulator).__name__}")
     same_kind("parameters", simulator.params, SimParams())
     same_kind("office", simulator.office, OfficeParams())

@@ -1,1 +1,1 @@
-"""From the command to the first tick, and out again."""
+"""Starting: compiling the kernels, waking the engine. And ending: exit codes and signals."""

@@ -1,7 +1,7 @@
-"""Parts of the program used for a moment, so that numba compiles their kernels and keeps them.
+"""Uses parts of the program for a moment, so that numba compiles their kernels and caches them on disk.
 
-`-m app.startup.compile_part PART ...`: each part in a process of its own, split off when all is loaded. A line is printed for
-each kernel. Nothing else depends on what happens here.
+`-m app.startup.compile_part PART ...` compiles each part in a process of its own, forked when everything has been
+imported. It prints an empty line for each kernel. Nothing else depends on what is computed here.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ RANGES = np.full(len(ANGLES), 2.0)
 
 
 def office() -> None:
-    """The simulator, and the pilot's look at what is near."""
+    """The simulator, and the pilot's local movement."""
     config = Config()
     simulator = Simulator(load_world(), config.robot, 1, config.office)
     pilot = Pilot(config.pilot, ANGLES, np.random.default_rng(1))
@@ -88,7 +88,7 @@ def cells() -> None:
             far = (where + np.int32(20)) % np.int32(min(pose_cells.shape))
             pose_cells.inject(np.ascontiguousarray(far, np.int32), strength)
         pose_cells.attract()
-    for view in range(300):  # more than the arena has room for at first
+    for view in range(300):  # more than the arena has room for at first: compiles its growth
         links.learn(view, *pose_cells.active, pose_cells.slot)
 
 
@@ -104,13 +104,13 @@ def maps() -> None:
         grid.update(Packet(k % 5 * 4.0, 4.0, 0.0, 1.0), RANGES)
         pictures.add(k, Pose2(0.0, 0.0, 0.0), RANGES)
     blob = np.zeros((64, 4), np.int32)
-    for k in range(3):  # more links than there is room for at first
+    for k in range(3):  # more links than there is room for at first: compiles the growth
         blob[:, X], blob[:, Y] = np.arange(64) % 8 + 8 * k, np.arange(64) // 8
         goals.learn(blob, np.ones(64, np.float32), 0.1 * k)
 
 
 def loops() -> None:
-    """The experience map with loops that close, and the ways through it."""
+    """The experience map with closed loops, and the routes through it."""
     config = Config()
     cells = config.pose_cells
     made = ExperienceMap((cells.n_theta, cells.n_y, cells.n_x), cells.cell_m, config.experience_map)
@@ -124,7 +124,7 @@ def loops() -> None:
     find_places(made)
 
 
-# What each part compiles last, or among the last: where they are, the part has been compiled.
+# With each part, the modules whose kernels it compiles last: once these are on disk, the whole part is.
 PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
     "office": (office, (sim2d.geometry.connected_cells, sim2d.camera.painting, sim2d.sensors.ranges, app.pilot.local_movement)),
     "cells": (cells, (ratslam_core.pose_cells.activity_kernels, ratslam_core.pose_cells.attractor_kernels,
@@ -137,7 +137,7 @@ PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
 
 
 class _Count(Listener):
-    """Says when a kernel is compiled; those that it calls are a part of it."""
+    """Prints a line when a kernel has been compiled. Kernels that it calls are counted with it."""
 
     def __init__(self) -> None:
         self._depth = 0
@@ -153,7 +153,7 @@ class _Count(Listener):
 
 if __name__ == "__main__":
     register("numba:compile", _Count())
-    gc.disable()  # an eighth of the time; what is left over ends with the process
+    gc.disable()  # saves an eighth of the time; the process is short-lived, so its garbage does no harm
     for part in sys.argv[1:]:
         if os.fork() == 0:
             PARTS[part][0]()

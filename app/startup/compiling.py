@@ -1,5 +1,5 @@
-"""The first start: numba compiles each kernel at its first call and keeps it on the disk. All of them take half a minute of one
-core, so other processes do it side by side, and somebody hears how far they are."""
+"""The first start. numba compiles each kernel at its first call and caches it on disk. All kernels together take half a
+minute of one core, so separate processes compile them side by side and report their progress."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WORDS = "compiling the engine for this machine, once"
 
 
 class Compiling:
-    """Begins at once, with those parts whose kernels are not on the disk. A part that fails is compiled when it is needed."""
+    """Begins at once to compile the parts whose kernels are not on disk. A part that fails is compiled when used."""
 
     def __init__(self) -> None:
         missing = [part for part, (_, modules) in PARTS.items() if not all(map(is_compiled, modules))]
@@ -31,7 +31,7 @@ class Compiling:
         return self._process is not None
 
     def wait(self, tell: Callable[[str], None]) -> None:
-        """Until all is compiled, or `stop`. tell: gets how far it is, in words."""
+        """Wait until everything is compiled or `stop` is called. tell: is given the progress in words."""
         if self._process is None:
             return
         assert self._process.stdout is not None
@@ -41,20 +41,20 @@ class Compiling:
             print(file=sys.stderr)
 
     def stop(self) -> None:
-        """Ends it wherever it is: what has been compiled is kept, and `wait` returns."""
+        """End it at once. What has been compiled is kept, and `wait` returns."""
         if self._process is not None and self._process.poll() is None:
             os.killpg(self._process.pid, signal.SIGKILL)
             self._process.wait()
 
 
 def say_how_far(words: str) -> None:
-    """On one line of a terminal; in a log it would be many."""
+    """Show progress on one line of a terminal. Nothing is written to a log file, where it would take many lines."""
     if sys.stderr.isatty():
         print(f"\r{words} ", end="", file=sys.stderr, flush=True)
 
 
 def is_compiled(module: ModuleType) -> bool:
-    """Whether numba keeps a kernel of this module that is not older than the module."""
+    """Whether numba has cached a kernel of this module that is not older than the source."""
     source = Path(str(module.__file__))
     items: list[Any] = [item for item in vars(module).values() if isinstance(item, Dispatcher)]
     kernel = next(item for item in items if item.py_func.__module__ == module.__name__)
@@ -63,7 +63,7 @@ def is_compiled(module: ModuleType) -> bool:
 
 
 def _process(parts: list[str]) -> subprocess.Popen[str]:
-    """The leader of a group of its own, so that all that it splits off can be ended with it."""
+    """The compiling process. It leads a process group of its own, so that its children can be ended with it."""
     return subprocess.Popen(
         [sys.executable, "-P", "-m", "app.startup.compile_part", *parts],
         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, process_group=0,

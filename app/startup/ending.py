@@ -1,7 +1,7 @@
-"""How a command ends: whatever happens to it becomes a sentence and a number, never a traceback.
+"""How a command ends: expected failures become a sentence and an exit code, not a traceback.
 
-0 all went well; 2 what was asked for cannot be; 130 and 143 stopped by SIGINT (Ctrl+C) and SIGTERM; 141 nobody reads on.
-Loads nothing, so that it is there before anything that takes time.
+0: all went well. 2: the request cannot be carried out. 130 and 143: stopped by SIGINT (Ctrl+C) or SIGTERM. 141: the
+reader of a pipe has gone. This module imports nothing heavy, so that it is in place before anything that takes time.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from typing import TextIO
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 _FORBIDDEN = (errno.EACCES, errno.EPERM, errno.EROFS)
-HELD_BACK_S = 0.05  # later the destructor is over
-_told_to_stop: list[int] = []  # the signals, as they came
+HELD_BACK_S = 0.05  # after this time the destructor that swallowed the exception is over
+_told_to_stop: list[int] = []  # the signals received, in order
 
 
 def ended(work: Callable[[], int]) -> int:
-    """The exit code of `work`, once all that it printed is out."""
+    """Do `work` and return its exit code, after everything it printed has been written."""
     try:
         code = work()
         if sys.stdout is not None:
@@ -36,13 +36,14 @@ def ended(work: Callable[[], int]) -> int:
 
 
 def obey_signals() -> None:
-    """From now on SIGINT and SIGTERM end the program wherever it is, in `ended`.
+    """From now on SIGINT and SIGTERM raise KeyboardInterrupt wherever the program is, and `ended` turns that into an
+    exit code.
 
-    A library may take the exception for one of its own, or hold it back in a destructor: `ended` knows of the signal all the
-    same, and what was held back is raised again.
+    A library may catch the exception as one of its own, or Python may swallow it in a destructor. The signal is
+    therefore recorded for `ended`, and a swallowed one is sent again.
     """
     for number in (signal.SIGINT, signal.SIGTERM):
-        if signal.getsignal(number) != signal.SIG_IGN:  # as nohup and shells want it of what runs in the background
+        if signal.getsignal(number) != signal.SIG_IGN:  # nohup and shells have background jobs ignore it
             signal.signal(number, _leave)
     usual = sys.unraisablehook
 
@@ -58,7 +59,7 @@ def obey_signals() -> None:
 
 
 def last_words() -> None:
-    """The code is known and everything is written: nothing is left that a signal could interrupt."""
+    """Ignore signals from now on: the exit code is known and everything is written."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
 
@@ -69,7 +70,7 @@ def _leave(number: int, _frame: FrameType | None) -> None:
 
 
 def _code(error: BaseException) -> int:
-    """What it means for whoever called; raises what is none of ours."""
+    """The exit code for an exception, after a sentence about it. Raises it again if it is not an expected failure."""
     if isinstance(error, KeyboardInterrupt) or _told_to_stop:
         _say("stopped")
         return 128 + (_told_to_stop[0] if _told_to_stop else signal.SIGINT)
@@ -85,7 +86,7 @@ def _code(error: BaseException) -> int:
 
 
 def _words(error: OSError) -> str:
-    """Which file, what is the matter with it, and what to do."""
+    """The file, the reason and what to do about it."""
     number, reason = error.errno, error.strerror or str(error)
     if number in _FULL:
         return f"{error.filename or 'standard output'}: {reason}; make room, or choose another place"
@@ -99,7 +100,7 @@ def _say(words: str) -> None:
 
 
 def _settle(stream: TextIO | None) -> None:
-    """What a full disk or a closed pipe did not take goes nowhere, or Python would complain about it in the end."""
+    """Discard what a full disk or a closed pipe did not accept; Python would complain about it at exit."""
     if stream is None:
         return
     try:

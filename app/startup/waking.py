@@ -1,4 +1,4 @@
-"""What goes on between the server's first answer and the robot's first tick."""
+"""From the server's first answer to the robot's first tick."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Waking:
-    """Starts the engine once its kernels are compiled, in a thread of its own: meanwhile the page says how far it is."""
+    """Starts the engine when its kernels are compiled, from a thread of its own. The page shows the progress."""
 
     def __init__(self, engine: EngineThread, compiling: Compiling) -> None:
         self._engine, self._compiling = engine, compiling
@@ -25,7 +25,7 @@ class Waking:
         self._thread.start()
 
     def stop(self, patience_s: float | None = None) -> None:
-        """Ends the engine, or whatever was to come before it. patience_s: so long a tick is waited for."""
+        """End the engine, or what precedes its start. patience_s: how long to wait for the current tick."""
         self._stopped = True
         self._compiling.stop()
         self._thread.join()

@@ -1,1 +1,1 @@
-"""What people look at, built from a session that is left as it is."""
+"""What people look at, built from a session without changing it."""

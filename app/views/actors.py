@@ -1,4 +1,4 @@
-"""What moves in the office, for the stage; the same object as long as nothing has moved."""
+"""The actors of the office, as the viewer draws them. The layer is the same object as long as nothing has moved."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ class ActorsView:
         self._switches: tuple[str, ...] = ()
 
     def switches(self, world: World) -> tuple[str, ...]:
-        """Those parameters of `office` that do something in this world."""
+        """The parameters of the section `office` that have an effect in this world."""
         if self._world is not world:
             self._world, self._switches = world, _switches(world)
         return self._switches
 
     def look(self, simulator: Simulator) -> LivingLayer | None:
-        """The layer of this moment, None when nothing lives in the world."""
+        """The layer as it is now; None if the world has no actors."""
         world, living = simulator.world, simulator.actors
         if not (world.doors or world.boxes or world.people or world.lamps or world.daylight or world.script):
             return None

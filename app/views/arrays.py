@@ -1,4 +1,4 @@
-"""What a snapshot shares with other threads nobody writes to."""
+"""Arrays that a snapshot shares with other threads are read-only."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""One attractor iteration taken apart for people to look at: excitation, inhibition, normalisation. ACRA 2004 eqs. 10-12.
+"""One attractor iteration in its three stages, for people to look at: excitation, inhibition, normalisation. ACRA 2004
+eqs. 10-12.
 
-The engine does all three in one go and leaves out what inhibition would take anyway; this is the same sum, slowly.
-`test_tick_stages.py::test_the_stages_lead_where_the_engine_went` holds the two together.
+The engine computes all three at once and skips cells that inhibition would silence. This computes the same sum, slowly.
+`test_tick_stages.py::test_the_stages_lead_where_the_engine_went` compares the two.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from ratslam_core.pose_cells.attractor_kernels import gaussian
 
 @dataclass(frozen=True)
 class Activity:
-    """Active pose cells: flat indices (n,), in order, and their activities (n,)."""
+    """Active pose cells: flat indices (n,), ascending, and their activities (n,)."""
 
     flat: NDArray[np.int64]
     values: NDArray[np.float64]
@@ -28,17 +29,17 @@ class Activity:
 
 
 def excited(activity: Activity, params: PoseCellParams) -> Activity:
-    """Every cell excites its neighbours, round the torus; with local inhibition, less what a wider one takes."""
+    """Every cell excites its neighbours on the torus. Local inhibition subtracts a wider Gaussian of the result."""
     near = _spread(activity, params, gaussian(params.excite_sigma, params.excite_radius))
     if params.local_inhibit == 0:
         return near
     wide = _spread(near, params, gaussian(params.local_inhibit_sigma, params.local_inhibit_radius))
-    taken = wide.values[np.searchsorted(wide.flat, near.flat)]  # the wide one reaches every cell of the near one
+    taken = wide.values[np.searchsorted(wide.flat, near.flat)]  # `wide` has every cell of `near`
     return Activity(near.flat, near.values - params.local_inhibit * taken)
 
 
 def inhibited(activity: Activity, params: PoseCellParams) -> Activity:
-    """The same from all; what falls to 0 is silent."""
+    """The same amount is subtracted from every cell. A cell that falls to 0 or below becomes silent."""
     values = activity.values - params.inhibit
     alive = values > 0
     return Activity(activity.flat[alive], values[alive])
@@ -49,7 +50,7 @@ def normalised(activity: Activity) -> Activity:
 
 
 def _spread(activity: Activity, params: PoseCellParams, weights: NDArray[np.float32]) -> Activity:
-    """Convolution along theta', y' and x', one after the other, over the active cells alone."""
+    """Convolution along theta', then y', then x', over the active cells only."""
     n_theta, n_y, n_x = shape = params.n_theta, params.n_y, params.n_x
     reach = np.arange(len(weights)) - len(weights) // 2
     for axis, size in enumerate((n_theta, n_y, n_x)):

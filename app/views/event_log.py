@@ -1,4 +1,4 @@
-"""Marks on the timeline."""
+"""Events: the marks on the timeline."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ MOST_EVENTS = 500
 
 
 class EventLog:
-    """The newest are kept."""
+    """Keeps the newest events."""
 
     def __init__(self, session: Session) -> None:
         self._session = session

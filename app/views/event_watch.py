@@ -1,4 +1,4 @@
-"""Notices after each tick what is worth a mark on the timeline."""
+"""Notices, after each tick, what deserves a mark on the timeline."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class EventWatch:
             self._recovered = len(kidnaps) - 1  # kidnapped again before it recovered
 
     def _watch_false_positives(self) -> None:
-        """Each is counted, few are marked: the mark tells how many there were since the one before."""
+        """Every false positive is counted, few are marked. A mark says how many there were since the last one."""
         seen, count = self._session.estimate.recognition, self._session.brain.local_view.false_positives
         if not seen.false_positive or self._session.time_s < self._false_due_s:
             return
@@ -88,7 +88,7 @@ class EventWatch:
         self._false_marked, self._false_due_s = count, self._session.time_s + FALSE_EVERY_S
 
     def _watch_links(self) -> None:
-        """Those that went."""
+        """Marks links that were deleted."""
         dropped = self._session.brain.experience_map.dropped_links[self._dropped :]
         if dropped:
             i, j = dropped[0]
@@ -97,7 +97,7 @@ class EventWatch:
             self._dropped += len(dropped)
 
     def _watch_places(self) -> None:
-        """Those that pose cells hold twice or in common, now and then."""
+        """Marks, now and then, places with several states of the pose cells and states of several places."""
         if self._session.time_s < self._places_due_s:
             return
         self._places_due_s = self._session.time_s + PLACES_EVERY_S

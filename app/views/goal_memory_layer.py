@@ -1,4 +1,4 @@
-"""Times to the goal over the pose cells, as the paper of 2005 has them."""
+"""Times to the goal over the pose cells, as in ACRA 2005."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.session import Session
 from app.views.arrays import frozen
 from web.messages import GoalMemoryLayer
 
-import_module("scipy.sparse.csgraph")  # the goal memory imports it for its first goal: not while the robot drives
+import_module("scipy.sparse.csgraph")  # otherwise the first goal would import it, while the robot drives
 
 
 def goal_memory_layer(session: Session) -> GoalMemoryLayer:

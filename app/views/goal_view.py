@@ -1,4 +1,4 @@
-"""The goal and the way there, with the times at which the robot should be along it."""
+"""The goal and the route to it, with the times at which the robot should pass its experiences."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What happened in a run so far, for people to look at. Watches a session; never changes it."""
+"""What has happened in a run so far, for people to look at. It watches the session and never changes it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One experience, view or column of pose cells taken out of the brain to be looked at. Reads; changes nothing."""
+"""Everything the brain holds about one experience, one view, or the pose cells of one place. It only reads."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from web.messages import (
     ViewReport,
 )
 
-STRONGEST = 300  # of the Hebbian links of a view
-VIEWS = 24  # of those linked to a cell
+STRONGEST = 300  # most links of a view that are reported
+VIEWS = 24  # most views of a cell that are reported
 
 
 def inspect(session: Session, visits: VisitLog, command: Inspect) -> Report | None:
-    """What the brain holds of it, None when nothing is asked for. ValueError names the range when there is no such thing."""
+    """What the brain holds about what was asked for; None if nothing was. ValueError names the valid range."""
     cell = command.x is not None or command.y is not None
     if (command.experience is not None) + (command.view is not None) + cell > 1:
         raise ValueError("choose an experience, a view, or a pose cell's x and y: one of them")
@@ -104,7 +104,7 @@ def cell_report(session: Session, x: int | None, y: int | None) -> CellReport:
 
 
 def stored_picture(brain: RatSlam, view: int) -> NDArray[np.uint8]:
-    """A stored view as a person can look at it."""
+    """A stored view as an image for people."""
     return frozen(brain.local_view.front_end.picture(brain.local_view.stored(view)).copy())
 
 
@@ -119,7 +119,7 @@ def _packet_at(session: Session, x: int, y: int) -> Packet:
 
 
 def _zones_at(session: Session, x: int, y: int) -> tuple[int, ...]:
-    """Experiences whose zone of influence holds this place, the nearest first."""
+    """Experiences whose zone contains this cell, the nearest first."""
     map_ = session.brain.experience_map
     n_y, n_x = map_.shape[1:]
     gaps = np.abs(map_.cell_states[:, :2] - (x, y)) % (n_x, n_y)
@@ -136,7 +136,7 @@ def _hebbian(brain: RatSlam, view: int) -> HebbianReport:
 
 
 def _links(session: Session, experience: int) -> tuple[LinkReport, ...]:
-    """Those that begin here, then those that end here."""
+    """The links that begin at this experience, then those that end at it."""
     map_ = session.brain.experience_map
     ends = map_.links
     rows = [*np.flatnonzero(ends[:, 0] == experience), *np.flatnonzero(ends[:, 1] == experience)]

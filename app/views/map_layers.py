@@ -1,4 +1,4 @@
-"""The experience map and the times to the goal over it, at the rates at which people can see them."""
+"""The experience map and the times over it, rebuilt only as often as people can see a change."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TIMES_EVERY_S = 0.25
 
 
 class MapLayers:
-    """Map and times of one moment; rows of both agree."""
+    """The map and the times over it. Row i of both belongs to the same experience."""
 
     def __init__(self, session: Session) -> None:
         self._session = session

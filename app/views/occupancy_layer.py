@@ -1,4 +1,4 @@
-"""What the sonars have seen, around the robot and laid out over the map."""
+"""The occupancy grids from the sonars: the one around the robot, and one laid out over the experience map."""
 
 from __future__ import annotations
 

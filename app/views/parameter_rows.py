@@ -1,4 +1,4 @@
-"""All parameters with what is to be told of each, and the preset that they are."""
+"""All parameters with their descriptions, and the preset whose values they have."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from web.messages import Parameter
 
 
 class ParameterRows:
-    """The same objects as long as the config is the same."""
+    """Builds the rows anew only when the config has changed."""
 
     def __init__(self) -> None:
         self._config: Config | None = None
@@ -18,7 +18,7 @@ class ParameterRows:
         self._preset = ""
 
     def of(self, config: Config) -> tuple[tuple[Parameter, ...], str]:
-        """All parameters, and the preset that they are."""
+        """All parameters, and the name of the preset whose values they have, or ""."""
         if self._config is not config:
             self._config, self._preset = config, preset_of(config)
             self._rows = tuple(

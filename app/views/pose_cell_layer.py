@@ -1,4 +1,4 @@
-"""The strongest pose cells, and the packets that compete."""
+"""The strongest pose cells and the competing packets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the robot senses, and which view it takes it for."""
+"""What the robot senses, and which view it recognises."""
 
 from __future__ import annotations
 

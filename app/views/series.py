@@ -1,4 +1,4 @@
-"""Errors and counts against time, and how the map lies: sampled less and less often as a run grows long."""
+"""Errors and counts over time, and the turn of the map. The longer the run, the less often they are sampled."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class RunSeries:
         return map_turn(shown_rad, session.evaluation, session.brain.experience_map, session.simulator.truth)
 
     def _sample(self) -> None:
-        """One point of the series; when they are too many, every other one goes."""
+        """Add one point to the series. If there are too many, every other point is dropped."""
         session, brain = self._session, self._session.brain
         every = max(1, session.tick_count // ERROR_POINTS)
         self.error_map_m, self.error_odometry_m = session.evaluation.errors(brain.experience_map, every)

@@ -1,4 +1,4 @@
-"""Builds the immutable Snapshot of a session. Parts that cost much are built at the rates at which people can see them."""
+"""Builds the immutable Snapshot of a session. Expensive parts are rebuilt only as often as people can see a change."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ _PRESETS = tuple(PRESETS)
 
 
 class Snapshots:
-    """`build` looks at one session; it changes nothing that the session's future depends on."""
+    """Builds snapshots of one session. It changes nothing that the session's future depends on."""
 
     def __init__(self, session: Session, history: History, run: int, worlds: tuple[tuple[str, str], ...]) -> None:
         self._session, self._history, self._run, self.worlds = session, history, run, worlds
         self.office: OfficeEdition | None = None
-        self.inspected = Inspect(type="inspect")  # what is looked at: nothing
-        self.walk: Walk | None = None  # through the last tick
+        self.inspected = Inspect(type="inspect")  # at first nothing
+        self.walk: Walk | None = None  # through the stages of the last tick
         self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), ParameterRows()
         self._map = MapLayers(session)
         self._occupancy = Slow(OCCUPANCY_EVERY_S, lambda: occupancy_layer(session))
@@ -42,7 +42,7 @@ class Snapshots:
         self._goal_memory = Slow(GOAL_MEMORY_EVERY_S, lambda: goal_memory_layer(session))
 
     def refresh(self) -> None:
-        """Build everything anew with the next snapshot: a command has changed something."""
+        """Rebuild everything for the next snapshot, since a command has changed something."""
         for part in (self._map, self._goal_memory, self._inspection):
             part.refresh()
 
@@ -99,7 +99,7 @@ class Snapshots:
         )
 
     def parts(self) -> dict[str, Any]:
-        """What a walk through a tick shows as it was at each stage: fields of the snapshot, as they are now."""
+        """The fields of the snapshot that differ between the stages of a tick, as they are now."""
         layer, times = self._map.layers()
         robot = self._session.brain.experience_map.robot
         return {

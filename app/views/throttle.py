@@ -1,4 +1,4 @@
-"""Parts of a snapshot that cost much are built no more often than people can see them."""
+"""Expensive parts of a snapshot are rebuilt only as often as people can see a change."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import time
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-REST = 30.0  # times what it cost to build a part is waited before it is built again, however large it has grown
+REST = 30.0  # a part is built again only after this many times the time it took to build: a large map costs 3 % at most
 Part = TypeVar("Part")
 
 
 class Slow(Generic[Part]):
-    """A part that costs much: built anew when the session has moved on and the time has come."""
+    """An expensive part, rebuilt when the session has moved on and enough time has passed."""
 
     def __init__(self, every_s: float, build: Callable[[], Part]) -> None:
         self.due = -math.inf
@@ -20,7 +20,7 @@ class Slow(Generic[Part]):
         self._built: tuple[int, Part] | None = None
 
     def refresh(self) -> None:
-        """Build it anew when it is asked for next."""
+        """Rebuild the part when it is next asked for."""
         self.due = -math.inf
 
     def part(self, tick: int) -> Part:

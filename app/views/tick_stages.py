@@ -1,6 +1,6 @@
-"""One tick, stage by stage: what each stage of the engine did, kept while it runs, to be walked through afterwards.
+"""One tick, stage by stage: the effect of each stage is recorded while the tick runs and can be shown afterwards.
 
-The tick itself is computed whole, in the order of `RatSlam.step`, whether anybody watches or not.
+The tick is always computed as a whole, in the order of `RatSlam.step`, whether it is recorded or not.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ TITLES = {
 
 @dataclass(frozen=True, slots=True)
 class Still:
-    """A stage, and the parts of the snapshot that looked otherwise at its end than at the end of the tick."""
+    """A stage, and the parts of the snapshot that differed at its end from the end of the tick."""
 
     stage: TickStage
     parts: dict[str, Any]
 
 
 class Walk:
-    """Through the stills of one tick."""
+    """A position among the stills of one tick."""
 
     def __init__(self, stills: tuple[Still, ...], at: int = 0) -> None:
         self._stills, self._at = stills, at
@@ -49,16 +49,16 @@ class Walk:
         self.told = TickWalk(tuple(still.stage for still in stills), at)
 
     def moved(self, by: int) -> Walk | None:
-        """One further or back; None at the end and before the beginning."""
+        """The walk `by` stages further; None beyond the last or the first stage."""
         at = self._at + by
         return Walk(self._stills, at) if 0 <= at < len(self._stills) else None
 
 
 class TickRecorder:
-    """Made before the tick, called by the engine after each of its stages, read after the tick."""
+    """Records one tick. It is made before the tick, called by the engine after each stage, and read after the tick."""
 
     def __init__(self, session: Session, before: dict[str, Any]) -> None:
-        """before: `pose_cells`, `map`, `times` and `estimate` of the snapshot before the tick."""
+        """before: the parts `pose_cells`, `map`, `times` and `estimate` of the snapshot before the tick."""
         self._session, self._before = session, before
         self._active = session.brain.experience_map.active
         self._known = len(session.brain.experience_map)
@@ -69,7 +69,7 @@ class TickRecorder:
         self._residual = (0.0, 0.0)
 
     def __call__(self, part: str) -> None:
-        """The engine has done this part of its step; `ratslam_core.slam.STAGES`."""
+        """The engine has finished this stage, one of `ratslam_core.slam.STAGES`."""
         if part in ("path integration", "injection", "attractor"):
             self._cells[part] = self._activity()
             if part == "injection":
@@ -81,7 +81,7 @@ class TickRecorder:
             self._map = {"map": map_layer(map_), "estimate": Pose(robot.x, robot.y, robot.heading_rad)}
 
     def walk(self, after: dict[str, Any]) -> Walk:
-        """Through the tick that was recorded. after: the same parts as `before`, of the end of the tick."""
+        """A walk through the recorded tick. after: the same parts as `before`, at the end of the tick."""
         params, before = self._session.brain.params.pose_cells, self._before
         moved, injected = self._cells["path integration"], self._cells["injection"]
         start = injected
@@ -91,7 +91,7 @@ class TickRecorder:
         left = inhibited(near, params)
         chosen = {"times": after["times"], **self._map}
 
-        # What has been injected is a packet of its own as soon as it is there, though the engine looks for packets at the end.
+        # The engine finds packets at the end of a tick; here an injected packet is shown as one from its injection on.
         like = replace(before["pose_cells"], packets=after["pose_cells"].packets)
 
         def cells(activity: Activity) -> dict[str, Any]:
@@ -188,7 +188,7 @@ class TickRecorder:
 
 
 def _plain(value: float, digits: int) -> str:
-    """Without the sign of a zero."""
+    """The number with `digits` decimals; a zero has no sign."""
     return f"{round(value, digits) + 0.0:.{digits}f}"
 
 

@@ -1,4 +1,4 @@
-"""Where the robot truly went of late, and where the winning packet did."""
+"""The recent paths of the robot (true) and of the winning packet."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from app.session import Session
 from app.views.arrays import frozen
 
 TRAIL_S = 120.0  # of driving
-STILL_M, STILL_CELLS = 0.005, 0.02  # what moves less stands
+STILL_M, STILL_CELLS = 0.005, 0.02  # smaller movements add no point
 
 
 class Trails:
-    """Call `watch` after each tick. Each trail is the same object while what it follows stands."""
+    """Call `watch` after each tick. A trail is the same object as long as nothing is added to it."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -36,7 +36,7 @@ def _no_points(columns: int) -> NDArray[np.float32]:
 
 
 def _grown(path: NDArray[np.float32], point: tuple[float, ...], most: int, still: float) -> NDArray[np.float32]:
-    """`path` with another point at its end, at most so many; itself where the point is hardly another one."""
+    """`path` with `point` added, the last `most` points; `path` itself if the point is within `still` of its end."""
     if len(path) and math.dist(path[-1].tolist(), point) < still:
         return path
     return frozen(np.vstack([path[max(0, len(path) + 1 - most) :], np.array([point], np.float32)]))

@@ -1,4 +1,4 @@
-"""When each experience and each view was active first and last, and how often it became so."""
+"""When each experience and each view was first and last active, and how often it became active."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from web.messages import Times
 
 
 class Visits:
-    """Of experiences, or of views. Things that a brain brought with it have no times before they are met."""
+    """Visits of experiences, or of views. Those that a brain brought with it have no times until they are met again."""
 
     def __init__(self) -> None:
         self._first_s, self._last_s = np.full(1024, np.nan), np.full(1024, np.nan)
@@ -17,7 +17,7 @@ class Visits:
         self._active = -1
 
     def note(self, number: int, time_s: float) -> None:
-        """This one is active now; -1: none is."""
+        """The experience or view that is active now; -1: none."""
         if number >= len(self._count):
             more = max(number + 1, 2 * len(self._count)) - len(self._count)
             self._first_s, self._last_s = (np.append(a, np.full(more, np.nan)) for a in (self._first_s, self._last_s))

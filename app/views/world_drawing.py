@@ -1,4 +1,4 @@
-"""What is drawn of a world: the walls, their looks, and what of the robot does not move."""
+"""What the viewer draws of a world: the walls and their looks, places, slow floors, and the robot's fixed measures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from web.messages import WorldDrawing
 
 
 class DrawnWorld:
-    """Drawn anew only when walls, places, lens or the robot's size have changed; else the same object."""
+    """Made anew only when walls, names, slow floors, field of view or the robot's size have changed."""
 
     def __init__(self) -> None:
         self._drawn: tuple[object, object, WorldDrawing] | None = None
@@ -25,7 +25,7 @@ class DrawnWorld:
 
 
 def world_drawing(world: World, robot_radius_m: float, camera_fov_rad: float) -> WorldDrawing:
-    """What the stage draws of a world."""
+    """What the viewer draws of a world."""
     drawing = draw_world(world)
     return WorldDrawing(
         name=world.name,

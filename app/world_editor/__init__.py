@@ -1,4 +1,4 @@
-"""The office edited while the robot drives."""
+"""Editing the office while the robot drives."""
 
 from app.world_editor.edits import edited
 from app.world_editor.history import MOST_UNDOS, WorldEditor

@@ -1,4 +1,4 @@
-"""An edit: some steps on an immutable World, which make another."""
+"""An edit: steps that turn one immutable World into another."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _DONE = {"add": "drawn", "change": "changed", "delete": "deleted"}
 
 
 def edited(world: World, steps: Iterable[m.EditStep]) -> World:
-    """Another World; what no step touches is the same object. ValueError names step, field and value.
+    """The edited World. What no step touches is the same object as before. ValueError names step, field and value.
 
-    Not checked as a whole: that is `check_world`'s.
+    The result is not checked as a whole; `check_world` does that.
     """
     for i, step in enumerate(steps):
         try:
@@ -46,7 +46,7 @@ def _after(world: World, step: m.EditStep) -> World:
 
 
 def _place_of(step: m.EditStep, items: tuple[Any, ...]) -> int:
-    """Which of the items it is about; what is added comes last."""
+    """The index of the item that the step is about. An added item comes last."""
     number = step.number
     if step.do == "add":
         if number is not None:
@@ -61,7 +61,7 @@ def _place_of(step: m.EditStep, items: tuple[Any, ...]) -> int:
 
 
 def _put_there(step: m.EditStep, items: tuple[Any, ...]) -> tuple[Element, ...]:
-    """What stands there afterwards: one item, or none."""
+    """What takes the item's place: one item, or none if it is deleted."""
     if step.do == "delete":
         if step.item is not None:
             raise ValueError("item: what is deleted takes none")
@@ -74,8 +74,8 @@ def _put_there(step: m.EditStep, items: tuple[Any, ...]) -> tuple[Element, ...]:
 
 
 def _element(kind: str, item: dict[str, Any]) -> Element:
-    """[ours] A wall that says nothing of its looks gets paint and posters of its own: a bland one shows the robot nothing
-    (test_edits.py::test_a_wall_gets_looks_of_its_own)."""
+    """[ours] A wall without a colour gets paint and posters of its own, since on a bland one the robot recognises
+    nothing (test_edits.py::test_a_wall_gets_looks_of_its_own)."""
     plain = kind == "walls" and "colour" not in item
     try:
         element = element_of(kind, {"height": HEIGHT_M, **item, "colour": "#000000"} if plain else item)
@@ -95,7 +95,7 @@ def _dressed(wall: Wall) -> Wall:
 
 
 def words_of(steps: list[m.EditStep]) -> str:
-    """`wall drawn`, or `door drawn and 2 more changes`; what is added last is what somebody meant."""
+    """`wall drawn`, or `door drawn and 2 more changes`. The edit is named after the last step that adds something."""
     meant = next((step for step in reversed(steps) if step.do == "add"), steps[-1])
     others = len(steps) - 1
     more = f" and {others} more change{'s' if others > 1 else ''}" if others else ""

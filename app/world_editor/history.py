@@ -1,6 +1,6 @@
-"""Editing the office while the robot drives: an edit is some steps on an immutable World, and all worlds before it are kept.
+"""Undo and redo. Worlds are immutable, so the history is a stack of the worlds before each edit.
 
-Undo gives back the very World that was there before, redo the very one after.
+Undo gives back the same World object as before the edit, redo the one after it.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ MOST_UNDOS = 200
 
 
 class WorldEditor:
-    """One office, what it was before, and what it was before that was taken back. Knows no session.
+    """The world that is edited, the worlds before it (undo) and those that were taken back (redo). Knows no session.
 
-    `take` of each method puts a world in the place of the running one, or raises ValueError; then nothing has changed.
+    take: replaces the running world by another one, or raises ValueError; then nothing has changed.
     """
 
     def __init__(self, world: World) -> None:
         self.world = world
-        self.saved: World | None = world  # as it is in its file, or was opened; None: in no file
-        self._lost: World | None = None  # what `saved` was when its file was deleted
+        self.saved: World | None = world  # as in its file, or as it was opened; None: it has no file
+        self._lost: World | None = None  # `saved` as it was when the file was deleted
         self._unfiled: set[str] = set()
         self._past: list[tuple[str, World]] = []
         self._future: list[tuple[str, World]] = []
         self._number = 1
 
     def begin(self, world: World) -> None:
-        """A session begins: in the world that is edited, or in another, which has no past here."""
+        """A session begins. Undo goes back only to edits before its world; for a foreign world there is none."""
         if world is self.world:
             return
         been = [k for k, (_, before) in enumerate(self._past) if before is world]
@@ -44,7 +44,7 @@ class WorldEditor:
         self._number += 1
 
     def follow(self, world: World) -> None:
-        """Somebody else has changed the office, say, put down a box: that can be undone, too."""
+        """The office was changed otherwise, for instance by a box put down. That can be undone, too."""
         if world is not self.world:
             self._do("box put down or taken away", world)
 
@@ -57,7 +57,10 @@ class WorldEditor:
         self, order: m.EditWorld, radius: float, take: Callable[[World], None],
         free_in: Callable[[World], FreeSpace] | None = None,
     ) -> str:  # fmt: skip
-        """What was done, in words. radius: of the robot; free_in: where it fits. ValueError says why it cannot be."""
+        """Make an edit and return what was done, in words. ValueError says why it cannot be made.
+
+        radius: of the robot (m). free_in: gives the free space of a world for that robot.
+        """
         if order.edition is not None and order.edition != self._number:
             raise ValueError("somebody has changed the office since; look at it again and repeat what you did")
         world = edited(self.world, order.steps)
@@ -77,26 +80,26 @@ class WorldEditor:
         return self._step(self._future, self._past, take, "redo")
 
     def named(self, was: World, world: World, take: Callable[[World], None]) -> None:
-        """`was` has been saved as `world`, which differs in its name at most; it bears that name from now on."""
-        if was is not self.world:  # edited while it was written
+        """`was` has been saved as `world`, which differs at most in name and title. It has these from now on."""
+        if was is not self.world:  # it was edited while the file was being written
             return
         if (world.name, world.title) != (was.name, was.title):
             take(world)
             self.world = world
-            for steps in (self._past, self._future):  # who takes an edit back keeps the name
+            for steps in (self._past, self._future):  # undo keeps the new name
                 steps[:] = [(words, replace(other, name=world.name, title=world.title)) for words, other in steps]
             self._number += 1
         self.saved = self.world
         self._unfiled.discard(world.name)
 
     def unfiled(self, name: str) -> None:
-        """No file holds the world of this name: it was never saved, or has been deleted."""
+        """The world of this name has no file: it was never saved, or its file was deleted."""
         self._unfiled.add(name)
         if name == self.world.name:
             self.saved, self._lost = None, self.saved
 
     def filed(self, name: str) -> None:
-        """A deleted file is there again."""
+        """The deleted file of the world of this name has been restored."""
         self._unfiled.discard(name)
         if name == self.world.name and self.saved is None:
             self.saved = self._lost

@@ -1,4 +1,4 @@
-"""The pilot's numbers, each declared once: driving, exploring, following a route, getting free. One section of the config."""
+"""The pilot's parameters, one section of the config: driving, exploring, following routes, getting free."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["DrivingParams", "ExploringParams", "FreeingParams", "PilotParams", "
 @kind("parameters of pilot/1")
 @dataclass(frozen=True)
 class PilotParams(FreeingParams, RouteParams, ExploringParams, DrivingParams):
-    """How the robot moves. Declared in reverse: the fields of the last base come first."""
+    """How the robot moves. The bases stand in reverse: a dataclass takes the fields of its last base first."""
 
     def __post_init__(self) -> None:
         check_ranges(self)

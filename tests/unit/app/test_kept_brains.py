@@ -195,5 +195,5 @@ def test_what_cannot_be_resumed_is_a_sentence(brain: RatSlam, capsys: pytest.Cap
     assert f"--resume-brain: no brain is kept in {folder()}" in capsys.readouterr().err
     keep("a", copy_state(brain), NOW)
     assert cli.main(["run", "--resume-brain", "--brain", "x.npz"]) == 2
-    assert "leave --brain x.npz away" in capsys.readouterr().err
+    assert "do not give --brain x.npz with it" in capsys.readouterr().err
     assert kept_brains.newest() is not None

@@ -125,7 +125,7 @@ def test_who_tells_the_brain_another_field_of_view_hears_of_it() -> None:
         snapshot = engine.latest.get()[1]
         assert snapshot is not None
         (words,) = [event.text for event in snapshot.events if event.kind == "warning"]
-        assert "local_view.field_of_view is 1 rad but robot.camera_fov_rad 0.872665" in words
+        assert "local_view.field_of_view is 1 rad but robot.camera_fov_rad is 0.872665 rad" in words
         engine.submit(m.Reset(type="reset")).result(PATIENCE_S)
         snapshot = engine.latest.get()[1]
         assert snapshot is not None
