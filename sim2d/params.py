@@ -1,4 +1,4 @@
-"""The simulator's numbers, each declared once: symbol, unit, source, range, meaning, and whether it may change live."""
+"""The simulator's parameters, each declared once: symbol, unit, source, range, meaning, whether it may change live."""
 
 from __future__ import annotations
 
@@ -50,13 +50,20 @@ def _about(
 @kind("parameters of robot/1")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimParams:
-    """Robot, camera, sonar and odometry of one simulation. A number out of its range raises ValueError."""
+    """Robot, camera, sonar, laser and odometry of one simulation. A value out of its range raises ValueError."""
 
     physics_rate_hz: int = _number(
-        240, 60, 2000, "f_p", "Hz", "physics sub-steps a second; a multiple of the sensor rate", live=True
+        240, 60, 2000, "f_p", "Hz", "physics sub-steps per second; a multiple of the sensor rate", live=True
     )
     sensor_rate_hz: int = _number(
-        10, 1, 60, "f_s", "Hz", "ticks a second: camera, sonar, encoders, one command", "ACRA 2005", live=True
+        10,
+        1,
+        60,
+        "f_s",
+        "Hz",
+        "ticks per second; each tick has one command, one image, one reading of every sensor",
+        "ACRA 2005",
+        live=True,
     )
 
     robot_radius_m: float = _number(0.22, 0.05, 0.5, "r", "m", "radius of the round robot", "Pioneer 2-DXE", live=True)
@@ -83,15 +90,27 @@ class SimParams:
     image_height: int = _number(48, 8, 480, "H", "px", "rows of the camera image; pixels are square", live=True)
     camera_height_m: float = _number(0.45, 0.1, 1.5, "h", "m", "height of the camera above the floor", live=True)
     image_noise: float = _number(
-        1.0, 0.0, 50.0, "sigma_I", "grey levels", "random error of each pixel's channel", live=True
+        1.0,
+        0.0,
+        50.0,
+        "sigma_I",
+        "grey levels",
+        "standard deviation of the noise on each colour channel of a pixel",
+        live=True,
     )
     exposure_gain: float = _number(
-        1.0, 0.1, 8.0, "g", "1", "the camera's amplification, of picture and noise alike", live=True
+        1.0, 0.1, 8.0, "g", "1", "gain of the camera, applied to image and noise alike", live=True
     )
-    light: float = _number(1.0, 0.1, 2.0, "L", "1", "brightness of everything", live=True)
+    light: float = _number(1.0, 0.1, 2.0, "L", "1", "overall brightness of the image; 1 = as painted", live=True)
 
     scene_cell_m: float = _number(
-        0.5, 0.1, 10.0, "", "m", "squares of the floor that give one scene number", "ACRA 2005, 2006; value ours"
+        0.5,
+        0.1,
+        10.0,
+        "",
+        "m",
+        "side of the floor squares that have one scene number each",
+        "ACRA 2005, 2006; value ours",
     )
     scene_sector_rad: float = _number(
         math.radians(30),
@@ -99,36 +118,52 @@ class SimParams:
         2 * math.pi,
         "",
         "rad",
-        "sectors that give one scene number",
+        "width of the heading sectors that have one scene number each",
         "ACRA 2005, 2006; value ours",
     )
 
     sonar_range_m: float = _number(
-        5.0, 0.5, 20.0, "d_max", "m", "farthest echo; what a sonar says when there is none", live=True
+        5.0, 0.5, 20.0, "d_max", "m", "farthest echo; also what a sonar reports when there is none", live=True
     )
     sonar_cone_rad: float = _number(
-        math.radians(15), 0.0, 1.0, "beta", "rad", "opening of a sonar's cone: its nearest echo counts", live=True
+        math.radians(15),
+        0.0,
+        1.0,
+        "beta",
+        "rad",
+        "opening angle of a sonar's cone; the nearest echo within it counts",
+        live=True,
     )
-    sonar_noise_m: float = _number(0.02, 0.0, 0.5, "sigma_d", "m", "random error of an echo", live=True)
+    sonar_noise_m: float = _number(
+        0.02, 0.0, 0.5, "sigma_d", "m", "standard deviation of the error of an echo", live=True
+    )
     sonar_false_echo: float = _number(
-        0.0, 0.0, 1.0, "p_e", "1", "share of echoes that come from nowhere, at any distance", live=True
+        0.0, 0.0, 1.0, "p_e", "1", "share of readings that are false, at a random distance", live=True
     )
 
     laser_beams: int = _number(
-        0, 0, 1081, "n_l", "1", "beams of the laser scanner, evenly over its field of view; 0 = none", "ACRA 2005",
+        0, 0, 1081, "n_l", "1", "beams of the laser, evenly spread over its field of view; 0 = no laser", "ACRA 2005",
         live=True,
     )  # fmt: skip
     laser_fov_rad: float = _number(
         math.pi, 0.1, 2 * math.pi, "phi_l", "rad", "field of view of the laser", "ACRA 2005", live=True
     )
-    laser_range_m: float = _number(8.0, 0.5, 80.0, "l_max", "m", "farthest that the laser measures", live=True)
-    laser_noise_m: float = _number(0.01, 0.0, 0.5, "sigma_l", "m", "random error of a beam", live=True)
+    laser_range_m: float = _number(8.0, 0.5, 80.0, "l_max", "m", "farthest distance that the laser measures", live=True)
+    laser_noise_m: float = _number(
+        0.01, 0.0, 0.5, "sigma_l", "m", "standard deviation of the error of a beam", live=True
+    )
 
     odometry_noise: float = _number(
-        0.05, 0.0, 0.5, "sigma_o", "1", "random error of speed and yaw rate, a tick", live=True
+        0.05,
+        0.0,
+        0.5,
+        "sigma_o",
+        "1",
+        "standard deviation of the relative error of speed and yaw rate in a tick",
+        live=True,
     )
     odometry_scale_error: float = _number(
-        0.02, -0.5, 0.5, "k_v", "1", "reported over true distance, less one: a wheel's diameter taken wrong", live=True
+        0.02, -0.5, 0.5, "k_v", "1", "reported distance over true distance, minus 1: a wrong wheel diameter", live=True
     )
     gyro_bias: float = _number(
         math.radians(0.2), -0.2, 0.2, "b_w", "rad/s", "added to the yaw rate while the wheels turn: 0.0035 = 0.2 deg/s",
@@ -157,24 +192,26 @@ class SimParams:
 @kind("parameters of office/1")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OfficeParams:
-    """Which parts of the office live."""
+    """Which parts of the office are active."""
 
     people: bool = _switch(True, "people walk about; off = nobody is there", "ACRA 2004")
     doors: bool = _switch(True, "doors with a period open and shut by themselves", "ACRA 2004")
-    lamps: bool = _switch(True, "lamps shine that are on; off = none does", "ACRA 2004")
-    daylight: bool = _switch(True, "daylight takes its course; off = as at the start", "ACRA 2004")
-    reflections: bool = _switch(True, "glass mirrors what is before it; off = it is only pale", "ACRA 2004")
+    lamps: bool = _switch(True, "lamps that are on shine; off = all are dark", "ACRA 2004")
+    daylight: bool = _switch(True, "daylight changes with time; off = it stays as at the start", "ACRA 2004")
+    reflections: bool = _switch(
+        True, "glass reflects what is in front of it; off = it only shows its own colour", "ACRA 2004"
+    )
     slow_zones: bool = _switch(True, "slow floors slow the robot down", "IROS 2005")
-    boxes: bool = _switch(True, "boxes stand in the way; off = none is there")
+    boxes: bool = _switch(True, "boxes stand on the floor; off = all are taken away")
     script: bool = _switch(True, "the world's script is carried out")
-    seed: int = _number(0, 0, 2**32 - 1, "", "", "seed of what people do; 0 = from the run's own")
+    seed: int = _number(0, 0, 2**32 - 1, "", "", "seed for the people; 0 = derived from the seed of the run")
 
     def __post_init__(self) -> None:
         _check(self)
 
 
 def _check(params: Any) -> None:
-    """ValueError with name, value and what would be right for the first that is out of its range or of another type."""
+    """ValueError for the first value out of range or of a wrong type; it says what would be right."""
     for item in fields(params):
         name, value, about = item.name, getattr(params, item.name), item.metadata
         if isinstance(item.default, bool):

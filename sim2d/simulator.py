@@ -1,4 +1,4 @@
-"""The simulated robot in its office: drive commands in, what its sensors say out. It does not know that SLAM exists."""
+"""The simulated robot in its office: drive commands in, sensor readings out. It does not know that SLAM exists."""
 
 from __future__ import annotations
 
@@ -21,13 +21,16 @@ from sim2d.world.free_space import FreeSpace
 from sim2d.world.robot_fit import RobotFit
 from sim2d.world.world import World
 
-_TRIES = 1000  # to find room by chance
-FREE_M = 0.02  # what is farther away than the robot can come in a tick, and this, is out of its way
+_TRIES = 1000  # random places tried to find one where the robot fits
+FREE_M = 0.02  # margin added to how far the robot can come in a tick, when deciding whether it may touch anything
 
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """A command for one tick: m/s forwards, rad/s counter-clockwise; cut to what the robot can do."""
+    """A command for one tick: speed in m/s, positive forwards; yaw rate in rad/s, positive counter-clockwise.
+
+    Both are limited to what the robot can do.
+    """
 
     speed: float
     yaw_rate: float
@@ -39,7 +42,7 @@ class Drive:
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """Where the robot really is, for judging and for drawing, never for the robot. Office frame."""
+    """Where the robot really is (m, rad, office frame), for judging and drawing, never for the robot."""
 
     x: float
     y: float
@@ -58,7 +61,7 @@ class Simulator:
         self, world: World, params: SimParams | None = None, seed: int = 0, office: OfficeParams | None = None,
         before: Simulator | None = None,
     ) -> None:  # fmt: skip
-        """before: another one, whose work on the same walls need not be done again; nothing else of it is looked at."""
+        """before: another simulator; what it has computed from the same walls is taken over, and nothing else."""
         self.params, self.office = params or SimParams(), office or OfficeParams()
         self.actors = Actors(world, np.random.default_rng(0), self.params.tick_s)
         self._sensors = Sensors(world, self.params, self.actors, None if before is None else before._sensors)
@@ -72,7 +75,7 @@ class Simulator:
         self.reset(seed)
 
     def settle(self, world: World) -> None:
-        """All that follows from a world: for one that came back from a state. A `reset` begins anew in this world."""
+        """Compute the caches anew in a simulator that was restored from a state. `reset` then begins in this world."""
         self.actors.settle(world)
         self._sensors.settle(world, self.params, self.actors)
         self._begin_in(world, None)
@@ -85,7 +88,7 @@ class Simulator:
         self._surroundings = Surroundings(world, self.actors)
 
     def reset(self, seed: int) -> None:
-        """Begin anew at the first start pose. Same seed and same calls afterwards: the same frames, bit for bit."""
+        """Begin anew at the first start pose. The same seed and the same calls give the same frames, bit for bit."""
         self._sensors.begin(seed)
         chance = seeds(seed)
         self._pose_rng = np.random.default_rng(chance["pose"])
@@ -109,7 +112,7 @@ class Simulator:
         return Truth(x, y, wrap_angle(heading), *self._motion)
 
     def observe(self) -> SensorFrame:
-        """What was sensed last: at the start, after the last step or after a teleport. Nothing advances."""
+        """The last sensor frame: from the start, the last step or a teleport. Time does not advance."""
         return self._frame
 
     def step(self, drive: Drive) -> SensorFrame:
@@ -126,9 +129,9 @@ class Simulator:
         return self._frame
 
     def teleport(self, x: float, y: float, heading_rad: float) -> None:
-        """Put the robot elsewhere, at rest; its encoders do not notice.
+        """Put the robot elsewhere, at rest. Its encoders do not notice.
 
-        ValueError with the reason when it does not fit there (`RobotFit`), or the heading is not finite.
+        ValueError says why, if the robot does not fit there (`RobotFit`) or the heading is not finite.
         """
         if not math.isfinite(heading_rad):
             raise ValueError(f"heading must be finite, got {heading_rad}")
@@ -140,14 +143,14 @@ class Simulator:
         self._frame = self._sense(0.0, 0.0)
 
     def random_free_pose(self) -> tuple[float, float, float]:
-        """Where the robot fits now, from the simulator's own generator: x, y, heading in (-pi, pi]."""
+        """A random pose where the robot fits now, from the simulator's own generator: x, y, heading in (-pi, pi]."""
         fit = self.fit
         for _ in range(_TRIES):
             x, y = self.free_space.random_point(self._pose_rng)
             heading = wrap_angle(float(self._pose_rng.uniform(-math.pi, math.pi)))
             if fit.refusal(x, y) is None:
                 return x, y, heading
-        raise ValueError(f"doors, boxes and people leave the robot no room: {_TRIES} places by chance are all taken")
+        raise ValueError(f"doors, boxes and people leave the robot no room: all {_TRIES} random places tried are taken")
 
     @property
     def fit(self) -> RobotFit:
@@ -155,16 +158,16 @@ class Simulator:
         return RobotFit(self.free_space, self.actors.standing())
 
     def free_in(self, world: World, radius: float | None = None) -> FreeSpace:
-        """The floor that a world's walls leave the robot; what it has in common with the last one is not measured again."""
+        """The floor that a world's walls leave free. Only what differs from the last one is measured anew."""
         radius = self.params.robot_radius_m if radius is None else radius
         if self._measured is None or not self._measured.holds(world, radius):
             self._measured = FreeSpace(world, radius, before=self._measured)
         return self._measured
 
-    # ------------------------------------------------------------ changes; ValueError says why one cannot be
+    # ------------------------------------------------------------ changes; ValueError says why one cannot be made
 
     def set_params(self, params: SimParams) -> None:
-        """Go on with these from the next tick on. ValueError when the robot has grown and has no room where it is."""
+        """Go on with these from the next tick on. ValueError if the robot would grow and has no room where it is."""
         before = self.params
         if params.robot_radius_m > before.robot_radius_m:
             self._require_room(params.robot_radius_m)
@@ -184,7 +187,7 @@ class Simulator:
             raise ValueError(f"robot_radius_m cannot become {radius:g} here: {refusal}")
 
     def set_door(self, name: str, is_open: bool) -> None:
-        """Open or shut a door. It moves from the next tick on, and waits for who stands in it."""
+        """Open or shut a door. It moves from the next tick on and waits for anybody in its way."""
         self.actors.set_door(name, is_open)
 
     def set_lamp(self, name: str, on: bool) -> None:
@@ -192,7 +195,7 @@ class Simulator:
         self.actors.set_lamp(name, on)
 
     def put_box(self, box: Box) -> None:
-        """Put a new box down; refused where it would cover the robot or outside."""
+        """Put a new box down. ValueError if it would cover the robot or is outside."""
         if any(other.name == box.name for other in self.world.boxes):
             raise ValueError(f"there is a box named {box.name!r} already; remove it first or use another name")
         if not inside_ring(self.world.outline, box.x, box.y):
@@ -200,7 +203,7 @@ class Simulator:
             raise ValueError(
                 f"({box.x:g}, {box.y:g}) is outside of {self.world.name}, which spans {x0:g} to {x1:g} by {y0:g} to {y1:g} m"
             )
-        as_in_a_file = replace(box, angle_rad=math.radians(math.degrees(box.angle_rad)))  # which says degrees
+        as_in_a_file = replace(box, angle_rad=math.radians(math.degrees(box.angle_rad)))  # files hold degrees
         self.set_world(replace(self.world, boxes=(*self.world.boxes, as_in_a_file)))
 
     def remove_box(self, name: str) -> None:
@@ -213,11 +216,12 @@ class Simulator:
         self.set_world(replace(self.world, boxes=tuple(box for box in self.world.boxes if box.name != name)))
 
     def set_world(self, world: World) -> None:
-        """Go on in an edited world: robot, time and whatever kept its name stay as they are. `reset` undoes it.
+        """Go on in an edited world. Robot, time and everything that kept its name stay as they are. `reset` undoes it.
 
-        world: as `check_world` lets it pass. Refused when something would cover the robot or leave it outside; people make way.
+        world: one that `check_world` accepts. ValueError if something would cover the robot or leave it outside; people
+        make way.
         """
-        pose_rng = copy.deepcopy(self._pose_rng)  # what is refused uses up no chance
+        pose_rng = copy.deepcopy(self._pose_rng)  # a refused edit must not advance the generator
         actors = Actors(world, np.random.default_rng(pose_rng.integers(2**63)), self.params.tick_s)
         actors.adopt(self.actors)
         actors.begin(self.office)
@@ -232,7 +236,7 @@ class Simulator:
         self._begin_here()
 
     def digest(self) -> str:
-        """SHA-256 of all that decides the future in this world: equal for equal histories."""
+        """SHA-256 of everything that decides the future in this world. Equal histories have equal digests."""
         return encode(self).digest()
 
     @property
@@ -247,7 +251,7 @@ class Simulator:
         self._surroundings = Surroundings(self.world, self.actors)
 
     def _slowness(self, x: float, y: float) -> float:
-        """The share of the wheels' speed that the floor lets through: the slowest of the zones that (x, y) is in."""
+        """The share of the wheels' speed that the floor at (x, y) lets through: the least of the zones there, or 1."""
         if not self.office.slow_zones:
             return 1.0
         factors = [z.factor for z in self.world.slow_zones if inside_ring(np.array(z.corners, np.float64), x, y)]

@@ -1,1 +1,1 @@
-"""What moves and changes in an office by itself or when told: people, doors, boxes, lamps, daylight."""
+"""What moves or changes in an office, by itself or on command: people, doors, boxes, lamps, daylight."""

@@ -1,5 +1,6 @@
-"""What moves and changes in an office: doors, boxes, people, lamps, daylight, script. Steps tick by tick, draws no chance
-but from its own generator, and never moves anything onto the robot.
+"""What moves or changes in an office: doors, boxes, people, lamps, daylight, script.
+
+Actors step tick by tick, draw random numbers only from their own generator, and never move anything onto the robot.
 """
 
 from __future__ import annotations
@@ -18,17 +19,20 @@ from sim2d.world.elements import Box, Door, Event, Lamp
 from sim2d.world.robot_fit import Standing
 from sim2d.world.world import World
 
-DOOR_TAKES_S = 1.5
-MOST_TIP_M = 0.1  # a leaf's end moves no farther in a tick: it cannot jump over the robot
-CLEARANCE_M = 0.01  # a leaf, a box that appears and a person who comes back stay so far away from the robot
+DOOR_TAKES_S = 1.5  # from shut to open
+MOST_TIP_M = 0.1  # the tip of a door leaf moves no farther in a tick, so that it cannot jump over the robot
+CLEARANCE_M = 0.01  # least distance from the robot of a moving leaf and of a box that appears
 
 _Named = Door | Box | Lamp
 
 
 @kind("actors/1")
 class Actors:
-    """State of all that moves in one world. `segments` are their sides as rays and camera meet them, doors first;
-    `there`, (m, 4), those that are present."""
+    """The state of everything that moves in one world.
+
+    segments: (n, 4) the sides of doors, boxes and people, in this order, as rays and camera meet them. there: (m, 4)
+    those of them that are present.
+    """
 
     CACHES = ("world", "_script", "_anything", "first_box", "first_person", "segments", "present", "there")
 
@@ -49,7 +53,7 @@ class Actors:
         self.settle(world)
 
     def settle(self, world: World) -> None:
-        """All that follows from the world and from how far doors, boxes and people are."""
+        """Compute the caches from the world and the state of doors, boxes and people."""
         self.world = world
         self.walkers.settle(world.people)
         self._script = sorted(world.script, key=lambda event: event.at_s)
@@ -65,20 +69,21 @@ class Actors:
         self._show()
 
     def begin(self, params: OfficeParams) -> None:
-        """What is switched off is away from the first moment on, not from the first step."""
+        """Remove what is switched off at once, not only at the first step."""
         self._lamps_on = params.lamps
         self.box_present &= params.boxes
         self.walkers.present &= params.people
         self._show()
 
     def set_tick(self, tick_s: float) -> None:
-        """Ticks last so long from now on."""
+        """Set the duration of a tick (s) from now on."""
         self._tick_s = self.walkers.tick_s = tick_s
 
     def step(
         self, time_s: float, robot: tuple[float, float], radius: float, comes: float, params: OfficeParams
     ) -> None:
-        """The tick that ends at this time. robot: its place; radius: its own; comes: how far it may come in a tick, metres."""
+        """Advance to `time_s`, the end of this tick. robot: its place; radius: of the robot; comes: how far it may
+        drive in a tick (all m)."""
         self._lamps_on, self._time_s = params.lamps, time_s
         if not self._anything:
             return
@@ -100,35 +105,35 @@ class Actors:
         self._show()
 
     def make_way(self, robot: tuple[float, float], radius: float) -> None:
-        """Who would stand where the robot has just been put is away until it leaves."""
+        """People who stand where the robot has just been put disappear until it leaves."""
         self.walkers.make_way(robot, radius)
         self._show()
 
-    # ------------------------------------------------------------ orders; ValueError says why one cannot be
+    # ------------------------------------------------------------ orders; ValueError says why one cannot be carried out
 
     def set_door(self, name: str, is_open: bool) -> None:
-        """Open or shut a door; it takes its time, and waits for who stands in it."""
+        """Open or shut a door. It moves over several ticks and waits for anybody in its way."""
         self._wanted[_find(self.world.doors, name, "door")] = float(is_open)
 
     def set_lamp(self, name: str, on: bool) -> None:
         self.lamp_on[_find(self.world.lamps, name, "lamp")] = on
 
     def set_box(self, name: str, present: bool) -> None:
-        """One of the world's boxes appears, when the robot is off its place, or goes."""
+        """Make one of the world's boxes disappear, or appear as soon as the robot is not in its place."""
         self._box_wanted[_find(self.world.boxes, name, "box")] = present
 
     def standing(self) -> Standing:
-        """All that is in the robot's way now."""
+        """Everything that is in the robot's way now, apart from walls."""
         boxes = (box for box, is_there in zip(self.world.boxes, self.box_present, strict=True) if is_there)
         return Standing(
             tuple(zip(self.world.doors, self.opening.tolist(), strict=True)), tuple(boxes), self.walkers.standing()
         )
 
     def adopt(self, old: Actors) -> None:
-        """After an edit: all that has kept its name and kind goes on as it was.
+        """After an edit: everything that has kept its name and kind goes on as it was.
 
-        [ours] Lines of the script whose time has come are not made up for, and what lines have done stays done; but the
-        daylight follows its curve again when no line is left that has set it
+        [ours] Script lines whose time has passed are not carried out afterwards, and what earlier lines have done
+        stays. The daylight, however, follows its curve again if no line that has set it is left
         (test_actors.py::test_an_edited_script_goes_on_from_now).
         """
         doors, boxes = _by_name(old.world.doors), _by_name(old.world.boxes)
@@ -162,7 +167,7 @@ class Actors:
 
     @property
     def door_wanted(self) -> NDArray[np.bool_]:
-        """Which doors are open or on their way to be."""
+        """Which doors are open or opening."""
         return self._wanted > 0.5
 
     # ------------------------------------------------------------ inside

@@ -1,4 +1,4 @@
-"""People who walk from point to point, wait, stop for robots, boxes and shut doors, and turn back when it takes too long."""
+"""People who walk from point to point, wait, stop for what is in the way, and turn back if that takes too long."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from sim2d.geometry.wall_index import squared_distance
 from sim2d.world.elements import Person
 
 PERSON_SIDES = 8
-PATIENCE_S = (3.0, 8.0)  # how long one stands before something before turning back
-COMES_BACK_M = 0.01  # farther from the robot than touching
+PATIENCE_S = (3.0, 8.0)  # how long a person stands in front of an obstacle before turning back, least and most
+COMES_BACK_M = 0.01  # margin beyond the robot's reach at which a person comes back
 _BANK = 64
 
 _Array = NDArray[np.float64]
@@ -23,7 +23,7 @@ _Array = NDArray[np.float64]
 
 @kind("walkers/1")
 class Walkers:
-    """All people of a world, as arrays. xy: (n, 2); heading: where each looks; present: whether they are there."""
+    """All people of a world, as arrays. xy: (n, 2) m; heading: (n,) rad; present: (n,) whether each is there."""
 
     CACHES = ("_people", "radius", "_speed", "_loop", "_first", "_path", "_wait_s", "_ring")
 
@@ -31,18 +31,18 @@ class Walkers:
         n = len(people)
         self.tick_s = tick_s
         self.settle(people)
-        self._chance = rng.random((n, _BANK))  # drawn ahead: one stream a person, whatever the others do
+        self._chance = rng.random((n, _BANK))  # drawn in advance: each person has a stream of their own
         self._drawn = np.zeros(n, np.int64)
         self.xy = self._path[self._first[:-1]].copy()
         self.heading = np.zeros(n)
-        self._towards = np.zeros(n, np.int64)  # a point of the path; at the start the first, where they are
+        self._towards = np.zeros(n, np.int64)  # index of the path's point that each walks to; people begin at the first
         self._way = np.ones(n, np.int64)
         self._waits = np.zeros(n)
         self._patience = np.full(n, PATIENCE_S[0])
         self.present = np.ones(n, bool)
 
     def settle(self, people: tuple[Person, ...]) -> None:
-        """All that follows from who they are."""
+        """Compute the caches from the people's data."""
         self._people = people
         self.radius = np.array([p.radius for p in people])
         self._speed = np.array([p.speed for p in people])
@@ -56,7 +56,7 @@ class Walkers:
     def step(
         self, robot: tuple[float, float], reach: float, walking: bool, obstacles: _Array, present: NDArray[np.bool_]
     ) -> None:
-        """One tick. reach: robot's radius and how far it may come in it. obstacles: (m, 4) leaves and sides of boxes."""
+        """One tick. reach: the robot's radius plus its way in a tick. obstacles: (m, 4) leaves and box sides."""
         if len(self._people):
             _walk(
                 self.xy, self.heading, self._towards, self._way, self._waits, self._patience, self.present, self._drawn,
@@ -65,11 +65,11 @@ class Walkers:
             )  # fmt: skip
 
     def make_way(self, robot: tuple[float, float], radius: float) -> None:
-        """Who stands too near to a robot that has just been put there is away until it leaves."""
+        """People too near to a robot that has just been put down disappear until it leaves."""
         self.present &= np.hypot(*(self.xy - robot).T) > self.radius + radius + COMES_BACK_M
 
     def sides(self) -> _Array:
-        """(n * PERSON_SIDES, 4): each person's outline, within its radius."""
+        """(n * PERSON_SIDES, 4): each person's outline, a polygon inside the radius."""
         turned = np.empty((len(self._people), PERSON_SIDES, 2))
         c, s = np.cos(self.heading)[:, None], np.sin(self.heading)[:, None]
         turned[..., 0] = self._ring[:, 0] * c - self._ring[:, 1] * s
@@ -78,23 +78,23 @@ class Walkers:
         return np.concatenate([np.roll(corners, 1, axis=1), corners], axis=2).reshape(-1, 4)
 
     def touch(self, x: float, y: float, reach: float) -> bool:
-        """Whether anybody, round as they are, is within `reach` of (x, y)."""
+        """Whether any person, taken as a disc, is within `reach` metres of (x, y)."""
         if not len(self._people):
             return False
         away = np.hypot(self.xy[:, 0] - x, self.xy[:, 1] - y)
         return bool((self.present & (away < self.radius + reach)).any())
 
     def discs(self) -> list[tuple[float, float, float]]:
-        """x, y, radius of who is there."""
+        """x, y, radius of everybody present."""
         return [(*self.xy[i].tolist(), float(self.radius[i])) for i in np.flatnonzero(self.present)]
 
     def standing(self) -> tuple[tuple[str, float, float, float], ...]:
-        """Name, x, y, radius of who is there."""
+        """Name, x, y, radius of everybody present."""
         names = (self._people[i].name for i in np.flatnonzero(self.present))
         return tuple((name, *disc) for name, disc in zip(names, self.discs(), strict=True))
 
     def adopt(self, old: Walkers) -> None:
-        """Who is the same as before an edit goes on from where they are."""
+        """After an edit: people whose data are unchanged go on from where they are."""
         was = {person: i for i, person in enumerate(old._people)}
         for i, person in enumerate(self._people):
             k = was.get(person)
@@ -180,7 +180,7 @@ def _walk(
 def _blocked(
     obstacles: _Array, standing: NDArray[np.bool_], x0: float, y0: float, x: float, y: float, radius: float
 ) -> bool:
-    """Whether a step leads nearer to something that is within a radius."""
+    """Whether a step leads nearer to an obstacle that is then within the radius."""
     for k in range(obstacles.shape[0]):
         if standing[k]:
             after = squared_distance(obstacles, k, x, y)
@@ -191,7 +191,7 @@ def _blocked(
 
 @njit(cache=True, nogil=True)
 def _draw(chance: _Array, drawn: NDArray[np.int64], i: int, low: float, high: float) -> float:
-    """The next of person i's numbers, between low and high."""
+    """The next random number of person i, between low and high."""
     value = chance[i, drawn[i] % chance.shape[1]]
     drawn[i] += 1
     return low + value * (high - low)

@@ -1,1 +1,1 @@
-"""What the robot's camera sees: which walls, how much of them, how bright, and mirrored in what."""
+"""The robot's camera: which walls it sees, their textures, their light, and reflections in glass."""

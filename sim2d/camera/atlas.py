@@ -1,9 +1,12 @@
-"""All textures of a world in one array, made for the camera: summed along the wall, halved in height level by level.
+"""All textures of a world in one array, prepared for the camera: summed along the wall, and halved in height, level by
+level.
 
-A side of a wall is painted when the camera first sees it: a world of 10,000 walls would take five seconds otherwise.
+A side of a wall is painted when the camera first sees it. To paint a world of 10,000 walls at once would take five
+seconds.
 
-A pixel's footprint on a wall seen askance is long along the wall. With sums along the wall the mean over any stretch
-costs two look-ups (Crow 1984, one-dimensional), and with halved rows the mean in height costs one.
+When a wall is seen at a slant, the footprint of a pixel is long in the direction of the wall. With sums along the wall
+the mean over any stretch costs two look-ups (Crow 1984, in one dimension). With halved rows the mean over the height
+costs one.
 """
 
 from __future__ import annotations
@@ -18,20 +21,20 @@ from sim2d.world.texture import ROW_MULTIPLE, TEXEL_M, paint_strip
 from sim2d.world.world import Wall
 
 LEVELS = 5
-MOST_FINE_M2 = 1500.0  # with more wall than this the texels grow, so that memory does not
+MOST_FINE_M2 = 1500.0  # with more wall area than this, texels become larger to limit the memory
 _SIDES = ("left", "right")
-MIDDLE = 128.0  # taken off before summing: the sums stay small and float32 keeps them exact enough
+MIDDLE = 128.0  # subtracted before summing: the sums stay small, so that float32 is exact enough
 
 
 class Atlas:
-    """Strip 2 i is the left side of wall i, 2 i + 1 its right side; equal sides share texels.
+    """Strip 2 i is the left side of wall i, strip 2 i + 1 its right side. Sides that look the same share texels.
 
     texels: float32, flat; a strip at a level is (columns + 1, rows >> level, 3), summed along the columns.
-    first: (2 n, LEVELS) where a strip's level begins. columns, rows: (2 n,) at level 0.
+    first: (2 n, LEVELS) where each level of a strip begins. columns, rows: (2 n,) size of a strip at level 0.
     """
 
     def __init__(self, walls: tuple[Wall, ...], before: Atlas | None = None) -> None:
-        """before: of walls many of which are the same objects; how these look need not be found out again."""
+        """before: another atlas; for walls that are the same objects, what is known of their looks is taken over."""
         self._walls = walls
         was = {} if before is None else {id(wall): i for i, wall in enumerate(before._walls)}
         old = np.array([was.get(id(wall), -1) for wall in walls], np.int64)
@@ -56,14 +59,14 @@ class Atlas:
         self._painted, self._bare = np.zeros(2 * len(walls), np.bool_), np.zeros(2 * len(walls), np.int64)
 
     def _look(self, wall: Wall, side: str) -> tuple[int, bool]:
-        """The number of what a side looks like, and whether it is the same all along: one column will do."""
+        """The number of the side's look, and whether it is the same all along, so that one column is enough."""
         panels = tuple(panel for panel in wall.panels if panel.side in (side, "both"))
         plain = self._large and not panels
         look = (0.0 if plain else wall.length, wall.kind, wall.height, wall.bottom, wall.colour, panels)
         return self._known.setdefault(look, len(self._known)), plain
 
     def _lay_out(self) -> None:
-        """Where the texels of each strip are: first, columns, rows and their owner, the first strip that looks so."""
+        """Lay out the texels: first, columns, rows, and each strip's owner, the first strip of the same look."""
         _, owners, number = np.unique(self._looks.ravel(), return_index=True, return_inverse=True)
         self._owner = owner = owners[number.ravel()]
         columns = np.maximum(1, np.rint(self._sizes[:, 0] / self._texel_m).astype(np.int64))  # as `strip_shape`
@@ -76,12 +79,15 @@ class Atlas:
         first = np.zeros((owner.size, LEVELS), np.int64)
         first[own] = (ends - sizes.ravel()).reshape(sizes.shape)
         self.first = first[owner]
-        self.texels = np.empty(ends[-1], np.float32)  # of what is not painted yet the system keeps no page
+        self.texels = np.empty(ends[-1], np.float32)  # the system gives no memory to pages that are not painted yet
 
     def paint_seen(
         self, counts: NDArray[np.int64], walls: NDArray[np.int64], mirrored: NDArray[np.int64] | None = None
     ) -> None:
-        """Paint those strips that a picture needs and that are bare: `column_hits`' answer, `mirrored`'s strips."""
+        """Paint the strips that an image needs and that are not painted yet.
+
+        counts, walls: as `column_hits` fills them. mirrored: the strips seen in glass, as `mirror.mirrored` fills them.
+        """
         for strip in self._bare[: _bare(counts, walls, self._owner, self._painted, self._bare)]:
             self._paint(int(strip))
         if mirrored is not None:
@@ -107,7 +113,7 @@ def _bare(
     painted: NDArray[np.bool_],
     out: NDArray[np.int64],
 ) -> int:
-    """Owners of the strips walls[c, :counts[c]] that are not painted, each once, into `out`; they count as painted then."""
+    """Collect in `out` the unpainted owners of strips walls[c, :counts[c]], each once, and mark them painted."""
     n = 0
     for c in range(counts.size):
         for k in range(counts[c]):

@@ -1,4 +1,4 @@
-"""The robot's camera: buffers and textures around the kernels of `sight`, `column_hits`, `mirror` and `painting`."""
+"""The robot's camera: the buffers and textures for the kernels of `sight`, `column_hits`, `mirror` and `painting`."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from sim2d.geometry.wall_index import WallIndex, build_index
 from sim2d.params import SimParams
 from sim2d.world.world import World
 
-FEW_WALLS = 60  # as quickly looked at one by one as searched for
+FEW_WALLS = 60  # up to this many, looking at every wall is as quick as searching for the visible ones
 _NOTHING = np.zeros(0, np.int64)
 _NOISE_BANK = 1 << 17
 _MOST_NOISE = 3 * 640 * 480
 
 
 class Camera:
-    """Draws what is seen from a pose. Owns buffers; nothing of it depends on earlier images."""
+    """Draws what is seen from a pose. It owns buffers, but an image does not depend on earlier images."""
 
     def __init__(
         self, world: World, params: SimParams, actors: Actors | None = None, index: WallIndex | None = None,
         before: Camera | None = None,
     ) -> None:  # fmt: skip
-        """actors: of the same world, anew when left out. index: of all its walls, as `build_index` makes it.
+        """actors: of the same world; None: new ones. index: of all its walls, as `build_index` makes it.
 
-        before: another camera, whose knowledge of the looks of the same walls is taken over.
+        before: another camera; what it knows of the looks of the same walls is taken over.
         """
         self._noise = np.zeros(_NOISE_BANK + _MOST_NOISE, np.float32)
         if actors is None:
@@ -41,7 +41,7 @@ class Camera:
         self.set_lens(params)
 
     def set_world(self, world: World, actors: Actors, index: WallIndex, before: Camera | None = None) -> None:
-        """Paint another world, or the same after an edit."""
+        """From now on draw another world, or the same one after an edit."""
         before = before or self
         walls = (*world.walls, *element_walls(world))
         self._world, self._actors, self._index = world, actors, index
@@ -50,7 +50,7 @@ class Camera:
         tops = np.array([w.height for w in walls])
         highest = world.highest
         self._full = np.array([w.stands and w.height >= highest and w.kind != "glass" for w in walls])
-        self._full[self._walls_end :] = False  # they move: none is sure to hide what is behind
+        self._full[self._walls_end :] = False  # actors move, so none of them is sure to hide what is behind it
         self._glass = np.array([w.kind == "glass" for w in walls])
         self._has_glass = bool(self._glass.any())
         self._atlas = atlas = Atlas(walls, getattr(before, "_atlas", None))
@@ -68,11 +68,11 @@ class Camera:
             self._background = _background(world, self._height, self._focal, self._eye)
 
     def follow(self, actors: Actors) -> None:
-        """Look at these actors elements of the same world from now on."""
+        """From now on draw these actors, of the same world."""
         self._actors = actors
 
     def set_lens(self, params: SimParams) -> None:
-        """Another field of view, resolution or place of the camera."""
+        """Set another field of view, resolution or height of the camera."""
         self._width, self._height = params.image_width, params.image_height
         self._flat = params.camera_fov_rad <= MOST_FLAT_RAD
         self._rays, self._focal = lens_rays(self._width, params.camera_fov_rad)
@@ -87,7 +87,7 @@ class Camera:
         self._canvas = np.zeros((self._width, 3 * self._height), np.float32)
 
     def new_noise(self, rng: np.random.Generator) -> None:
-        """Draw the noise of all images to come: 9216 deviates an image would take longer than the image."""
+        """Draw the noise of all images to come: 9216 deviates for each would take longer than the image itself."""
         self._noise = rng.standard_normal(_NOISE_BANK + _MOST_NOISE, dtype=np.float32)
 
     def image(
@@ -100,7 +100,7 @@ class Camera:
         rng: np.random.Generator,
         reflections: bool = True,
     ) -> NDArray[np.uint8]:
-        """(height, width, 3) RGB. One draw from `rng`; `noise` in grey levels; `light` 1 = as painted."""
+        """(height, width, 3) RGB. light: 1 = as painted; noise: sigma in grey levels. One draw from `rng`."""
         elements = self._look(x, y, heading_rad)
         eye = (x, y, heading_rad)
         actors = self._actors
@@ -124,16 +124,16 @@ class Camera:
         return out
 
     def depths(self, x: float, y: float, heading_rad: float) -> NDArray[np.float64]:
-        """(width,): metres to the nearest thing of each column, inf where there is none.
+        """(width,): distance (m) of the nearest thing in each column, inf where there is none.
 
-        With a flat lens along the camera's axis, with a round one along the ray.
+        With a flat lens it is measured along the camera's axis, with a round one along the ray.
         """
         self._look(x, y, heading_rad)
         inverse = np.where(self._counts > 0, self._hits[:, 0, 0], 0.0)
         return np.divide(1.0, inverse, out=np.full(self._width, np.inf), where=inverse > 0)
 
     def _look(self, x: float, y: float, heading: float) -> NDArray[np.int64]:
-        """Fill counts, walls and hits; returns the numbers of the elements that are there."""
+        """Fill counts, walls and hits. Returns the numbers of the actors' sides that are present."""
         actors, n = self._actors, self._walls_end
         elements = _NOTHING
         if len(actors.segments):
@@ -156,20 +156,23 @@ class Camera:
 
 
 def _at_first(world: World) -> NDArray[np.float64]:
-    """(n, 4): sides of doors, boxes and people as a world begins. They keep the shade that they have there, wherever they turn:
-    else it would tell when the camera last saw another world."""
+    """(n, 4): sides of doors, boxes and people as the world begins.
+
+    They keep the shade of this moment wherever they turn. Otherwise it would depend on when the camera was given the
+    world.
+    """
     return Actors(world, np.random.default_rng(0), 1.0).segments
 
 
 def _shades(segments: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(2 n,): brightness of each wall's left and right side, so that walls that meet differ."""
+    """(2 n,): brightness of each wall's left and right side, by its direction, so that walls that meet differ."""
     dx, dy = segments[:, 2] - segments[:, 0], segments[:, 3] - segments[:, 1]
     towards = (-dy * 0.5 + dx * 0.85) / np.hypot(dx, dy)  # of the left side's normal
     return np.stack([1.0 + 0.09 * towards, 1.0 - 0.09 * towards], axis=1).ravel()
 
 
 def _background(world: World, height: int, focal: float, eye: float) -> NDArray[np.float32]:
-    """(3 height,): floor and ceiling, row by row, darker with distance."""
+    """(3 height,): the colours of floor and ceiling, row by row, darker with distance."""
     ceiling = world.highest - eye
     down = np.arange(height) + 0.5 - 0.5 * height
     flat = np.where(np.abs(down) < 0.25, 0.25, down)

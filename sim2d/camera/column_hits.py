@@ -1,8 +1,9 @@
 """Which walls each column of the camera's image meets.
 
-A wall's inverse depth, and its position along itself over depth, are linear across the image. So walls are put in
-camera coordinates once and every column finds its hits by interpolation: 2.5-D, no ray per pixel. Low walls (desks,
-partitions) do not hide high ones, therefore a column keeps its nearest hits up to the first wall of full height.
+The inverse depth of a wall, and the position along it divided by depth, are linear across the image. So each wall is
+transformed into camera coordinates once, and every column finds its hits by interpolation: 2.5-D, with no ray per
+pixel. Low walls (desks, partitions) do not hide high ones, so a column keeps its nearest hits up to the first wall of
+full height.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 MAX_HITS = 8
-NEAR_M = 0.02  # what is nearer than this is inside the camera
+NEAR_M = 0.02  # anything nearer than this is not seen
 
 
 @njit(cache=True, nogil=True)
@@ -30,10 +31,11 @@ def column_hits(
     walls: NDArray[np.int64],
     hits: NDArray[np.float64],
 ) -> None:
-    """For each column those of the chosen walls that are on its middle ray, near to far, none behind the first full one.
+    """For each column, find the chosen walls that its middle ray meets, near to far, up to the first full one.
 
-    counts: (w,) how many. walls: (w, k) their strips (2 i + side). hits: (w, k, 3) inverse depth 1/m, and the stretch
-    of the wall that the column covers, from its left to its right edge, as fractions of the wall's length.
+    full: (n,) walls that hide everything behind them. chosen: numbers of the walls to look at. Filled in are counts:
+    (w,) how many; walls: (w, k) their strips (2 i + side); hits: (w, k, 3) inverse depth (1/m), and the stretch of the
+    wall that the column covers, as two fractions of its length, the smaller first.
     """
     width = counts.size
     cos, sin = math.cos(heading), math.sin(heading)
@@ -74,7 +76,7 @@ def column_hits(
             k = min(n, MAX_HITS - 1)
             while k > 0 and hits[c, k - 1, 0] < inverse:
                 walls[c, k] = walls[c, k - 1]
-                for part in range(3):  # not as rows: to copy rows takes numba three seconds to compile
+                for part in range(3):  # one by one: copying rows takes numba three seconds to compile
                     hits[c, k, part] = hits[c, k - 1, part]
                 k -= 1
             walls[c, k] = 2 * i + side

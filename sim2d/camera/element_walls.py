@@ -1,4 +1,4 @@
-"""What doors, boxes and people look like: each of their sides as a wall with panels, for the camera's textures."""
+"""The looks of doors, boxes and people: each of their sides as a wall with panels, for the camera's textures."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ _HAIR: tuple[Rgb, ...] = ((40, 32, 28), (96, 64, 40), (170, 140, 90), (150, 150,
 
 
 def element_walls(world: World) -> tuple[Wall, ...]:
-    """A wall of the right size for each row of `Actors.segments`, in its order; where it stands is not looked at."""
+    """A wall of the right size for each row of `Actors.segments`, in the same order. Its position has no meaning."""
     return _walls(world.doors, world.boxes, world.people)
 
 
 @lru_cache(maxsize=8)
 def _walls(doors: tuple[Door, ...], boxes: tuple[Box, ...], people: tuple[Person, ...]) -> tuple[Wall, ...]:
-    """The same objects for the same things: an edit of something else leaves their looks alone."""
+    """The same elements give the same objects, so that an edit of something else does not change them."""
     walls = [_leaf(door) for door in doors]
     for box in boxes:
         walls += _sides(box)
@@ -61,7 +61,7 @@ def _sides(box: Box) -> list[Wall]:
 
 
 def _figure(person: Person) -> list[Wall]:
-    """Shoes, trousers, a shirt, head and hair; the front has a face."""
+    """A person's sides, with shoes, trousers, shirt, head and hair; those in front have a face."""
     seed, h = _seed(person.name), person.height
     skin, hair = _SKIN[seed % len(_SKIN)], _HAIR[seed // 7 % len(_HAIR)]
     trousers = (38 + seed % 60, 40 + seed % 50, 52 + seed % 70)

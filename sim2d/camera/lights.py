@@ -1,4 +1,4 @@
-"""How bright it is where: daylight everywhere, and around each lamp that is on, as far as no wall is between."""
+"""Brightness over the floor: daylight everywhere, plus each lamp that is on, where no wall hides it."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from sim2d.world.world import World
 
 _CELL_M = 0.25
 _MOST_CELLS = 1_000_000
-_STEP_BACK_M = 0.15  # light on a wall is that of the floor before it
+_STEP_BACK_M = 0.15  # a wall is as bright as the floor this far in front of it
 
 Spot = tuple[slice, slice, NDArray[np.float64]]  # rows and columns of the grid, and the light there
 
 
 class Lights:
-    """The lamps of one world over a grid of its floor. Without lamps there is no grid and nothing to compute."""
+    """The light of the lamps of one world, on a grid over its floor. A world without lamps has no grid."""
 
     def __init__(self, world: World, index: WallIndex, before: Lights | None = None) -> None:
-        """before: of a world that may differ in a few walls; light that none of them is near to stays as it was."""
+        """before: of a world that may differ in a few walls; lamps that none of these is near are taken over."""
         x0, y0, x1, y1 = world.bounds
         self._lamps = world.lamps
         self._cell = max(_CELL_M, math.sqrt((x1 - x0) * (y1 - y0) / _MOST_CELLS))
@@ -46,7 +46,7 @@ class Lights:
         hits: NDArray[np.float64],
         out: NDArray[np.float64],
     ) -> None:
-        """Brightness of every hit and, in the last place, of each column's floor and ceiling: out (w, k + 1)."""
+        """Fill out, (w, k + 1): the brightness of every hit and, last, of each column's floor and ceiling."""
         if not self._lamps:
             out[:] = daylight
             return
@@ -60,7 +60,7 @@ class Lights:
         _glow(self._total, *self._corner, self._cell, daylight, *eye, rays, counts, hits, out)
 
     def _unchanged(self, before: Lights) -> dict[Lamp, Spot]:
-        """The light of those lamps within whose reach all walls are still the same."""
+        """The light of those lamps in whose reach no wall has changed."""
         if (before._cell, before._corner, before._shape) != (self._cell, self._corner, self._shape):
             return {}
         changed = np.array(differing(before._segments, self._segments)).reshape(-1, 2, 2)
@@ -74,7 +74,7 @@ class Lights:
         }
 
     def _spot(self, lamp: Lamp, index: WallIndex) -> Spot:
-        """The part of the grid that a lamp reaches, and its light there: b (1 - (d / reach)^2)^2, no light through walls."""
+        """The part of the grid that a lamp reaches, and its light: b (1 - (d / reach)^2)^2 if no wall hides it."""
         x0, y0 = self._corner
         left, low = (max(0, int((p - lamp.reach - q) / self._cell)) for p, q in ((lamp.x, x0), (lamp.y, y0)))
         right = min(self._shape[1], int((lamp.x + lamp.reach - x0) / self._cell) + 1)
@@ -135,7 +135,7 @@ def _glow(
 
 @njit(cache=True, nogil=True)
 def _at(total: NDArray[np.float64], u: float, v: float) -> float:
-    """Between the four nearest cells' middles."""
+    """Bilinear interpolation between the centres of the four nearest cells."""
     u, v = min(max(u - 0.5, 0.0), total.shape[1] - 1.001), min(max(v - 0.5, 0.0), total.shape[0] - 1.001)
     i, j = int(u), int(v)
     f, g = u - i, v - j

@@ -1,4 +1,4 @@
-"""What a column sees mirrored in glass: the ray goes on from the pane, turned over, to the first thing it meets."""
+"""Reflections in glass: a column's ray is reflected at the pane and followed to the first thing it meets."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def mirrored(
     strips: NDArray[np.int64],
     found: NDArray[np.float64],
 ) -> None:
-    """For each column: which of its hits is its nearest pane (`at`, -1: none), and what that mirrors.
+    """For each column: which of its hits is its nearest pane (`at`, -1: none), and what is seen in it.
 
-    elements: numbers of the segments beyond the index's that are there. strips: (w,) the strip that is met, -1 = nothing.
-    found: (w, 3) as one row of hits, at the length of the whole way.
+    elements: numbers of the actors' sides that are present. strips: (w,) the strip that the reflected ray meets, -1:
+    none. found: (w, 3) as one row of hits; its inverse distance is that of the whole way.
     """
     cos, sin = math.cos(heading), math.sin(heading)
     for c in range(counts.size):
@@ -45,7 +45,7 @@ def mirrored(
             ux, uy = rays[c, 0, 0] * cos - rays[c, 0, 1] * sin, rays[c, 0, 0] * sin + rays[c, 0, 1] * cos
             ex, ey = segments[pane, 2] - segments[pane, 0], segments[pane, 3] - segments[pane, 1]
             scale = 2.0 * (ux * ex + uy * ey) / (ex * ex + ey * ey)
-            vx, vy = scale * ex - ux, scale * ey - uy  # turned over at the pane, as long as before
+            vx, vy = scale * ex - ux, scale * ey - uy  # reflected at the pane, of the same length
             t = 1.0 / hits[c, k, 0]
             px, py = x + t * ux + _OFF_M * vx, y + t * uy + _OFF_M * vy
             best, shortest, along = first_wall(index, px, py, vx, vy, 1e6)

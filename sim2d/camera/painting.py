@@ -1,4 +1,4 @@
-"""From the walls that each column meets to an image: textured, shaded by distance and side, with noise."""
+"""Turns the walls that each column meets into an image: with textures, shading by distance and direction, and noise."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from sim2d.camera.column_hits import MAX_HITS
 
 FADE_M = 14.0  # brightness falls as 1 / (1 + depth / FADE_M): far corners are darker
 _MAX_ROWS = 1024
-ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)  # what is unsigned needs no look at whether it is negative
+ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)  # an unsigned index needs no check for negative values
 
 
 class Strips(NamedTuple):
-    """How the walls of a camera look: `Atlas` and, of each wall, where it begins and ends, of each side, its shade."""
+    """The looks of a camera's walls: the arrays of `Atlas`, bottom and top of each wall (m), the shade of each side."""
 
     texels: NDArray[np.float32]
     first: NDArray[np.int64]
@@ -45,10 +45,10 @@ def paint_columns(
     mirror_hits: NDArray[np.float64],
     canvas: NDArray[np.float32],
 ) -> None:
-    """Fill canvas (w, 3 h) from the hits of `column_hits`, far to near; edges are blended by the share they cover.
+    """Fill canvas (w, 3 h) from the hits of `column_hits`, far to near. A pixel that a wall covers in part is blended.
 
-    A column holds red, green and blue of each pixel from the top down. glow: (w, k + 1) brightness of each hit, and of
-    floor and ceiling. panes, mirror_...: from `mirror.mirrored`.
+    A column holds red, green and blue of each pixel, from the top down. glow: (w, k + 1) brightness of each hit, then
+    of floor and ceiling. panes, mirror_strips, mirror_hits: from `mirror.mirrored`.
     """
     texels, first, columns, rows = strips.texels, strips.first, strips.columns, strips.rows
     bottoms, tops, shades, reflection = strips.bottoms, strips.tops, strips.shades, strips.reflection
@@ -65,7 +65,7 @@ def paint_columns(
         for k in range(counts[c] - 1, -1, -1):
             strip, inverse, u0, u1, end = walls[c, k], hits[c, k, 0], hits[c, k, 1], hits[c, k, 2], ends[k]
             share, glass_top, target = reflection[strip >> 1], 0.0, image
-            if share >= 0.0:  # glass: what it mirrors, or its own colour, goes over what is behind
+            if share >= 0.0:  # glass: its reflection, or its own colour, is blended over what is behind it
                 target = reflected
                 by = np.float32(1.0)
                 glass_top = 0.5 * height - (tops[strip >> 1] - eye) * focal * inverse
@@ -110,8 +110,8 @@ def _hide(
     hits: NDArray[np.float64],
     ends: NDArray[np.int64],
 ) -> None:
-    """The row at which each wall of a column ends: of two that stand on the floor the nearer one hides all of the other below
-    its own top."""
+    """The row at which each wall of a column ends: a wall that stands on the floor hides, of those behind it,
+    everything below its own top."""
     hidden = height
     for k in range(count):
         wall = walls[k] >> 1
@@ -132,7 +132,7 @@ def _paint_rows(
     low: int,
     last: int,
 ) -> None:
-    """Rows begin to end of one column from a stretch of texels that starts at texel row `low`; linear in height."""
+    """Paint rows begin to end of one column from texels that start at texel row `low`; linear in height."""
     whole, beyond = begin + (begin < top), end - (end > bottom)  # the rows that the wall covers from edge to edge
     if whole > begin:
         _blend(image[3 * begin :], stretch, begin, top, bottom, per_row, low, last)
@@ -163,7 +163,7 @@ def _blend(
     low: int,
     last: int,
 ) -> None:
-    """Row r, where the wall begins or ends: over what is behind by the share that it covers."""
+    """Paint row r, in which the wall begins or ends, blended with what is behind by the share that the wall covers."""
     v = min(max((r + 0.5 - top) * per_row - 0.5, 0.0), float(last))
     j = int(v)
     f = np.float32(v - j)
@@ -187,7 +187,7 @@ def _mean_along(
     shade: float,
     stretch: NDArray[np.float32],
 ) -> None:
-    """Mean of `count` values of a strip over fractions u0 to u1 of its length, at least one texel, into stretch."""
+    """Fill `stretch` with `count` values of a strip: the mean over fractions u0 to u1 of its length."""
     a, b = u0 * n_columns, u1 * n_columns
     if b - a < 1.0:
         a = min(max(0.5 * (a + b) - 0.5, 0.0), n_columns - 1.0)
@@ -199,7 +199,7 @@ def _mean_along(
     ia, ib = start + ia * stride, start + ib * stride
     left, left_next = texels[ia : ia + count], texels[ia + stride : ia + stride + count]
     right, right_next = texels[ib : ib + count], texels[ib + stride : ib + stride + count]
-    for j in range(count):  # slices, so that the compiler sees plain vectors
+    for j in range(count):  # over slices, so that the compiler can vectorise
         stretch[j] = right[j] * b0 + right_next[j] * b1 - left[j] * a0 - left_next[j] * a1 + base
 
 
@@ -212,13 +212,13 @@ def expose(
     start: int,
     out: NDArray[np.uint8],
 ) -> None:
-    """Canvas (w, 3 h) to image (h, w, 3): times light, plus noise from the bank, rounded into 0-255."""
+    """From canvas (w, 3 h) to image (h, w, 3): times light, plus noise from the bank, rounded into 0-255."""
     width, height = canvas.shape[0], canvas.shape[1] // 3
     gain, sigma, half = np.float32(light), np.float32(noise), np.float32(0.5)
     row = np.empty(3 * width, np.float32)
     flat = out.reshape(height, 3 * width)
     for r in range(height):
-        for c in range(width):  # turned over first, so that the compiler sees plain vectors below
+        for c in range(width):  # transposed first, so that the compiler can vectorise below
             for channel in range(3):
                 row[3 * c + channel] = canvas[c, 3 * r + channel]
         first = start + 3 * width * r

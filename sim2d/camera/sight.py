@@ -1,4 +1,4 @@
-"""What lies on the camera's rays: the walls that may be seen at all, and what a round lens meets of them."""
+"""The camera's rays: which walls may be visible at all, and which of them a round lens sees."""
 
 from __future__ import annotations
 
@@ -11,14 +11,16 @@ from numpy.typing import NDArray
 from sim2d.camera.column_hits import MAX_HITS, NEAR_M
 from sim2d.geometry.wall_index import FAR, WallIndex, crossing, enter
 
-MOST_FLAT_RAD = 2.4  # a straight picture of more would stretch its edges beyond use
-_WITHIN = 1e-9  # only a wall that is met this far from its ends is sure to hide what is behind
+MOST_FLAT_RAD = 2.4  # widest view of a flat lens: a wider one would stretch the edges of the image too much
+_WITHIN = 1e-9  # only a wall that is met at least this far from its ends is sure to hide what is behind
 
 
 def lens_rays(width: int, fov_rad: float) -> tuple[NDArray[np.float64], float]:
-    """(w + 1, 2, 2): per column its middle and left edge, ahead and to the left; and the focal length in pixels.
+    """(w + 1, 2, 2): for each column the rays of its middle and left edge, (ahead, left); and the focal length in
+    pixels.
 
-    Flat up to MOST_FLAT_RAD: all have length 1 ahead, so that a ray's length counts depth. Wider, a round lens: length 1.
+    Up to MOST_FLAT_RAD the lens is flat: all rays have 1 as their component ahead, so that multiples of a ray count
+    depth. A wider lens is round: all rays have length 1, so that multiples count distance.
     """
     column = np.arange(width + 1)[:, None] + np.array([0.5, 0.0])
     if fov_rad <= MOST_FLAT_RAD:
@@ -42,9 +44,10 @@ def seen_walls(
     mark: int,
     seen: NDArray[np.int64],
 ) -> int:
-    """All walls in the cells that the columns' middle rays pass on their way to the first full wall, growing numbers.
+    """All walls in the cells that the columns' middle rays pass on their way to the first full wall, in ascending
+    order.
 
-    marks: (n,) scratch, none of it `mark`. seen: (>= n,) the answer. Returns how many.
+    marks: (n,) scratch, none of it equal to `mark`. seen: (>= n,) is filled with the walls' numbers. Returns how many.
     """
     n = 0
     cos, sin = math.cos(heading), math.sin(heading)
@@ -112,7 +115,7 @@ def round_hits(
             k = min(n, MAX_HITS - 1)
             while k > 0 and hits[c, k - 1, 0] < inverse:
                 walls[c, k] = walls[c, k - 1]
-                for part in range(3):  # not as rows: to copy rows takes numba three seconds to compile
+                for part in range(3):  # one by one: copying rows takes numba three seconds to compile
                     hits[c, k, part] = hits[c, k - 1, part]
                 k -= 1
             ax, ay = segments[i, 0] - x, segments[i, 1] - y
@@ -133,7 +136,7 @@ def _along(
     sin: float,
     middle: float,
 ) -> float:
-    """Where a column's edge meets a wall, as a fraction of its length; its end where the edge passes beside it."""
+    """Where the ray of a column's edge meets a wall, as a fraction of its length, limited to the wall's ends."""
     ux, uy = ray[0] * cos - ray[1] * sin, ray[0] * sin + ray[1] * cos
     px, py = segments[i, 0] - x, segments[i, 1] - y
     ex, ey = segments[i, 2] - segments[i, 0], segments[i, 3] - segments[i, 1]

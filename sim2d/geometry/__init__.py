@@ -1,1 +1,1 @@
-"""Points, segments and rays in the plane, and cells that hang together. Knows no world."""
+"""Points, segments and rays in the plane, and connected cells of a grid. It knows nothing of worlds."""

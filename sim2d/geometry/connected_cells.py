@@ -1,4 +1,4 @@
-"""Which cells of a grid are connected with given ones: rows as runs of free cells, runs joined where they touch."""
+"""Which cells of a grid are connected with given ones: rows are cut into runs of free cells, touching runs joined."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 @njit(cache=True, nogil=True)
 def connected(free: NDArray[np.bool_], seeds: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """All free cells from which a way over free cells, corners too, leads to one of `seeds` (n, 2), rows and columns."""
+    """All free cells that are connected, across edges or corners, with one of `seeds`, (n, 2) rows and columns."""
     n_y, n_x = free.shape
     most = n_y * (n_x // 2 + 1)
     begin, end = np.empty(most, np.int32), np.empty(most, np.int32)  # run k of a row: columns begin to end - 1
     parent = np.empty(most, np.int32)
-    first = np.zeros(n_y + 1, np.int64)  # run of each row
+    first = np.zeros(n_y + 1, np.int64)  # the first run of each row
     n = 0
     for j in range(n_y):
         row = free[j]
@@ -56,7 +56,7 @@ def _chosen(
     parent: NDArray[np.int32],
     n: int,
 ) -> NDArray[np.bool_]:
-    """Which of the n runs stand for all that hangs together with a seed."""
+    """Which of the n runs are roots of a part that contains a seed."""
     wanted = np.zeros(n, np.bool_)
     for s in range(seeds.shape[0]):
         for k in range(first[seeds[s, 0]], first[seeds[s, 0] + 1]):

@@ -1,4 +1,4 @@
-"""Distances in the plane, compiled: from a point to segments, along a ray to segments, inside a ring. And what an edit moved."""
+"""Compiled geometry in the plane: distances to segments, rays, points in a ring; and what an edit has changed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 @njit(cache=True, nogil=True)
 def nearest_segment(segments: NDArray[np.float64], x: float, y: float) -> tuple[int, float]:
-    """Number of the segment nearest to (x, y) and its distance, metres. `segments` is (n, 4), n > 0."""
+    """The number of the segment nearest to (x, y), and its distance (m). segments: (n, 4), n > 0."""
     best = -1
     best_squared = math.inf
     for i in range(segments.shape[0]):
@@ -29,7 +29,7 @@ def nearest_segment(segments: NDArray[np.float64], x: float, y: float) -> tuple[
 
 @njit(cache=True, nogil=True)
 def ray_length(segments: NDArray[np.float64], x: float, y: float, angle: float, farthest: float) -> float:
-    """Metres from (x, y) along `angle` to the first segment, at most `farthest`.
+    """Distance (m) from (x, y) along `angle` (rad) to the first segment, at most `farthest`.
 
     Solves p + t d = a + s e for each segment a, e by cross products: t = (a-p) x e / d x e, s = (a-p) x d / d x e.
     """
@@ -52,7 +52,7 @@ def ray_length(segments: NDArray[np.float64], x: float, y: float, angle: float, 
 
 @njit(cache=True, nogil=True)
 def inside_ring(ring: NDArray[np.float64], x: float, y: float) -> bool:
-    """Whether (x, y) is inside the closed ring (k, 2): an odd number of its edges lie to the right."""
+    """Whether (x, y) is inside the closed ring (k, 2): a ray to the right then crosses an odd number of edges."""
     inside = False
     j = ring.shape[0] - 1
     for i in range(ring.shape[0]):
@@ -73,7 +73,7 @@ def free_cells(
 ) -> NDArray[np.bool_]:
     """(len(ys), len(xs)): cells whose centre is in the ring and at least `radius` metres from every segment.
 
-    xs, ys: evenly spaced, growing. Touches only the cells in the ring and those around a segment.
+    xs, ys: evenly spaced, ascending. Only cells in the ring and around the segments are looked at.
     """
     out = np.zeros((ys.size, xs.size), np.bool_)
     _fill_ring(ring, xs, ys, out)
@@ -101,7 +101,7 @@ def free_cells(
 def _fill_ring(
     ring: NDArray[np.float64], xs: NDArray[np.float64], ys: NDArray[np.float64], out: NDArray[np.bool_]
 ) -> None:
-    """`inside_ring` of every cell, a row at a time: x is inside where an odd number of edges crosses right of it."""
+    """`inside_ring` for every cell, row by row: x is inside if an odd number of edges cross the row beyond it."""
     crossings = np.empty(ring.shape[0])
     for j in range(ys.size):
         y, n, last = ys[j], 0, ring.shape[0] - 1
@@ -109,7 +109,7 @@ def _fill_ring(
             xi, yi, xj, yj = ring[i, 0], ring[i, 1], ring[last, 0], ring[last, 1]
             if (yi > y) != (yj > y):
                 crossing = (xj - xi) * (y - yi) / (yj - yi) + xi
-                at = n  # sorted in by hand: they are few, and numpy's sort takes numba two seconds to compile
+                at = n  # insertion sort: they are few, and numpy's sort takes numba two seconds to compile
                 while at > 0 and crossings[at - 1] > crossing:
                     crossings[at] = crossings[at - 1]
                     at -= 1
@@ -124,10 +124,10 @@ def _fill_ring(
 
 
 def differing(a: NDArray[np.float64], b: NDArray[np.float64]) -> list[tuple[float, ...]]:
-    """The rows that are in one of two lists of segments, (n, 4) and (m, 4), and not in the other; in order."""
+    """The rows that are in only one of two lists of segments, (n, 4) and (m, 4), sorted."""
     most = min(len(a), len(b))
     same = np.append((a[:most] == b[:most]).all(axis=1), False)
-    first = int(np.argmin(same))  # what is the same before it and after it need not be compared one by one
+    first = int(np.argmin(same))  # equal rows at the beginning and at the end are skipped quickly
     same = np.append((a[len(a) - most :] == b[len(b) - most :]).all(axis=1)[first:][::-1], False)
     last = int(np.argmin(same))
     mine, others = ({tuple[float, ...](row) for row in part[first : len(part) - last].tolist()} for part in (a, b))

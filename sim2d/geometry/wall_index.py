@@ -1,4 +1,4 @@
-"""Which walls are near: a uniform grid, walked along a ray (Amanatides, Woo 1987), so that walls far away cost nothing."""
+"""Which walls are near: a uniform grid that rays walk through (Amanatides, Woo 1987); distant walls cost nothing."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FAR = 1e18
 
 
 class WallIndex(NamedTuple):
-    """Segments sorted into square cells. `first[c]` to `first[c + 1]` are the places in `items` of those in cell c."""
+    """Segments sorted into square cells. items[first[c] : first[c + 1]] are the numbers of the segments in cell c."""
 
     segments: NDArray[np.float64]  # (n, 4)
     x0: float
@@ -28,7 +28,7 @@ class WallIndex(NamedTuple):
 
 
 def build_index(segments: NDArray[np.float64]) -> WallIndex:
-    """The index of (n, 4) segments; none at all are allowed."""
+    """The index of (n, 4) segments; n may be 0."""
     if len(segments) == 0:
         return WallIndex(np.zeros((0, 4)), 0.0, 0.0, 1.0, 1, 1, np.zeros(2, np.int64), np.zeros(0, np.int64))
     xs, ys = segments[:, 0::2], segments[:, 1::2]
@@ -55,7 +55,7 @@ def _sort_in(
     first: NDArray[np.int64],
     items: NDArray[np.int64],
 ) -> None:
-    """Without items: count them into `first`. With items: fill them, `first` being what was counted."""
+    """Called twice: with empty `items` it counts the entries of each cell into `first`; then it fills `items`."""
     counting = items.size == 0
     at = first.copy()
     for i in range(segments.shape[0]):
@@ -85,7 +85,8 @@ def _sort_in(
 
 @njit(cache=True, nogil=True, inline="always")
 def crossing(segments: NDArray[np.float64], i: int, x: float, y: float, ux: float, uy: float) -> tuple[float, float]:
-    """Where the ray from (x, y) along (ux, uy) meets segment i: t along the ray and s in 0-1 along the segment, or FAR.
+    """Where the ray from (x, y) along (ux, uy) meets segment i: t along the ray, s in 0-1 along the segment; (FAR, 0):
+    nowhere.
 
     Solves p + t d = a + s e by cross products: t = (a-p) x e / d x e, s = (a-p) x d / d x e.
     """
@@ -102,7 +103,7 @@ def crossing(segments: NDArray[np.float64], i: int, x: float, y: float, ux: floa
 
 @njit(cache=True, nogil=True)
 def enter(index: WallIndex, x: float, y: float, ux: float, uy: float) -> tuple[bool, int, int, float, float]:
-    """The cell in which a ray's walk begins: whether there is one, column, row, and t of its next edges in x and in y."""
+    """Where a ray's walk begins: whether it meets the grid, first column and row, t of its next edges in x and y."""
     t = 0.0
     right, top = index.x0 + index.n_x * index.cell, index.y0 + index.n_y * index.cell
     for p, u, low, high in ((x, ux, index.x0, right), (y, uy, index.y0, top)):
@@ -123,7 +124,7 @@ def enter(index: WallIndex, x: float, y: float, ux: float, uy: float) -> tuple[b
 
 @njit(cache=True, nogil=True)
 def first_wall(index: WallIndex, x: float, y: float, ux: float, uy: float, farthest: float) -> tuple[int, float, float]:
-    """The first segment on a ray: its number (-1: none), t (at most `farthest`, in lengths of (ux, uy)) and s along it."""
+    """The first segment on a ray: number (-1: none), t (in lengths of (ux, uy), at most `farthest`), s along it."""
     best, shortest, along = -1, farthest, 0.0
     inside, column, row, next_x, next_y = enter(index, x, y, ux, uy)
     if not inside:
@@ -151,7 +152,7 @@ def first_wall(index: WallIndex, x: float, y: float, ux: float, uy: float, farth
 
 @njit(cache=True, nogil=True)
 def nearest_within(index: WallIndex, x: float, y: float, reach: float) -> float:
-    """Metres from (x, y) to the nearest segment, `reach` when all are farther."""
+    """Distance (m) from (x, y) to the nearest segment; `reach` if all are farther away."""
     nearest = reach * reach
     left, right = int((x - reach - index.x0) / index.cell), int((x + reach - index.x0) / index.cell)
     low, high = int((y - reach - index.y0) / index.cell), int((y + reach - index.y0) / index.cell)
@@ -165,7 +166,7 @@ def nearest_within(index: WallIndex, x: float, y: float, reach: float) -> float:
 
 @njit(cache=True, nogil=True, inline="always")
 def squared_distance(segments: NDArray[np.float64], i: int, x: float, y: float) -> float:
-    """Square metres from (x, y) to segment i."""
+    """Squared distance (m²) from (x, y) to segment i."""
     ax, ay = segments[i, 0], segments[i, 1]
     dx, dy = segments[i, 2] - ax, segments[i, 3] - ay
     along = min(max(((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy), 0.0), 1.0)

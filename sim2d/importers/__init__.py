@@ -1,4 +1,4 @@
-"""Floor plans that others have made, as worlds."""
+"""Importing floor plans from elsewhere as worlds."""
 
 from sim2d.importers.import_world import import_file, import_world, open_world
 

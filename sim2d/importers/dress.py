@@ -1,4 +1,4 @@
-"""Paint, posters, doors, shelves: bare walls get looks of their own, from a seed, so that a camera can tell them apart."""
+"""Decorates bare walls with paint, posters, doors and shelves, from a seed, so that a camera can tell them apart."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sim2d.world.world import Panel, Rgb, Wall
 
 Point = tuple[float, float]
-Side = Literal["left", "right", "both", "each"]  # both: the same on either side; each: two of its own
+Side = Literal["left", "right", "both", "each"]  # both: the same looks on both sides; each: different ones
 HEIGHT_M = 2.6
 _PAINTS: tuple[Rgb, ...] = (
     (207, 198, 178), (169, 185, 192), (196, 204, 190), (214, 186, 160), (150, 160, 176), (222, 220, 212),
@@ -23,7 +23,7 @@ _COLOURS: tuple[Rgb, ...] = (
     (166, 123, 75), (0, 72, 113), (45, 45, 55), (166, 164, 157), (204, 121, 167), (240, 228, 66), (213, 94, 0),
     (0, 114, 78), (235, 235, 228), (92, 70, 48), (86, 180, 233), (110, 24, 40),
 )  # fmt: skip
-# texture: chance, width, lower edge, upper edge (m, least and most)
+# texture: probability, then width, lower edge and upper edge (m, least and most)
 _KINDS = {
     "poster": (0.4, (0.4, 1.1), (0.1, 0.6), (1.1, 1.7)),
     "shelf": (0.14, (0.5, 0.9), (0.05, 0.2), (1.2, 1.9)),
@@ -34,15 +34,15 @@ _KINDS = {
 }
 _NAMES = tuple(_KINDS)
 _CHANCES = np.array([kind[0] for kind in _KINDS.values()])
-_SHORT_M = 0.55  # what is shorter has room for paint alone
+_SHORT_M = 0.55  # shorter walls get paint only
 
 
 class Dresser:
-    """Gives walls their looks, one line of them after the other; the same seed and lines, the same looks."""
+    """Gives walls their looks, line by line. The same seed and the same lines give the same looks."""
 
     def __init__(self, seed: int) -> None:
         self._rng = np.random.default_rng(seed)
-        self._seed = int(self._rng.integers(1 << 20)) << 20  # of the next panel
+        self._seed = int(self._rng.integers(1 << 20)) << 20  # of the last panel
 
     def line(
         self,
@@ -52,14 +52,14 @@ class Dresser:
         height: float = HEIGHT_M,
         outer: bool = False,
     ) -> list[Wall]:
-        """Walls from point to point (k, 2), to the millimetre; a ring ends where it began. `side` is the one that is seen."""
+        """Walls from point to point, (k, 2), to the millimetre; a ring repeats its first. side: which is seen."""
         rng = self._rng
         paint = _tone(rng, _PAINTS)
         patch, left = paint, 0.0
         walls: list[Wall] = []
         for (x1, y1), (x2, y2) in pairwise(np.round(points, 3).tolist()):
             length = math.hypot(x2 - x1, y2 - y1)
-            if left <= 0.0:  # along a row of short walls the paint changes now and then
+            if left <= 0.0:  # along a row of short walls the paint changes every 0.3 to 1 m
                 patch, left = _tone(rng, _COLOURS if rng.random() < 0.5 else _PAINTS), float(rng.uniform(0.3, 1.0))
             left -= length
             long = length >= _SHORT_M
@@ -68,12 +68,12 @@ class Dresser:
         return walls
 
     def next_seed(self) -> int:
-        """Of a panel; never the same twice."""
+        """The seed of another panel, never the same twice."""
         self._seed += 1
         return self._seed
 
     def _panels(self, length: float, side: Side, height: float) -> Iterator[Panel]:
-        """About one a metre, with gaps between them."""
+        """The panels of one wall, about one per metre, with gaps between them."""
         if side == "each":
             yield from self._panels(length, "left", height)
             yield from self._panels(length, "right", height)
@@ -91,7 +91,7 @@ class Dresser:
 
 
 def _tone(rng: np.random.Generator, colours: tuple[Rgb, ...]) -> Rgb:
-    """One of them, lighter or darker: no two alike."""
+    """One of the colours, made lighter or darker at random."""
     base = np.array(colours[int(rng.integers(len(colours)))]) * rng.uniform(0.75, 1.12)
     r, g, b = (int(min(level, 255)) for level in base)
     return r, g, b

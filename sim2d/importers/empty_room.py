@@ -1,4 +1,4 @@
-"""A room with nothing in it but a lamp and a place to start, for drawing an office of one's own."""
+"""An empty room with a lamp and a start, as a beginning for drawing one's own office."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ SMALLEST_M, LARGEST_M = 2.0, 200.0
 
 
 def empty_room(name: str, title: str, width: float, depth: float) -> World:
-    """Outer walls from (0, 0) to (width, depth) metres, a lamp in the middle, the start beside it; its looks come from its name.
+    """Outer walls from (0, 0) to (width, depth) metres, a lamp in the middle, the start west of it.
 
-    ValueError when it is too small or too large.
+    The name is the seed of the walls' looks. ValueError if the room is too small or too large.
     """
     for what, size in (("width", width), ("depth", depth)):
         if not SMALLEST_M <= size <= LARGEST_M:

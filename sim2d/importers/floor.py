@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from sim2d.world.world_file import WorldError
 
 STARTS = 4
-_AMPLE_M = 0.6  # from the nearest wall to a start
-_TURNS = 16
+_AMPLE_M = 0.6  # distance from a start to the nearest wall, where there is room for it
+_TURNS = 16  # headings tried for a start
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,11 +27,11 @@ class Floor:
 def choose_floor(name: str, free: NDArray[np.bool_], scale_m: float, radius_m: float) -> Floor:
     """The largest connected part of `free` (row 0 at the bottom) on which a robot of this radius can drive.
 
-    [ours] What covers most of the picture's rim is the paper around a plan, unless it is more than ten times as large as
-    anything else: test_importers.py::test_the_paper_around_a_plan_is_not_its_floor.
+    [ours] A part that covers most of the picture's rim is taken for the paper around the plan, unless it is more than
+    ten times as large as every other part: test_importers.py::test_the_paper_around_a_plan_is_not_its_floor.
     """
     clear = cv2.distanceTransform(np.pad(free, 1).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
-    clear_m = (clear - 1.5) * scale_m  # to the pixel's edge, and a pixel for walls that are simplified
+    clear_m = (clear - 1.5) * scale_m  # to the pixel's edge, less one pixel, since simplified walls may stray by that
     count, rooms = _components(clear_m >= radius_m, 8)
     if count == 1:
         raise WorldError(
@@ -53,7 +53,7 @@ def choose_floor(name: str, free: NDArray[np.bool_], scale_m: float, radius_m: f
 
 
 def _components(cells: NDArray[np.bool_], connectivity: int) -> tuple[int, NDArray[np.int32]]:
-    """How many parts hang together, 0 being what is in none, and the part of each cell."""
+    """The number of connected parts, counting part 0 (cells in none), and the part of each cell."""
     count, parts = cv2.connectedComponents(cells.astype(np.uint8), connectivity=connectivity)
     return count, np.asarray(parts, np.int32)
 
@@ -61,7 +61,7 @@ def _components(cells: NDArray[np.bool_], connectivity: int) -> tuple[int, NDArr
 def _starts(
     free: NDArray[np.bool_], room: NDArray[np.bool_], clear_m: NDArray[np.float32], scale_m: float
 ) -> NDArray[np.float64]:
-    """The first near the middle of all that is ample, each other one as far as can be from those before."""
+    """(k, 3) starts with ample room: the first near the middle, each other as far as possible from those before."""
     ample = room & (clear_m >= min(_AMPLE_M, 0.8 * float(clear_m[room].max())))
     rows, columns = np.nonzero(ample)
     away = np.hypot(columns - np.median(columns), rows - np.median(rows))
@@ -74,7 +74,7 @@ def _starts(
 
 
 def _longest(free: NDArray[np.bool_], column: int, row: int) -> float:
-    """The heading, of sixteen, with the longest view."""
+    """Of sixteen headings (rad), the one with the longest free way."""
     best, best_way = 0.0, -1
     for k in range(_TURNS):
         angle = 2 * math.pi * k / _TURNS

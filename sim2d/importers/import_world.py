@@ -1,4 +1,4 @@
-"""Floor plans that others have made, as worlds: ROS map_server files, pictures, vector maps; and our own world files."""
+"""Importing worlds: from ROS map_server files, pictures and vector maps, and from our own world files."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from sim2d.world.world import World
 from sim2d.world.world_file import WorldError, load_world, parse_json, world_from_json, world_names
 
 YAMLS = (".yaml", ".yml")
-MOST_BYTES = {".json": 1_000_000, ".yaml": 65_536, ".yml": 65_536}  # of what is uploaded
-MOST_WORLD_BYTES = 10_000_000  # a world of 10,000 walls with posters has 7.7 MB
+MOST_BYTES = {".json": 1_000_000, ".yaml": 65_536, ".yml": 65_536}  # of an uploaded file
+MOST_WORLD_BYTES = 10_000_000  # a world of 10,000 walls with posters takes 7.7 MB
 MOST_PICTURE_BYTES = 16_000_000
-_OCCUPIED, _FREE = 0.65, 0.196  # map_server's own
+_OCCUPIED, _FREE = 0.65, 0.196  # the defaults of map_server
 
 
 def import_world(
     name: str, files: dict[str, bytes], scale_m: float | None = None, seed: int = 0, robot_radius_m: float | None = None
 ) -> World:
-    """The world in the file `name`, one of `files` (name -> contents), which hold all that it refers to.
+    """The world in the file `name`. files: name -> contents, of this file and of all that it refers to.
 
-    scale_m: metres a pixel of a plain picture, for nothing else. seed: of the looks that bare walls get; the same seed,
-    the same world. robot_radius_m: of the robot that will start in it. Nothing is read from or written to the disk.
-    Raises WorldError that names file, line or pixel, value and what would be right.
+    scale_m: metres per pixel, for a plain picture only. seed: for the looks of bare walls; the same seed gives the same
+    world. robot_radius_m: of the robot that will start in it. Nothing is read from or written to the disk.
+    Raises WorldError, which names file, line or pixel, value and what would be right.
     """
     for given, data in files.items():
         limit = _most_bytes(given, data)
@@ -39,7 +39,7 @@ def import_world(
 def import_file(
     path: str | Path, scale_m: float | None = None, seed: int = 0, robot_radius_m: float | None = None
 ) -> World:
-    """The world in a file on the disk; a map_server file's picture lies beside it. Raises WorldError."""
+    """The world in a file on disk. The picture of a map_server file must lie beside it. Raises WorldError."""
     path = Path(path)
     try:
         files = {path.name: path.read_bytes()}
@@ -54,7 +54,7 @@ def import_file(
 def open_world(
     name_or_path: str | Path, scale_m: float | None = None, seed: int = 0, robot_radius_m: float | None = None
 ) -> World:
-    """One of ours by its name, or whatever can be imported from a file. Raises WorldError."""
+    """A world by its name, or anything that can be imported from a file. Raises WorldError."""
     path = Path(name_or_path)
     if str(name_or_path) in dict(world_names()):
         if scale_m is not None:
@@ -101,7 +101,7 @@ def _from_json(name: str, text: str, seed: int, radius: float) -> World:
 
 
 def _most_bytes(name: str, data: bytes) -> int:
-    """How large an uploaded file may be. A world is an object: only what begins like one may be as large as one."""
+    """The largest size of an uploaded file. Only JSON that begins with { can be a world, so only it may be as large."""
     suffix = PurePath(name).suffix.lower()
     if suffix == ".json" and data[:100].lstrip().startswith(b"{"):
         return MOST_WORLD_BYTES

@@ -1,4 +1,4 @@
-"""The `.yaml` beside a ROS map_server picture: a few plain keys, read strictly. It needs no YAML library."""
+"""Reads the `.yaml` beside a ROS map_server picture: a few plain keys, read strictly, without a YAML library."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from sim2d.world.world_file import WorldError
 _KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 _NEEDED = _KEYS[:6]
 _MODES = ("trinary", "scale", "raw")
-SCALES_M = (0.001, 1.0)  # metres a pixel, least and most
+SCALES_M = (0.001, 1.0)  # metres per pixel, least and most
 
 
 @dataclass(frozen=True, slots=True)
 class MapYaml:
-    """What the file says. origin: x, y (m) and yaw (rad) of the picture's lower left corner."""
+    """The contents of the file. origin: x, y (m) and yaw (rad) of the picture's lower left corner."""
 
     image: str
     resolution: float
@@ -28,7 +28,7 @@ class MapYaml:
 
 
 def read_map_yaml(name: str, text: str) -> MapYaml:
-    """Raises WorldError that names file, line, value and what would be right."""
+    """Read the text of a file. Raises WorldError, which names file, line, value and what would be right."""
     found = _pairs(name, text)
     for key in _NEEDED:
         if key not in found:
@@ -55,7 +55,7 @@ def read_map_yaml(name: str, text: str) -> MapYaml:
 
 
 def _pairs(name: str, text: str) -> dict[str, tuple[str, int]]:
-    """Key -> (value, line). Knows `key: value`, quotes, comments, `[a, b, c]` and a list of `- a` lines."""
+    """Key -> (value, line). Understands `key: value`, quotes, comments, `[a, b, c]` and lists of `- a` lines."""
     found: dict[str, tuple[str, int]] = {}
     last = ""
     for number, raw in enumerate(text.lstrip("\ufeff").splitlines(), 1):

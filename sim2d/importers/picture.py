@@ -1,4 +1,4 @@
-"""A picture's bytes as grey levels, within limits that are checked before it is unpacked."""
+"""Reads a picture as grey levels. Its size is checked before it is unpacked."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ _FORMATS = ("PPM", "PNG", "BMP", "JPEG")  # PPM reads .pgm and .pbm, too
 
 
 def read_picture(name: str, data: bytes) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-    """Grey levels (rows, columns), the top row first, the mean of the colours; and where it is not fully opaque.
+    """Grey levels (rows, columns), top row first, each the mean of the three colours; and where a pixel is not fully
+    opaque.
 
-    Raises WorldError when it is none, broken, of more than 8 bits, or too large.
+    Raises WorldError if the data are no picture, broken, of more than 8 bits, or too large.
     """
     try:
         with warnings.catch_warnings():

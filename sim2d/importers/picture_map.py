@@ -1,4 +1,4 @@
-"""Pictures of floor plans as worlds: what is light is floor, what is dark is wall, and what is between lies outside."""
+"""Pictures of floor plans as worlds: light pixels are floor, dark ones are wall, those in between are outside."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from sim2d.importers.trace import ring_area, simplify, trace
 from sim2d.world.world import Wall, World
 from sim2d.world.world_file import WorldError
 
-SPECK_PX = 9  # smaller obstacles are noise
-_SLIVER_PX = 3  # floor narrower than this is a gap between echoes ...
-_SLIVER_M = 0.3  # ... when that is too narrow for any robot
+SPECK_PX = 9  # obstacles with a smaller area, in pixels, are noise
+_SLIVER_PX = 3  # floor narrower than this is taken for a gap between echoes ...
+_SLIVER_M = 0.3  # ... if it is also too narrow for any robot
 
 
 def picture_world(
     name: str, data: bytes, about: MapYaml, seed: int, radius_m: float, speck_px: int = SPECK_PX
 ) -> World:
-    """The world that a picture shows. Raises WorldError."""
+    """The world that a picture shows. about: scale, origin and thresholds. Raises WorldError."""
     grey, veiled = read_picture(name, data)
     free = free_pixels(grey, veiled, about)[::-1]
     if not free.any():
@@ -36,7 +36,7 @@ def picture_world(
     rings = [simplify(ring) for ring in rings if ring_area(ring) > 0 or -ring_area(ring) >= speck_px]
     dresser, walls = Dresser(seed), list[Wall]()
     for ring in rings:
-        thin = len(ring) == 2  # nothing but a line is left of it
+        thin = len(ring) == 2  # simplified to a line
         points = ring if thin else np.concatenate([ring, ring[:1]])
         walls += dresser.line(_placed(points, about), "both" if thin else "left", outer=ring is rings[0])
     starts = np.column_stack([_placed(floor.starts[:, :2], about), floor.starts[:, 2] + about.origin[2]])
@@ -44,8 +44,8 @@ def picture_world(
 
 
 def free_pixels(grey: NDArray[np.uint8], veiled: NDArray[np.bool_], about: MapYaml) -> NDArray[np.bool_]:
-    """What is floor, by map_server's rules. veiled: not fully opaque, unknown in the modes that look at it."""
-    if about.mode == "raw":  # the pixel is the occupancy in per cent, above 100 unknown
+    """Which pixels are floor, by the rules of map_server. veiled: not fully opaque; unknown in mode `scale`."""
+    if about.mode == "raw":  # the pixel is the occupancy in per cent; above 100 it is unknown
         return (grey <= 100) & (grey / 100.0 < about.free)
     occupied = (grey if about.negate else 255 - grey.astype(np.float64)) / 255.0
     free = occupied < about.free
@@ -53,7 +53,7 @@ def free_pixels(grey: NDArray[np.uint8], veiled: NDArray[np.bool_], about: MapYa
 
 
 def without_slivers(free: NDArray[np.bool_], scale_m: float) -> NDArray[np.bool_]:
-    """Without floor that is at most two pixels wide: rays that a scanner sent out of a window, gaps in a pitted wall."""
+    """Remove floor that is at most two pixels wide: rays of a scanner through a window, gaps in a pitted wall."""
     if (_SLIVER_PX - 1) * scale_m > _SLIVER_M:
         return free
     kernel = np.ones((_SLIVER_PX, _SLIVER_PX), np.uint8)
@@ -73,7 +73,7 @@ def _no_floor(grey: NDArray[np.uint8], about: MapYaml) -> str:
 
 
 def _placed(pixels: NDArray[np.generic], about: MapYaml) -> NDArray[np.float64]:
-    """Pixels from the lower left corner to metres, to the millimetre."""
+    """From pixels (k, 2), counted from the lower left corner, to metres, rounded to the millimetre."""
     x, y, yaw = about.origin
     c, s = math.cos(yaw), math.sin(yaw)
     metres = pixels.astype(np.float64) * about.resolution

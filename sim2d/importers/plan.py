@@ -15,7 +15,10 @@ from sim2d.world.world_file import WorldError
 
 
 def plan_world(name: str, walls: tuple[Wall, ...], starts: NDArray[np.float64], what: str, radius_m: float) -> World:
-    """name: of the file. starts: (k, 3) x, y (m), heading (rad). Raises WorldError when the walls make no world."""
+    """A checked World. name: of the file; what: its kind, in words; starts: (k, 3) x, y (m), heading (rad).
+
+    Raises WorldError if the walls do not make a valid world.
+    """
     stem = re.sub(r"[^A-Za-z0-9_-]+", "-", PurePath(name).name.split(".")[0]).strip("-")[:40] or "plan"
     xy = np.array([(w.x1, w.y1) for w in walls])
     size = np.ptp(xy, axis=0)

@@ -1,4 +1,4 @@
-"""From a picture to walls: the borders of its floor, pixel by pixel, then with as few corners as a tolerance allows."""
+"""From a picture to walls: the borders of the floor are traced along the pixels, then simplified within a tolerance."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ _DY = np.array([0, 1, 0, -1])
 
 
 def trace(floor: NDArray[np.bool_]) -> list[NDArray[np.int32]]:
-    """The borders of the floor as closed rings of corners (k, 2), in pixels, row 0 at the bottom, pixel (0, 0) from 0 to 1.
+    """The borders of the floor as closed rings of corners (k, 2), in pixels; row 0 is at the bottom, pixel (0, 0) spans
+    0 to 1.
 
-    They run along the pixels' edges with the floor on their left: counter-clockwise around it, clockwise around what
-    stands on it. Obstacles that touch at a corner hang together, so a slanting line of single pixels is a closed wall.
+    The rings run along the edges of pixels with the floor on their left: counter-clockwise around the floor, clockwise
+    around obstacles. Obstacles that touch at a corner are connected, so a slanting line of single pixels is a closed
+    wall.
     """
     padded = np.zeros((floor.shape[0] + 2, floor.shape[1] + 2), np.bool_)
     padded[1:-1, 1:-1] = floor
@@ -25,10 +27,10 @@ def trace(floor: NDArray[np.bool_]) -> list[NDArray[np.int32]]:
 
 
 def simplify(ring: NDArray[np.int32], into_floor: float = 1.0, into_wall: float = 1.5) -> NDArray[np.int32]:
-    """The ring with the fewest corners, all of them its own, that strays from it by at most so many pixels.
+    """The ring with the fewest corners, taken from the given ones, that keeps within the tolerances.
 
-    Imai and Iri 1988: the shortest path over all chords that keep the tolerance, begun at its first corner. A thin thing
-    may end as two corners.
+    into_floor, into_wall: how far (pixels) it may stray to either side of the border. Imai and Iri 1988: the shortest
+    path over all chords within the tolerances, begun at the lowest corner. A thin obstacle may end up as two corners.
     """
     start = int(np.lexsort((ring[:, 0], ring[:, 1]))[0])
     closed = np.concatenate([ring[start:], ring[: start + 1]]).astype(np.float64)
@@ -36,16 +38,16 @@ def simplify(ring: NDArray[np.int32], into_floor: float = 1.0, into_wall: float 
 
 
 def ring_area(ring: NDArray[np.generic]) -> float:
-    """Area that a ring encloses, positive when it runs counter-clockwise."""
+    """The area that a ring encloses; positive if it runs counter-clockwise."""
     x, y = ring[:, 0].astype(np.float64), ring[:, 1].astype(np.float64)
     return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
 @njit(cache=True, nogil=True)
 def _follow(floor: NDArray[np.bool_]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """All rings of a padded picture, one after the other, and where each ends. Every ring has an edge that heads for +x."""
+    """All rings of a padded picture, one after the other, and where each ends. An edge that runs in +x finds each."""
     rows, columns = floor.shape
-    walked = np.zeros((rows, columns), np.bool_)  # edges below a pixel, heading for +x
+    walked = np.zeros((rows, columns), np.bool_)  # whether the lower edge of a pixel, which runs in +x, is in a ring
     edges = _edges(floor)
     points = np.empty((edges, 2), np.int32)
     ends = np.empty(edges // 4 + 1, np.int64)
@@ -66,7 +68,7 @@ def _follow(floor: NDArray[np.bool_]) -> tuple[NDArray[np.int32], NDArray[np.int
                     d = (d + 1) % 4
                 elif _ahead(floor, x, y, d, 0):
                     d = (d + 3) % 4
-            if last == 0:  # it began in the middle of an edge
+            if last == 0:  # the ring began in the middle of a straight side
                 first = 0 if rings == 0 else ends[rings - 1]
                 if points[first, 1] == points[n - 1, 1] and n - first > 4:
                     points[first] = points[n - 1]
@@ -78,7 +80,7 @@ def _follow(floor: NDArray[np.bool_]) -> tuple[NDArray[np.int32], NDArray[np.int
 
 @njit(cache=True, nogil=True)
 def _edges(floor: NDArray[np.bool_]) -> int:
-    """How many sides of pixels lie between floor and none."""
+    """How many edges of pixels lie between floor and not floor."""
     edges = 0
     for j in range(1, floor.shape[0] - 1):
         for i in range(1, floor.shape[1] - 1):
@@ -101,10 +103,11 @@ def _ahead(floor: NDArray[np.bool_], x: int, y: int, d: int, left: int) -> bool:
 
 @njit(cache=True, nogil=True)
 def _fewest(points: NDArray[np.float64], into_floor: float, into_wall: float) -> NDArray[np.int64]:
-    """Numbers of the points of the shortest path from the first to the last, without the last.
+    """Numbers of the points on the shortest path from the first point to the last, without the last.
 
-    A chord may leave i in the directions that pass each point between at most `into_floor` to its right and `into_wall`
-    to its left; the wedge of those shrinks from point to point, and where it is empty no chord reaches.
+    A chord from point i must pass every point in between so that this lies at most `into_floor` to its right or
+    `into_wall` to its left. The wedge of such directions shrinks from point to point; once it is empty, no chord
+    reaches farther.
     """
     n = points.shape[0]
     hops = np.full(n, n, np.int64)

@@ -18,12 +18,12 @@ from sim2d.world.world_check import MOST_M
 from sim2d.world.world_file import WorldError
 from sim2d.world.world_schema import MOST_WALLS
 
-MARGIN_M = 0.3  # around the outermost walls: too narrow for the robot to get behind them
-_LEAST_M = 0.01  # shorter segments are left out; files of this kind have some of length 0
+MARGIN_M = 0.3  # from the outermost walls to the fence around them: too narrow for the robot
+_LEAST_M = 0.01  # shorter segments are left out; such files may contain some of length 0
 
 
 def vector_world(name: str, text: str, items: list[Any], seed: int, radius_m: float) -> World:
-    """Each item is {"p0": {"x", "y"}, "p1": {"x", "y"}}, [x1, y1, x2, y2] or [[x1, y1], [x2, y2]]. Raises WorldError."""
+    """items: each {"p0": {"x", "y"}, "p1": {"x", "y"}}, [x1, y1, x2, y2] or [[x1, y1], [x2, y2]]. Raises WorldError."""
     if len(items) > MOST_WALLS:
         raise WorldError(f"{name}: {len(items)} segments; at most {MOST_WALLS}")
     segments = np.array([_segment(name, text, i, item) for i, item in enumerate(items)]).reshape(-1, 4)
@@ -48,7 +48,7 @@ def vector_world(name: str, text: str, items: list[Any], seed: int, radius_m: fl
 
 
 def _numbers(item: Any) -> list[Any] | None:
-    """What may be the two ends of a segment, in one of three forms; None: nothing of the kind."""
+    """The numbers of an item in one of the three forms, not yet checked; None if it has none of these forms."""
     if isinstance(item, dict):
         ends: list[Any] = [cast("dict[str, Any]", item).get(end) for end in ("p0", "p1")]
         return (
@@ -76,7 +76,7 @@ def _segment(name: str, text: str, i: int, item: Any) -> tuple[float, ...]:
 def _free(
     segments: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64], cell: float
 ) -> NDArray[np.bool_]:
-    """The plan as pixels of `cell` metres, row 0 at the bottom: False where a wall runs."""
+    """The plan as pixels of `cell` metres, row 0 at the bottom; False where there is a wall."""
     columns, rows = (math.ceil(k) for k in (high - low) / cell)
     plan = np.ones((rows, columns), np.uint8)
     ends = np.floor((segments.reshape(-1, 2) - low) / cell).astype(np.int32).reshape(-1, 2, 2)

@@ -1,1 +1,1 @@
-"""The robot's body and what it can run into, in pymunk."""
+"""The robot's body, and the obstacles it can run into, in pymunk."""

@@ -1,8 +1,8 @@
 """The robot's body: a disc on two driven wheels, in pymunk.
 
-A kinematic body moves as the wheels are told; a pivot and a gear with bounded force drag the disc along. Against a wall
-the force gives way and the disc stops there. Setting the disc's velocity would press it 10 cm into the wall. On free floor
-there is nothing to give way to: the disc goes where the wheels roll, and pymunk is not asked.
+A kinematic body, the wheels, moves as commanded. A pivot and a gear with bounded force drag the disc along. At a wall
+the force is not enough, and the disc stops there; setting the disc's velocity instead would press it 10 cm into the
+wall. On free floor the disc goes where the wheels roll, and pymunk is not needed.
 """
 
 from __future__ import annotations
@@ -18,31 +18,31 @@ from disk import kind
 from sim2d.params import SimParams
 
 _MASS_KG = 8.0
-_GRIP_N = 80.0  # the wheels slip beyond it: 10 m/s^2, far above what the motors ask for
+_GRIP_N = 80.0  # beyond this force the wheels slip: 10 m/s^2, far more than the motors ask for
 _GRIP_NM = 20.0
 _FRICTION = 0.3
 Pose = tuple[float, float, float]
-_STEPS_PER_COMMAND = 4  # the motor controller runs at a quarter of the physics rate: setting velocities is what costs
+_STEPS_PER_COMMAND = 4  # the motor controller runs at a quarter of the physics rate: setting velocities is slow
 
 
 @kind("robot/1")
 @dataclass(slots=True)
 class Robot:
-    """Owned by one simulator. Poses in metres and radians. It is all that a tick leaves to the next."""
+    """The whole state of the body between two ticks. Poses in metres and radians, office frame."""
 
-    pose: Pose  # as of the last tick; its heading is not wrapped
+    pose: Pose  # at the end of the last tick; the heading is not wrapped
     velocity: tuple[float, float] = (0.0, 0.0)  # of the disc, m/s, office frame
     spin: float = 0.0  # of the disc, rad/s
-    speed: float = 0.0  # what the wheels do now, m/s
-    yaw_rate: float = 0.0  # rad/s
+    speed: float = 0.0  # of the wheels, m/s, positive forwards
+    yaw_rate: float = 0.0  # of the wheels, rad/s, positive counter-clockwise
 
     def drive(
         self, speed: float, yaw_rate: float, params: SimParams, slowness: float, space: pymunk.Space | None = None
     ) -> None:
-        """One tick towards these velocities (m/s, rad/s), as fast as the motors can change them.
+        """Drive for one tick. The motors change the wheels' velocities towards these (m/s, rad/s) as fast as they can.
 
-        slowness: the share of them that the floor lets through; of both, so that curves keep their shape. space: with what the
-        disc could touch in this tick; None: nothing is so near.
+        slowness: the share of both velocities that the floor lets through, so that curves keep their shape.
+        space: holds everything that the disc could touch in this tick; None: nothing is so near.
         """
         speed = slowness * min(max(speed, -params.max_speed), params.max_speed)
         yaw_rate = slowness * min(max(yaw_rate, -params.max_yaw_rate), params.max_yaw_rate)
@@ -59,7 +59,7 @@ class Robot:
     def _push(
         self, space: pymunk.Space, motors: tuple[float, float, float, float], params: SimParams, dt: float
     ) -> None:
-        """The disc among what it can touch, dragged along by the wheels."""
+        """Drive near obstacles: the wheels drag the disc along, and pymunk lets it collide."""
         body, wheels = self._put_into(space, params.robot_radius_m)
         period, v, w = _STEPS_PER_COMMAND * dt, self.speed, self.yaw_rate
         for first in range(0, params.substeps, _STEPS_PER_COMMAND):
@@ -73,14 +73,14 @@ class Robot:
         self.velocity, self.spin = (vx, vy), body.angular_velocity
 
     def _put_into(self, space: pymunk.Space, radius: float) -> tuple[pymunk.Body, pymunk.Body]:
-        """The disc and, dragging it, the wheels, which nothing stops."""
+        """Put the disc into the space, and the wheels that drag it. Nothing stops the wheels."""
         body = pymunk.Body(_MASS_KG, pymunk.moment_for_circle(_MASS_KG, 0.0, radius))
         disc = pymunk.Circle(body, radius)
         disc.friction = _FRICTION
         wheels = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
         pivot = PivotJoint(wheels, body, (0.0, 0.0), (0.0, 0.0))
         gear = GearJoint(wheels, body, 0.0, 1.0)
-        pivot.max_bias = gear.max_bias = 0.0  # only velocities are passed on, never positions
+        pivot.max_bias = gear.max_bias = 0.0  # the joints pass on velocities only, never positions
         pivot.max_force, gear.max_force = _GRIP_N, _GRIP_NM
         space.add(body, disc, wheels, pivot, gear)
         body.position, body.angle = self.pose[:2], self.pose[2]
@@ -88,7 +88,7 @@ class Robot:
         return body, wheels
 
     def reach(self, params: SimParams) -> float:
-        """How far (m) from its middle the disc may come within a tick."""
+        """How far (m) from its middle at the start of a tick any part of the disc may come within the tick."""
         return params.robot_radius_m + max(params.max_speed, abs(self.speed)) * params.tick_s
 
 
@@ -96,7 +96,7 @@ class Robot:
 def _commanded(
     v: float, w: float, speed: float, yaw_rate: float, change: float, turn_change: float
 ) -> tuple[float, float]:
-    """What the motors make of the wheels' speeds with one command."""
+    """The wheels' speed and yaw rate after one command of the motor controller, whose change is limited."""
     return v + min(max(speed - v, -change), change), w + min(max(yaw_rate - w, -turn_change), turn_change)
 
 
@@ -114,7 +114,7 @@ def _rolled(
     substeps: int,
     dt: float,
 ) -> tuple[float, float, float, float, float]:
-    """Where the wheels roll within a tick with nothing in their way, and how fast they turn then."""
+    """Pose, speed and yaw rate after a tick with nothing in the way."""
     for first in range(0, substeps, _STEPS_PER_COMMAND):
         v, w = _commanded(v, w, speed, yaw_rate, change, turn_change)
         seconds = min(_STEPS_PER_COMMAND, substeps - first) * dt

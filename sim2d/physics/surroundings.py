@@ -1,4 +1,4 @@
-"""What the robot can run into in one tick, in pymunk: the walls, leaves, boxes and people around it."""
+"""What the robot can run into in one tick, in pymunk: the walls, door leaves, boxes and people around it."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from sim2d.actors.actors import Actors
 from sim2d.world.world import World
 
 _FRICTION = 0.3
-_MARGIN_M = 0.1  # what the solver may push the robot beyond its reach, and more
+_MARGIN_M = 0.1  # more than the solver can push the robot beyond its reach
 
 
 class Surroundings:
-    """Makes the space of a tick.
+    """Makes the pymunk space of a tick.
 
-    [ours] Every tick in which the robot may touch something gets a space of its own, with what is near in the world's order. A
-    space that lives on remembers contacts and impulses that nobody can read or set; so nothing but the robot's pose and
-    speeds goes from tick to tick, and a session that was saved goes on bit for bit even while it touches a wall
-    (test_session_snapshot.py). Most ticks need none, and one costs a tenth of a millisecond.
+    [ours] Every tick in which the robot may touch something gets a new space, with everything near in the world's
+    order. A space kept over several ticks would hold contacts and impulses that cannot be read or set. With a new one,
+    only the robot's pose and speeds go from tick to tick, and a saved session goes on bit for bit even while the robot
+    touches a wall (test_session_snapshot.py). Most ticks need no space; making one costs a tenth of a millisecond.
     """
 
     def __init__(self, world: World, actors: Actors) -> None:
@@ -26,9 +26,9 @@ class Surroundings:
         self._actors = actors
 
     def space(self, x: float, y: float, reach: float) -> pymunk.Space:
-        """With all that is within `reach` metres of (x, y), and hardly more."""
+        """A space with everything within `reach` metres of (x, y), and little more."""
         space = pymunk.Space()
-        space.collision_slop = 0.001  # metres of overlap that the solver leaves alone; pymunk's own is for pixels
+        space.collision_slop = 0.001  # overlap (m) that the solver tolerates; pymunk's default is meant for pixels
         low, high = np.subtract((x, y), reach + _MARGIN_M), np.add((x, y), reach + _MARGIN_M)
         near = (self._walls.max(axis=1) >= low) & (self._walls.min(axis=1) <= high)
         ground, actors = space.static_body, self._actors

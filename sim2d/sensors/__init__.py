@@ -1,1 +1,1 @@
-"""What the robot senses: sonars, laser, bumper, odometry, scene numbers, and the camera's picture."""
+"""The robot's sensors: sonars, laser, bumper, odometry, scene numbers and the camera's image."""

@@ -1,4 +1,4 @@
-"""What wheel encoders and gyro report: the true motion of one tick with the errors of real ones."""
+"""What wheel encoders and gyro report: the true motion of a tick, with realistic errors."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from sim2d.params import SimParams
 
-STILL_SPEED = 1e-3  # m/s; below this and STILL_YAW_RATE no encoder gives a count
+STILL_SPEED = 1e-3  # m/s; below this and STILL_YAW_RATE the encoders give no counts
 STILL_YAW_RATE = 2e-3  # rad/s
 
 
@@ -21,9 +21,9 @@ def wrap_angle(angle: float) -> float:
 def true_motion(
     before: tuple[float, float, float], after: tuple[float, float, float], dt: float
 ) -> tuple[float, float]:
-    """Mean forward speed (m/s) and yaw rate (rad/s) between two poses (x, y, heading), `dt` apart.
+    """Mean forward speed (m/s) and yaw rate (rad/s) between two poses (x, y, heading) that are `dt` seconds apart.
 
-    Speed is along the arc: the chord, seen along the middle heading, over sinc of half the turn.
+    The speed is that along the arc: the chord along the middle heading, divided by the sinc of half the turn.
     """
     turn = wrap_angle(after[2] - before[2])
     middle = before[2] + 0.5 * turn
@@ -34,10 +34,11 @@ def true_motion(
 
 
 def report(speed: float, yaw_rate: float, params: SimParams, rng: np.random.Generator) -> tuple[float, float]:
-    """Reported speed and yaw rate. Two draws from `rng`, moving or not.
+    """Reported speed (m/s) and yaw rate (rad/s). Makes two draws from `rng`, whether the robot moves or not.
 
-    A robot that stands gives no counts: it reports (0, 0) exactly, and the yaw-rate bias, which a robot at rest would
-    calibrate away, acts only while the wheels turn. The scale error is the wheels' and touches the speed alone.
+    A robot at rest gives no counts and reports exactly (0, 0). The bias of the yaw rate acts only while the wheels
+    turn, since a robot at rest could calibrate it away. The scale error comes from the wheels and affects only the
+    speed.
     """
     speed_error, yaw_error = rng.standard_normal(2).tolist()
     if abs(speed) < STILL_SPEED and abs(yaw_rate) < STILL_YAW_RATE:

@@ -1,4 +1,4 @@
-"""Sonars and laser: the nearest echo within each cone, and the first thing on each beam that is no glass."""
+"""Sonars and laser: the nearest echo within each cone, and the first thing on each beam that is not glass."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sim2d.geometry.wall_index import WallIndex, crossing, first_wall, nearest_w
 
 # From left to right, as on the front of a Pioneer.
 SONAR_ANGLES_RAD: tuple[float, ...] = tuple(math.radians(a) for a in (90, 50, 30, 10, -10, -30, -50, -90))
-RAYS = 5  # in one cone
+RAYS = 5  # per cone
 
 _Array = NDArray[np.float64]
 
@@ -30,10 +30,11 @@ def sonar_ranges(
     errors: _Array,
     touch: float,
 ) -> tuple[NDArray[np.float32], bool]:
-    """(n,): metres from the robot's middle to the nearest of five rays in each cone; `farthest` when nothing echoes.
+    """(n,): distance (m) from the robot's middle to the nearest echo on the five rays of each cone; `farthest` if there
+    is none.
 
-    And whether anything is nearer than `touch`, metres from the middle in any direction.
-    elements: (m, 4) what stands there beside the index's walls. errors: (n,) added to each echo, metres.
+    Also returns whether anything is nearer than `touch` metres to the middle, in any direction.
+    elements: (m, 4) sides of actors, besides the walls of the index. errors: (n,) added to each echo (m).
     """
     near = within(elements, x, y, farthest)
     out = np.empty(angles.size, np.float32)
@@ -50,7 +51,7 @@ def sonar_ranges(
 
 @njit(cache=True, nogil=True)
 def is_clear(index: WallIndex, elements: _Array, x: float, y: float, reach: float) -> bool:
-    """Whether nothing, be it a wall of the index or one of (m, 4) elements, is nearer than `reach` metres to (x, y)."""
+    """Whether no wall of the index and none of the (m, 4) elements is nearer than `reach` metres to (x, y)."""
     for i in range(elements.shape[0]):
         if squared_distance(elements, i, x, y) < reach * reach:
             return False
@@ -68,9 +69,10 @@ def laser_ranges(
     farthest: float,
     errors: _Array,
 ) -> NDArray[np.float32]:
-    """(n,) from left to right: metres to the first thing on each beam; `farthest` when there is none.
+    """(n,), from left to right: distance (m) to the first thing on each beam; `farthest` if there is none.
 
-    index: of walls that are no glass, which a laser passes. errors: (n,) metres, added where something is met.
+    index: of the walls that are not glass, since a laser passes through glass. errors: (n,) added to what is measured
+    (m).
     """
     n = errors.size
     near = within(elements, x, y, farthest)
@@ -93,7 +95,7 @@ def _range(index: WallIndex, near: _Array, x: float, y: float, angle: float, far
 
 @njit(cache=True, nogil=True)
 def within(segments: _Array, x: float, y: float, reach: float) -> _Array:
-    """Those of (m, 4) segments whose bounding box is within `reach` of (x, y)."""
+    """Those of the (m, 4) segments whose bounding box is within `reach` metres of (x, y) in both axes."""
     out = np.empty_like(segments)
     n = 0
     for i in range(segments.shape[0]):

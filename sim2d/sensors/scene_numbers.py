@@ -1,4 +1,4 @@
-"""Scene numbers by true pose, as the papers' own simulator gave them to its robot. ACRA 2005 section 5, ACRA 2006 section 5.1."""
+"""Scene numbers from the true pose, as in the papers' own simulator. ACRA 2005 section 5, ACRA 2006 section 5.1."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ import math
 def scene_number(
     x: float, y: float, heading_rad: float, bounds: tuple[float, float, float, float], cell_m: float, angle_rad: float
 ) -> int:
-    """A number from 0 on: equal for poses in the same square of the floor that face the same sector, else different.
+    """A number from 0: equal for two poses in the same square of the floor and the same sector of heading, else
+    different.
 
-    x, y (m) inside `bounds` (least x, y, most x, y); sectors are `angle_rad` wide or a little less, so that whole ones fit.
+    x, y (m) inside `bounds` (least x, least y, most x, most y). A sector is `angle_rad` wide, or a little less so that
+    a whole number of them fits into a turn.
     """
     x_from, y_from, x_to, y_to = bounds
     columns, rows = (max(1, math.ceil((to - start) / cell_m)) for start, to in ((x_from, x_to), (y_from, y_to)))

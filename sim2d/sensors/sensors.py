@@ -1,4 +1,4 @@
-"""All that the robot senses with: camera, sonars, bumper, laser and wheels, each with a generator of its own."""
+"""All sensors of the robot: camera, sonars, bumper, laser, wheels. Each has a generator of its own for its errors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Pose = tuple[float, float, float]
 @kind("sensor frame/1")
 @dataclass(frozen=True, slots=True, eq=False)
 class SensorFrame:
-    """All that the robot senses at the end of a tick."""
+    """Everything that the robot senses at the end of a tick."""
 
     tick: int
     time_s: float  # simulated
@@ -36,35 +36,35 @@ class SensorFrame:
     odometry_yaw_rate: float  # rad/s
     dt: float  # seconds
     ranges_m: NDArray[np.float32]  # (8,) from the robot's middle, left to right as SONAR_ANGLES_RAD
-    bumped: bool  # the bumper touches something
+    bumped: bool  # whether the bumper touches something
     laser_m: NDArray[np.float32]  # (laser_beams,) from the robot's middle, left to right over laser_fov_rad
     scene: int  # number of the true pose's square and sector, for brains that see only numbers, as in the papers
 
     def freeze(self) -> SensorFrame:
-        """Nobody may write to its arrays: whoever looks keeps them."""
+        """Make its arrays read-only, since others keep references to them."""
         for array in (self.image, self.ranges_m, self.laser_m):
             array.setflags(write=False)
         return self
 
 
 def seeds(seed: int) -> dict[str, np.random.SeedSequence]:
-    """Of each owner of chance in a simulator: none draws from another's stream."""
+    """A seed for each owner of random numbers in a simulator, so that none draws from another's stream."""
     return dict(zip(_OWNERS, np.random.SeedSequence(seed).spawn(len(_OWNERS)), strict=True))
 
 
 @kind("sensors/1")
 class Sensors:
-    """The sensors of one robot. What they meet is that of the world and actors given last."""
+    """The sensors of one robot. They sense the world and the actors that were set last."""
 
     CACHES = ("_angles", "_world", "_actors", "_walls", "_obstacles", "_opaque", "_camera")
 
     def __init__(self, world: World, params: SimParams, actors: Actors, before: Sensors | None = None) -> None:
-        """before: other ones, whose work on the same walls need not be done again. `begin` comes before the first look."""
-        self._bounds = world.bounds  # of the first world: the numbers of its scenes stay when walls are edited
+        """before: other sensors; what they know of the same walls is taken over. Call `begin` before `sense`."""
+        self._bounds = world.bounds  # of the first world, so that an edit does not change the scene numbers
         self._set_up(world, params, actors, before)
 
     def settle(self, world: World, params: SimParams, actors: Actors) -> None:
-        """All that follows from a world, a robot and the seed."""
+        """Compute the caches from a world, a robot and the seed."""
         self._set_up(world, params, actors, None)
         self._camera.new_noise(np.random.default_rng(seeds(self._seed)["noise bank"]))
 
@@ -75,7 +75,7 @@ class Sensors:
         self._camera = Camera(world, params, actors, self._walls, None if before is None else before._camera)
 
     def begin(self, seed: int) -> None:
-        """Draw all errors anew."""
+        """Begin all generators anew from this seed."""
         self._seed = seed
         chance = {owner: np.random.default_rng(own) for owner, own in seeds(seed).items()}
         self._image_rng, self._sonar_rng, self._odometry_rng = chance["image"], chance["sonar"], chance["odometry"]
@@ -83,7 +83,7 @@ class Sensors:
         self._camera.new_noise(chance["noise bank"])
 
     def set_world(self, world: World, actors: Actors) -> None:
-        """Go on in another world, or in the same with other actors."""
+        """From now on sense another world, or the same one with other actors."""
         before, self._world, self._actors = self._world, world, actors
         if world is before:
             self._camera.follow(actors)
@@ -93,11 +93,11 @@ class Sensors:
         self._camera.set_world(world, actors, self._walls)
 
     def set_lens(self, params: SimParams) -> None:
-        """The camera has another field of view, resolution or place."""
+        """Set another field of view, resolution or height of the camera."""
         self._camera.set_lens(params)
 
     def _index(self) -> None:
-        """The indices of the walls: all, those that echo, and those that a laser does not pass."""
+        """Build the indices of all walls, of those that echo, and of those that stop a laser."""
         world, segments = self._world, self._world.segments()
         opaque = [i for i in world.obstacles if world.walls[i].kind != "glass"]
         self._walls = build_index(segments)
@@ -105,18 +105,18 @@ class Sensors:
         self._opaque = self._obstacles if len(opaque) == len(world.obstacles) else build_index(segments[opaque])
 
     def is_clear(self, x: float, y: float, reach: float) -> bool:
-        """Whether no wall, element or person is within `reach`."""
+        """Whether no wall, door, box or person is within `reach` metres of (x, y)."""
         clear = is_clear(self._obstacles, self._actors.there, x, y, reach)
         return clear and not self._actors.walkers.touch(x, y, reach)
 
     def odometry(self, speed: float, yaw_rate: float, params: SimParams) -> tuple[float, float]:
-        """What wheels and gyro report of a true motion, m/s and rad/s."""
+        """What wheels and gyro report of a true motion (m/s, rad/s)."""
         return report(speed, yaw_rate, params, self._odometry_rng)
 
     def sense(
         self, tick: int, time_s: float, pose: Pose, odometry: tuple[float, float], params: SimParams, reflections: bool
     ) -> SensorFrame:
-        """What there is to sense at a pose; the arrays cannot be written to."""
+        """The sensor frame at a pose. Its arrays are read-only."""
         gain, noise = params.light * params.exposure_gain, params.image_noise * params.exposure_gain
         image = self._camera.image(*pose, gain, noise, self._image_rng, reflections)
         ranges, bumped = self._sonar(pose, params)

@@ -1,1 +1,1 @@
-"""A world as data, its file, what is wrong with it, and where a robot fits in it."""
+"""A world as data, its file and its checks, and where a robot fits in it."""

@@ -1,4 +1,4 @@
-"""A world as plain arrays, for whoever draws it."""
+"""A world as plain arrays, for drawing."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 from sim2d.world.texture import panel_mean_rgb
 from sim2d.world.world import Panel, Wall, World
 
-MOST_PANELS = 5000  # more are specks that nobody can see, and a second of work for each ten thousand
-_OFF_WALL_M = 0.01  # panels stand this far in front of their wall, on their side
+MOST_PANELS = 5000  # in a world with more they are too small to see, and ten thousand take a second of work
+_OFF_WALL_M = 0.01  # panels are drawn this far in front of their side of the wall
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Drawing:
-    """Walls that stand on the floor and all panels, but for more than MOST_PANELS: then none.
+    """The walls that stand on the floor, and all panels; if there are more than MOST_PANELS, none of them.
 
-    Screens on desks, which stand on no floor, are panels too, and always there.
+    Walls above the floor, the screens on desks, are drawn as panels, always.
     """
 
     walls: NDArray[np.float32]  # (n, 4): x1 y1 x2 y2
@@ -29,7 +29,7 @@ class Drawing:
 
 
 def draw_world(world: World) -> Drawing:
-    """Fresh read-only arrays."""
+    """The drawing of a world, in new read-only arrays."""
     standing = [world.walls[i] for i in world.obstacles]
     crowded = sum(len(wall.panels) for wall in world.walls) > MOST_PANELS
     rows: list[tuple[float, ...]] = []

@@ -1,6 +1,7 @@
-"""What lives in an office besides its walls, as data: doors, lamps, daylight, boxes, people, slow zones, a script.
+"""The elements of an office besides its walls, as data: doors, lamps, daylight, boxes, people, slow zones, script.
 
-Metres, seconds, radians, counter-clockwise. Each has a name that no other of its kind has.
+Lengths in metres, times in seconds, angles in radians, counter-clockwise. A name is unique among the elements of a
+kind.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ Action = Literal[
 
 @dataclass(frozen=True, slots=True)
 class Door:
-    """One leaf. Shut it reaches `width` metres from its hinge along `angle_rad`; it swings, or slides back along itself."""
+    """A door leaf. Shut, it reaches `width` metres from its hinge along `angle_rad`. It swings open, or slides back."""
 
     name: str
     x: float  # of the hinge
@@ -33,8 +34,8 @@ class Door:
     slides: bool = False
     open: bool = True  # at the start
     period_s: float = 0.0  # opens and shuts by itself once in this time; 0 = never
-    open_s: float = 0.0  # of each period
-    phase_s: float = 0.0  # at the start it is so far into its period
+    open_s: float = 0.0  # how long it is open in each period
+    phase_s: float = 0.0  # how far into its period it is at the start
 
     def leaf(self, opening: float) -> NDArray[np.float64]:
         """(4,): x1 y1 x2 y2 of the leaf; opening: 0 = shut, 1 = open."""
@@ -49,7 +50,7 @@ class Door:
 
 @dataclass(frozen=True, slots=True)
 class Lamp:
-    """A lamp on the ceiling: adds `brightness` below itself, nothing from `reach` metres on."""
+    """A ceiling lamp: adds `brightness` directly below, less farther away, nothing beyond `reach` metres."""
 
     name: str
     x: float
@@ -61,14 +62,14 @@ class Lamp:
 
 @dataclass(frozen=True, slots=True)
 class Daylight:
-    """Brightness everywhere against time: straight between its points, over again every `repeat_s` unless that is 0."""
+    """Brightness everywhere over time: linear between its points, repeated every `repeat_s` (0 = once)."""
 
-    at_s: tuple[float, ...]  # growing
+    at_s: tuple[float, ...]  # ascending
     level: tuple[float, ...]  # 1 = as painted
     repeat_s: float = 0.0
 
     def at(self, time_s: float) -> float:
-        """The level at a time since the start, s; before the first and after the last point theirs."""
+        """The level `time_s` seconds after the start; outside its points, the level of the nearest."""
         if self.repeat_s > 0:
             time_s = math.fmod(time_s, self.repeat_s)
         return float(np.interp(time_s, self.at_s, self.level))
@@ -76,7 +77,7 @@ class Daylight:
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """Something on the floor that is in the way: a rectangle with its middle at (x, y)."""
+    """An obstacle on the floor: a rectangle with its middle at (x, y)."""
 
     name: str
     x: float
@@ -90,7 +91,7 @@ class Box:
 
     @property
     def corners(self) -> NDArray[np.float64]:
-        """(4, 2), counter-clockwise."""
+        """(4, 2): the corners, counter-clockwise."""
         c, s = math.cos(self.angle_rad), math.sin(self.angle_rad)
         a, b = 0.5 * self.width, 0.5 * self.depth
         return np.array(
@@ -98,7 +99,7 @@ class Box:
         )
 
     def distance(self, x: float, y: float) -> float:
-        """Metres from a point to it, 0 inside."""
+        """Distance (m) from (x, y) to the box; 0 inside."""
         c, s = math.cos(self.angle_rad), math.sin(self.angle_rad)
         u, v = (x - self.x) * c + (y - self.y) * s, (y - self.y) * c - (x - self.x) * s
         return math.hypot(max(abs(u) - 0.5 * self.width, 0.0), max(abs(v) - 0.5 * self.depth, 0.0))
@@ -106,13 +107,13 @@ class Box:
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """Somebody who walks from point to point, waits at each, and stops for what is in the way."""
+    """A person who walks from point to point, waits at each, and stops for obstacles."""
 
     name: str
     path: tuple[tuple[float, float], ...]
     wait_s: tuple[float, ...]  # at each point
     speed: float = 0.8  # m/s
-    loop: bool = True  # from the last point to the first; otherwise back the way it came
+    loop: bool = True  # from the last point on to the first; otherwise back the way they came
     radius: float = 0.22
     height: float = 1.7
     colour: Rgb = (86, 110, 150)
@@ -120,7 +121,7 @@ class Person:
 
 @dataclass(frozen=True, slots=True)
 class SlowZone:
-    """A floor on which wheels do only a share of what they are told, as the carpet at C's point B."""
+    """A floor on which the wheels reach only a share of the commanded speed, like the carpet at point B in C."""
 
     name: str
     corners: tuple[tuple[float, float], ...]  # a polygon
@@ -129,7 +130,7 @@ class SlowZone:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """One line of the script: at this time since the start, do that to the thing of this name."""
+    """One line of the script: at a time since the start, do something to the element of this name."""
 
     at_s: float
     do: Action

@@ -1,7 +1,7 @@
-"""Where the robot fits, and how long the shortest drive between two places is. For placing it and for judging it."""
+"""Where the robot fits between the walls, and the shortest way between two places. For placing and judging it."""
 
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
-# SciPy tells no types.
+# SciPy has no type annotations.
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from sim2d.geometry.segments import differing, free_cells, inside_ring, nearest_
 from sim2d.world.world import World
 
 CELL_M = 0.05
-MOST_CELLS = 4_000_000  # a larger floor gets larger cells
-_MOST_CHANGES = 64  # with more walls that differ all of the floor is measured anew
-# Eight neighbours and eight knight's moves, one of each opposite pair.
+MOST_CELLS = 4_000_000  # a larger floor is given larger cells
+_MOST_CHANGES = 64  # if more walls differ, the whole floor is measured anew
+# Eight neighbours and eight knight's moves; of each pair of opposite moves one is listed.
 _MOVES = ((1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (1, 2), (2, -1), (1, -2))
 
 
 class FreeSpace:
-    """The floor on which a disc of `radius` metres can stand and which it can reach from the world's first start."""
+    """The floor on which a disc of `radius` metres can stand and that it can reach from one of the world's starts."""
 
     def __init__(
         self, world: World, radius: float, cell_m: float | None = None, before: FreeSpace | None = None
     ) -> None:
-        """before: of a world that may differ in a few walls; only the floor around them is measured anew."""
+        """before: of a world that may differ in a few walls; only the floor around these is measured anew."""
         x0, y0, x1, y1 = world.bounds
         if cell_m is None:
             cell_m = max(CELL_M, math.sqrt((x1 - x0) * (y1 - y0) / MOST_CELLS))
@@ -70,12 +70,12 @@ class FreeSpace:
         return free
 
     def _around(self, centres: NDArray[np.float64], a: float, b: float) -> tuple[int, int]:
-        """First and last but one of the cells that something from a to b may bear on."""
+        """The range of cells, first and one past the last, that a wall from a to b along this axis may affect."""
         low, high = ((p - centres[0]) / self._cell for p in (min(a, b) - self.radius, max(a, b) + self.radius))
         return min(max(int(low) - 1, 0), len(centres) - 1), min(max(int(high) + 3, 1), len(centres))
 
     def holds(self, world: World, radius: float) -> bool:
-        """Whether it is also true of this world."""
+        """Whether this free space is also that of another world and radius."""
         mine = self.world
         return radius == self.radius and (world.name, world.starts, world.walls) == (
             mine.name,
@@ -88,7 +88,7 @@ class FreeSpace:
         return self.refusal(x, y) is None
 
     def refusal(self, x: float, y: float) -> str | None:
-        """Why the walls do not let the robot be at (x, y), or None when they do. What else stands there: `RobotFit`."""
+        """Why the walls leave no room for the robot at (x, y), or None. `RobotFit` adds doors, boxes, people."""
         if not (math.isfinite(x) and math.isfinite(y)):
             return f"({x}, {y}) is not a place; both must be finite"
         if not inside_ring(self._ring, x, y):
@@ -102,25 +102,25 @@ class FreeSpace:
         return None
 
     def nearest_wall(self, x: float, y: float) -> tuple[float, str]:
-        """Metres from (x, y) to the nearest wall that stands on the floor, and which that is."""
+        """Distance (m) from (x, y) to the nearest wall that stands on the floor, and which wall it is, in words."""
         nearest, distance = nearest_segment(self._segments, x, y)
         number = self.world.obstacles[nearest]
         return distance, f"walls[{number}] ({self.world.walls[number].kind})"
 
     def clearance(self, x: float, y: float) -> float:
-        """Metres from (x, y) to the nearest wall that stands on the floor."""
+        """Distance (m) from (x, y) to the nearest wall that stands on the floor."""
         return self.nearest_wall(x, y)[0]
 
     def random_point(self, rng: np.random.Generator) -> tuple[float, float]:
-        """A free place, uniform over the cells' centres."""
+        """A random free place: the centre of a cell, all cells being equally likely."""
         rows, columns = self._open
         k = int(rng.integers(rows.size))
         return float(self._xs[columns[k]]), float(self._ys[rows[k]])
 
     def shortest_m(self, a: tuple[float, float], b: tuple[float, float]) -> float:
-        """Metres of the shortest drivable way from a to b, inf when there is none.
+        """The length (m) of the shortest way that the robot can drive from a to b; inf if there is none.
 
-        The grid's 16 directions make a way longer than it is, by 2.7 % at worst, and its cells by a cell at each end.
+        Since a way on the grid has only 16 directions, the result is up to 2.7 % too long, plus a cell at each end.
         """
         if not (self._touches_free(*a) and self._touches_free(*b)):
             return math.inf
@@ -133,7 +133,7 @@ class FreeSpace:
         return max(straight, float(metres))
 
     def _touches_free(self, x: float, y: float) -> bool:
-        """Free, or a cell too near to a wall, as for a robot that leans on it."""
+        """Whether (x, y) is free, or at most a cell too near to a wall, as when the robot leans on it."""
         if self.is_free(x, y):
             return True
         leans = inside_ring(self._ring, x, y) and self.radius > self.clearance(x, y) >= self.radius - self._cell
@@ -146,7 +146,7 @@ class FreeSpace:
 
     @cached_property
     def _graph(self) -> tuple[NDArray[np.int32], csr_matrix]:
-        """Node numbers (n_y, n_x), -1 where not reachable, and the lengths between neighbours."""
+        """The number of each cell's node, (n_y, n_x), -1 where unreachable; and the lengths between neighbours (m)."""
         nodes = np.full(self._reachable.shape, -1, np.int32)
         count = self._open[0].size
         nodes[self._open] = np.arange(count)
@@ -161,7 +161,7 @@ class FreeSpace:
         return nodes, csr_matrix((data, ends), shape=(count, count))
 
     def _open_cell(self, is_open: NDArray[np.bool_], x: float, y: float) -> tuple[int, int] | None:
-        """Row and column of the open cell nearest to (x, y), among the one around it and that one's neighbours."""
+        """Row and column of the open cell nearest to (x, y), among the cell that contains it and its neighbours."""
         x0, y0 = self.world.bounds[:2]
         i, j = int((x - x0) / self._cell), int((y - y0) / self._cell)
         left, low = max(i - 1, 0), max(j - 1, 0)
@@ -174,7 +174,7 @@ class FreeSpace:
 
 
 def _shifted(nodes: NDArray[np.int32], dx: int, dy: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """Two equally large parts of the grid, the second (dx, dy) cells further; dx >= 0."""
+    """Two parts of the grid of the same size, the second shifted by (dx, dy) cells; dx >= 0."""
     n_y, n_x = nodes.shape
     low, high = max(0, -dy), min(n_y, n_y - dy)
     return nodes[low:high, : n_x - dx], nodes[low + dy : high + dy, dx:]

@@ -1,4 +1,4 @@
-"""Of JSON: on which line of the text an item stands, so that a complaint can say so, and how deep its parts lie."""
+"""On which line of a JSON text an item stands, for error messages; and how deeply a document is nested."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _value = json.JSONDecoder().raw_decode
 
 
 def line_of(text: str, path: Sequence[str | int]) -> int:
-    """The line, from 1, on which the value at `path` (keys and indices) begins; of the deepest part that exists."""
+    """The line, from 1, on which the value at `path` (keys and indices) begins, or its deepest part that exists."""
     at = _skip(text, 0)
     for part in path:
         inner = _member(text, at, part) if isinstance(part, str) else _element(text, at, part)
@@ -22,7 +22,7 @@ def line_of(text: str, path: Sequence[str | int]) -> int:
 
 
 def deeper_than(levels: int, document: Any) -> bool:
-    """Whether lists and objects lie within one another in more levels than these: whoever writes them out recurses."""
+    """Whether lists and objects are nested in more than `levels` levels: code that writes them recurses."""
     level = [document]
     for _ in range(levels):
         level = [inner for item in level for inner in _parts(item)]
@@ -44,7 +44,7 @@ def _member(text: str, at: int, key: str) -> int | None:
         name, at = _value(text, at)
         at = _skip(text, _skip(text, at) + 1)
         if name == key:
-            found = at  # the last of equal keys is the one that counts
+            found = at  # of equal keys the last one counts
         at = _next(text, at)
     return found
 
@@ -62,7 +62,7 @@ def _element(text: str, at: int, index: int) -> int | None:
 
 
 def _next(text: str, at: int) -> int:
-    """Past the value at `at` and the comma after it."""
+    """The position after the value at `at` and the comma that follows it."""
     at = _skip(text, _value(text, at)[1])
     return _skip(text, at + 1) if text[at] == "," else at
 

@@ -1,4 +1,4 @@
-"""Worlds that a person has saved: files in a folder of their own, known by their names."""
+"""Worlds that the user has saved: files in a folder of their own, known by name."""
 
 from __future__ import annotations
 
@@ -16,40 +16,41 @@ NAME_RULE = "1 to 40 letters, digits, - and _, beginning with a letter or digit"
 
 
 def folder() -> Path:
-    """RATSLAM_WORLDS, or `.ratslam/worlds` in the home directory. It need not exist; ValueError when there is no home."""
+    """RATSLAM_WORLDS, or `.ratslam/worlds` in the home directory; it need not exist. ValueError if there is no home."""
     return Path(os.environ.get("RATSLAM_WORLDS") or kept_folder() / "worlds")
 
 
 def is_name(name: str) -> bool:
-    """Whether a world can be saved under it; a path is none."""
+    """Whether a world can be saved under this name. A path is not a name."""
     return _NAME.fullmatch(name) is not None
 
 
 def path_of(name: str) -> Path | None:
-    """The file of a world of this name, whether it exists or not; None when it is not a name but, say, a path."""
+    """The file of a world of this name, whether it exists or not; None if this is not a valid name."""
     return folder() / f"{name}.json" if is_name(name) else None
 
 
 def tidy() -> None:
-    """Remove what a program that died while it saved has left in the folder."""
+    """Remove temporary files left by a program that died while saving."""
     with contextlib.suppress(ValueError):
         sweep(folder())
 
 
 def names() -> tuple[tuple[str, str], ...]:
-    """(name, title) of all saved worlds, by name."""
+    """(name, title) of all saved worlds, sorted by name."""
     try:
         where = folder()
-    except ValueError:  # nowhere is a place without worlds
+    except ValueError:  # no home directory, so no saved worlds
         return ()
     found = (path for path in where.glob("*.json") if is_name(path.stem))
     return tuple(sorted((path.stem, _title(path)) for path in found))
 
 
 def save(name: str, text: str) -> Path:
-    """Write a world file; the one before is kept as `NAME.json.before`. ValueError says why it cannot be.
+    """Write a world file. The old one is kept as `NAME.json.before`. ValueError says why it cannot be written.
 
-    A crash at any moment leaves the old file or the new one, and of the one before a whole copy or none.
+    A crash at any moment leaves either the old file or the new one, and a copy of the old one that is complete or
+    missing.
     """
     path = path_of(name)
     if path is None:
@@ -67,7 +68,7 @@ def save(name: str, text: str) -> Path:
 
 
 def delete(name: str) -> Path:
-    """Take a saved world out of the folder's list; its file is kept as `NAME.json.deleted`. ValueError says why it cannot be."""
+    """Delete a saved world. Its file is kept as `NAME.json.deleted`. ValueError says why it cannot be deleted."""
     path = _existing(name)
     try:
         path.replace(_deleted(path))
@@ -77,7 +78,7 @@ def delete(name: str) -> Path:
 
 
 def restore(name: str) -> str:
-    """The world of this name that was deleted last is there again; its title. ValueError says why it cannot be."""
+    """Restore the world of this name that was deleted last; its title. ValueError says why it cannot be."""
     path = path_of(name)
     if path is None or not _deleted(path).is_file():
         raise ValueError(f"no world {name!r} has been deleted")
@@ -112,5 +113,5 @@ def _title(path: Path) -> str:
 
 @lru_cache(maxsize=256)
 def _title_in(path: Path, *_changed: int) -> str:
-    """Read once for as long as the file is the same: all are asked for whenever the editor reads the office."""
+    """The title in a file, read again only after a change: the editor asks for all titles often."""
     return str(json.loads(path.read_text("utf-8"))["title"])

@@ -1,4 +1,4 @@
-"""Whether the robot fits: the one that is asked, by kidnaps, starts, edits of the world, and the ring under a dragged robot."""
+"""The one authority on where the robot fits: for kidnaps, starts, edits and the ring under a dragged robot."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from sim2d.world.elements import Box, Door
 from sim2d.world.free_space import FreeSpace
 from sim2d.world.world import World
 
-LEANS_M = 0.01  # so far the robot may press into something
+LEANS_M = 0.01  # how far the robot may overlap with something that it leans on
 
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """What stands on the floor at one moment besides the walls. Doors with how far they are open; people with x, y, radius."""
+    """What stands on the floor besides walls: doors with their opening, boxes, people (name, x, y, radius)."""
 
     doors: tuple[tuple[Door, float], ...] = ()
     boxes: tuple[Box, ...] = ()
@@ -24,12 +24,12 @@ class Standing:
 
     @classmethod
     def at_first(cls, world: World) -> Standing:
-        """As a world begins; its people make way for the robot, so they are not in it."""
+        """What stands there as a world begins. People are left out, since they make way for the robot."""
         doors = tuple((door, float(door.open)) for door in world.doors)
         return cls(doors, tuple(box for box in world.boxes if box.present))
 
     def distances(self, x: float, y: float) -> Iterator[tuple[float, str]]:
-        """Metres from (x, y) to each, 0 inside of it, and what it is."""
+        """The distance (m) from (x, y) to each of them, 0 inside it, and its name."""
         for i, (door, opening) in enumerate(self.doors):
             yield nearest_segment(door.leaf(opening)[None], x, y)[1], f"doors[{i}] ({door.name})"
         for box in self.boxes:
@@ -40,13 +40,13 @@ class Standing:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RobotFit:
-    """Where a robot fits at one moment. It does not change, so it may be asked in any thread."""
+    """Where a robot fits at one moment. It is immutable, so it may be used from any thread."""
 
-    floor: FreeSpace  # as the walls leave it to a robot of this size
+    floor: FreeSpace  # what the walls leave free for a robot of this size
     standing: Standing = Standing()
 
     def refusal(self, x: float, y: float) -> str | None:
-        """Why the robot cannot be put at (x, y), or None when it can."""
+        """Why the robot cannot be put at (x, y), or None."""
         refusal = self.floor.refusal(x, y)
         if refusal is not None:
             return refusal
@@ -56,7 +56,7 @@ class RobotFit:
         return None
 
     def covering(self, x: float, y: float) -> str | None:
-        """Why a robot that is at (x, y) cannot stay there, or None. It may lean on things, and no way need lead to it."""
+        """Why a robot that is at (x, y) cannot stay there, or None. It may lean on things and need not be reachable."""
         at, radius = f"the robot at ({x:.2f}, {y:.2f})", self.floor.radius - LEANS_M
         if not inside_ring(self.floor.world.outline, x, y):
             return f"{at} would be outside of the outer walls; leave it inside"

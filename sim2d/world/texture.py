@@ -1,4 +1,4 @@
-"""What walls look like: paint, skirting, and the patterns of panels. Drawn once, when a world is loaded."""
+"""The looks of walls: paint, skirting, and the patterns of panels. Each side of a wall is painted once."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sim2d.world.world import Panel, Rgb, Wall
 
 TEXEL_M = 0.03
-ROW_MULTIPLE = 16  # rows come in sixteens, so that four halvings are exact
+ROW_MULTIPLE = 16  # the number of rows is a multiple of 16, so that it can be halved four times
 Texture = Literal["paint", "poster", "board", "door", "window", "shelf", "cabinet", "screen"]
 TEXTURES = get_args(Texture)
 
@@ -20,18 +20,18 @@ _Texels = NDArray[np.float32]
 
 
 def strip_shape(wall: Wall, texel_m: float = TEXEL_M) -> tuple[int, int]:
-    """Columns along the wall and rows from its top to its bottom."""
+    """The number of texel columns along the wall and of rows from its top to its bottom."""
     columns = max(1, round(wall.length / texel_m))
     rows = ROW_MULTIPLE * max(1, round((wall.height - wall.bottom) / texel_m / ROW_MULTIPLE))
     return columns, rows
 
 
 def paint_strip(wall: Wall, side: str, texel_m: float = TEXEL_M) -> _Texels:
-    """One side of a wall as texels, (columns, rows, 3) of 0-255, the first row at the top."""
+    """One side of a wall as texels: (columns, rows, 3), 0 to 255, top row first."""
     columns, rows = strip_shape(wall, texel_m)
     height = wall.height - wall.bottom
-    up = wall.height - (np.arange(rows) + 0.5) * height / rows  # of each row's middle, metres
-    tone = 0.94 + 0.06 * up / wall.height  # lamps hang from the ceiling
+    up = wall.height - (np.arange(rows) + 0.5) * height / rows  # height of each row's middle, m
+    tone = 0.94 + 0.06 * up / wall.height  # brighter towards the lamps on the ceiling
     strip = np.empty((columns, rows, 3), np.float32)
     strip[:] = np.asarray(wall.colour, np.float32) * tone[:, None]
     if wall.kind in ("wall", "partition"):
@@ -46,7 +46,7 @@ def paint_strip(wall: Wall, side: str, texel_m: float = TEXEL_M) -> _Texels:
 
 @lru_cache(maxsize=16_384)
 def panel_mean_rgb(panel: Panel) -> Rgb:
-    """The panel's mean colour, for whoever draws it as one flat piece."""
+    """The panel's mean colour, for drawing it in one flat colour."""
     mean = _pattern(panel, max(1, round(panel.width / TEXEL_M)), 32).mean(axis=(0, 1))
     return int(mean[0]), int(mean[1]), int(mean[2])
 
@@ -62,7 +62,7 @@ def _hang(strip: _Texels, wall: Wall, panel: Panel) -> None:
 
 
 def _pattern(panel: Panel, columns: int, rows: int) -> _Texels:
-    """(columns, rows, 3) of 0-255. The same panel gives the same picture: its seed draws the details."""
+    """(columns, rows, 3), 0 to 255. The panel's seed decides the details, so its picture is always the same."""
     rng = np.random.default_rng(panel.seed)
     out = np.empty((columns, rows, 3), np.float32)
     out[:] = panel.colour
@@ -71,7 +71,7 @@ def _pattern(panel: Panel, columns: int, rows: int) -> _Texels:
 
 
 def _box(out: _Texels, left: float, right: float, high: float, low: float) -> _Texels:
-    """The part of a picture between fractions of its width and of its height (0 = top); at least one texel."""
+    """The part of a picture between fractions of its width and of its height (0 = top), at least one texel in size."""
     columns, rows = out.shape[:2]
     i, k = int(left * columns), int(high * rows)
     return out[i : max(i + 1, round(right * columns)), k : max(k + 1, round(low * rows))]

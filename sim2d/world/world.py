@@ -1,4 +1,4 @@
-"""A floor plan as data: walls, what hangs on them, what lives between them, where the robot starts. Metres, radians, z up."""
+"""An office as data: walls and their panels, elements, and where the robot starts. Metres, radians, z up."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class Wall:
-    """An upright rectangle from (x1, y1) to (x2, y2). It has no thickness; panels may differ on its two sides.
+    """An upright rectangle from (x1, y1) to (x2, y2). It has no thickness. Its two sides may have different panels.
 
-    One of kind "glass" lets light through, but for the share `reflection` that it throws back.
+    A wall of kind "glass" lets light through, except for the share `reflection`, which it reflects.
     """
 
     x1: float
@@ -41,25 +41,25 @@ class Wall:
     height: float
     colour: Rgb
     outer: bool = False
-    bottom: float = 0.0  # above the floor only for what stands on a desk
+    bottom: float = 0.0  # m above the floor; more than 0 only for something that stands on a desk
     panels: tuple[Panel, ...] = ()
     name: str = ""
     reflection: float = 0.25  # of glass
 
     @property
     def length(self) -> float:
-        """Metres."""
+        """Length in metres."""
         return math.hypot(self.x2 - self.x1, self.y2 - self.y1)
 
     @property
     def stands(self) -> bool:
-        """Whether it stands on the floor, so that robot and sonar meet it."""
+        """Whether it stands on the floor, where the robot and the sonars meet it."""
         return self.bottom == 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """A pose to start from: metres, heading 0 = +x, counter-clockwise."""
+    """A pose to start from: x, y in metres; heading 0 = +x, positive counter-clockwise."""
 
     name: str
     x: float
@@ -78,7 +78,7 @@ class Place:
 
 @dataclass(frozen=True)
 class World:
-    """One office. `walls` begins with the outer wall, a closed ring that runs counter-clockwise."""
+    """One office. `walls` begins with the outer walls, a closed ring that runs counter-clockwise."""
 
     name: str
     title: str
@@ -90,7 +90,7 @@ class World:
     ceiling_colour: Rgb = (226, 226, 220)
     doors: tuple[Door, ...] = ()
     lamps: tuple[Lamp, ...] = ()
-    daylight: Daylight | None = None  # without one: 1 throughout
+    daylight: Daylight | None = None  # None: always 1
     boxes: tuple[Box, ...] = ()
     people: tuple[Person, ...] = ()
     slow_zones: tuple[SlowZone, ...] = ()
@@ -100,18 +100,18 @@ class World:
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
-        """min x, min y, max x, max y of the outer wall, metres."""
+        """Least x, least y, most x, most y of the outer walls (m)."""
         ring = self._ring
         return float(ring[:, 0].min()), float(ring[:, 1].min()), float(ring[:, 0].max()), float(ring[:, 1].max())
 
     @cached_property
     def highest(self) -> float:
-        """Metres: of the highest wall, which is where the ceiling is."""
+        """The height of the highest wall (m), which is that of the ceiling."""
         return max(w.height for w in self.walls)
 
     @property
     def outline(self) -> NDArray[np.float64]:
-        """(k, 2): corners of the outer wall, counter-clockwise, the first not repeated."""
+        """(k, 2): corners of the outer walls, counter-clockwise; the first is not repeated."""
         return self._ring.copy()
 
     @cached_property

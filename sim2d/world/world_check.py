@@ -1,4 +1,4 @@
-"""What no schema can say of a world: a closed outline, things inside of it, free starts, names that exist."""
+"""The checks that a schema cannot make: the outline is closed, elements lie inside it, starts are free, names exist."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sim2d.world.free_space import FreeSpace
 from sim2d.world.robot_fit import RobotFit, Standing
 from sim2d.world.world import Wall, World
 
-ROBOT_HEIGHT_M = 0.6  # what hangs higher does not touch the robot
+ROBOT_HEIGHT_M = 0.6  # walls whose lower edge is at least this high do not touch the robot
 MOST_M = 3000.0
 MOST_WALL_M2 = 200_000.0
 MOST_FLOOR_M2 = 2_000_000.0
@@ -26,7 +26,7 @@ Where = tuple[str | int, ...]
 
 
 class Fault(ValueError):  # noqa: N818
-    """What is wrong, and the path of the item that is to blame."""
+    """What is wrong with a world, and the path of the item that is at fault."""
 
     def __init__(self, where: Where, message: str) -> None:
         super().__init__(message)
@@ -36,9 +36,9 @@ class Fault(ValueError):  # noqa: N818
 def check_world(
     world: World, radius: float, before: World | None = None, free_in: Callable[[World], FreeSpace] | None = None
 ) -> None:
-    """Raises Fault at the first thing that is wrong. radius: of the robot, metres.
+    """Raises Fault for the first thing that is wrong. radius: of the robot (m).
 
-    before: a sound world, whose walls need not be looked at again. free_in: where a robot of that radius fits.
+    before: a valid world, whose walls are not checked again. free_in: gives the free space of a world for that radius.
     """
     for fault in world_faults(world, radius, before, free_in):
         raise fault
@@ -47,7 +47,7 @@ def check_world(
 def world_faults(
     world: World, radius: float, before: World | None = None, free_in: Callable[[World], FreeSpace] | None = None
 ) -> Iterator[Fault]:
-    """All that is wrong; what can only be judged of a sound outline comes when nothing else is wrong."""
+    """Everything that is wrong. Checks that need a valid outline are made only if nothing else is wrong."""
     sound = True
     known = set[int]() if before is None else set(map(id, before.walls))
     new = ((i, wall) for i, wall in enumerate(world.walls) if id(wall) not in known)
@@ -65,7 +65,7 @@ def world_faults(
 
 
 def _place_faults(world: World, free: FreeSpace) -> Iterator[Fault]:
-    """The robot fits on every start as the world begins, and between the walls on every place."""
+    """The robot must fit at every start as the world begins, and at every place between the walls."""
     for kind, points, fit in (
         ("starts", world.starts, RobotFit(free, Standing.at_first(world))),
         ("places", world.places, RobotFit(free)),
@@ -102,7 +102,7 @@ def _wall_faults(where: Where, wall: Wall) -> Iterator[Fault]:
 
 
 def _outline_faults(world: World) -> Iterator[Fault]:
-    """Outer walls come first, each begins where the one before ends, and the ring runs counter-clockwise."""
+    """Outer walls come first, each must begin where the one before ends, counter-clockwise."""
     outer = [i for i, wall in enumerate(world.walls) if wall.outer]
     if len(outer) < 3:
         yield Fault(("walls",), f"{len(outer)} are outer; at least 3 must close the outline")
@@ -169,7 +169,7 @@ def _thing_faults(world: World) -> Iterator[Fault]:
 
 
 def _points(world: World) -> Iterator[tuple[Where, str, float, float]]:
-    """Every point that must lie inside: path, what it is, place."""
+    """Every point that must lie inside the outline: path of the item, what it is, x, y."""
     for i, door in enumerate(world.doors):
         yield ("doors", i, "hinge"), "the hinge", door.x, door.y
     for kind, items in (("lamps", world.lamps), ("boxes", world.boxes)):

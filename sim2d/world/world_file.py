@@ -1,4 +1,4 @@
-"""World files: JSON, format 1, checked when loaded. Every complaint names file, item, line, value and what is right."""
+"""World files: JSON, format 1, checked when loaded. Errors name file, item, line, value and what would be right."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ WORLDS = Path(__file__).parents[1] / "worlds"
 DEFAULT_WORLD = "office"
 SCHEMA = WORLDS / "schema.json"  # kept equal to `schema_text` by test_world_file.py::test_schema_is_published
 MOST_BYTES = 16_000_000
-MOST_LEVELS = 20  # a point in a panel in a wall lies in the sixth
+MOST_LEVELS = 20  # a valid file has at most six
 _TOO_DEEP = f"not a world: nested too deeply; at most {MOST_LEVELS} lists or objects can lie within one another"
 
 
 class WorldError(ValueError):
-    """A world file that cannot be used, and why, in words that can be printed whatever is in the file."""
+    """Why a world file cannot be used, in words that can always be printed, whatever the file contains."""
 
     def __init__(self, words: str) -> None:
         super().__init__(words.encode("utf-8", "backslashreplace").decode())
@@ -35,7 +35,7 @@ class WorldError(ValueError):
 
 @cache
 def world_names() -> tuple[tuple[str, str], ...]:
-    """(name, title) of the worlds that come with the package, the default first."""
+    """(name, title) of the worlds that come with the program, the default first."""
     names = sorted(
         (path.stem for path in WORLDS.glob("*.json") if path != SCHEMA), key=lambda name: (name != DEFAULT_WORLD, name)
     )
@@ -43,9 +43,9 @@ def world_names() -> tuple[tuple[str, str], ...]:
 
 
 def load_world(name_or_path: str | Path = DEFAULT_WORLD, robot_radius_m: float | None = None) -> World:
-    """The world of this name, or in this file. Raises WorldError.
+    """The world of this name, or the one in this file. Raises WorldError.
 
-    `robot_radius_m`: of the robot that will start in it; without it the default robot's.
+    robot_radius_m: of the robot that will start in it; None: that of the default robot.
     """
     path = _find(name_or_path)
     try:
@@ -58,7 +58,7 @@ def load_world(name_or_path: str | Path = DEFAULT_WORLD, robot_radius_m: float |
 
 
 def holds(path: Path, world: World) -> bool:
-    """Whether the world file says just this; one that cannot be read does not."""
+    """Whether the file describes exactly this world. A file that cannot be read does not."""
     try:
         text = path.read_text("utf-8")
         return text == world_to_json(world) or WorldFile.model_validate(parse_json(text, path.name)).world() == world
@@ -67,7 +67,7 @@ def holds(path: Path, world: World) -> bool:
 
 
 def world_from_json(text: str, file_name: str, robot_radius_m: float | None = None) -> World:
-    """The world in the text of a file; `file_name` is for complaints alone. Raises WorldError."""
+    """The world in the text of a file. file_name: for error messages only. Raises WorldError."""
     raw = parse_json(text, file_name)
     try:
         world = WorldFile.model_validate(raw).world()
@@ -79,7 +79,7 @@ def world_from_json(text: str, file_name: str, robot_radius_m: float | None = No
 
 
 def complaints(text: str, file_name: str, robot_radius_m: float | None = None) -> list[str]:
-    """All that is wrong with the text of a world file, in sentences; what needs sound walls waits until they are."""
+    """Everything that is wrong with the text of a world file, in sentences. Some checks need walls that are valid."""
     try:
         world = WorldFile.model_validate(parse_json(text, file_name)).world()
     except ValidationError as error:
@@ -96,7 +96,7 @@ def schema_text() -> str:
 
 
 def parse_json(text: str, file_name: str) -> Any:
-    """Raises WorldError with line and column."""
+    """The parsed text. Raises WorldError with line and column."""
     try:
         raw = json.loads(text)
     except json.JSONDecodeError as error:
@@ -116,7 +116,7 @@ def item_complaint(error: ValidationError, kind: str) -> str:
 
 
 def fault_words(fault: Fault) -> str:
-    """What is wrong and with which item, without a file."""
+    """What is wrong and with which item, without file and line."""
     between = " " if fault.message.startswith("(") else ": "
     return f"{_path(fault.where)}{between}{fault.message}"
 
@@ -139,8 +139,8 @@ def _complaints(world: World, text: str, name: str, radius_m: float | None) -> I
 
 
 def _find(name_or_path: str | Path) -> Path:
-    """One of ours by its name, one that a person saved, else a file. Who takes names from strangers must compare with
-    `world_names` and `own_worlds.names` first."""
+    """The file of a world by its name, ours or the user's; else the argument as a path. Code that accepts names from
+    strangers must first compare them with `world_names` and `own_worlds.names`."""
     text = str(name_or_path)
     known = [name for name, _ in world_names()]
     if text in known:

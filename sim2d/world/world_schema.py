@@ -1,4 +1,4 @@
-"""The world file as a schema (format 1): which keys there are, of which type, within which limits; and into a World."""
+"""The schema of world files (format 1): their keys, types and limits; and how the items become a World."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ class WorldFile(_Item):
     script: Annotated[list[_EventItem], Field(max_length=MOST_EVENTS)] = []
 
     def world(self) -> World:
-        """What the simulator takes; angles become radians, colours triples."""
+        """The World that the simulator uses; angles become radians, colours become triples."""
         return World(
             name=self.name,
             title=self.title,
@@ -189,7 +189,7 @@ class WorldFile(_Item):
 
 
 def element_of(kind: str, item: dict[str, Any]) -> Element:
-    """One item of one of the file's lists. Raises pydantic's ValidationError."""
+    """An item of one of the file's lists, as an element. Raises pydantic's ValidationError."""
     model, make = _MAKERS[kind]
     return make(model.model_validate(item))
 
@@ -267,4 +267,4 @@ _MAKERS: dict[str, tuple[type[_Item], Callable[[Any], Element]]] = {
     "script": (_EventItem, _event),
     "daylight": (_DaylightItem, _daylight),
 }
-LISTS = {kind: model for kind, (model, _) in _MAKERS.items()}  # what an item of each list of the file holds
+LISTS = {kind: model for kind, (model, _) in _MAKERS.items()}  # the model of the items of each list

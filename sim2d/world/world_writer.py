@@ -11,19 +11,19 @@ from sim2d.world.world import Wall, World
 
 
 def world_to_json(world: World) -> str:
-    """Format 1, a line for each item; what is left at its default is left out. Read again it gives an equal world."""
+    """The text of a world file, one line for each item. Read again, it gives an equal world."""
     return WorldText().of(world)
 
 
 class WorldText:
-    """Writes one world after the other. Walls that are the same objects as in the last one are not written anew: of ten
-    thousand that takes half a second."""
+    """Writes one world after another. Walls that are the same objects as in the last one are not converted again, which
+    would take half a second for ten thousand walls."""
 
     def __init__(self) -> None:
-        self._lines: dict[int, tuple[Wall, str]] = {}  # by id; the wall is kept, so that nothing else gets its id
+        self._lines: dict[int, tuple[Wall, str]] = {}  # by id; the wall is kept, so that its id stays its own
 
     def of(self, world: World) -> str:
-        """As `world_to_json`."""
+        """The same text as `world_to_json`."""
         known, lines = self._lines, {}
         for wall in world.walls:
             lines[id(wall)] = known.get(id(wall)) or (wall, json.dumps(_wall(wall)))
@@ -106,7 +106,7 @@ def _hex(rgb: Rgb) -> str:
 
 
 def _degrees(angle: float) -> float:
-    """Degrees that become exactly this angle again where there are any, short where a short number does."""
+    """Degrees that convert back to exactly this angle, if there are any; a short number where that is enough."""
     near = math.degrees(angle)
     beside = (math.nextafter(near, side) for side in (-math.inf, math.inf))
     return next((d for d in (round(near, 9), near, *beside) if math.radians(d) == angle), near)

@@ -1,8 +1,8 @@
-"""Makes the worlds that come with the package, but for the three first (office, floor, loop), whose JSON is the source.
+"""Makes the worlds that come with the program, except office, floor and loop, whose JSON files are the source.
 
     python -m sim2d.worlds.make
 
-Sizes are the papers'; what they leave open - widths, furniture, looks - is ours. Lengths in metres.
+The sizes are from the papers. What these leave open (widths, furniture, looks) is ours. Lengths in metres.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ DOOR_M = 1.2
 
 
 class Sketch:
-    """A floor plan in the making."""
+    """A floor plan under construction."""
 
     def __init__(self, outline: Sequence[Point], seed: int) -> None:
         self.dresser = Dresser(seed)
         self.walls: list[Wall] = self.dresser.line([*outline, outline[0]], "left", outer=True)
 
     def block(self, points: Sequence[Point], kind: str = "wall", height: float = 2.6) -> None:
-        """Something solid; its corners clockwise."""
+        """A solid block; corners clockwise."""
         self.walls += self.dresser.line([*points, points[0]], "left", kind, height)
 
     def box(self, x: float, y: float, width: float, depth: float, kind: str = "wall", height: float = 2.6) -> None:
@@ -38,7 +38,7 @@ class Sketch:
         self.block([(x, y), (x, y + depth), (x + width, y + depth), (x + width, y)], kind, height)
 
     def wall(self, a: Point, b: Point, *doors: float, kind: str = "wall", height: float = 2.6) -> None:
-        """From a to b, open around these distances from a; a different look on each side."""
+        """A wall from a to b with gaps of DOOR_M around these distances from a. Its two sides look different."""
         length = math.dist(a, b)
         ends = [0.0, *(end for door in doors for end in (door - DOOR_M / 2, door + DOOR_M / 2)), length]
         points = [(a[0] + (b[0] - a[0]) * end / length, a[1] + (b[1] - a[1]) * end / length) for end in ends]
@@ -46,7 +46,7 @@ class Sketch:
             self.walls += self.dresser.line([begin, end], "each", kind, height)
 
     def desk(self, x: float, y: float, width: float, depth: float) -> None:
-        """With a screen on it."""
+        """A desk with a screen on it; lower left corner at (x, y)."""
         self.box(x, y, width, depth, "desk", 0.75)
         half, seed = 0.27, self.dresser.next_seed()
         dx, dy = (half, 0.0) if width > depth else (0.0, half)
@@ -116,7 +116,7 @@ def campus() -> World:
 
 
 def open_plan() -> World:
-    """The 80 m^2 of open plan in which experience mapping was tried on a real robot."""
+    """The open-plan office of 80 m² in which experience mapping was tested on a real robot."""
     sketch = Sketch([(0, 0), (10, 0), (10, 8), (0, 8)], seed=80)
     for x, y in ((2.0, 1.9), (6.2, 1.9), (2.0, 5.2), (6.2, 5.2)):
         sketch.partition((x, y), (x + 1.8, y))
@@ -137,7 +137,7 @@ def open_plan() -> World:
 
 
 def two_goals() -> World:
-    """Two goals with two ways of one length between them; wheels slip on the lower one, so that the upper is quicker."""
+    """Two goals with two equally long ways between them. On the lower one wheels slip: the upper one is quicker."""
     outline = [(0, 0), (24, 0), (24, 12), (0, 12)]
     sketch = Sketch(outline, seed=1274)
     sketch.box(7.0, 4.2, 10.0, 3.6)
@@ -159,7 +159,7 @@ def two_goals() -> World:
 
 
 def twins() -> World:
-    """Two corridors alike to the last poster; only where they lead differs."""
+    """Two corridors that look exactly alike; only their surroundings differ."""
     sketch = Sketch([(0, 0), (22, 0), (22, 8.6), (0, 8.6)], seed=17)
     below = Dresser(18)
     pair = [
@@ -187,7 +187,7 @@ def twins() -> World:
 
 
 def living() -> World:
-    """Rooms behind doors, with everything that can live in an office."""
+    """Rooms behind doors, with every kind of element that an office can have."""
     sketch = Sketch([(0, 0), (14, 0), (14, 9), (0, 9)], seed=1906)
     sketch.wall((0, 5.4), (4.6, 5.4), 2.5)
     sketch.wall((9.2, 5.4), (14, 5.4), 2.3)
@@ -236,7 +236,7 @@ def living() -> World:
 
 
 def suburb() -> World:
-    """Blocks of houses, seven by five, for runs of hours."""
+    """Seven by five blocks of houses, for runs of several hours."""
     rng = np.random.default_rng(66)
     width, depth, street, across, down = 26.0, 18.0, 4.0, 7, 5
     size_x, size_y = across * (width + street) + street, down * (depth + street) + street
@@ -256,7 +256,7 @@ def suburb() -> World:
 
 
 def _houses(x: float, y: float, width: float, depth: float, rng: np.random.Generator) -> list[Point]:
-    """A block clockwise from its lower left corner: houses 5 to 8 m wide, each with its own distance from the street."""
+    """The corners of a block, clockwise from the lower left: houses 5 to 8 m wide, each set back differently."""
     ring: list[Point] = []
     sides = (((x, y), (0, 1), (1, 0), depth), ((x, y + depth), (1, 0), (0, -1), width),
              ((x + width, y + depth), (0, -1), (-1, 0), depth), ((x + width, y), (-1, 0), (0, 1), width))  # fmt: skip

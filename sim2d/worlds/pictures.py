@@ -1,4 +1,4 @@
-"""Draws worlds from above, as PNG for the docs.
+"""Draws worlds from above, as PNG files for the documentation.
 
 python -m sim2d.worlds.pictures docs/pictures/worlds
 """
@@ -18,9 +18,9 @@ from sim2d.world.elements import Rgb
 from sim2d.world.world import World
 from sim2d.world.world_file import load_world, world_names
 
-_SIDE_PX = 1000  # of the longer side
+_SIDE_PX = 1000  # width of the picture
 _RIM_PX = 16
-_FINE = 4  # coordinates in sixteenths of a pixel
+_FINE = 4  # binary places: coordinates are in sixteenths of a pixel
 _KINDS = {
     "wall": ((60, 60, 64), 3),
     "partition": ((150, 120, 70), 2),
@@ -32,7 +32,7 @@ _HOME, _PLACE, _SLOW = (40, 40, 220), (30, 140, 30), (200, 225, 255)
 
 
 class _Sheet:
-    """A picture of a world's size, and where a place of it is there."""
+    """An empty picture for a world, and the conversion from metres to its pixels."""
 
     def __init__(self, world: World) -> None:
         x0, y0, x1, y1 = world.bounds
@@ -50,7 +50,7 @@ class _Sheet:
 
 
 def picture_of(world: World) -> NDArray[np.uint8]:
-    """(rows, columns, 3) BGR: walls, what hangs on them, slow floor, what lives, starts (red) and named places (green)."""
+    """(rows, columns, 3) BGR: walls and panels, slow floors, elements, starts (red) and named places (green)."""
     sheet = _Sheet(world)
     _draw_walls(sheet, world)
     _draw_elements(sheet, world)

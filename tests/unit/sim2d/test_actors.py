@@ -224,7 +224,7 @@ def test_a_kidnap_by_chance_finds_what_room_boxes_and_people_leave() -> None:
     full = replace(room(), boxes=(Box("all", 2.0, 2.0, 3.9, 3.9, present=False),))
     simulator = Simulator(full, EXACT)
     simulator.actors.box_present[0] = True
-    with pytest.raises(ValueError, match="leave the robot no room: 1000 places by chance are all taken"):
+    with pytest.raises(ValueError, match="leave the robot no room: all 1000 random places tried are taken"):
         simulator.random_free_pose()
 
 
