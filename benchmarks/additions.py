@@ -1,9 +1,9 @@
-"""What each addition of ours is worth: the closed loop with it and without it, seeds and worlds alike, as a table.
+"""What each addition of ours is worth: the closed loop with and without it, on the same seeds and worlds, as a table.
 
     python -m benchmarks.additions --seeds 21 22 23 24 25 --worlds office living loop --minutes 10 --table docs/additions.md
 
-Each run explores, is kidnapped once at the middle, and then visits places spread over the map. A row is all runs without one
-addition; the first row is all of them together, the last ones are the papers'.
+In each run the robot explores, is kidnapped once at half time, and then visits places spread over the map. A row holds
+the runs without one addition. The first row has all additions; the last rows are the papers' engines.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Run = tuple[str, str, int, float, int]  # row, world, seed, minutes, goals
 
 
 def rows() -> dict[str, dict[str, Value]]:
-    """What is set in each row."""
+    """The parameters that are set in each row."""
     papers = {name: values for name, values in PRESETS.items() if name != "ours"}
     return {"ours, all of them": {}} | {f"without {a.name}": a.off for a in ADDITIONS} | papers
 
@@ -56,7 +56,7 @@ def _figures(report: dict[str, Any]) -> dict[str, Any]:
 
 
 def table(runs: list[dict[str, Any]], worlds: list[str]) -> Iterator[str]:
-    """Medians of the map's error in each world, and what became of goals and kidnaps in all of them."""
+    """The table: median map error in each world, and how many goals and kidnaps succeeded in all of them."""
     errors = " | ".join(f"{world}: map error, median (worst)" for world in worlds)
     yield f"| | {errors} | goals reached | found again after a kidnap |"
     yield "|---|" + "---|" * (len(worlds) + 2)

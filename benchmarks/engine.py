@@ -1,6 +1,6 @@
-"""The engine's speed, each work beside a reference in the same run: `ratslam bench [--json FILE]`.
+"""The engine's speed. Each part is timed beside a reference in the same run: `ratslam bench [--json FILE]`.
 
-Rows: work, size, ms, reference, reference_ms, bar, holds. Times are medians over repetitions on the machine at hand.
+Rows: work, size, ms, reference, reference_ms, bar, holds. Times are medians over repetitions on this machine.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ SEEN = Recognition(0, False, 0, 2.0)
 
 
 def rows() -> Iterator[Row]:
-    """One row after the other, as soon as it is measured."""
+    """The rows, each as soon as it has been measured."""
     yield from _pose_cells()
     yield from _pose_cell_memory()
     yield from _views()
@@ -77,7 +77,7 @@ def _pose_cells() -> Iterator[Row]:
 
 
 def _pose_cell_memory() -> Iterator[Row]:
-    """All arrays of a network that has driven: the bytes stand in the size, since they are no time."""
+    """The memory of a network that has driven. The bytes are in the column size, since they are not a time."""
     n = 540
     bytes_a_cell = _settled(n, packets=1).memory_bytes / (n * n * 36)
     size = f"{n} x {n} x 36: {bytes_a_cell:.2f} B a cell"
@@ -104,7 +104,7 @@ def _settled(n: int, packets: int) -> PoseCells:
 
 
 def _ten_packets(cells: PoseCells) -> float:
-    """Median of first iterations after all ten packets were put back: in the long run one of them wins."""
+    """Median time of an iteration with ten packets; all are put back each time, since one wins in the long run."""
     rows, values = cells.active[0].copy(), cells.active[1].copy()
     times = []
     for _ in range(100):
@@ -194,7 +194,7 @@ def _map(experiences: int, links: int) -> Iterator[Row]:
 
 
 def _linked_and_asked(made: ExperienceMap, rng: np.random.Generator) -> None:
-    """A loop closes somewhere, then the times are asked for: kept up to date, not rebuilt."""
+    """A loop is closed, then the times are asked for. They are updated, not computed anew."""
     a, b = (int(v) for v in rng.integers(0, len(made), 2))
     x, y, _theta, view = made.cell_state(b)
     made.active = a
@@ -203,7 +203,7 @@ def _linked_and_asked(made: ExperienceMap, rng: np.random.Generator) -> None:
 
 
 def _long_map(experiences: int, links: int) -> ExperienceMap:
-    """A random walk that made so many experiences, with closures between random pairs."""
+    """A map of so many experiences from a random walk, with closures between random pairs."""
     rng = np.random.default_rng(3)
     made = ExperienceMap((36, 64, 64), 0.25)
     odometry = Odometry(0.3, 0.05, 0.1)
@@ -223,7 +223,7 @@ def _long_map(experiences: int, links: int) -> ExperienceMap:
 
 
 def _whole_step(views: int, bar: float) -> Row:
-    """A brain that knows so many views and experiences, going on along a known way."""
+    """A brain that knows so many views and experiences and drives along a known way."""
     rng = np.random.default_rng(4)
     brain = RatSlam()
     made = _long_map(views, views + views // 5)

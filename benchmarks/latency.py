@@ -1,8 +1,9 @@
 """From a click or key in a real browser to the changed snapshot on the wire: `python -m benchmarks.latency`. Bar: p95 150 ms.
 
-The clock starts with the input event in the page and stops when the page gets the first state that shows the change,
-so both ways through the websocket and the wait for the engine's tick at x1 are in it. The stage's frame is taken out
-first: without a graphics card it draws two to five times a second in the page's own thread, and would be what is measured.
+The clock starts with the input event in the page and stops when the page gets the first state that shows the change, so
+it includes both ways through the websocket and the wait for the engine's tick at x1. The viewer's frame is removed
+first: without a graphics card it draws two to five times a second in the page's own thread and would dominate the
+result.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from tests.e2e.browser import launch, open_page
 from tests.e2e.program import Program
 
 BAR_MS = 150.0
-TURNED = "(arrow until it turns)"  # told, not judged: the motion itself takes up to a whole tick of 100 ms
+TURNED = "(arrow until it turns)"  # reported, not judged: the motion itself takes up to a whole tick of 100 ms
 WATCH = """() => {
     window.seen = [];
     const socket = new WebSocket(`ws://${location.host}/api/stream?page=${"l".repeat(22)}`);

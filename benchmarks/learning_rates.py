@@ -1,7 +1,8 @@
 """Fixed learning rates beside the adaptive one, in a world full of look-alikes: `python -m benchmarks.learning_rates`.
 
-ACRA 2004 section 6.6: a low rate keeps on learning ambiguous scenes but relocalises slowly; a high one snaps quickly, and
-wrongly. For each rate and seed: explore, then be carried away four times. Prints one row a rate, means over the seeds.
+ACRA 2004 section 6.6: with a low rate the robot goes on learning ambiguous scenes but relocalises slowly; with a high
+rate it snaps quickly, and often wrongly. For each rate and seed the robot explores and is then carried away four times.
+Prints one row for each rate, means over the seeds.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ FALSE_M = 1.0  # a relocalisation that ends farther than this from the truth is 
 
 
 def run(world: str, seed: int, rate: float, adaptive: bool, minutes: float) -> dict[str, float]:
-    """One robot: explores for so many minutes, then is carried away every two minutes, four times."""
+    """One robot, which explores for so many minutes and is then carried away four times, every two minutes."""
     config = Config().with_value("local_view.learning_rate", rate).with_value("local_view.adaptive", adaptive)
     session = Session(load_world(world), seed, config)
     evaluation, map_ = session.evaluation, session.brain.experience_map

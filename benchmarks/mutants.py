@@ -1,10 +1,10 @@
-"""How many small faults put into the engine its unit and property tests notice.
+"""How many small faults in the engine are noticed by its unit and property tests.
 
     python -m benchmarks.mutants --count 200 --seed 1 --json mutants.json
 
-A mutant is one changed operator, comparison, minimum or maximum of one file of ratslam_core. Each is tried in a copy of the
-tree, with kernels compiled afresh where the change can reach them; it is killed when a test fails or takes far too long.
-Survivors are listed.
+A mutant is one changed operator, comparison, minimum or maximum in one file of ratslam_core. Each is tried in a copy of
+the tree, and kernels that the change can reach are compiled afresh. A mutant is killed if a test fails or takes far too
+long. Survivors are listed.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ ROOT = Path(__file__).resolve().parent.parent
 ROOMS = ("app", "benchmarks", "disk", "docs", "ratslam_core", "sim2d", "tests", "web", "pyproject.toml")
 SUITE = ("tests/unit/ratslam_core", "tests/property")
 NOT_MUTATED = ("laws", "params")  # guards of files, and declarations
-MOST_S = 900.0  # of a mutant's tests; the suite takes a tenth of it
+MOST_S = 900.0  # for the tests of one mutant; the suite takes a tenth of it
 OTHER: dict[type[ast.AST], tuple[type[ast.AST], ...]] = {
     ast.Add: (ast.Sub,), ast.Sub: (ast.Add,), ast.Mult: (ast.Div,), ast.Div: (ast.Mult,), ast.FloorDiv: (ast.Mult,),
     ast.Mod: (ast.FloorDiv,), ast.Pow: (ast.Mult,), ast.Lt: (ast.LtE, ast.GtE), ast.LtE: (ast.Lt, ast.Gt),
@@ -52,7 +52,7 @@ class Mutant:
 
 
 def mutants_of(file: Path) -> Iterator[Mutant]:
-    """Every mutant of one file. What stands in annotations, decorators, error sentences and text is left alone."""
+    """Every mutant of one file. Annotations, decorators, error sentences and text are left alone."""
     source = file.read_text(encoding="utf-8")
     starts = [0]
     for line in source.encode().splitlines(keepends=True):
@@ -69,7 +69,7 @@ def mutants_of(file: Path) -> Iterator[Mutant]:
 
 
 def _changes(tree: ast.AST) -> Iterator[tuple[ast.AST, ast.AST]]:
-    """A node of the tree and what it becomes."""
+    """Nodes of the syntax tree, and what each is changed to."""
     for node in _reached(tree):
         if isinstance(node, ast.BinOp | ast.AugAssign | ast.BoolOp):
             for other in OTHER.get(type(node.op), ()):
@@ -101,7 +101,7 @@ def _with(node: ast.AST, **changed: object) -> ast.AST:
 
 
 class Bench:
-    """A copy of the tree for each worker, with the compiled kernels of the unchanged one."""
+    """A copy of the source tree for each worker, with the compiled kernels of the unchanged one."""
 
     def __init__(self, folder: Path) -> None:
         self._folder, self._lock, self._made = folder, threading.Lock(), 0
@@ -111,7 +111,7 @@ class Bench:
         self._test(self._warm, ["-q"], check=True)
 
     def survives(self, mutant: Mutant) -> bool:
-        """Whether no test notices."""
+        """Whether no test notices the mutant."""
         tree = self._tree()
         file = tree / mutant.file
         source = file.read_bytes()
@@ -142,7 +142,7 @@ class Bench:
 
     @staticmethod
     def _first(file: str) -> list[str]:
-        """Tests named after the file come first: most mutants do not live to see the others."""
+        """Tests named after the file come first, since they kill most mutants."""
         name = Path(file).stem
         named = sorted(
             str(path.relative_to(ROOT)) for room in SUITE for path in (ROOT / room).glob(f"test_*{name}*.py")
@@ -151,7 +151,7 @@ class Bench:
 
     @staticmethod
     def _forget_kernels(tree: Path, changed: str) -> None:
-        """Compiled code of the file and of all that import it, straight or over others: their callers have it inside."""
+        """Delete the compiled code of the file and of all that imports it, directly or not: callers contain it."""
         files = {
             str(path.relative_to(tree)): path.read_text(encoding="utf-8")
             for path in (tree / "ratslam_core").rglob("*.py")

@@ -27,7 +27,7 @@ FASTEST = 300  # times real time that the closed loop has to be
 
 
 def rows() -> Iterator[Row]:
-    """One row after the other, as soon as it is measured."""
+    """The rows, each as soon as it has been measured."""
     for walls, bar in ((100, 0.15), (400, 0.2), (2000, 0.3)):
         ms = tick_ms(Simulator(rooms(walls), seed=1))
         yield _row("office: one 10 Hz tick", f"{walls:,} walls", ms, f"{bar:g} ms", ms <= bar)
@@ -38,7 +38,7 @@ def rows() -> Iterator[Row]:
 
 
 def rooms(walls: int, people: int = 0, seed: int = 0) -> World:
-    """So many walls with pictures on them; people go round in rooms."""
+    """A world of so many walls with pictures on them, in which people walk round in rooms."""
     across = math.ceil(0.5 + math.sqrt(0.25 + (walls - 4) / 2))  # 2 n (n - 1) walls between n x n rooms
     side, dresser = across * ROOM_M, Dresser(seed)
     outline = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side), (0.0, 0.0)]
@@ -64,7 +64,7 @@ def rooms(walls: int, people: int = 0, seed: int = 0) -> World:
 
 
 def tick_ms(simulator: Simulator, seed: int = 0) -> float:
-    """Median of a tick of physics, camera 64 x 48, sonar and encoders while the robot drives about at random."""
+    """Median time (ms) of a tick of physics, camera (64 x 48), sonars and encoders while the robot drives at random."""
     rng = np.random.default_rng(seed)
     times, drive = [], Drive(0.0, 0.0)
     for tick in range(WARM_TICKS + TICKS):
@@ -77,7 +77,7 @@ def tick_ms(simulator: Simulator, seed: int = 0) -> float:
 
 
 def edit_ms(session: Session) -> float:
-    """Median of what an edit takes of the engine's thread: checked, taken, drawn for the stage, and the tick after it."""
+    """Median time (ms) of an edit in the engine's thread: check, change, drawing for the viewer, next tick."""
     editor, simulator, times = WorldEditor(session.world), session.simulator, []
     radius, number = simulator.params.robot_radius_m, len(session.world.walls) - 1
     for k in range(EDITS):
@@ -94,7 +94,7 @@ def edit_ms(session: Session) -> float:
 
 
 def _closed_loop() -> Row:
-    """The default office, first minute behind it, the best of four half minutes; a tick of 0.1 s may take 0.1 s / 300."""
+    """The default office after its first minute, the best of four half minutes. A tick may take 0.1 s / 300."""
     session = Session(load_world(), 1)
     ticks = round(LOOP_S / session.frame.dt)
     for _ in range(ticks):
@@ -111,7 +111,7 @@ def _closed_loop() -> Row:
 
 
 def _largest() -> Iterator[Row]:
-    """The largest world that is allowed, from its file to the first frame, and live."""
+    """The largest world that is allowed: from its file to the first frame, and a tick of it live."""
     size = "10,000 walls, 50 people"
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "large.json"

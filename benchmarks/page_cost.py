@@ -1,9 +1,10 @@
-"""What the page costs at x1: `python -m benchmarks.page_cost`. What it is sent, by node and part; its script; a drawn frame.
+"""What the page costs at x1, `python -m benchmarks.page_cost`: the traffic to it, by node and part, its script, and a
+frame.
 
-The traffic is counted where it is handed over, without a browser, so that a busy machine does not thin it out: what viser
-sends of the plates, the state and what the open tab of the panel is told. The page's own script is what lies in web/static, by
-samples of the browser's profiler, on top of which viser's draws. Frames are drawn in software, and what one takes is the
-processor time of the browser's drawing: a graphics card takes none.
+Traffic is counted where it is handed over, without a browser, so that a busy machine does not reduce it: what viser
+sends for the plates, the state, and what the open tab of the panel is sent. The page's own script is the code in
+web/static, measured by samples of the browser's profiler; viser's drawing comes on top. Frames are drawn in software,
+and the cost of a frame is the processor time of the browser's drawing; with a graphics card there is none.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from web.panel.panel import TABS, Panel, PanelReader
 from web.switches import Switches
 from web.viewer import Viewer
 
-BARS_KB = {"exploring": 180.0, "standing still": 80.0, "paused": 1.0}  # a second, with the tab Senses open
+BARS_KB = {"exploring": 180.0, "standing still": 80.0, "paused": 1.0}  # per second, with the tab Senses open
 LINES = 12
 COUNT_FRAMES = """() => {
     const kind = WebGL2RenderingContext.prototype;
@@ -66,7 +67,7 @@ def main() -> int:
 
 
 def traffic(seconds: float, after_s: float) -> bool:
-    """Bytes a second while the robot explores, stands still, and while time stands still."""
+    """Bytes per second while the robot explores, while it stands still, and while the session is paused."""
     engine = EngineThread(load_world("office"), 5, Config(), speed=0.0)
     page = _Page(engine)
     engine.start()
@@ -94,7 +95,7 @@ def _time_s(engine: EngineThread) -> float:
 
 
 class _Page:
-    """The rounds of viewer and stream as their own threads run them for somebody who has just opened the page."""
+    """Runs viewer and stream as their own threads would, for somebody who has just opened the page."""
 
     def __init__(self, engine: EngineThread) -> None:
         switches = Switches()
@@ -137,7 +138,7 @@ def _tell(phase: str, heard: list[Counter[str]], seconds: float) -> float:
 
 
 def _parts_of(message: Any) -> Counter[str]:
-    """Bytes by node and property: arrays as they are, the rest compressed, as viser sends them."""
+    """Bytes by node and property, as viser sends them: arrays as they are, the rest compressed."""
     updates = getattr(message, "updates", None) or {"": message}
     about = getattr(message, "name", None) or getattr(message, "uuid", "")
     arrays: list[memoryview] = []
@@ -147,7 +148,7 @@ def _parts_of(message: Any) -> Counter[str]:
 
 
 def frames(seconds: float, after_s: float, picture: str | None) -> None:
-    """Frames a second, and the processor time and draw calls of one, while the robot explores."""
+    """Frames per second, and the processor time and draw calls of one frame, while the robot explores."""
     program = Program("--port", "0", "--seed", "5", "--speed", "0")
     try:
         _await_first_tick(program)
@@ -192,7 +193,7 @@ def _measure(page: Page, seconds: float) -> None:
 
 
 def _measure_script(page: Page, tab: str, seconds: float) -> None:
-    """Milliseconds a second in functions of web/static, by the profiler's samples."""
+    """Milliseconds per second spent in functions of web/static, by the profiler's samples."""
     session = page.context.new_cdp_session(page)
     for order in ("Profiler.enable", "Profiler.start"):
         session.send(order)

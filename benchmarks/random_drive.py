@@ -1,9 +1,10 @@
-"""Does the robot ever get into a wall? Drives wildly, people walking and doors working, and tells the deepest it got.
+"""Does the robot ever get into a wall? It drives wildly among people and moving doors; the deepest overlap is reported.
 
     python -m benchmarks.random_drive [--hours 10] [--seed 1] [WORLD ...]
 
-A world is a name or a file as `ratslam run --world` takes it; without any, all that come with the program. Physics only: no
-camera, no brain. Every ten minutes the robot is put elsewhere by chance, so that it sees all of a large world.
+A world is a name or a file, as for `ratslam run --world`; the default is all worlds that come with the program. Physics
+only: no camera, no brain. Every ten minutes the robot is put at a random place, so that it comes to all parts of a
+large world.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ SIGHT_M = 0.4  # nothing farther away is measured
 
 @dataclass(frozen=True, slots=True)
 class Deepest:
-    """Metres into a wall, and into a leaf, box or person; and where the robot was then. Below 0: never touched."""
+    """The deepest overlap (m) with a wall, and with a leaf, box or person, and where. Negative: never touched."""
 
     wall_m: float
     thing_m: float
@@ -35,7 +36,7 @@ class Deepest:
 
 
 def with_people(world: World, seed: int, count: int = PEOPLE) -> World:
-    """People who walk between free places near the start, if nobody does."""
+    """The world; if nobody walks in it, with people who walk between random free places."""
     if world.people:
         return world
     free, rng = FreeSpace(world, SimParams().robot_radius_m), np.random.default_rng(seed)
@@ -53,7 +54,7 @@ def with_people(world: World, seed: int, count: int = PEOPLE) -> World:
 
 
 def drive(world: World, hours: float, seed: int) -> Deepest:
-    """Hold a random drive for up to 3 s, at full speed more often than not; order doors about at random."""
+    """Hold random drives for up to 3 s each, mostly at full speed, and open and shut doors at random."""
     simulator = Simulator(world, seed=seed)
     frame, params = simulator.observe(), simulator.params
     simulator._sense = lambda _speed, _yaw_rate: frame  # type: ignore[method-assign]

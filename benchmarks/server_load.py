@@ -1,6 +1,6 @@
 """The program's processor time and memory with one browser at x1: `python -m benchmarks.server_load`. Bar: 40 % of a core.
 
-Counted is the program's own process; the browser draws in software elsewhere and is left out.
+Only the program's own process is counted, not the browser, which draws in software.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def main() -> int:
                     sizes.append(server.memory_info().rss)
         watched = sum(loads) / THIRDS
         steps = [(after - before) / 1e6 for before, after in pairwise(sizes)]
-        grown = min(steps) * 60 / options.seconds * THIRDS  # a leak is in every third, a doubled array in one
+        grown = min(steps) * 60 / options.seconds * THIRDS  # a leak shows in every third, a doubled array in one
         memory = server.memory_info().rss / 1e6
     finally:
         program.stop()

@@ -1,9 +1,9 @@
 """Hours at high speed with a browser open: `python -m benchmarks.soak --minutes 120 --speed 16`.
 
-Every half minute a row: the server's memory, threads and open files, what a tick takes, the size of the map; every few
-minutes something that a person does: a goal, other colours, a kidnap, another view, the page loaded anew. At the end what
-follows from it. Ctrl+C ends it earlier, with the same report. It is missed when the engine faults or stands still, the
-page complains, or threads or files become more and more.
+Every half minute it prints a row: the server's memory, threads and open files, the time of a tick, the size of the map.
+Every few minutes it does what a person might do: a goal, other colours, a kidnap, another view, reloading the page. A
+report comes at the end, or earlier after Ctrl+C. The soak fails if the engine faults or stands still, if the page
+reports an error, or if threads or open files keep growing in number.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ TROUBLE = (BrowserError, OSError, TimeoutError, psutil.Error)
 
 
 class Onlooker:
-    """The page in a browser, with the Tick tab open; what goes wrong there is kept."""
+    """The page in a browser, with the tab Tick open. It keeps what goes wrong there."""
 
     def __init__(self, context: BrowserContext, url: str, complain: Callable[[str], None]) -> None:
         context.set_default_timeout(1000 * PATIENCE_S)
@@ -60,7 +60,7 @@ class Onlooker:
         self.page.get_by_text(TAKES).wait_for()
 
     def tick_ms(self) -> tuple[float, float]:
-        """Mean and the worst part's worst of the last hundred ticks."""
+        """Mean time (ms) of the last hundred ticks, and the worst time of any part in them."""
         text = self.page.locator("body").inner_text()
         takes, worst = TAKES.search(text), WORST.findall(text)
         if takes is None or not worst:
@@ -96,7 +96,7 @@ class Soak:
         return self._program.process.poll() is None
 
     def wait(self, seconds: float, came: list[int]) -> None:
-        """Hears what the page says meanwhile."""
+        """Wait, and keep what the page reports meanwhile."""
         end = time.monotonic() + seconds
         while not came and self.alive and (left := end - time.monotonic()) > 0:
             try:
@@ -110,7 +110,7 @@ class Soak:
         do()
 
     def look(self) -> Row:
-        """The next row, printed."""
+        """Take and print the next row."""
         message = stream_message(self._program)
         state, page = message["state"], message["page"]
         now = (time.monotonic(), self._cpu_s(), state["time_s"], state["tick"])
@@ -146,7 +146,7 @@ class Soak:
 
 
 def stream_message(program: Program) -> dict[str, Any]:
-    """The newest state as pages get it: with what the pilot does, and the fault if there is one."""
+    """The newest state as pages get it, with the pilot's behaviour and the fault, if there is one."""
     address = f"127.0.0.1:{program.port}"
     with connect(f"ws://{address}/api/stream?page={'s' * 22}", origin=f"http://{address}") as socket:  # type: ignore[arg-type]
         while True:
@@ -156,7 +156,7 @@ def stream_message(program: Program) -> dict[str, Any]:
 
 
 def browser_mb(server: int) -> float:
-    """All processes below this one but the server."""
+    """Memory (MB) of all processes below this one, except the server."""
     total = 0
     for process in psutil.Process().children(recursive=True):
         with contextlib.suppress(psutil.Error):
@@ -166,7 +166,7 @@ def browser_mb(server: int) -> float:
 
 @contextlib.contextmanager
 def ended_by_signal() -> Iterator[list[int]]:
-    """The signals that came; asked for between two pieces of work, so that each of them ends as it should."""
+    """The signals that have come. They are looked at between two pieces of work, so that each piece is completed."""
     came: list[int] = []
     before = {number: signal.signal(number, lambda n, _: came.append(n)) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
@@ -177,7 +177,7 @@ def ended_by_signal() -> Iterator[list[int]]:
 
 
 def soak(options: argparse.Namespace, troubles: Counter[str], came: list[int]) -> list[Row]:
-    """The rows until the time is over, a signal came, or the program has gone."""
+    """Collect rows until the time is over, a signal has come, or the program has ended."""
 
     def complain(words: str) -> None:
         if not came:  # Ctrl+C reaches the browser, too
@@ -205,7 +205,7 @@ def soak(options: argparse.Namespace, troubles: Counter[str], came: list[int]) -
 
 @contextlib.contextmanager
 def watching(browser: Browser, url: str, complain: Callable[[str], None]) -> Iterator[Onlooker]:
-    """A page that leaves before the program does: what it says of a server that has gone is no trouble."""
+    """A page that is closed before the program ends, so that a lost connection is not counted as an error."""
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     try:
         yield Onlooker(context, url, complain)
@@ -215,7 +215,7 @@ def watching(browser: Browser, url: str, complain: Callable[[str], None]) -> Ite
 
 
 def until_over(run: Soak, options: argparse.Namespace, came: list[int], complain: Callable[[str], None]) -> None:
-    """One thing that goes wrong ends nothing; a program that has gone does."""
+    """Go on after a single failure, but stop if the program has ended."""
 
     def attempt(work: Callable[[], object]) -> None:
         try:

@@ -1,4 +1,4 @@
-"""What a soak saw, row by row, and what follows from the rows."""
+"""The rows of a soak, and the verdict on them."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Findings:
 
 
 def judge(rows: Sequence[Row], troubles: Sequence[str]) -> Findings:
-    """Memory is told beside the map's growth, not judged: a map that grows has to lie somewhere."""
+    """The verdict. Memory is reported beside the growth of the map but not judged, since a growing map needs memory."""
     if len(rows) < 2:
         return Findings((), ("too few rows to say anything", *troubles))
     first, half, last = rows[0], rows[len(rows) // 2 :], rows[-1]
@@ -104,7 +104,7 @@ def _middle(rows: Sequence[Row], field: str) -> float:
 
 
 def _hourly(rows: Sequence[Row], field: str) -> float:
-    """The slope of the straight line through the rows."""
+    """The growth per hour: the slope of the straight line through the rows."""
     if len(rows) < 2:
         return float("nan")
     hours = np.array([row.minute / 60 for row in rows])
