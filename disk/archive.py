@@ -35,7 +35,7 @@ BROKEN = (
 )  # fmt: skip
 
 
-def pack(file: IO[bytes], tree: dict[str, Any], arrays: list[NDArray], note: str = "") -> None:
+def pack(file: IO[bytes], tree: dict[str, Any], arrays: list[NDArray[Any]], note: str = "") -> None:
     """Write what `unpack` reads. note: stands in the file's directory. ValueError, before a byte: it could not be read again."""
     text = np.frombuffer(json.dumps(tree).encode(), np.uint8)
     named = {"json": text} | {f"a{k}": array for k, array in enumerate(arrays)}
@@ -51,12 +51,12 @@ def pack(file: IO[bytes], tree: dict[str, Any], arrays: list[NDArray], note: str
         archive.getinfo("json.npy").comment = note.encode()
 
 
-def room_of(arrays: list[NDArray]) -> int:
+def room_of(arrays: list[NDArray[Any]]) -> int:
     """How many of MOST_BYTES they take at most."""
     return sum(array.nbytes + _LONGEST_HEADER for array in arrays)
 
 
-def unpack(file: IO[bytes]) -> tuple[dict[str, Any], list[NDArray]]:
+def unpack(file: IO[bytes]) -> tuple[dict[str, Any], list[NDArray[Any]]]:
     """What is in the file. One of BROKEN says why it cannot be."""
     _require_directory(file)
     with zipfile.ZipFile(file) as archive:
@@ -74,7 +74,7 @@ def unpack(file: IO[bytes]) -> tuple[dict[str, Any], list[NDArray]]:
         for name in names:
             _require_entry(archive, entries[name], name)
         text, *arrays = (_array(archive, entries[name]) for name in names)
-    tree = json.loads(text.tobytes())
+    tree: dict[str, Any] | list[Any] | str | float | None = json.loads(text.tobytes())
     if not isinstance(tree, dict):
         raise ValueError(f"its JSON must be an object, got a {type(tree).__name__}")
     return tree, arrays
@@ -111,6 +111,6 @@ def _require_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, name: str) 
             raise ValueError(f"{name} claims to be of shape {str(shape)[:60]} but has {there} bytes")
 
 
-def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> NDArray:
+def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> NDArray[Any]:
     with archive.open(entry) as data:
         return npy.read_array(data, allow_pickle=False)

@@ -49,7 +49,7 @@ def name_of(cls: type) -> str:
     return _name_of[cls]
 
 
-def class_of(name: object) -> type:
+def class_of(name: object) -> type[Any]:
     """The class of a kind. ValueError when there is none, or one of another version."""
     if isinstance(name, str) and name in _class_of:
         return _class_of[name]
@@ -60,7 +60,7 @@ def class_of(name: object) -> type:
     raise ValueError(f"no class is of the kind {words!r}: if it is one of yours, import its file first")
 
 
-def attributes(value: Any) -> dict[str, Any]:
+def attributes(value: object) -> dict[str, Any]:
     """All that makes the state of an object; its caches count for nothing."""
     if dataclasses.is_dataclass(value):
         return {item.name: getattr(value, item.name) for item in dataclasses.fields(value)}

@@ -13,7 +13,7 @@ import json
 import math
 from collections import deque
 from itertools import chain
-from typing import IO, Any
+from typing import IO, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from disk.archive import MOST_BYTES, pack, room_of
 from disk.kinds import attributes, name_of
 
+Items: TypeAlias = "tuple[Any, ...] | list[Any] | set[Any] | deque[Any]"
 FORMAT = 3
 LONG = 32  # lists and tables of so many numbers become arrays: JSON that grew with the map would take ten times as long
 
@@ -81,27 +82,33 @@ class _Writer:
         return {**self._once(value), "number": number}
 
     def _items(self, value: Any) -> dict[str, Any]:
-        numbers = _numbers(value) if isinstance(value, list) else None
+        items: Items = value
+        numbers = _numbers(items) if isinstance(items, list) else None
         if numbers is not None:
             return {"numbers": self._keep(numbers)}
-        items = sorted(value) if isinstance(value, set) else value
-        room = {"room": value.maxlen} if isinstance(value, deque) else {}
-        return {type(value).__name__: [self.encode(item) for item in items], **room}
+        in_order = sorted(items) if isinstance(items, set) else items
+        room = {"room": items.maxlen} if isinstance(items, deque) else {}
+        return {type(items).__name__: [self.encode(item) for item in in_order], **room}
 
-    def _once(self, value: Any) -> dict[str, Any]:
+    def _once(self, value: object) -> dict[str, Any]:
         if isinstance(value, np.ndarray | np.generic):
-            return {"array": self._keep(np.asarray(value))}
+            return {"array": self._keep(value)}
         if isinstance(value, dict):
-            keys, values = _numbers(list(value)), _numbers(list(value.values()))
-            if keys is not None and values is not None:
-                return {"keys": self._keep(keys), "values": self._keep(values)}
-            return {"dict": [[self.encode(k), self.encode(v)] for k, v in value.items()]}
+            return self._table(value)
         if isinstance(value, np.random.Generator):
             return {"generator": value.bit_generator.state}
         name = name_of(type(value))
         return {"kind": name, "state": {name: self.encode(item) for name, item in attributes(value).items()}}
 
-    def _keep(self, array: NDArray[Any]) -> int:
+    def _table(self, value: Any) -> dict[str, Any]:
+        table: dict[Any, Any] = value
+        keys, values = _numbers(list(table)), _numbers(list(table.values()))
+        if keys is not None and values is not None:
+            return {"keys": self._keep(keys), "values": self._keep(values)}
+        return {"dict": [[self.encode(k), self.encode(v)] for k, v in table.items()]}
+
+    def _keep(self, value: Any) -> int:
+        array: NDArray[Any] = np.asarray(value)
         if array.dtype.kind not in "biuf":
             raise TypeError(f"a state must not hold an array of {array.dtype}: numbers, true or false, nothing else")
         self.arrays.append(array)
@@ -110,10 +117,10 @@ class _Writer:
 
 def _numbers(items: list[Any]) -> NDArray[Any] | None:
     """A long list of whole numbers, of floats or of pairs of either as an array; else nothing."""
-    kinds = set(map(type, items)) if len(items) >= LONG else set()
+    kinds: set[type] = set(map(type, items)) if len(items) >= LONG else set()
     if kinds == {tuple} and set(map(len, items)) == {2}:
         kinds = set(map(type, chain.from_iterable(items)))
     if kinds not in ({int}, {float}):
         return None
     array = np.array(items)
-    return array if array.dtype in (np.int64, np.float64) else None  # what is beyond 64 bits stays as it is
+    return array if array.dtype.type in (np.int64, np.float64) else None  # what is beyond 64 bits stays as it is

@@ -23,31 +23,34 @@ def copy_state(value: T) -> T:
     return _copy(value, {})
 
 
-def _copy(value: Any, made: dict[int, tuple[Any, Any]]) -> Any:
+def _copy(value: object, made: dict[int, tuple[Any, Any]]) -> Any:
     """made: by the id of what was copied, the copy; beside the original, so that no id comes twice."""
     kind = type(value)
-    if kind in PLAIN or isinstance(value, np.generic):
+    if kind in PLAIN or issubclass(kind, np.generic):
         return value
-    if kind is tuple:
-        return value if _plain(value) else tuple(_copy(item, made) for item in value)
-    if kind in (list, set, deque):
-        return value.copy() if _plain(value) else _refilled(value, [_copy(item, made) for item in value])
+    if kind in (tuple, list, set, deque):
+        return _copy_items(value, kind, made)
     if id(value) not in made:
-        _copy_once(value, made)
+        _copy_once(value, kind, made)
     return made[id(value)][1]
 
 
-def _copy_once(value: Any, made: dict[int, tuple[Any, Any]]) -> None:
-    kind: type = type(value)
+def _copy_items(value: Any, kind: type[Any], made: dict[int, tuple[Any, Any]]) -> Any:
+    if kind is tuple:
+        return value if _plain(value) else tuple(_copy(item, made) for item in value)
+    return value.copy() if _plain(value) else _refilled(value, [_copy(item, made) for item in value])
+
+
+def _copy_once(value: Any, kind: type[Any], made: dict[int, tuple[Any, Any]]) -> None:
     copy: Any
-    if isinstance(value, np.ndarray):
+    if issubclass(kind, np.ndarray):
         copy = np.array(value)
     elif kind is dict:
         copy = value.copy() if _plain_table(value) else {}
         made[id(value)] = value, copy
         if not copy:
             copy.update({_copy(key, made): _copy(item, made) for key, item in value.items()})
-    elif isinstance(value, np.random.Generator):
+    elif issubclass(kind, np.random.Generator):
         copy = np.random.default_rng()
         copy.bit_generator.state = value.bit_generator.state
     else:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections import deque
-from typing import IO, Any
+from typing import IO, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ from disk.archive import unpack
 from disk.kinds import class_of
 from disk.state_codec import FORMAT, State
 
+Tree: TypeAlias = "dict[str, Any] | list[Any] | str | float | None"  # whatever JSON holds
+_ROWS: tuple[type[tuple[Any, ...] | list[Any] | set[Any]], ...] = (tuple, list, set)
 MOST_WORDS = 400  # characters: whatever is wrong may be long
 
 
@@ -61,21 +63,20 @@ class _Reader:
         self._arrays: dict[int, NDArray[Any]] = dict(enumerate(arrays))
         self._made: dict[int, Any] = {}
 
-    def decode(self, tree: Any, shared: bool = False) -> Any:
+    def decode(self, tree: Tree, shared: bool = False) -> Any:
         if not isinstance(tree, dict):
             return tree
         if "float" in tree:
             return float(tree["float"])
         if "same" in tree:
-            made = self._made[tree["same"]]
-            if isinstance(made, np.ndarray) and not shared:
+            if isinstance(self._made[tree["same"]], np.ndarray) and not shared:
                 raise ValueError("an array is in two places at once")
-            return made
+            return self._made[tree["same"]]
         if "numbers" in tree:
             return self._items(tree["numbers"])
         if "deque" in tree:
             return deque((self.decode(item) for item in tree["deque"]), tree["room"])
-        for kind in (tuple, list, set):
+        for kind in _ROWS:
             if kind.__name__ in tree:
                 return kind(self.decode(item) for item in tree[kind.__name__])
         return self._new(tree)

@@ -7,7 +7,7 @@ import os
 import secrets
 import stat
 import time
-from collections.abc import Iterator
+from collections.abc import Generator
 from pathlib import Path
 from typing import BinaryIO
 
@@ -16,7 +16,7 @@ OLD_S = 60.0  # nobody writes to a file for a minute without a change to it: who
 
 
 @contextlib.contextmanager
-def whole_file(path: Path | str) -> Iterator[BinaryIO]:
+def whole_file(path: Path | str) -> Generator[BinaryIO, None, None]:
     """Open for writing; it takes the place of `path` when the block ends well, else all is as before. OSError names `path`.
 
     A device or a pipe is written to as it is, and of a link what it leads to is replaced.
@@ -56,7 +56,7 @@ def sweep(folder: Path, beginning: str = ".saving-") -> None:
 
 
 @contextlib.contextmanager
-def _naming(path: Path | str) -> Iterator[None]:
+def _naming(path: Path | str) -> Generator[None, None, None]:
     """A full disk does not say whose it is, and nobody knows the name of the temporary file."""
     try:
         yield
