@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
-from ratslam_core.pose_cells.activity_kernels import X, Y, offset
+from ratslam_core.pose_cells.activity_kernels import Cells, Shape, Values, X, Y, offset
 
 FREE = -1  # key of an empty place in the table
 
 
 @njit(cache=True, nogil=True)
-def project(cells, activity, shape, share, place):
+def project(
+    cells: Cells, activity: Values, shape: Shape, share: float, place: NDArray[np.int32]
+) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
     """G_xy = sum over theta of P, where it is above share * G_max. IROS 2005 eq. 1.
 
     Returns the cells of the plane, their G, and the first row that lies outside of it (-1: none). `place`: scratch, zero.
@@ -49,7 +52,7 @@ def project(cells, activity, shape, share, place):
 
 
 @njit(cache=True, nogil=True)
-def centre(flats, values, shape, near):
+def centre(flats: NDArray[np.int64], values: NDArray[np.float64], shape: Shape, near: int) -> tuple[float, float]:
     """Centre of the activity within `near` cells of the strongest, in cells."""
     n_y, n_x = shape[1], shape[2]
     best = np.argmax(values)
@@ -65,7 +68,7 @@ def centre(flats, values, shape, near):
 
 
 @njit(cache=True, nogil=True)
-def find(key, keys):
+def find(key: int, keys: NDArray[np.int64]) -> int:
     """Where a key is in the table, or the free place where it belongs. The table is never full."""
     mask = keys.size - 1
     mixed = key * 5_872_781
@@ -76,7 +79,7 @@ def find(key, keys):
 
 
 @njit(cache=True, nogil=True)
-def misplaced(keys):
+def misplaced(keys: NDArray[np.int64]) -> int:
     """The first place whose key would be looked for elsewhere, -1 when there is none."""
     for at in range(keys.size):
         if keys[at] != FREE and find(keys[at], keys) != at:
@@ -86,8 +89,20 @@ def misplaced(keys):
 
 @njit(cache=True, nogil=True)
 def learn(
-    flats_i, G_i, flats_j, G_j, keys, times, used, shape, elapsed, time_weight, activity_weight, distance_weight, rate
-):
+    flats_i: NDArray[np.int64],
+    G_i: NDArray[np.float64],
+    flats_j: NDArray[np.int64],
+    G_j: NDArray[np.float64],
+    keys: NDArray[np.int64],
+    times: NDArray[np.float32],
+    used: int,
+    shape: Shape,
+    elapsed: float,
+    time_weight: float,
+    activity_weight: float,
+    distance_weight: float,
+    rate: float,
+) -> int:
     """tau_ij = tau_ji <- moving average of a dt + b (1 - G_i G_j / G_max^2) + g |i - j|. IROS 2005 eqs. 2-5.
 
     i: active in the iteration before; j: active now. The first value replaces the large one that a link starts with.
@@ -119,7 +134,9 @@ def learn(
 
 
 @njit(cache=True, nogil=True)
-def move(keys, times, new_keys, new_times):
+def move(
+    keys: NDArray[np.int64], times: NDArray[np.float32], new_keys: NDArray[np.int64], new_times: NDArray[np.float32]
+) -> None:
     """All links into a larger table."""
     for k in range(keys.size):
         if keys[k] != FREE:
@@ -129,7 +146,7 @@ def move(keys, times, new_keys, new_times):
 
 
 @njit(cache=True, nogil=True)
-def lowest(T, x, y, reach, keys):
+def lowest(T: NDArray[np.float64], x: int, y: int, reach: int, keys: NDArray[np.int64]) -> int:
     """The cell with the lowest T below that of (x, y), among those within `reach` that it is linked to; -1 when there is none.
 
     Where nothing was learnt yet (T is inf) any known cell in reach will do.

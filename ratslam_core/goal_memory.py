@@ -6,6 +6,10 @@ j. Times to a goal are integrated over the links; the robot moves to where they 
 Links are sparse: a hash table of pairs (i < j) with room for twice as many as there are, 12 bytes each.
 """
 
+# SciPy tells no types, and whoever calls may check none.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+# pyright: reportUnnecessaryIsInstance=false
+
 from __future__ import annotations
 
 import math

@@ -174,7 +174,7 @@ def _ranges(ranges_m: NDArray[np.floating], angles: NDArray[np.float64]) -> NDAr
 
 
 @njit(cache=True, nogil=True)
-def _none_negative(ranges):
+def _none_negative(ranges: NDArray[np.float64]) -> bool:
     bad = 0
     for r in ranges:
         bad += not r >= 0.0  # which no number is neither
@@ -182,7 +182,21 @@ def _none_negative(ranges):
 
 
 @njit(cache=True, nogil=True)
-def _scans(log_odds, x, y, heading, angles, ranges, cell_m, farthest, half_beam, depth, free, occupied, bound):
+def _scans(
+    log_odds: NDArray[np.float32],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    heading: NDArray[np.float64],
+    angles: NDArray[np.float64],
+    ranges: NDArray[np.float64],
+    cell_m: float,
+    farthest: float,
+    half_beam: float,
+    depth: float,
+    free: float,
+    occupied: float,
+    bound: float,
+) -> None:
     for k in range(len(x)):
         _scan(
             log_odds, x[k], y[k], heading[k], angles, ranges[k],
@@ -191,7 +205,21 @@ def _scans(log_odds, x, y, heading, angles, ranges, cell_m, farthest, half_beam,
 
 
 @njit(cache=True, nogil=True)
-def _scan(log_odds, x, y, heading, angles, ranges, cell_m, farthest, half_beam, depth, free, occupied, bound):
+def _scan(
+    log_odds: NDArray[np.float32],
+    x: float,
+    y: float,
+    heading: float,
+    angles: NDArray[np.float64],
+    ranges: NDArray[np.float64],
+    cell_m: float,
+    farthest: float,
+    half_beam: float,
+    depth: float,
+    free: float,
+    occupied: float,
+    bound: float,
+) -> None:
     """l <- clip(l + log p / (1 - p)) for one beam after the other, on a grid that wraps. x, y in cells, the rest SI.
 
     p = (1 - free E) / 2 before the echo at R, E = (1 - (d / (R - eps))^2) (1 - (theta / w)^2)

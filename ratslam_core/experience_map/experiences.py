@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.params import ExperienceMapParams
@@ -95,14 +96,26 @@ class Experiences:
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _apart(a, b, n):
+def _apart(a: float, b: float, n: int) -> float:
     """How far two coordinates from 0 to n are apart on a ring."""
     d = abs(a - b)
     return min(d, n - d)
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _energy(x, y, theta, at, i, n_theta, n_y, n_x, zone_xy, zone_theta, old):
+def _energy(
+    x: float,
+    y: float,
+    theta: float,
+    at: NDArray[np.float64],
+    i: int,
+    n_theta: int,
+    n_y: int,
+    n_x: int,
+    zone_xy: float,
+    zone_theta: float,
+    old: bool,
+) -> float:
     r = math.sqrt(_apart(x, at[i, 0], n_x) ** 2 + _apart(y, at[i, 1], n_y) ** 2) / zone_xy
     q = _apart(theta, at[i, 2], n_theta) / zone_theta
     if old:
@@ -112,8 +125,25 @@ def _energy(x, y, theta, at, i, n_theta, n_y, n_x, zone_xy, zone_theta, old):
 
 @njit(cache=True, nogil=True)
 def _best_in_chain(
-    newest, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy, zone_theta, old, best, most, pose, near_x, near_y, near
-):
+    newest: int,
+    before: NDArray[np.int64],
+    at: NDArray[np.float64],
+    x: float,
+    y: float,
+    theta: float,
+    n_theta: int,
+    n_y: int,
+    n_x: int,
+    zone_xy: float,
+    zone_theta: float,
+    old: bool,
+    best: int,
+    most: float,
+    pose: NDArray[np.float64],
+    near_x: float,
+    near_y: float,
+    near: float,
+) -> tuple[int, float]:
     i = newest
     while i >= 0:
         if near == np.inf or math.hypot(pose[i, 0] - near_x, pose[i, 1] - near_y) <= near:
@@ -125,7 +155,21 @@ def _best_in_chain(
 
 
 @njit(cache=True, nogil=True)
-def _best_in_buckets(newest, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy, zone_theta, most, pose):
+def _best_in_buckets(
+    newest: NDArray[np.int64],
+    before: NDArray[np.int64],
+    at: NDArray[np.float64],
+    x: float,
+    y: float,
+    theta: float,
+    n_theta: int,
+    n_y: int,
+    n_x: int,
+    zone_xy: float,
+    zone_theta: float,
+    most: float,
+    pose: NDArray[np.float64],
+) -> int:
     """Over the buckets that the zone touches."""
     best = -1
     first_t, count_t = _buckets(theta, zone_theta, n_theta, newest.shape[0])
@@ -134,9 +178,10 @@ def _best_in_buckets(newest, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy
     for t in range(count_t):
         for b in range(count_y):
             for a in range(count_x):
-                head = newest[
-                    (first_t + t) % newest.shape[0], (first_y + b) % newest.shape[1], (first_x + a) % newest.shape[2]
-                ]
+                bucket: tuple[int, int, int] = (
+                    (first_t + t) % newest.shape[0], (first_y + b) % newest.shape[1], (first_x + a) % newest.shape[2],
+                )  # fmt: skip
+                head = newest[bucket]
                 best, most = _best_in_chain(
                     head, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy, zone_theta, False, best, most,
                     pose, 0.0, 0.0, np.inf,
@@ -145,7 +190,7 @@ def _best_in_buckets(newest, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _buckets(middle, reach, n, buckets):
+def _buckets(middle: float, reach: float, n: int, buckets: int) -> tuple[int, int]:
     """First bucket and how many from there on, round the ring, hold [middle - reach, middle + reach]."""
     reach += 1e-9  # so that rounding leaves nobody out
     if 2 * reach + BUCKET >= n:
@@ -156,7 +201,18 @@ def _buckets(middle, reach, n, buckets):
 
 
 @njit(cache=True, nogil=True)
-def _best_of_all(at, x, y, theta, n_theta, n_y, n_x, zone_xy, zone_theta, most):
+def _best_of_all(
+    at: NDArray[np.float64],
+    x: float,
+    y: float,
+    theta: float,
+    n_theta: int,
+    n_y: int,
+    n_x: int,
+    zone_xy: float,
+    zone_theta: float,
+    most: float,
+) -> int:
     """The energy of 2005 reaches every experience of the same heading, and any heading at the same place."""
     best = -1
     for i in range(at.shape[0]):

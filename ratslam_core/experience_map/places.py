@@ -93,14 +93,16 @@ def _groups(owner: NDArray[np.int64], chosen: NDArray[np.bool_]) -> list[list[in
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _between(a, b, ring):
+def _between(a: float, b: float, ring: float) -> float:
     """How far two coordinates are apart, round a ring unless that is 0."""
     d = abs(a - b)
     return min(d, ring - d) if ring > 0.0 else d
 
 
 @njit(cache=True, nogil=True)
-def _first_near(at, ring_x, ring_y, ring_t, reach, reach_t):
+def _first_near(
+    at: NDArray[np.float64], ring_x: float, ring_y: float, ring_t: float, reach: float, reach_t: float
+) -> NDArray[np.int64]:
     """(n,): the earliest leader within reach of each row, itself if there is none; such a row becomes a leader.
 
     at: (n, 3). Leaders lie in buckets as wide as the reach, found by a hash of the bucket; near are those next to it.
@@ -138,7 +140,7 @@ def _first_near(at, ring_x, ring_y, ring_t, reach, reach_t):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _buckets(around, value, ring, reach, prime):
+def _buckets(around: NDArray[np.int64], value: float, ring: float, reach: float, prime: int) -> int:
     """The own bucket, then its neighbours, each once, times a prime; returns how many. They are a little wider than the
     reach, so that rounding parts nobody who is within it."""
     width = reach * (1.0 + 1e-9)
@@ -153,7 +155,15 @@ def _buckets(around, value, ring, reach, prime):
 
 
 @njit(cache=True, nogil=True)
-def _rivals(place, facing, states, ring, reach_facing, reach, reach_t):
+def _rivals(
+    place: NDArray[np.int64],
+    facing: NDArray[np.float64],
+    states: NDArray[np.float64],
+    ring: tuple[float, float, float],
+    reach_facing: float,
+    reach: float,
+    reach_t: float,
+) -> NDArray[np.bool_]:
     """(n,): the first experiences of states that share place and facing with another state.
 
     place: (n,) the first experience of the place of each.
@@ -164,7 +174,8 @@ def _rivals(place, facing, states, ring, reach_facing, reach, reach_t):
     rival = np.zeros(n, np.bool_)
     for i in range(n):
         known = False
-        j = newest[place[i]]
+        own: int = place[i]
+        j: int = newest[own]
         while j >= 0 and not known:
             dx, dy = _between(states[i, 0], states[j, 0], ring[0]), _between(states[i, 1], states[j, 1], ring[1])
             same = dx * dx + dy * dy <= reach * reach and _between(states[i, 2], states[j, 2], ring[2]) <= reach_t
@@ -172,24 +183,24 @@ def _rivals(place, facing, states, ring, reach_facing, reach, reach_t):
             j = before[j]
         if known:
             continue
-        j = newest[place[i]]
+        j = newest[own]
         while j >= 0:
             if _turned(facing[i], facing[j]) <= reach_facing:
                 rival[i] = rival[j] = True
             j = before[j]
-        before[i] = newest[place[i]]
-        newest[place[i]] = i
+        before[i] = newest[own]
+        newest[own] = i
     return rival
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _turned(a, b):
+def _turned(a: float, b: float) -> float:
     d = abs(a - b) % (2.0 * math.pi)
     return min(d, 2.0 * math.pi - d)
 
 
 @njit(cache=True, nogil=True)
-def _apart_in_map(state, poses, far):
+def _apart_in_map(state: NDArray[np.int64], poses: NDArray[np.float64], far: float) -> NDArray[np.bool_]:
     """(n,): the first experience at each place of a state, when places of it are `far` apart; state: (n,) its first one."""
     n = state.shape[0]
     newest = np.full(n, -1, np.int64)

@@ -56,7 +56,17 @@ def sweep(
 
 
 @njit(cache=True, nogil=True)
-def _sweep(poses, start, used, halves, others, ends, moves, weights, gain):
+def _sweep(
+    poses: NDArray[np.float64],
+    start: NDArray[np.uint32],
+    used: NDArray[np.uint32],
+    halves: NDArray[np.uint32],
+    others: NDArray[np.uint32],
+    ends: NDArray[np.uint64],
+    moves: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    gain: float,
+) -> None:
     """dx_i, dy_i, dth_i = alpha sum of what the links ask, over the weights' sum. B eqs. 12-14."""
     n, one = np.uint64(poses.shape[0]), np.uint64(1)
     turned = _turned(poses, ends, moves)
@@ -98,7 +108,17 @@ def sweep_by_link(
 
 
 @njit(cache=True, nogil=True)
-def _sweep_by_link(poses, start, used, halves, others, ends, moves, travelled, alpha):
+def _sweep_by_link(
+    poses: NDArray[np.float64],
+    start: NDArray[np.uint32],
+    used: NDArray[np.uint32],
+    halves: NDArray[np.uint32],
+    others: NDArray[np.uint32],
+    ends: NDArray[np.uint64],
+    moves: NDArray[np.float64],
+    travelled: NDArray[np.bool_],
+    alpha: float,
+) -> None:
     turned = _turned(poses, ends, moves)
     for i in range(1, poses.shape[0]):
         block = np.uint64(start[i])
@@ -114,7 +134,7 @@ def _sweep_by_link(poses, start, used, halves, others, ends, moves, travelled, a
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _turned(poses, ends, moves):
+def _turned(poses: NDArray[np.float64], ends: NDArray[np.uint64], moves: NDArray[np.float64]) -> NDArray[np.float64]:
     """Moves in the map's frame: (dx, dy) of each row turned by the heading of where it begins."""
     n, m = np.uint64(poses.shape[0]), np.uint64(moves.shape[0])
     c, s = np.empty(n), np.empty(n)
@@ -131,7 +151,7 @@ def _turned(poses, ends, moves):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _facing(angle):
+def _facing(angle: float) -> tuple[float, float]:
     """Cosine and sine of an angle in [-pi, pi] to 1e-14: Taylor series of a quarter of it, doubled twice."""
     q = angle * 0.25
     z = q * q
@@ -145,7 +165,7 @@ def _facing(angle):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _wrapped(angle):
+def _wrapped(angle: float) -> float:
     if angle > math.pi or angle <= -math.pi:
         angle -= 2.0 * math.pi * math.ceil(angle / (2.0 * math.pi) - 0.5)
     return angle
@@ -184,7 +204,7 @@ def solve(
     strength = float(np.sum(weights * seconds * unexplained))
     bias = 0.0
     for _ in range(p.rounds):
-        error = poses[i, 2] + moves[:, 2] - bias * seconds - poses[j, 2]
+        error: NDArray[np.float64] = poses[i, 2] + moves[:, 2] - bias * seconds - poses[j, 2]
         error -= 2 * math.pi * np.round(error / (2 * math.pi))
         more = float(np.sum(weights * unexplained * error)) / strength if strength > LEAST_STRENGTH else 0.0
         bias += more
@@ -197,7 +217,9 @@ def solve(
 
 
 @njit(cache=True, nogil=True)
-def disagreement(poses, links, moves):
+def disagreement(
+    poses: NDArray[np.float64], links: NDArray[np.int64], moves: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Where each link says its end is, less where the map has it: dx, dy (m) in the map's frame and angle (rad), shape (m, 3)."""
     out = np.empty((len(links), 3))
     for row in range(len(links)):
@@ -225,14 +247,14 @@ def trust(
     test_relaxation.py::test_many_looks_tear_the_link_of_a_kidnap.
     """
     ex, ey, turn = disagreement(poses, links, moves).T
-    chi = np.sqrt(weights * (ex**2 + ey**2 + (turn / p.rad_per_m) ** 2)) / sigma
+    chi: NDArray[np.float64] = np.sqrt(weights * (ex**2 + ey**2 + (turn / p.rad_per_m) ** 2)) / sigma
     return np.where(
         chain, 1 / (1 + (chi / p.odometry_gives) ** 2), np.minimum(1, p.look_gives / np.maximum(chi, p.look_gives))
     )
 
 
 @njit(cache=True, nogil=True)
-def _asked(n, links, errors):
+def _asked(n: int, links: NDArray[np.int64], errors: NDArray[np.float64]) -> NDArray[np.float64]:
     """What each experience is asked to move in sum, when every link asks its end to follow and its beginning to come back."""
     asked = np.zeros(n)
     for row in range(len(links)):

@@ -91,7 +91,9 @@ class _Asked:
         self.seconds = np.maximum(map_.transitions.seconds(map_.poses, map_.pace), dijkstra.LEAST_S)
         self.changes, self.reach, self.pace = graph.changes, reach, map_.pace
         self.poses = map_.poses.copy() if reach > 0 else map_.poses
-        grid = dijkstra.buckets(self.poses, reach) if reach > 0 else (np.zeros(0, np.int32),) * 2
+        grid: tuple[NDArray[np.int32], NDArray[np.int32]] = (
+            dijkstra.buckets(self.poses, reach) if reach > 0 else (np.zeros(0, np.int32), np.zeros(0, np.int32))
+        )
         self.links = graph.start, graph.used, graph.half, graph.other, self.seconds
         self.near = self.poses, reach, self.pace, *grid
 

@@ -5,6 +5,9 @@ weight is sigma^2 / variance, 1 for the odometry of one step. Since the move is 
 the map by itself, which is equation 8. test_transitions.py::test_links_turn_with_their_experience.
 """
 
+# Whoever calls may check no types.
+# pyright: reportUnnecessaryIsInstance=false
+
 from __future__ import annotations
 
 import math
@@ -143,7 +146,13 @@ class Transitions:
 
 
 @njit(cache=True, nogil=True)
-def _seconds(ends, time_s, travelled, poses, pace):
+def _seconds(
+    ends: NDArray[np.int64],
+    time_s: NDArray[np.float64],
+    travelled: NDArray[np.bool_],
+    poses: NDArray[np.float64],
+    pace: float,
+) -> NDArray[np.float64]:
     seconds = np.full(len(ends), np.inf)
     for row in range(len(ends)):
         if travelled[row]:

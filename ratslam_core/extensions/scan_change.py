@@ -35,7 +35,7 @@ class ScanChange:
 
 
 @njit(cache=True, nogil=True)
-def _half_changed(before, now, reach, most):
+def _half_changed(before: NDArray[np.float64], now: NDArray[np.float64], reach: float, most: float) -> float:
     changes = np.empty(len(now))
     for k in range(len(now)):
         change, at = abs(min(now[k], reach) - min(before[k], reach)), k

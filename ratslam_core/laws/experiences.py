@@ -1,5 +1,8 @@
 """What is true of experiences and of the links between them between two steps."""
 
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+
 from __future__ import annotations
 
 import math
@@ -92,7 +95,7 @@ def transitions(t: Transitions, nodes: int) -> None:
     travelled = array("travelled", t.travelled, np.bool_, (room,))[:n]
     array("chain", t.chain, np.bool_, (room,))
     rows = np.flatnonzero(travelled)
-    ways = dict(zip(map(tuple, t.ends[rows].tolist()), rows.tolist(), strict=True))
+    ways = {(i, j): row for (i, j), row in zip(t.ends[rows].tolist(), rows.tolist(), strict=True)}
     true(t.row_of == ways, "the rows of links must be those that were travelled")
     for ends in t.dropped:
         true(isinstance(ends, tuple) and len(ends) == 2, "a dropped link must have two ends")

@@ -1,5 +1,8 @@
 """Every attribute is of the kind that it has in a brain that was just made."""
 
+# What isinstance tells of a value that may be any is an array or a number of unknown type.
+# pyright: reportUnknownArgumentType=false, reportUnknownMemberType=false, reportUnknownVariableType=false
+
 from __future__ import annotations
 
 import dataclasses

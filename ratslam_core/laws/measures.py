@@ -1,5 +1,8 @@
 """What laws are made of: a value, its name, and what would be right; ValueError with all three when it is not."""
 
+# What isinstance tells of a value that may be any is an array or a number of unknown type.
+# pyright: reportUnknownArgumentType=false, reportUnknownMemberType=false, reportUnknownVariableType=false
+
 from __future__ import annotations
 
 import math

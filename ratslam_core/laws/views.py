@@ -1,5 +1,8 @@
 """What is true of the local view and of its links to the pose cells between two steps."""
 
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+
 from __future__ import annotations
 
 import numpy as np

@@ -47,13 +47,13 @@ class Matcher:
 
 
 @njit(cache=True, nogil=True)
-def overlap(shift, columns, rows):
+def overlap(shift: int, columns: int, rows: int) -> tuple[int, int, int]:
     """Where the columns that overlap begin in the new and in the stored view, and how many bytes they hold."""
     return max(shift, 0) * rows, max(-shift, 0) * rows, (columns - abs(shift)) * rows
 
 
 @njit(cache=True, nogil=True)
-def difference(new, stored, shift, columns, rows):
+def difference(new: Features, stored: Features, shift: int, columns: int, rows: int) -> float:
     """Mean absolute difference of two views over the columns that overlap."""
     here, there, width = overlap(shift, columns, rows)
     total = 0
@@ -63,7 +63,17 @@ def difference(new, stored, shift, columns, rows):
 
 
 @njit(cache=True, nogil=True)
-def _nearest(known, new, most, columns, rows, shifted, masks, least, at):
+def _nearest(
+    known: NDArray[np.uint8],
+    new: Features,
+    most: int,
+    columns: int,
+    rows: int,
+    shifted: NDArray[np.uint8],
+    masks: NDArray[np.uint8],
+    least: NDArray[np.int32],
+    at: NDArray[np.int64],
+) -> tuple[int, float, int]:
     first = columns - 1 - most
     for row in range(first, columns + most):
         here, there, width = overlap(row - columns + 1, columns, rows)
@@ -83,7 +93,14 @@ def _nearest(known, new, most, columns, rows, shifted, masks, least, at):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _least_sums(known, shifted, masks, size, least, at):
+def _least_sums(
+    known: NDArray[np.uint8],
+    shifted: NDArray[np.uint8],
+    masks: NDArray[np.uint8],
+    size: int,
+    least: NDArray[np.int32],
+    at: NDArray[np.int64],
+) -> None:
     """Per shift the least sum of absolute differences and the first view that has it.
 
     int32 arithmetic (np.add, np.subtract keep it) over a fixed number of bytes is what LLVM turns into one instruction for

@@ -110,7 +110,7 @@ class ViewLinks:
 
 
 @njit(cache=True, nogil=True)
-def _count_active(linked, slot):
+def _count_active(linked: NDArray[np.int32], slot: NDArray[np.int32]) -> int:
     count = 0
     for k in range(len(linked)):
         if slot[linked[k]] > 0:
@@ -119,7 +119,13 @@ def _count_active(linked, slot):
 
 
 @njit(cache=True, nogil=True)
-def _copy_blocks(blocks, old_cells, old_strength, cells, strength):
+def _copy_blocks(
+    blocks: NDArray[np.int64],
+    old_cells: NDArray[np.int32],
+    old_strength: NDArray[np.float32],
+    cells: NDArray[np.int32],
+    strength: NDArray[np.float32],
+) -> int:
     """One after the other, by the number of the view; returns where the last one ends."""
     end = 0
     for view in range(len(blocks)):
@@ -133,7 +139,15 @@ def _copy_blocks(blocks, old_cells, old_strength, cells, strength):
 
 
 @njit(cache=True, nogil=True)
-def _sum_at(blocks, views, cells, strength, column, columns, out):
+def _sum_at(
+    blocks: NDArray[np.int64],
+    views: int,
+    cells: NDArray[np.int32],
+    strength: NDArray[np.float32],
+    column: int,
+    columns: int,
+    out: NDArray[np.float32],
+) -> None:
     for view in range(views):
         start, used = blocks[view, 0], blocks[view, 1]
         for k in range(start, start + used):
@@ -142,7 +156,17 @@ def _sum_at(blocks, views, cells, strength, column, columns, out):
 
 
 @njit(cache=True, nogil=True)
-def _learn(linked, strength, used, cells, activity, slot, seen, eta, delta):
+def _learn(
+    linked: NDArray[np.int32],
+    strength: NDArray[np.float32],
+    used: int,
+    cells: NDArray[np.int32],
+    activity: NDArray[np.float32],
+    slot: NDArray[np.int32],
+    seen: NDArray[np.bool_],
+    eta: np.float32,
+    delta: np.float32,
+) -> int:
     """beta <- (1 - delta) beta + eta P in one view's block; returns how much of the block is used then."""
     n = len(cells)
     seen[:n] = False

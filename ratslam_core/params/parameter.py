@@ -39,7 +39,8 @@ def check_ranges(params: Any) -> None:
         value, about = getattr(params, item.name), item.metadata
         if "meaning" not in about:
             continue
-        kind = type(item.default)
+        default: object = item.default
+        kind: type[Any] = type(default)
         fits = isinstance(value, kind) or (kind is float and type(value) is int)
         if not fits or (kind is int and isinstance(value, bool)):
             got = " ".join(repr(value).split())  # an array has lines

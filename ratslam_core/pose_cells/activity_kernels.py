@@ -7,15 +7,23 @@ every function says which set it indexes. Coordinates are kept because integer d
 
 from __future__ import annotations
 
+from typing import TypeAlias, TypeVar
+
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 X, Y, THETA, FLAT = 0, 1, 2, 3
 PATCH = 32
+Cells: TypeAlias = NDArray[np.int32]  # (room, 4)
+Values: TypeAlias = NDArray[np.float32]  # (room,)
+Slot: TypeAlias = NDArray[np.int32]  # (n_theta * n_y * n_x,)
+Shape: TypeAlias = tuple[int, int, int]  # n_theta, n_y, n_x
+Number = TypeVar("Number", int, float)
 
 
 @njit(cache=True, nogil=True, inline="always")
-def add(x, y, t, flat, value, cells, values, n, slot):
+def add(x: int, y: int, t: int, flat: int, value: float, cells: Cells, values: Values, n: int, slot: Slot) -> int:
     """Add activity to one cell; returns the new number of active cells."""
     at = slot[flat]
     if at == 0:
@@ -31,13 +39,13 @@ def add(x, y, t, flat, value, cells, values, n, slot):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def wrap(place, size):
+def wrap(place: int, size: int) -> int:
     """A place on a ring of this size, from less than one turn beyond."""
     return place - size if place >= size else place
 
 
 @njit(cache=True, nogil=True, inline="always")
-def offset(a, b, size):
+def offset(a: Number, b: Number, size: int) -> Number:
     """a - b on a ring of this size, the shorter way round."""
     d = a - b
     if 2 * d > size:
@@ -48,20 +56,20 @@ def offset(a, b, size):
 
 
 @njit(cache=True, nogil=True)
-def index(cells, n, slot):
+def index(cells: Cells, n: int, slot: Slot) -> None:
     """Make `slot` index this set; it must be clear before."""
     for i in range(n):
         slot[cells[i, FLAT]] = i + 1
 
 
 @njit(cache=True, nogil=True)
-def clear(cells, n, slot):
+def clear(cells: Cells, n: int, slot: Slot) -> None:
     for i in range(n):
         slot[cells[i, FLAT]] = 0
 
 
 @njit(cache=True, nogil=True)
-def first_bad(flats, more, size):
+def first_bad(flats: NDArray[np.int32], more: NDArray[np.float32], size: int) -> int:
     """The first row with a cell outside the network or an activity that is none, -1 when all are right."""
     for i in range(flats.size):
         if not (0 <= flats[i] < size and 0.0 <= more[i] < np.inf):
@@ -70,7 +78,16 @@ def first_bad(flats, more, size):
 
 
 @njit(cache=True, nogil=True)
-def inject(flats, more, cells, values, n, owner, slot, shape):
+def inject(
+    flats: NDArray[np.int32],
+    more: NDArray[np.float32],
+    cells: Cells,
+    values: Values,
+    n: int,
+    owner: NDArray[np.int32],
+    slot: Slot,
+    shape: Shape,
+) -> int:
     """P <- P + injection. A eq. 4. New cells move with the winner. `slot` indexes P before and after."""
     n_y, n_x = shape[1], shape[2]
     before = n
@@ -83,8 +100,20 @@ def inject(flats, more, cells, values, n, owner, slot, shape):
 
 @njit(cache=True, nogil=True)
 def shift(
-    cells, values, n, owner, moves, yaws, headings, out_cells, out_values, out_owner, slot, shape, patch
-):  # fmt: skip
+    cells: Cells,
+    values: Values,
+    n: int,
+    owner: NDArray[np.int32],
+    moves: NDArray[np.float64],
+    yaws: NDArray[np.float64],
+    headings: NDArray[np.float64],
+    out_cells: Cells,
+    out_values: Values,
+    out_owner: NDArray[np.int32],
+    slot: Slot,
+    shape: Shape,
+    patch: NDArray[np.float32],
+) -> int:
     """P'_xyz = sum over a 2x2x2 cube of alpha_abc P. A eqs. 5-9. `slot` indexes the input, afterwards the output.
 
     owner: the packet of each cell; moves, shape (packets, 4): the packet's way forwards and to its left (cells, each layer
@@ -142,7 +171,17 @@ def shift(
 
 
 @njit(cache=True, nogil=True)
-def cluster(cells, values, n, shape, window, radius, owner, peaks, bounds):
+def cluster(
+    cells: Cells,
+    values: Values,
+    n: int,
+    shape: Shape,
+    window: int,
+    radius: int,
+    owner: NDArray[np.int32],
+    peaks: NDArray[np.int32],
+    bounds: NDArray[np.int8],
+) -> tuple[int, int]:
     """Give every active cell to a cluster: the strongest free cell and all free cells within `window` of it, again and again.
 
     Writes the cluster of each cell to `owner`, the row of each cluster's strongest cell to `peaks`, and how far the cluster

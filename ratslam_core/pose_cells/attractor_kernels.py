@@ -9,7 +9,20 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ratslam_core.pose_cells.activity_kernels import FLAT, THETA, X, Y, add, clear, offset, wrap
+from ratslam_core.pose_cells.activity_kernels import (
+    FLAT,
+    THETA,
+    Cells,
+    Shape,
+    Slot,
+    Values,
+    X,
+    Y,
+    add,
+    clear,
+    offset,
+    wrap,
+)
 
 
 def gaussian(sigma: float, radius: int) -> NDArray[np.float32]:
@@ -21,8 +34,22 @@ def gaussian(sigma: float, radius: int) -> NDArray[np.float32]:
 
 @njit(cache=True, nogil=True)
 def convolve(
-    cells, values, n, owner, peaks, bounds, clusters, out_cells, out_values, slot, shape, weights, floor, box_a, box_b
-):  # fmt: skip
+    cells: Cells,
+    values: Values,
+    n: int,
+    owner: NDArray[np.int32],
+    peaks: NDArray[np.int32],
+    bounds: NDArray[np.int8],
+    clusters: int,
+    out_cells: Cells,
+    out_values: Values,
+    slot: Slot,
+    shape: Shape,
+    weights: NDArray[np.float32],
+    floor: float | np.float32,
+    box_a: NDArray[np.float32],
+    box_b: NDArray[np.float32],
+) -> int:
     """P <- eps * P: circular convolution with a 3-D Gaussian as three 1-D passes. A eq. 10.
 
     `owner`, `peaks`, `bounds` split the active cells into clusters that fit a small dense box each; the boxes' results add up,
@@ -76,7 +103,14 @@ def convolve(
 
 
 @njit(cache=True, nogil=True)
-def _pass(source, target, size, inner, stride, weights):
+def _pass(
+    source: NDArray[np.float32],
+    target: NDArray[np.float32],
+    size: int,
+    inner: tuple[int, int],
+    stride: int,
+    weights: NDArray[np.float32],
+) -> None:
     """1-D convolution of the cells from inner[0] to inner[1] along the axis of this stride."""
     radius = weights.size // 2
     target[:size] = 0.0
@@ -89,7 +123,9 @@ def _pass(source, target, size, inner, stride, weights):
 
 
 @njit(cache=True, nogil=True)
-def _apart(c, clusters, cells, peaks, bounds, radius, shape):
+def _apart(
+    c: int, clusters: int, cells: Cells, peaks: NDArray[np.int32], bounds: NDArray[np.int8], radius: int, shape: Shape
+) -> bool:
     """No other cluster's box, with its margin, shares a cell with that of cluster c."""
     for other in range(clusters):
         touching = other != c
@@ -107,7 +143,9 @@ def _apart(c, clusters, cells, peaks, bounds, radius, shape):
 
 
 @njit(cache=True, nogil=True)
-def subtract(values, slot, other_cells, other_values, m, gain):
+def subtract(
+    values: Values, slot: Slot, other_cells: Cells, other_values: Values, m: int, gain: float | np.float32
+) -> None:
     """P <- P - gain Q where P is active. `slot` indexes P."""
     for i in range(m):
         at = slot[other_cells[i, FLAT]]
@@ -116,7 +154,7 @@ def subtract(values, slot, other_cells, other_values, m, gain):
 
 
 @njit(cache=True, nogil=True)
-def inhibit_and_normalise(cells, values, n, slot, phi):
+def inhibit_and_normalise(cells: Cells, values: Values, n: int, slot: Slot, phi: float | np.float32) -> int:
     """P <- max(P - phi, 0) / sum P. A eqs. 11-12. Returns how many cells stay active, 0 when none does."""
     m = 0
     total = 0.0

@@ -4,10 +4,13 @@ Activity P[theta, y, x] >= 0 sums to 1 and wraps in all directions. Packets of a
 integration), are pulled by recognised scenes (visual calibration) and compete (attractor).
 """
 
+# Whoever calls may check no types.
+# pyright: reportUnnecessaryIsInstance=false
+
 from __future__ import annotations
 
 import math
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,9 +46,8 @@ class PoseCells:
         self._patch = np.zeros((kernels.PATCH, kernels.PATCH), np.float32)
         turns = np.arange(p.n_theta) * 2 * math.pi / p.n_theta
         self._headings = np.column_stack([np.cos(turns), np.sin(turns)])
-        self._found, self._way = 0, 0.0
+        self._n, self._found, self._way = 0, 0, 0.0
         self._weights()
-        self._n = 0
         self.place(p.n_x // 2, p.n_y // 2, 0)
 
     # ------------------------------------------------------------ reading
@@ -265,10 +267,9 @@ class PoseCells:
         def grow(array: NDArray[Cell]) -> NDArray[Cell]:
             return np.concatenate([array, np.zeros((extra, *array.shape[1:]), array.dtype)])
 
-        self._cells, self._values = grow(self._cells), grow(self._values)
+        self._cells, self._values, self._bounds = grow(self._cells), grow(self._values), grow(self._bounds)
         self._spare_cells, self._spare_values = grow(self._spare_cells), grow(self._spare_values)
         self._owner, self._peaks, self._spare_owner = grow(self._owner), grow(self._peaks), grow(self._spare_owner)
-        self._bounds = grow(self._bounds)
 
     def _find(self) -> None:
         """Packets of the activity as it is now, each with the id of the one that was expected there."""
@@ -278,15 +279,13 @@ class PoseCells:
             self._spare_ids = np.zeros(2 * clusters, np.int64)
         if clusters > len(self._moves):  # rows take turns with their spares, moves do not: each grows for itself
             self._moves, self._yaws = np.zeros((2 * clusters, 4)), np.zeros(2 * clusters)
-        packet_kernels.join_flanks(
-            self._cells, self._values, self._slot, self.shape, self._owner, self._peaks, clusters
-        )
+        cells, values, shape, owner, peaks = self._cells, self._values, self.shape, self._owner, self._peaks
+        packet_kernels.join_flanks(cells, values, self._slot, shape, owner, peaks, clusters)
         found = packet_kernels.packet_rows(
-            self._cells, self._values, self._n, self.shape, self._owner, self._peaks, clusters, self._headings,
-            self._spare_rows,
-        )  # fmt: skip
+            cells, values, self._n, shape, owner, peaks, clusters, self._headings, self._spare_rows
+        )
         packet_kernels.follow(
-            self._rows, self._ids, self._found, self._spare_rows, self._spare_ids, found, self.shape, self.params.window
+            self._rows, self._ids, self._found, self._spare_rows, self._spare_ids, found, shape, self.params.window
         )
         self._rows, self._spare_rows = self._spare_rows, self._rows
         self._ids, self._spare_ids = self._spare_ids, self._ids
@@ -297,5 +296,5 @@ class PoseCells:
         return Packet(x, y, wrap_angle(theta * 2 * math.pi / self.shape[0]), mass, int(self._ids[rank]))
 
 
-def _kind(value: object) -> str:
+def _kind(value: NDArray[Any]) -> str:
     return f"{value.dtype} {value.shape}" if isinstance(value, np.ndarray) else repr(value)

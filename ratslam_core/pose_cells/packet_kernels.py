@@ -7,15 +7,24 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
-from ratslam_core.pose_cells.activity_kernels import THETA, X, Y, offset
+from ratslam_core.pose_cells.activity_kernels import THETA, Cells, Shape, Slot, Values, X, Y, offset
 
 MASS, COS, SIN, CARRY = 3, 4, 5, 6  # columns after x, y, theta; CARRY is three columns
 ROW = 9
 
 
 @njit(cache=True, nogil=True)
-def join_flanks(cells, values, slot, shape, owner, peaks, clusters):
+def join_flanks(
+    cells: Cells,
+    values: Values,
+    slot: Slot,
+    shape: Shape,
+    owner: NDArray[np.int32],
+    peaks: NDArray[np.int32],
+    clusters: int,
+) -> None:
     """Clusters whose strongest cell has a stronger neighbour are flanks of its cluster: one packet. `slot` indexes P.
 
     peaks[c] becomes the strongest cell of the packet that cluster c belongs to.
@@ -35,7 +44,17 @@ def join_flanks(cells, values, slot, shape, owner, peaks, clusters):
 
 
 @njit(cache=True, nogil=True)
-def packet_rows(cells, values, n, shape, owner, peaks, clusters, headings, out):
+def packet_rows(
+    cells: Cells,
+    values: Values,
+    n: int,
+    shape: Shape,
+    owner: NDArray[np.int32],
+    peaks: NDArray[np.int32],
+    clusters: int,
+    headings: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> int:
     """The packets, heaviest first, and how many; clusters with the same peak are one. `owner` names packets afterwards.
 
     out rows: x, y, theta (cells, fractions), mass, mean cosine and sine of the headings; the carry is cleared.
@@ -84,7 +103,7 @@ def packet_rows(cells, values, n, shape, owner, peaks, clusters, headings, out):
 
 
 @njit(cache=True, nogil=True)
-def _among(number, ids, n):
+def _among(number: int, ids: NDArray[np.int64], n: int) -> bool:
     for p in range(n):  # noqa: SIM110
         if ids[p] == number:
             return True
@@ -92,7 +111,16 @@ def _among(number, ids, n):
 
 
 @njit(cache=True, nogil=True)
-def follow(old, old_ids, n_old, new, new_ids, n_new, shape, window):
+def follow(
+    old: NDArray[np.float64],
+    old_ids: NDArray[np.int64],
+    n_old: int,
+    new: NDArray[np.float64],
+    new_ids: NDArray[np.int64],
+    n_new: int,
+    shape: Shape,
+    window: int,
+) -> None:
     """Give packets their ids: each old one, heaviest first, goes on as the nearest new one. The others get the least numbers
     that no packet bears, not even one that has just gone: it would seem to live on elsewhere."""
     new_ids[:n_new] = 0
@@ -119,7 +147,18 @@ def follow(old, old_ids, n_old, new, new_ids, n_new, shape, window):
 
 
 @njit(cache=True, nogil=True)
-def advance(rows, n, shape, distance, turn, arc, divide, least_agreement, moves, yaws):
+def advance(
+    rows: NDArray[np.float64],
+    n: int,
+    shape: Shape,
+    distance: float,
+    turn: float,
+    arc: bool,
+    divide: bool,
+    least_agreement: float,
+    moves: NDArray[np.float64],
+    yaws: NDArray[np.float64],
+) -> None:
     """Where packets go: rows are moved on, what `shift` needs is written to moves and yaws. cells, rad.
 
     arc: the way is one, so its chord points along the heading in the middle of it; else straight on, as in the papers. divide:
@@ -150,7 +189,7 @@ def advance(rows, n, shape, distance, turn, arc, divide, least_agreement, moves,
 
 
 @njit(cache=True, nogil=True)
-def _half_way_to_the_next(rows, packets, shape):
+def _half_way_to_the_next(rows: NDArray[np.float64], packets: int, shape: Shape) -> NDArray[np.float64]:
     """Squares of half the distance from each packet to the nearest other: within, no other can be nearer."""
     own = np.full(packets, np.inf)
     for p in range(packets):
@@ -163,7 +202,9 @@ def _half_way_to_the_next(rows, packets, shape):
 
 
 @njit(cache=True, nogil=True)
-def weigh(cells, values, n, shape, reach, rows, packets, sign):
+def weigh(
+    cells: Cells, values: Values, n: int, shape: Shape, reach: int, rows: NDArray[np.float64], packets: int, sign: float
+) -> None:
     """Add sign times each packet's centre, as the offset from where its row says, to the row's carry.
 
     A cell counts for the nearest packet, up to `reach` away along each axis: the same cells of the torus before and after the

@@ -12,15 +12,23 @@ near: poses, reach (m, 0 = no shortcuts), pace (s/m), and the grid of `buckets`.
 from __future__ import annotations
 
 import math
+from typing import Any, TypeAlias
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
+Whole: TypeAlias = int | np.integer[Any]
+Links: TypeAlias = tuple[
+    NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float64]
+]
+Near: TypeAlias = tuple[NDArray[np.float64], float, float, NDArray[np.int32], NDArray[np.int32]]
+Heap: TypeAlias = tuple[NDArray[np.float64], NDArray[np.uint32]]  # seconds, and the node of each
 LEAST_S = 1e-3  # no way takes less, so that none leads round in circles
 
 
 @njit(cache=True, nogil=True)
-def fresh(goal, times, parent, links, near):
+def fresh(goal: int, times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near) -> None:
     """Seconds from every node to the goal into `times`, inf for no way; the next node on the way, or -1, into `parent`."""
     times[:] = np.inf
     parent[:] = -1
@@ -30,7 +38,7 @@ def fresh(goal, times, parent, links, near):
 
 
 @njit(cache=True, nogil=True)
-def mend(goal, times, parent, links, near):
+def mend(goal: int, times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near) -> None:
     """The same from an older tree in `parent`, whatever has become of the links and their times since.
 
     First the times along the old tree, so far as it stands: none is too short. Then whatever offers less is followed.
@@ -40,7 +48,8 @@ def mend(goal, times, parent, links, near):
     times[:] = -1.0
     times[goal] = 0.0
     for first in range(n):
-        depth, node = 0, first
+        depth = 0
+        node: int = first
         while times[node] < 0:
             stack[depth] = node
             depth += 1
@@ -63,12 +72,13 @@ def mend(goal, times, parent, links, near):
 
 
 @njit(cache=True, nogil=True)
-def trace(start, goal, times, links, near):
+def trace(start: int, goal: int, times: NDArray[np.float64], links: Links, near: Near) -> NDArray[np.int64]:
     """Nodes of the quickest way; of equal ways the one whose next node has the lowest number."""
-    path = [start]
-    node = start
+    path: list[Whole] = [start]
+    node: Whole = start
+    other: Whole
     while node != goal:
-        best = len(times)
+        best: Whole = len(times)
         begin, used, _, others, _ = links
         for at in range(begin[node], begin[node] + used[node]):
             other = np.int64(others[at])
@@ -88,7 +98,7 @@ def trace(start, goal, times, links, near):
 
 
 @njit(cache=True, nogil=True)
-def buckets(poses, reach):
+def buckets(poses: NDArray[np.float64], reach: float) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """A grid of cells as wide as the reach, hashed: the first node of each bucket, and the one after each node."""
     size = 16
     while size < len(poses):
@@ -102,14 +112,14 @@ def buckets(poses, reach):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _bucket(x, y, reach, k, size):
+def _bucket(x: float, y: float, reach: float, k: int, size: Whole) -> Whole:
     """Bucket of the k-th of the nine cells around a place; number 4 is its own. `size` is a power of two."""
     column, row = np.int64(math.floor(x / reach)) + k % 3 - 1, np.int64(math.floor(y / reach)) + k // 3 - 1
     return (column * 73856093 ^ row * 19349663) & (size - 1)
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _between(a, b, links, near):
+def _between(a: Whole, b: Whole, links: Links, near: Near) -> float:
     """Seconds between two nodes: of the quickest link, else of the shortcut; inf when there is neither."""
     start, used, halves, others, seconds = links
     least = np.inf
@@ -126,7 +136,7 @@ def _between(a, b, links, near):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _offers(node, times, links, near):
+def _offers(node: Whole, times: NDArray[np.float64], links: Links, near: Near) -> bool:
     """Whether a neighbour would be nearer by way of this node."""
     start, used, halves, others, seconds = links
     begin = np.uint64(start[node])
@@ -136,7 +146,7 @@ def _offers(node, times, links, near):
     poses, reach, _, heads, following = near
     if reach > 0:
         for k in range(9):
-            other = heads[_bucket(poses[node, 0], poses[node, 1], reach, k, len(heads))]
+            other: int = heads[_bucket(poses[node, 0], poses[node, 1], reach, k, len(heads))]
             while other >= 0:
                 if times[node] + _between(node, other, links, near) < times[other]:
                     return True
@@ -145,7 +155,9 @@ def _offers(node, times, links, near):
 
 
 @njit(cache=True, nogil=True)
-def _settle(size, heap, times, parent, links, near):
+def _settle(
+    size: Whole, heap: Heap, times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near
+) -> None:
     """t_j <- min(t_j, t_i + t_ij) for all neighbours j of the nearest node i, until none is left. ACRA 2006 eqs. 10-12."""
     start, used, halves, others, seconds = links
     poses, reach, _, heads, following = near
@@ -166,7 +178,7 @@ def _settle(size, heap, times, parent, links, near):
                 size += 1
         if reach > 0:
             for k in range(9):
-                near_by = heads[_bucket(poses[node, 0], poses[node, 1], reach, k, len(heads))]
+                near_by: int = heads[_bucket(poses[node, 0], poses[node, 1], reach, k, len(heads))]
                 while near_by >= 0:
                     time = now + _between(node, near_by, links, near)
                     if time < times[near_by]:
@@ -179,13 +191,13 @@ def _settle(size, heap, times, parent, links, near):
 
 
 @njit(cache=True, nogil=True)
-def _twice(heap):
+def _twice(heap: Heap) -> Heap:
     """The heap with twice the room."""
     return np.concatenate((heap[0], heap[0])), np.concatenate((heap[1], heap[1]))
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _push(size, heap, time, node):
+def _push(size: Whole, heap: Heap, time: float, node: Whole) -> None:
     key, name = heap
     one, at = np.uint64(1), np.uint64(size)
     while at:
@@ -198,7 +210,7 @@ def _push(size, heap, time, node):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _pop(size, heap):
+def _pop(size: Whole, heap: Heap) -> None:
     """Take the first away; `size` is what is left."""
     key, name = heap
     one, at, end = np.uint64(1), np.uint64(0), np.uint64(size)

@@ -67,7 +67,7 @@ def eliminate(
 
 
 @njit(cache=True, nogil=True)
-def _eliminate(n, links, weights, dense) -> tuple[Any, ...]:
+def _eliminate(n: int, links: NDArray[np.int64], weights: NDArray[np.float64], dense: int) -> tuple[Any, ...]:
     start, room = np.zeros(n, np.int64), np.full(n, SPARE)
     for row in range(len(links)):
         room[links[row, 0]] += 1
@@ -76,6 +76,7 @@ def _eliminate(n, links, weights, dense) -> tuple[Any, ...]:
     for v in range(n):
         start[v] = end
         end += room[v]
+    other: NDArray[np.uint32]
     other, weight = np.empty(2 * end, np.uint32), np.empty(2 * end)
     used, where = np.zeros(n, np.int64), np.zeros(n, np.uint32)
     for row in range(len(links)):
@@ -94,7 +95,7 @@ def _eliminate(n, links, weights, dense) -> tuple[Any, ...]:
         if fewest * dense >= n - 1 - step and n - 1 - step > dense:
             order = order[:step]
             break
-        v = first[fewest]
+        v: int = first[fewest]
         _take(v, fewest, first, after, before)
         order[step] = v
         mine, count = start[v], used[v]
@@ -103,7 +104,7 @@ def _eliminate(n, links, weights, dense) -> tuple[Any, ...]:
         work += count * count
         others, parts = other[mine : mine + count], weight[mine : mine + count]
         for p in range(mine, mine + count):
-            a = other[p]
+            a: int = other[p]
             if a == 0:
                 continue
             had = used[a]
@@ -127,7 +128,16 @@ def _eliminate(n, links, weights, dense) -> tuple[Any, ...]:
 
 
 @njit(cache=True, nogil=True)
-def _meet(a, others, parts, share, own, own_weight, count, where):
+def _meet(
+    a: int,
+    others: NDArray[np.uint32],
+    parts: NDArray[np.float64],
+    share: float,
+    own: NDArray[np.uint32],
+    own_weight: NDArray[np.float64],
+    count: int,
+    where: NDArray[np.uint32],
+) -> int:
     """a's neighbours become these others too, each by so much of its weight; returns how many a has now."""
     for q in range(count):
         where[own[q]] = q
@@ -145,7 +155,15 @@ def _meet(a, others, parts, share, own, own_weight, count, where):
 
 
 @njit(cache=True, nogil=True)
-def _join(i, j, more, start, used, other, weight):
+def _join(
+    i: int,
+    j: int,
+    more: float,
+    start: NDArray[np.int64],
+    used: NDArray[np.int64],
+    other: NDArray[np.uint32],
+    weight: NDArray[np.float64],
+) -> None:
     """j becomes a neighbour of i, or a nearer one."""
     for q in range(start[i], start[i] + used[i]):
         if other[q] == j:
@@ -156,7 +174,14 @@ def _join(i, j, more, start, used, other, weight):
 
 
 @njit(cache=True, nogil=True)
-def _leave(i, j, start, used, other, weight):
+def _leave(
+    i: int,
+    j: int,
+    start: NDArray[np.int64],
+    used: NDArray[np.int64],
+    other: NDArray[np.uint32],
+    weight: NDArray[np.float64],
+) -> None:
     """j is no neighbour of i any more."""
     q, last = start[i], start[i] + used[i] - 1
     while other[q] != j:
@@ -166,7 +191,7 @@ def _leave(i, j, start, used, other, weight):
 
 
 @njit(cache=True, nogil=True)
-def _put(v, count, first, after, before):
+def _put(v: int, count: int, first: NDArray[np.int64], after: NDArray[np.int64], before: NDArray[np.int64]) -> None:
     """v is now one of those with so many neighbours."""
     after[v], before[v] = first[count], -1
     if after[v] >= 0:
@@ -175,7 +200,7 @@ def _put(v, count, first, after, before):
 
 
 @njit(cache=True, nogil=True)
-def _take(v, count, first, after, before):
+def _take(v: int, count: int, first: NDArray[np.int64], after: NDArray[np.int64], before: NDArray[np.int64]) -> None:
     if before[v] >= 0:
         after[before[v]] = after[v]
     else:
@@ -185,7 +210,14 @@ def _take(v, count, first, after, before):
 
 
 @njit(cache=True, nogil=True)
-def _matrix(n, rest, start, used, other, weight):
+def _matrix(
+    n: int,
+    rest: NDArray[np.int64],
+    start: NDArray[np.int64],
+    used: NDArray[np.int64],
+    other: NDArray[np.uint32],
+    weight: NDArray[np.float64],
+) -> NDArray[np.float64]:
     at = np.full(n, -1)
     for k in range(len(rest)):
         at[rest[k]] = k
@@ -199,7 +231,7 @@ def _matrix(n, rest, start, used, other, weight):
 
 
 @njit(cache=True, nogil=True)
-def _cholesky(matrix):
+def _cholesky(matrix: NDArray[np.float64]) -> bool:
     """Its lower triangle becomes L with L L^T = matrix, False when a pivot is not positive.
 
     A library's would be twice as quick, but its last digits depend on how many cores there are.
@@ -230,7 +262,17 @@ def _cholesky(matrix):
 
 
 @njit(cache=True, nogil=True)
-def _solve(order, start, used, other, weight, total, rest, triangle, out):
+def _solve(
+    order: NDArray[np.int64],
+    start: NDArray[np.int64],
+    used: NDArray[np.int64],
+    other: NDArray[np.uint32],
+    weight: NDArray[np.float64],
+    total: NDArray[np.float64],
+    rest: NDArray[np.int64],
+    triangle: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> None:
     for v in order:  # what is asked of a node is handed on to those that were left when it went
         for q in range(start[v], start[v] + used[v]):
             share = weight[q] / total[v]

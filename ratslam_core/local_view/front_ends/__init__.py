@@ -60,4 +60,5 @@ def named_front_end(params: LocalViewParams) -> FrontEnd:
             return HueSaturation(params)
         case "scene numbers":
             return SceneNumbers()
-    raise ValueError(f"front_end must be one that is known, got {params.front_end!r}")
+        case _:
+            raise ValueError(f"front_end must be one that is known, got {params.front_end!r}")

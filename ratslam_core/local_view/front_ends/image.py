@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ratslam_core.local_view.matcher import COLUMNS, ROWS
 
 
-def checked(image: object) -> NDArray[np.uint8]:
+def checked(image: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
     """The image, or a ValueError that says what it should be: uint8, (h, w) grey or (h, w, 3) RGB, 8 x 12 pixels at least."""
     if not isinstance(image, np.ndarray) or image.dtype != np.uint8:
         raise ValueError(f"image must be an array of uint8, got {getattr(image, 'dtype', type(image).__name__)}")
@@ -20,7 +20,7 @@ def checked(image: object) -> NDArray[np.uint8]:
     return image
 
 
-def grey(image: object) -> NDArray[np.uint8]:
+def grey(image: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
     """Its luminance, shape (h, w)."""
     good = checked(image)
     return np.asarray(cv2.cvtColor(good, cv2.COLOR_RGB2GRAY), np.uint8) if good.ndim == 3 else good

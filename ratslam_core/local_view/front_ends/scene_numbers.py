@@ -1,5 +1,8 @@
 """Scene numbers handed over by a simulator, as the papers' own had them. ACRA 2005 section 5, ACRA 2006 section 5.1."""
 
+# Whoever calls may check no types.
+# pyright: reportUnnecessaryIsInstance=false
+
 from __future__ import annotations
 
 import numbers

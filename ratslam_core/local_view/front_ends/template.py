@@ -39,6 +39,6 @@ class Template:
         return f"12 x 8 grey levels, {features.mean():.0f} on average"
 
 
-def grey_template(image: object) -> NDArray[np.uint8]:
+def grey_template(image: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
     """An image as 12 x 8 grey levels, shape (8, 12), each the mean of its area."""
     return np.asarray(cv2.resize(grey(image), (COLUMNS, ROWS), interpolation=cv2.INTER_AREA), np.uint8)
