@@ -3,6 +3,10 @@
 Rows: work, size, ms, reference, reference_ms, bar, holds. Times are medians over repetitions on this machine.
 """
 
+# SciPy tells no types; what is measured is set up from within.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownMemberType=false
+# pyright: reportUnknownArgumentType=false, reportUnknownLambdaType=false, reportPrivateUsage=false
+
 from __future__ import annotations
 
 import os
@@ -106,7 +110,7 @@ def _settled(n: int, packets: int) -> PoseCells:
 def _ten_packets(cells: PoseCells) -> float:
     """Median time of an iteration with ten packets; all are put back each time, since one wins in the long run."""
     rows, values = cells.active[0].copy(), cells.active[1].copy()
-    times = []
+    times: list[float] = []
     for _ in range(100):
         now, _ = cells.active
         gone = ~np.isin(rows[:, 3], now[:, 3])
@@ -255,7 +259,7 @@ def _start() -> Row:
 def _median(work: Callable[[], object], repetitions: int) -> float:
     """Milliseconds, after one call to warm up."""
     work()
-    times = []
+    times: list[float] = []
     for _ in range(repetitions):
         began = time.perf_counter()
         work()

@@ -24,6 +24,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
@@ -90,7 +91,8 @@ def _reached(tree: ast.AST) -> Iterator[ast.AST]:
     for field, value in ast.iter_fields(tree):
         if field in ("annotation", "returns", "decorator_list"):
             continue
-        for node in value if isinstance(value, list) else [value]:
+        part: list[Any] | ast.AST | str | None = value
+        for node in part if isinstance(part, list) else [part]:
             if isinstance(node, ast.AST) and not isinstance(node, ast.Raise | ast.JoinedStr):
                 yield node
                 yield from _reached(node)

@@ -51,7 +51,7 @@ def rooms(walls: int, people: int = 0, seed: int = 0) -> World:
                     made += dresser.line([(x1, y1), (x2, y2)], "each")
     rng = np.random.default_rng(seed)
     middle = (across // 2 + 0.5) * ROOM_M
-    walkers = []
+    walkers: list[Person] = []
     for k in range(people):
         x, y = (rng.integers(0, across, 2) + 0.5) * ROOM_M
         ring = tuple((float(x + dx), float(y + dy)) for dx, dy in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
@@ -66,7 +66,8 @@ def rooms(walls: int, people: int = 0, seed: int = 0) -> World:
 def tick_ms(simulator: Simulator, seed: int = 0) -> float:
     """Median time (ms) of a tick of physics, camera (64 x 48), sonars and encoders while the robot drives at random."""
     rng = np.random.default_rng(seed)
-    times, drive = [], Drive(0.0, 0.0)
+    times: list[float] = []
+    drive = Drive(0.0, 0.0)
     for tick in range(WARM_TICKS + TICKS):
         if tick % 20 == 0:
             drive = Drive(float(rng.uniform(-0.2, 0.5)), float(rng.uniform(-1.2, 1.2)))
@@ -78,7 +79,8 @@ def tick_ms(simulator: Simulator, seed: int = 0) -> float:
 
 def edit_ms(session: Session) -> float:
     """Median time (ms) of an edit in the engine's thread: check, change, drawing for the viewer, next tick."""
-    editor, simulator, times = WorldEditor(session.world), session.simulator, []
+    times: list[float] = []
+    editor, simulator = WorldEditor(session.world), session.simulator
     radius, number = simulator.params.robot_radius_m, len(session.world.walls) - 1
     for k in range(EDITS):
         x, y = simulator.truth.x + 1.0, simulator.truth.y + 1.0
@@ -123,7 +125,7 @@ def _largest() -> Iterator[Row]:
             loads.append((1e3 * (time.perf_counter() - began), session))
         ms, session = min(loads[0][0], loads[1][0], loads[2][0]), loads[2][1]
     yield _row("office: loading a world", size, ms, "3000 ms", ms <= 3000)
-    times = []
+    times: list[float] = []
     for _ in range(600):
         began = time.perf_counter()
         session.tick()

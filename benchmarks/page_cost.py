@@ -7,6 +7,9 @@ web/static, measured by samples of the browser's profiler; viser's drawing comes
 and the cost of a frame is the processor time of the browser's drawing; with a graphics card there is none.
 """
 
+# What viser would send is counted where viser keeps it to itself.
+# pyright: reportPrivateUsage=false
+
 from __future__ import annotations
 
 import argparse
@@ -194,7 +197,7 @@ def _measure(page: Page, seconds: float) -> None:
 
 def _measure_script(page: Page, tab: str, seconds: float) -> None:
     """Milliseconds per second spent in functions of web/static, by the profiler's samples."""
-    session = page.context.new_cdp_session(page)
+    session: Any = page.context.new_cdp_session(page)
     for order in ("Profiler.enable", "Profiler.start"):
         session.send(order)
     page.wait_for_timeout(seconds * 1000)

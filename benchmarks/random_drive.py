@@ -7,6 +7,9 @@ only: no camera, no brain. Every ten minutes the robot is put at a random place,
 large world.
 """
 
+# The driver puts itself in the place of the sensors.
+# pyright: reportPrivateUsage=false
+
 from __future__ import annotations
 
 import argparse

@@ -31,7 +31,7 @@ def main() -> int:
             alone = _load(server, program, min(10.0, options.seconds))
             with open_page(launch(playwright), program.url) as page:
                 page.wait_for_timeout(8000)
-                sizes, loads = [server.memory_info().rss], []
+                sizes, loads = [server.memory_info().rss], list[float]()
                 for _ in range(THIRDS):
                     loads.append(_load(server, program, options.seconds / THIRDS))
                     sizes.append(server.memory_info().rss)

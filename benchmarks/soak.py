@@ -17,7 +17,7 @@ import signal
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -165,7 +165,7 @@ def browser_mb(server: int) -> float:
 
 
 @contextlib.contextmanager
-def ended_by_signal() -> Iterator[list[int]]:
+def ended_by_signal() -> Generator[list[int], None, None]:
     """The signals that have come. They are looked at between two pieces of work, so that each piece is completed."""
     came: list[int] = []
     before = {number: signal.signal(number, lambda n, _: came.append(n)) for number in (signal.SIGINT, signal.SIGTERM)}
@@ -204,7 +204,7 @@ def soak(options: argparse.Namespace, troubles: Counter[str], came: list[int]) -
 
 
 @contextlib.contextmanager
-def watching(browser: Browser, url: str, complain: Callable[[str], None]) -> Iterator[Onlooker]:
+def watching(browser: Browser, url: str, complain: Callable[[str], None]) -> Generator[Onlooker, None, None]:
     """A page that is closed before the program ends, so that a lost connection is not counted as an error."""
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     try:

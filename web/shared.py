@@ -76,7 +76,7 @@ class _Ids(HTMLParser):
 
 
 def _limits(schema: dict[str, Any]) -> dict[str, list[float]]:
-    found = {}
+    found: dict[str, list[float]] = {}
     for key, field in schema["properties"].items():
         number = field.get("items", field)
         number = number.get("items", number)  # a list of points

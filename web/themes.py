@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Generator
 from typing import Literal
 
 Theme = Literal["dark", "light"]
@@ -32,7 +32,7 @@ class Themes:
             self._turned[page].set()
 
     @contextlib.contextmanager
-    def shown(self, page: str) -> Iterator[tuple[Theme, asyncio.Event]]:
+    def shown(self, page: str) -> Generator[tuple[Theme, asyncio.Event], None, None]:
         """What a page is to be shown, and the event that it has chosen otherwise since."""
         turned = self._turned[page] = asyncio.Event()
         try:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import Future
+from typing import cast
 
 from sim2d import World
 from web.http.commands import Declined, Malformed, wrong
@@ -42,4 +43,4 @@ async def told(submit: Submit, command: Command | EngineRequest, timeout_s: floa
 async def world_now(submit: Submit) -> tuple[World, OfficeEdition]:
     result = (await told(submit, ReadWorld())).result
     assert isinstance(result, tuple)
-    return result
+    return cast("tuple[World, OfficeEdition]", result)

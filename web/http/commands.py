@@ -65,7 +65,7 @@ def read_object(raw: bytes | str) -> dict[str, Any]:
     if opened > _MOST_PARTS:  # each takes thirty times as much memory as text
         raise Malformed([wrong(None, None, f"this has {opened} brackets [ and {{; at most {_MOST_PARTS} can be")])
     try:
-        document = orjson.loads(raw)
+        document: dict[str, Any] | list[Any] | str | float | None = orjson.loads(raw)
     except orjson.JSONDecodeError as error:
         reason = f"this is not JSON: {error} (NaN and Infinity are no JSON either)"
         raise Malformed([wrong(None, None, reason)]) from None

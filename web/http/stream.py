@@ -217,7 +217,7 @@ def _choice(document: dict[str, Any], names: tuple[str, ...]) -> str:
 
 
 def _tabs(document: dict[str, Any]) -> frozenset[str]:
-    names = document.get("names")
+    names: list[Any] | dict[str, Any] | str | float | None = document.get("names")
     if document != {"type": "tabs", "names": names} or not isinstance(names, list) or not all(n in TABS for n in names):
         raise Malformed([wrong("names", names, f"tabs takes names, a list of: {', '.join(TABS)}")])
     return frozenset(names)

@@ -80,7 +80,13 @@ def _cell(report: CellReport) -> Content:
     linked = _choices(
         "Views linked here, by strength", "view", shown, report.view_count, "none: no view has been learnt here"
     )
-    data = {"kind": "cell", "number": f"{report.x}, {report.y}", "words": share, "x": report.x, "y": report.y}
+    data: dict[str, Any] = {
+        "kind": "cell",
+        "number": f"{report.x}, {report.y}",
+        "words": share,
+        "x": report.x,
+        "y": report.y,
+    }
     data["sections"] = [
         {"table": table("Belongs to", packet, "no packet: nothing is active here")},
         {"choices": linked},

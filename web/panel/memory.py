@@ -32,7 +32,7 @@ def _counts(snapshot: Snapshot) -> dict[str, Any]:
 
 
 def _packets(layer: PoseCellLayer) -> dict[str, Any]:
-    rows = []
+    rows: list[tuple[str, str]] = []
     for packet in layer.packets:
         x, y, turn = packet.x * layer.cell_m, packet.y * layer.cell_m, math.degrees(packet.heading_rad) % 360
         rows.append((f"{packet.id}: {100 * packet.mass:.0f} %", f"x′ {x:.1f} m, y′ {y:.1f} m, θ′ {turn:.0f}°"))

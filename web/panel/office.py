@@ -40,7 +40,7 @@ def words(layer: LivingLayer | None, shown: tuple[str, ...]) -> str:
     """What is there now."""
     if layer is None:
         return "Nothing moves in this world." if shown else NOTHING
-    parts = []
+    parts: list[str] = []
     if "people" in shown:
         parts.append(counted(len(layer.people), "person", "people"))
     if "boxes" in shown:

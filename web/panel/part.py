@@ -14,4 +14,4 @@ class Content:
     """Words and numbers for JSON, and arrays that travel as they are."""
 
     data: Mapping[str, Any]
-    arrays: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    arrays: Mapping[str, NDArray[Any]] = field(default_factory=dict[str, NDArray[Any]])

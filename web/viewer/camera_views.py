@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,7 +84,10 @@ class Flight:
         """The camera now, and whether it has arrived."""
         share = min(max((now_s - self.began_s) / FLIGHT_S, 0.0), 1.0)
         ease = share * share * (3 - 2 * share)
-        blend = lambda a, b: a + (b - a) * ease  # noqa: E731
+
+        def blend(a: Any, b: Any) -> Any:
+            return a + (b - a) * ease
+
         camera = Camera(
             blend(self.start.position, self.end.position),
             blend(self.start.look_at, self.end.look_at),

@@ -6,13 +6,16 @@ secret. viser itself has no place for such a check. It makes its server with `we
 one: while viser starts, that name leads through here. A viser that goes another way is not let loose.
 """
 
+# viser keeps to itself what we have to reach.
+# pyright: reportPrivateUsage=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
+
 from __future__ import annotations
 
 import contextlib
 import logging
 import pathlib
 import secrets
-from collections.abc import Iterator
+from collections.abc import Generator
 from http import HTTPStatus
 from typing import Any
 
@@ -74,9 +77,10 @@ def _worth_telling(record: logging.LogRecord) -> bool:
 
 
 @contextlib.contextmanager
-def _asking_for(secret: str) -> Iterator[list[str]]:
+def _asking_for(secret: str) -> Generator[list[str], None, None]:
     """Servers made meanwhile ask for the secret and serve no pages; yields where they listen."""
-    plain, asks = serving.serve, []
+    plain: Any = serving.serve
+    asks: list[str] = []
 
     def check(connection: serving.ServerConnection, request: Request) -> Response | None:
         return None if knows(request, secret) else connection.respond(HTTPStatus.FORBIDDEN, "not for you\n")

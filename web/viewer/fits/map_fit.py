@@ -39,7 +39,8 @@ def refit(fit: MapFit, xy: NDArray[np.floating], turn_rad: float) -> MapFit:
     if fit.turn_rad == turn_rad and _suits(fit, xy):
         return fit
     turned = np.asarray(xy, np.float64) @ _turned(turn_rad).T
-    low, high = turned.min(0), turned.max(0)
+    low: NDArray[np.float64] = turned.min(0)
+    high: NDArray[np.float64] = turned.max(0)
     size = np.maximum(high - low, 1e-6)
     largest = min((WIDTH - 2 * ROOM) / size[0], (DEPTH - 2 * ROOM) / size[1])
     scale = min(LARGEST, STEP ** math.floor(math.log(largest) / math.log(STEP)))

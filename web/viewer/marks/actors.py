@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import viser
@@ -49,8 +50,8 @@ class LivingThings:
             position=tuple(LATE.tolist()),
             visible=False,
         )
-        self._lit: tuple = ()
-        self._dimmed: tuple = ()
+        self._lit: tuple[Any, ...] = ()
+        self._dimmed: tuple[Any, ...] = ()
         self.layer: LivingLayer | None = None
 
     def show(self, layer: LivingLayer | None, fit: OfficeFit) -> None:
@@ -162,7 +163,7 @@ class LivingThings:
 class _Thing:
     handle: viser.MeshHandle
     paint: Rgb
-    shown: tuple | None = None  # where it stands now; None: hidden
+    shown: tuple[Any, ...] | None = None  # where it stands now; None: hidden
 
 
 def _rgb(row: NDArray[np.uint8]) -> Rgb:

@@ -107,7 +107,7 @@ def zone_lines(report: ExperienceReport, fit: CellFit) -> np.ndarray:
     x, y, theta = report.cell
     around = np.vstack([meshes.circle(report.zone_xy, (x, y), CORNERS), [[x + report.zone_xy, y]]])
     turn = math.tau / fit.shape[0]
-    rings = []
+    rings: list[np.ndarray] = []
     for layer in (theta - report.zone_theta, theta + report.zone_theta):
         rings.append(broken_where_it_wraps(fit.path(np.column_stack([around, np.full(len(around), layer * turn)]))))
     return np.concatenate(rings)

@@ -15,7 +15,8 @@ HALF = SIDE / 2
 
 class GlassBox:
     def __init__(self, scene: viser.SceneApi, palette: Palette, root: str) -> None:
-        self._palette, self._labels = palette, {}
+        self._palette = palette
+        self._labels: dict[str, Sign] = {}
         self._scene, self._root = scene, root
         corners = np.array([[-HALF, -HALF], [HALF, -HALF], [HALF, HALF], [-HALF, HALF]])
         add_mesh(
@@ -71,7 +72,7 @@ def _walls(corners: np.ndarray) -> meshes.Mesh:
 
 def _lattice() -> np.ndarray:
     """Lines on the far and the left wall: a quarter turn and a quarter of the way apart."""
-    lines = []
+    lines: list[list[list[float]]] = []
     for share in (0.25, 0.5, 0.75):
         at, z = -HALF + share * SIDE, share * HEIGHT
         lines += [[[at, HALF, 0], [at, HALF, HEIGHT]], [[-HALF, HALF, z], [HALF, HALF, z]]]

@@ -114,7 +114,7 @@ class MapPlate(Plate):
     def _draw_grid(self) -> None:
         """A line each metre of the map (each five in large ones), from the middle of the plate."""
         step = self.fit.scale * (1 if self.fit.scale > 0.35 else 5 if self.fit.scale > 0.08 else 25)
-        lines = []
+        lines: list[list[list[float]]] = []
         for half, reach, flip in ((WIDTH / 2, DEPTH / 2, False), (DEPTH / 2, WIDTH / 2, True)):
             count = int(half / step)
             for at in np.arange(-count, count + 1) * step:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +62,8 @@ def cells_ringed(
 ) -> Pixels:
     """The pose cells' floor with a disc around a place, all in cells, that goes on at the other side where it leaves."""
     _, n_y, n_x = shape
-    height, width = ground.shape[:2]
+    height: int = ground.shape[0]
+    width: int = ground.shape[1]
     x = (np.arange(width) + 0.5) / width * n_x - 0.5
     y = (height - np.arange(height) - 0.5) / height * n_y - 0.5
     dx, dy = (_around(x - centre[0], n_x))[None], (_around(y - centre[1], n_y))[:, None]
@@ -75,7 +78,7 @@ def _colour(colour: Rgb) -> NDArray[np.float32]:
     return np.array(colour, np.float32)
 
 
-def _enlarged(values: NDArray, ground: Pixels, how: int) -> NDArray[np.float32]:
+def _enlarged(values: NDArray[Any], ground: Pixels, how: int) -> NDArray[np.float32]:
     large = cv2.resize(np.asarray(values, np.float32), (ground.shape[1], ground.shape[0]), interpolation=how)
     return np.asarray(large, np.float32)[::-1]
 

@@ -42,7 +42,7 @@ class PoseCellPlate(Plate):
         super().__init__(scene, palette, "pose_cells", ORIGIN, SHEET)
         self.set_heading("Pose cells", BELIEVES)
         self._box = GlassBox(scene, palette, self.root)
-        self._shape = (0, 0, 0)
+        self._shape: tuple[int, int, int] = (0, 0, 0)
         self._layer: PoseCellLayer | None = None
         self._shown = 0  # voxels
         self._fit = CellFit((36, 60, 60))

@@ -48,7 +48,7 @@ def solid_runs(world: WorldDrawing) -> list[tuple[range, Array]]:
     walls = np.asarray(world.walls, np.float64)
     low_x, low_y, high_x, high_y = world.bounds
     largest = 0.25 * (high_x - low_x) * (high_y - low_y)
-    found = []
+    found: list[tuple[range, Array]] = []
     for rows in _chains(walls, world.wall_kind):
         outline = walls[rows.start : rows.stop, :2]
         if math.dist(walls[rows.stop - 1, 2:], outline[0]) > TOUCHING_M:
@@ -65,7 +65,8 @@ def solid_runs(world: WorldDrawing) -> list[tuple[range, Array]]:
 
 def _chains(walls: Array, kinds: tuple[str, ...]) -> list[range]:
     """Longest runs of rows of one kind, each beginning where the one before ends; a closed run ends there."""
-    chains, first = [], 0
+    chains: list[range] = []
+    first = 0
     for row in range(1, len(walls) + 1):
         goes_on = (
             row < len(walls)

@@ -212,7 +212,8 @@ def stepped(points: Points) -> Points:
 
 def thinned(points: Points, apart: float) -> Points:
     """Of (n, k) points along a way those that lie `apart` or farther from the one kept before, and the last."""
-    kept, last = [], None
+    kept: list[int] = []
+    last = None
     for row, point in enumerate(points.tolist()):
         if last is None or math.dist(point, last) >= apart or row == len(points) - 1:
             kept.append(row)
