@@ -1,5 +1,19 @@
 """What crosses between the engine's thread and the browser's: `Snapshot` out, `Command` in. Nothing else is shared."""
 
+from web.messages.brain import (
+    Goal,
+    GoalMemoryLayer,
+    GoalState,
+    MapLayer,
+    OccupancyLayer,
+    OccupancyPicture,
+    Packet,
+    Pose,
+    PoseCellLayer,
+    Senses,
+    Snap,
+    TimesLayer,
+)
 from web.messages.commands import (
     CancelGoal,
     Command,
@@ -47,6 +61,7 @@ from web.messages.engine_requests import (
     WorldRestored,
     WorldSaved,
 )
+from web.messages.office import LivingLayer, OfficeEdition, WorldDrawing
 from web.messages.reports import (
     CellReport,
     ExperienceReport,
@@ -56,28 +71,7 @@ from web.messages.reports import (
     Times,
     ViewReport,
 )
-from web.messages.snapshot import (
-    Event,
-    EventKind,
-    Goal,
-    GoalMemoryLayer,
-    GoalState,
-    LivingLayer,
-    MapLayer,
-    OccupancyLayer,
-    OccupancyPicture,
-    OfficeEdition,
-    Packet,
-    Parameter,
-    Pose,
-    PoseCellLayer,
-    Senses,
-    Series,
-    Snap,
-    Snapshot,
-    TimesLayer,
-    WorldDrawing,
-)
+from web.messages.snapshot import Event, EventKind, Parameter, Series, Snapshot
 from web.messages.tick import TickStage, TickWalk, Timing
 
 __all__ = [

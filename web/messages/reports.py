@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from web.messages.snapshot import Packet, Pose
+from web.messages.brain import Packet, Pose
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,137 @@
+"""What the robot senses, believes and is after. Parts of a snapshot.
+
+The map frame is the experience map's own (first experience at its origin); pose cells are indices [theta, y, x], one layer
+10 degrees. SI units and radians.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A place and a heading: metres and radians in (-pi, pi], counter-clockwise, 0 = +x."""
+
+    x: float
+    y: float
+    heading_rad: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Senses:
+    """What the robot sees now and what it reminds it of."""
+
+    camera: NDArray[np.uint8]  # (h, w, 3) RGB
+    front_end: str  # what views are made of
+    seen: NDArray[np.uint8]  # (h, w) grey or (h, w, 3) RGB: what the front end makes of the image
+    seen_words: str
+    best: NDArray[np.uint8] | None  # the same of the best stored view
+    best_words: str
+    best_view: int  # its number, -1 when there is none
+    difference: float  # to it, in levels of the front end; inf when there is none
+    threshold: float
+    active_view: int  # the view that is active now, -1 when there is nothing to see
+    recruited: bool  # the active view is new
+    false_positive: bool  # the active view was put in the place of the best one
+    false_positives: int  # so far
+    ranges_m: NDArray[np.float32]  # (8,) sonar
+
+
+@dataclass(frozen=True, slots=True)
+class Packet:
+    """One packet of pose-cell activity: its centre in cells (fractions), its heading, its share of the activity, its id."""
+
+    x: float
+    y: float
+    heading_rad: float
+    mass: float
+    id: int = 0  # the same for as long as the packet lives
+
+
+@dataclass(frozen=True, slots=True)
+class Snap:
+    """A relocalisation: the winning packet's centre went from start S to end F (pose-cell frame, cells)."""
+
+    time_s: float
+    start: Packet
+    end: Packet
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PoseCellLayer:
+    shape: tuple[int, int, int]  # n_theta, n_y, n_x
+    cell_m: float
+    cells: NDArray[np.int32]  # (k, 3): theta, y, x of the strongest active cells, strongest first, k <= 500
+    activity: NDArray[np.float32]  # (k,)
+    active_cells: int  # how many are active in all
+    packets: tuple[Packet, ...]  # strongest first
+    path: NDArray[np.float32]  # (p, 3): x, y (cells), heading (rad) of the winner's last two minutes of driving
+    last_snap: Snap | None
+    total: float = 1.0  # of all activity
+    least: float = 0.0  # of the active cells
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapLayer:
+    """The experience map. Map frame."""
+
+    ids: NDArray[np.int32]  # (n,)
+    xy: NDArray[np.float32]  # (n, 2)
+    heading_rad: NDArray[np.float32]  # (n,)
+    links: NDArray[np.int32]  # (m, 2): rows into ids
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TimesLayer:
+    """The temporal map: seconds to the goal when there is one, else from the robot. inf = no way known."""
+
+    to_goal: bool
+    seconds: NDArray[np.float32]  # (n,), rows as in the MapLayer of the same snapshot
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OccupancyPicture:
+    """Where something stands, in the map frame. 0.5 = unknown."""
+
+    probability: NDArray[np.float32]  # (n_y, n_x)
+    origin_xy_m: tuple[float, float]  # the middle of cell [0, 0]
+    cell_m: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OccupancyLayer:
+    """What the sonars met. `draw_map` takes tens of milliseconds: for whoever shows it, in a thread of their own."""
+
+    cells: NDArray[np.float32]  # (n_y, n_x) probability in the pose cells' frame
+    draw_map: Callable[[], OccupancyPicture]  # from copies: the same picture whenever it is called
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GoalMemoryLayer:
+    """The goal memory on the pose cells' plane."""
+
+    links: int
+    goal: tuple[int, int] | None  # the goal's cell x', y'
+    seconds: NDArray[np.float32] | None  # (n_y, n_x) to the goal, inf where no way is known; None without a goal
+    direction_rad: float | None  # in which they decrease fastest at the packet; None there and where no way is known
+
+
+GoalState = Literal["tracking", "coasting", "exploring", "arrived", "unreachable"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Goal:
+    experience: int
+    x: float  # map frame
+    y: float
+    state: GoalState
+    eta_s: float | None
+    remaining_m: float | None
+    route_xy: NDArray[np.float32]  # (r, 2) map frame, from the robot to the goal; empty when none is known
+    route_arrival_s: NDArray[np.float32]  # (r,) seconds from now
