@@ -9,16 +9,16 @@ matrix.
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ratslam_core.solvers.cholesky import factor, solve_rows
+
 SPARE = 2  # neighbours that a node has room for from the beginning, beside its own
 DENSE = 8  # a rest whose nodes each hang together with an eighth of it or more
-BLOCK = 32  # columns of it that are taken off at once
 DENSE_IS_QUICKER = 100  # times, a product in a dense matrix than one of two links
 
 
@@ -59,7 +59,7 @@ def eliminate(
     if len(rest) > largest:
         return None
     triangle = _matrix(n, rest, start, used, other, weight)
-    if not _cholesky(triangle):  # weights too far apart for differences; sums bear that
+    if not factor(triangle):  # weights too far apart for differences; sums bear that
         order, start, used, other, weight, total, work = _eliminate(n, links, weights, 0)
         rest, triangle = rest[:0], np.zeros((0, 0))
     work += len(rest) ** 3 // DENSE_IS_QUICKER
@@ -68,22 +68,9 @@ def eliminate(
 
 @njit(cache=True, nogil=True)
 def _eliminate(n: int, links: NDArray[np.int64], weights: NDArray[np.float64], dense: int) -> tuple[Any, ...]:
-    start, room = np.zeros(n, np.int64), np.full(n, SPARE)
-    for row in range(len(links)):
-        room[links[row, 0]] += 1
-        room[links[row, 1]] += 1
-    end = 0
-    for v in range(n):
-        start[v] = end
-        end += room[v]
     other: NDArray[np.uint32]
-    other, weight = np.empty(2 * end, np.uint32), np.empty(2 * end)
-    used, where = np.zeros(n, np.int64), np.zeros(n, np.uint32)
-    for row in range(len(links)):
-        i, j = links[row, 0], links[row, 1]
-        if i != j and weights[row] > 0.0:
-            _join(i, j, weights[row], start, used, other, weight)
-            _join(j, i, weights[row], start, used, other, weight)
+    start, room, used, other, weight, end = _net(n, links, weights)
+    where = np.zeros(n, np.uint32)
     first, after, before = np.full(n + 1, -1), np.full(n, -1), np.full(n, -1)  # nodes by how many neighbours they have
     for v in range(n - 1, 0, -1):
         _put(v, used[v], first, after, before)
@@ -125,6 +112,29 @@ def _eliminate(n: int, links: NDArray[np.int64], weights: NDArray[np.float64], d
                 _put(a, used[a], first, after, before)
                 fewest = min(fewest, used[a])
     return order, start, used, other[:end].copy(), weight[:end].copy(), total, work
+
+
+@njit(cache=True, nogil=True)
+def _net(
+    n: int, links: NDArray[np.int64], weights: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.uint32], NDArray[np.float64], int]:
+    """Each node's neighbours in one arena: where they start, room for how many, how many, who, by how much; and its end."""
+    start, room = np.zeros(n, np.int64), np.full(n, SPARE)
+    for row in range(len(links)):
+        room[links[row, 0]] += 1
+        room[links[row, 1]] += 1
+    end = 0
+    for v in range(n):
+        start[v] = end
+        end += room[v]
+    other, weight = np.empty(2 * end, np.uint32), np.empty(2 * end)
+    used = np.zeros(n, np.int64)
+    for row in range(len(links)):
+        i, j = links[row, 0], links[row, 1]
+        if i != j and weights[row] > 0.0:
+            _join(i, j, weights[row], start, used, other, weight)
+            _join(j, i, weights[row], start, used, other, weight)
+    return start, room, used, other, weight, end
 
 
 @njit(cache=True, nogil=True)
@@ -231,37 +241,6 @@ def _matrix(
 
 
 @njit(cache=True, nogil=True)
-def _cholesky(matrix: NDArray[np.float64]) -> bool:
-    """Its lower triangle becomes L with L L^T = matrix, False when a pivot is not positive.
-
-    A library's would be twice as quick, but its last digits depend on how many cores there are.
-    """
-    n = len(matrix)
-    for first in range(0, n, BLOCK):
-        end = min(first + BLOCK, n)
-        for j in range(first, end):
-            if not matrix[j, j] > 0.0:
-                return False
-            root = math.sqrt(matrix[j, j])
-            for i in range(j, n):  # loops: an operation on whole arrays would take two seconds more to compile
-                matrix[i, j] /= root
-            for i in range(j + 1, n):
-                for k in range(j + 1, min(end, i + 1)):
-                    matrix[i, k] -= matrix[i, j] * matrix[k, j]
-        columns = np.empty((end - first, n - end))
-        for k in range(end - first):
-            for i in range(end, n):
-                columns[k, i - end] = matrix[i, first + k]
-        for i in range(end, n):
-            row = matrix[i, end : i + 1]
-            for k in range(end - first):
-                share, column = matrix[i, first + k], columns[k]
-                for c in range(len(row)):
-                    row[c] -= share * column[c]
-    return True
-
-
-@njit(cache=True, nogil=True)
 def _solve(
     order: NDArray[np.int64],
     start: NDArray[np.int64],
@@ -279,20 +258,7 @@ def _solve(
             for k in range(out.shape[1]):
                 out[other[q], k] += share * out[v, k]
     out[0] = 0.0
-    x = np.empty(len(rest))
-    for k in range(out.shape[1]):
-        for i in range(len(rest)):
-            x[i] = out[rest[i], k]
-        for i in range(len(rest)):
-            for j in range(i):
-                x[i] -= triangle[i, j] * x[j]
-            x[i] /= triangle[i, i]
-        for i in range(len(rest) - 1, -1, -1):
-            x[i] /= triangle[i, i]
-            for j in range(i):
-                x[j] -= triangle[i, j] * x[i]
-        for i in range(len(rest)):
-            out[rest[i], k] = x[i]
+    solve_rows(triangle, rest, out)
     for v in order[::-1]:
         for k in range(out.shape[1]):
             moved = out[v, k] if total[v] > 0.0 else 0.0

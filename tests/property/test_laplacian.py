@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from ratslam_core import SolverParams
 from ratslam_core.experience_map.relaxation import solve
-from ratslam_core.solvers import laplacian
+from ratslam_core.solvers import cholesky, laplacian
 from ratslam_core.solvers.laplacian import Elimination, eliminate
 from tests.unit.ratslam_core import literal
 
@@ -76,7 +76,7 @@ def test_a_net_that_fills_up(dense_from: int, interpreted: bool, monkeypatch: py
     expected = np.linalg.solve(dense(160, pairs, weights)[1:, 1:], asked[1:])
     made = taken_apart(160, pairs, weights)
     assert made.solve(asked)[1:] == pytest.approx(expected, rel=1e-9, abs=1e-9)
-    assert (len(made.rest) > 2 * laplacian.BLOCK) is (dense_from > 0)
+    assert (len(made.rest) > 2 * cholesky.BLOCK) is (dense_from > 0)
     if not dense_from:
         assert made.work == sum(int(count) ** 2 for count in made.used[1:])
 
