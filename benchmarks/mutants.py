@@ -33,6 +33,7 @@ ROOMS = ("app", "benchmarks", "disk", "docs", "ratslam_core", "sim2d", "tests", 
 SUITE = ("tests/unit/ratslam_core", "tests/property")
 NOT_MUTATED = ("laws", "params")  # guards of files, and declarations
 MOST_S = 900.0  # for the tests of one mutant; the suite takes a tenth of it
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}  # two trees are tested at once
 OTHER: dict[type[ast.AST], tuple[type[ast.AST], ...]] = {
     ast.Add: (ast.Sub,), ast.Sub: (ast.Add,), ast.Mult: (ast.Div,), ast.Div: (ast.Mult,), ast.FloorDiv: (ast.Mult,),
     ast.Mod: (ast.FloorDiv,), ast.Pow: (ast.Mult,), ast.Lt: (ast.LtE, ast.GtE), ast.LtE: (ast.Lt, ast.Gt),
@@ -178,7 +179,7 @@ class Bench:
             *arguments,
             *(() if len(arguments) > 1 else SUITE),
         ]
-        environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1"}
+        environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1", **ONE_THREAD}
         try:
             done = subprocess.run(command, cwd=tree, env=environment, capture_output=True, timeout=MOST_S, check=False)
         except subprocess.TimeoutExpired:
@@ -206,12 +207,14 @@ def main() -> None:
     chosen = random.Random(args.seed).sample(every, min(args.count, len(every)))
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(args.jobs) as pool:
         bench = Bench(Path(folder))
-        lived = list(tqdm(pool.map(bench.survives, chosen), total=len(chosen), unit="mutant", disable=None))
-    survivors = [mutant for mutant, alive in zip(chosen, lived, strict=True) if alive]
+        lived = tqdm(pool.map(bench.survives, chosen), total=len(chosen), unit="mutant", mininterval=30)
+        survivors: list[Mutant] = []
+        for m, alive in zip(chosen, lived, strict=True):
+            if alive:
+                survivors.append(m)
+                tqdm.write(f"{m.file}:{m.line}: {m.before!r} -> {m.after!r}", file=sys.stdout)
     killed = len(chosen) - len(survivors)
     print(f"{killed} of {len(chosen)} killed ({killed / len(chosen):.1%}), of {len(every)} there are")
-    for m in survivors:
-        print(f"{m.file}:{m.line}: {m.before!r} -> {m.after!r}")
     if args.json is not None:
         args.json.write_text(json.dumps([asdict(m) for m in survivors], indent=1) + "\n", encoding="utf-8")
 
