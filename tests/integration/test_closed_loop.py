@@ -1,4 +1,7 @@
-"""The whole loop in the office, over several seeds. Bounds are generous: twice what the worst of ten seeds needed."""
+"""The whole loop in the office, as the README tells of it, over several seeds that it does not name.
+
+Each bound is one and a half times what the README claims, or allows half as many failures again.
+"""
 
 from __future__ import annotations
 
@@ -19,12 +22,12 @@ from web import messages as m
 
 OFFICE = load_world("office")
 SEEDS = (1, 2, 3, 4, 5)
-MINUTES = 5
+MINUTES = 20
 
 
 @dataclass
 class Life:
-    """Five minutes of exploring, then a goal, then a kidnap."""
+    """Twenty minutes of exploring, then a goal, then a kidnap."""
 
     session: Session
     errors_m: tuple[float, float]
@@ -75,35 +78,36 @@ def lives() -> list[Life]:
 def test_the_map_is_truer_than_odometry(lives: list[Life]) -> None:
     for life in lives:
         map_m, odometry_m = life.errors_m
-        assert map_m < 0.95
-        assert map_m < odometry_m
-    assert sum(life.errors_m[0] for life in lives) < 0.65 * sum(life.errors_m[1] for life in lives)
+        assert map_m < 1.5 * 0.28
+        assert map_m < odometry_m / 5
+    assert np.median([life.errors_m[0] for life in lives]) < 1.5 * 0.18
 
 
 def test_places_are_found_again_where_they_are(lives: list[Life]) -> None:
     shares = [life.consistency for life in lives if life.consistency is not None]
-    assert len(shares) >= 3
-    assert np.median(shares) > 0.9
-    assert min(shares) > 0.5  # five minutes revisit little: one wrong stretch weighs much
+    assert len(shares) == len(lives)
+    assert np.median(shares) > 0.97
+    assert min(shares) > 0.9
 
 
 def test_views_experiences_and_links_stay_in_proportion(lives: list[Life]) -> None:
     for life in lives:
         map_ = life.session.brain.experience_map
-        assert 400 < len(map_) < 3000
+        assert 2000 < len(map_) < 6000
         assert len(map_) - 2 <= map_.link_count < 3 * len(map_)  # one link is missing: the kidnap's
-        assert map_.closures > 10
+        assert map_.closures > 400
         assert len(life.session.brain.local_view) <= len(map_)
 
 
 def test_a_goal_is_reached_in_truth(lives: list[Life]) -> None:
-    reached = [life for life in lives if life.arrived and life.miss_m < 1.0]
-    assert len(reached) >= len(lives) - 1
+    assert all(life.arrived and life.miss_m < 1.0 for life in lives)
+    assert np.median([life.miss_m for life in lives]) < 1.5 * 0.33
 
 
 def test_a_kidnap_is_survived(lives: list[Life]) -> None:
     survived = [life for life in lives if life.recovered_s is not None]
     assert len(survived) >= len(lives) - 1
+    assert np.median([life.recovered_s for life in survived]) < 1.5 * 5
     for life in survived:
         assert life.after_m < 1.0
 
