@@ -170,6 +170,7 @@ def test_a_map_that_was_mended_is_as_good_as_new(interpreted: bool, monkeypatch:
 
 @settings(max_examples=20)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.0, 0.4]))
+@pytest.mark.slow
 def test_large_maps_agree_with_scipy(seed: int, shortcut_m: float) -> None:
     """Chains with closures, as a robot makes them; heaps that outgrow their first room."""
     rng = np.random.default_rng(seed)

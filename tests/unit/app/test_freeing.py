@@ -17,6 +17,7 @@ from .worlds import EXACT, HandMadeMap, room
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("heading", [math.pi, -2.4, -math.pi / 2])
+@pytest.mark.slow
 def test_a_cornered_robot_frees_itself(heading: float, seed: int) -> None:
     """Pressed into a corner by a hand, then left alone: it is a metre away within a minute."""
     simulator = Simulator(room(start=(0.5, 0.5, heading)), EXACT, seed)

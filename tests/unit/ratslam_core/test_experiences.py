@@ -82,6 +82,7 @@ def test_the_choice_is_that_of_a_loop_over_all(shape, p: ExperienceMapParams, ma
     "choice",
     [{}, {"match_view": False}, {"match_view": False, "energy": "2005"}, {"match_view": False, "zone_theta": 20.0}],
 )
+@pytest.mark.slow
 def test_the_interpreted_choice_is_the_compiled_one(choice, monkeypatch: pytest.MonkeyPatch) -> None:
     p = ExperienceMapParams(**choice)
     known = Experiences((36, 64, 64))
@@ -118,6 +119,7 @@ def test_without_the_scene_the_same_cells_are_the_same_place() -> None:
         assert made.step(Packet(20.0, 20.0, 0.0, 1.0), Recognition(5, True, -1, math.inf), STILL) is created
 
 
+@pytest.mark.slow
 def test_thousands_of_experiences_keep_their_chains() -> None:
     known = Experiences((36, 64, 64))
     for k in range(3000):

@@ -101,6 +101,7 @@ def test_in_2004_the_packet_is_where_the_robot_is() -> None:
 @pytest.mark.parametrize(
     "name", [name for name, value in PRESETS["paper-2006"].items() if value != PRESETS["ours"][name]]
 )
+@pytest.mark.slow
 def test_each_addition_alone_changes_the_run(name: str) -> None:
     """A switch that does nothing would be a lie."""
     fits = {"local_view.min_edges": "complex cells", "local_view.min_colour": "hue and saturation"}

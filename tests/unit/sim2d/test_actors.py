@@ -228,6 +228,7 @@ def test_a_kidnap_by_chance_finds_what_room_boxes_and_people_leave() -> None:
         simulator.random_free_pose()
 
 
+@pytest.mark.slow
 def test_an_edit_asks_what_is_there_now_not_what_was_there_at_first() -> None:
     """A box that has gone covers nobody; one that has come covers whoever is there."""
     box, script = Box("crate", 3.2, 2.0, 0.4, 0.4), (Event(0.5, "box_vanish", "crate"),)

@@ -92,6 +92,7 @@ def test_where_the_robot_fits_after_edits(worlds: list[World], cell_m: float) ->
 
 @settings(max_examples=150)
 @given(st.data())
+@pytest.mark.slow
 def test_reachable_cells_are_those_of_the_seeds_components(data: st.DataObject) -> None:
     shape = data.draw(st.tuples(st.integers(1, 12), st.integers(1, 12)))
     free = np.random.default_rng(data.draw(st.integers(0, 999))).random(shape) < data.draw(st.floats(0.1, 0.9))

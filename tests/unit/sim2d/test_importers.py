@@ -45,6 +45,7 @@ def corners(world: World) -> set[tuple[float, float]]:
     return {(w.x1, w.y1) for w in world.walls}
 
 
+@pytest.mark.slow
 def test_a_rectangle_gives_its_walls_back() -> None:
     picture = room()
     picture[50:60, 70:100] = 0  # rows count from the top: 60 to 70 pixels above the lower edge

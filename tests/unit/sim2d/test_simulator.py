@@ -108,6 +108,7 @@ def test_pushing_against_a_wall() -> None:
 
 
 @pytest.mark.parametrize("name", [name for name, _ in world_names()])
+@pytest.mark.slow
 def test_never_a_centimetre_into_a_wall(name: str) -> None:
     """Three minutes of wild driving from four places."""
     simulator = Simulator(load_world(name), seed=1)

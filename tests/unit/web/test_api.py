@@ -161,6 +161,7 @@ def test_what_is_wrong_is_said_with_field_value_and_remedy(body, field, reason):
 
 @pytest.mark.parametrize("levels", [20, 128, 254, 255, 1000, 1022, 1023, 9000])
 @pytest.mark.parametrize("route", ["commands", "worlds/new", "worlds/open", "worlds/save", "worlds/delete"])
+@pytest.mark.slow
 def test_what_is_nested_too_deeply_is_refused_on_every_route(server, levels, route):
     for body in (b'{"type": ' + b"[" * levels + b"]" * levels + b"}", b'{"a":' * levels + b"[]" + b"}" * levels):
         answer = server.client.post(f"/api/{route}", content=body, headers={"Content-Type": "application/json"})
