@@ -53,8 +53,8 @@ def _switches(on: frozenset[str]) -> Content:
 
 
 PARTS = (
-    Part("Senses", "views", 6, lambda s: (s.snapshot.senses,), views),
-    Part("Senses", "cells", 3, lambda s: (s.snapshot, s.recent), cells),
+    Part("Senses", "views", 6, lambda s: (s.snapshot, s.recent), views),
+    Part("Senses", "cells", 3, lambda s: (s.snapshot.pose_cells,), cells),
     Part("Memory", "switches", 10, lambda s: (s.on,), _switches),
     Part("Memory", "memory", 2, lambda s: (s.snapshot,), memory),
     Part("Inspect", "switches", 10, lambda s: (s.on,), _switches),

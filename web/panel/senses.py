@@ -36,9 +36,13 @@ class RecentViews:
             self.numbers = tuple(self._kept)
 
 
-def views(senses: Senses) -> Content:
-    """Camera and verdict, what the front end makes of it and the best match, and the difference against its threshold."""
+def views(snapshot: Snapshot, recent: tuple[int, ...]) -> Content:
+    """Camera and verdict, what the front end makes of it and the best match, the difference against its threshold, and which
+    of all views were active lately."""
+    senses = snapshot.senses
     data = {
+        "known": snapshot.views,
+        "recent": recent,
         "active": senses.active_view,
         "verdict": _verdict(senses),
         "seen": {"title": f"{senses.front_end} now", "words": f"the present view: {senses.seen_words}"},
@@ -77,12 +81,11 @@ def _difference(senses: Senses) -> dict[str, Any]:
     return {"words": words, "share": round(share, 3), "known": known}
 
 
-def cells(snapshot: Snapshot, recent: tuple[int, ...]) -> Content:
-    """Local view cells; pose cells from above, and by heading."""
-    layer, active = snapshot.pose_cells, snapshot.senses.active_view
+def cells(layer: PoseCellLayer) -> Content:
+    """Pose cells from above, and by heading."""
     places, packets, strength = from_above(layer)
     turns = np.bincount(layer.cells[:, 0], weights=layer.activity, minlength=layer.shape[0]).astype(np.float32)
-    data = {"views": snapshot.views, "active": active, "recent": recent, "size": (layer.shape[1], layer.shape[2])}
+    data = {"size": (layer.shape[1], layer.shape[2])}
     return Content(data, {"places": places, "packets": packets, "strength": strength, "by_heading": turns})
 
 

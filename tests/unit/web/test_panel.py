@@ -188,6 +188,16 @@ def test_without_activity_there_is_nothing_from_above() -> None:
     assert [len(column) for column in from_above(bare)] == [0, 0, 0]
 
 
+def test_the_strip_of_cells_is_told_together_with_the_view_beside_it(page: Page) -> None:
+    """Apart they would show two views at once while the robot is fast."""
+    page.reader.tabs = ("Senses",)
+    for tick in (430, 431):
+        snapshot = replace(fake_snapshot(tick), run=1)
+        seen = replace(snapshot, senses=replace(snapshot.senses, active_view=tick))
+        told, _ = page.told(seen, after_s=0.2)["views"]  # which is too early for another picture of the pose cells
+        assert (told["active"], told["recent"][-1], told["known"]) == (tick, tick, seen.views)
+
+
 def test_the_views_that_were_active_lately_are_kept_for_a_run() -> None:
     recent, snapshot = RecentViews(), fake_snapshot(430)
 

@@ -61,15 +61,15 @@ export class SensesTab {
       this.match.setAttribute("aria-label", `Inspect ${data.best.words}`);
       this.best.says(data.best.words).show(arrays.best);
     }
+    const { active, known, recent } = data;
+    say(this.cells, `local view cells (${active >= 0 ? `active #${active}` : "none active"} of ${known})`);
+    this.strip.show({ active, views: known, recent });
     say(this.difference, data.difference.words);
     this.bar.show(data.difference.share, data.difference.known ? "known" : "new");
   }
 
   /** @param {any} data @param {Arrays} arrays */
   poseCells(data, arrays) {
-    const shown = data.active >= 0 ? `active #${data.active} of ${data.views}` : `none active of ${data.views}`;
-    say(this.cells, `local view cells (${shown})`);
-    this.strip.show(data);
     const [places, packets, strength] = [arrays.places, arrays.packets, arrays.strength].map(({ values }) => values);
     this.above.draw(fromAbove(data.size, places, packets, strength, PACKETS.map(colourOf), colourOf("second")));
     this.turns.show(arrays.by_heading.values);
