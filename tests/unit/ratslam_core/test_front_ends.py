@@ -338,3 +338,13 @@ def test_a_view_takes_no_more_than_150_bytes() -> None:
 def test_each_parameter_changes_what_is_seen(kind: str, changed: dict[str, float]) -> None:
     plain, other = view_of(kind), view_of(kind, **changed)
     assert not np.array_equal(plain.front_end.look(office(1), None), other.front_end.look(office(1), None))
+
+
+@pytest.mark.parametrize("kind", SEEING)
+def test_with_the_gate_open_nothing_is_bland(kind: str) -> None:
+    """A threshold of 0 is how the papers have it: even an image of one grey is a view."""
+    off = {"min_contrast": 0.0, "min_edges": 0.0, "min_colour": 0.0}
+    grey = np.full((36, 48, 3), 128, np.uint8)
+    open_gate, gated = view_of(kind, **off), view_of(kind)
+    assert open_gate.observe(grey).view == 0
+    assert gated.observe(grey).view == -1
