@@ -1,7 +1,7 @@
-"""A whole brain as a state, and as a file. A brain that comes back goes on as if it had never stopped.
+"""A whole brain as a state and as a file. A restored brain goes on as if it had never stopped.
 
-The users of other RatSLAM implementations ask for this: a map that is saved and navigated with later. No brain is given out that
-breaks one of its laws (`laws/`).
+Users of other RatSLAM implementations have asked for this: to save a map and to navigate with it later. A brain that
+breaks one of its laws (`laws/`) is never returned.
 """
 
 from __future__ import annotations
@@ -18,12 +18,16 @@ from ratslam_core.slam import RatSlam
 
 
 def take_snapshot(brain: RatSlam) -> State:
-    """The whole state, copied: the brain may go on. Who drives it meanwhile copies it first and has the rest done elsewhere."""
+    """The whole state as a copy, so that the brain may go on.
+
+    A caller that must not wait makes the copy (`copy_state`) itself and encodes it in another thread.
+    """
     return encode(copy_state(brain))
 
 
 def restore_snapshot(snapshot: State) -> RatSlam:
-    """A brain in this state. ValueError when it is of another format, of another version's classes, or breaks a law."""
+    """A brain in this state. ValueError when the format is another, when its classes are another version's, or when it
+    breaks a law."""
     try:
         return _checked(State(snapshot.tree, [array.copy() for array in snapshot.arrays]))
     except BROKEN as error:
@@ -31,7 +35,7 @@ def restore_snapshot(snapshot: State) -> RatSlam:
 
 
 def save_brain(brain: RatSlam, path: Path | str) -> None:
-    """Write a brain to one file (.npz: arrays, and JSON as bytes). What was there is replaced only once all is written.
+    """Write a brain to one file (.npz: arrays, and JSON as bytes). An existing file is replaced only after all is written.
 
     OSError names the file; ValueError: the brain is too large to be read again.
     """
@@ -49,7 +53,7 @@ def read_brain(file: IO[bytes]) -> RatSlam:
 
 
 def _checked(state: State) -> RatSlam:
-    """The brain keeps the arrays."""
+    """The brain in this state, checked. It keeps the state's arrays instead of copying them."""
     brain = decode(state)
     if not isinstance(brain, RatSlam):
         raise ValueError(f"a snapshot must hold a RatSlam, got {type(brain).__name__}")

@@ -17,7 +17,8 @@ def project(
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
     """G_xy = sum over theta of P, where it is above share * G_max. IROS 2005 eq. 1.
 
-    Returns the cells of the plane, their G, and the first row that lies outside of it (-1: none). `place`: scratch, zero.
+    Returns the cells of the plane, their G, and the first row that lies outside of it (-1: none). `place`: scratch, all
+    0.
     """
     n_y, n_x = shape[1], shape[2]
     flats = np.empty(len(cells), np.int64)
@@ -137,7 +138,7 @@ def learn(
 def move(
     keys: NDArray[np.int64], times: NDArray[np.float32], new_keys: NDArray[np.int64], new_times: NDArray[np.float32]
 ) -> None:
-    """All links into a larger table."""
+    """Copy all links into a larger table."""
     for k in range(keys.size):
         if keys[k] != FREE:
             at = find(keys[k], new_keys)
@@ -149,7 +150,7 @@ def move(
 def lowest(T: NDArray[np.float64], x: int, y: int, reach: int, keys: NDArray[np.int64]) -> int:
     """The cell with the lowest T below that of (x, y), among those within `reach` that it is linked to; -1 when there is none.
 
-    Where nothing was learnt yet (T is inf) any known cell in reach will do.
+    Where nothing has been learnt yet (T is inf), any known cell in reach will do.
     """
     n_y, n_x = T.shape
     here = y * n_x + x

@@ -1,12 +1,12 @@
-"""Goal memory: the times between places, learnt on the pose cells' own plane, and the way they show. IROS 2005 section III.
+"""Goal memory: travel times between places, learnt on the pose cells' plane, and the way to a goal. IROS 2005 section III.
 
-G_xy is what the pose cells hold at a place, whatever the heading. A link tau_ij says how long it takes from cell i to cell
-j. Times to a goal are integrated over the links; the robot moves to where they fall fastest.
+G_xy is the activity of the pose cells at a place, summed over all headings. A link tau_ij says how long the way from
+cell i to cell j takes. Times to a goal are summed along the links; the robot moves towards the lowest time in reach.
 
 Links are sparse: a hash table of pairs (i < j) with room for twice as many as there are, 12 bytes each.
 """
 
-# SciPy tells no types, and whoever calls may check none.
+# SciPy has no types, and callers may not be type-checked.
 # pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
 # pyright: reportUnnecessaryIsInstance=false
 
@@ -63,7 +63,7 @@ class GoalMemory:
 
     @property
     def memory_bytes(self) -> int:
-        """What the links and the plane take."""
+        """Memory of the links and of the plane."""
         return self._keys.nbytes + self._times.nbytes + self._place.nbytes
 
     @property
@@ -98,11 +98,11 @@ class GoalMemory:
 
         T: from `times_to`. None within one cell of the goal, and when no way is known from here.
 
-        [ours] Of the cells in reach only those count that the packet's own cell is linked to: the robot has been driving
-        from here to there, while what is near may lie behind a wall. Links are longer than `reach`, so when none in reach
-        is lower, `wider` reaches are tried. The next cell of the quickest way is linked and lower, so there is no local
-        minimum, but for places whose only way is a leap of the packet: there is no direction to drive then.
-        test_goal_memory.py::test_it_does_not_point_through_a_wall, ::test_there_are_no_local_minima.
+        [ours] Only those cells in reach count that are linked to the packet's own cell. To these the robot has driven,
+        while another near cell may lie behind a wall. Links may be longer than `reach`, so when no cell in reach is
+        lower, up to `wider` times the reach is tried. The next cell of the quickest way is linked and lower, so there
+        are no local minima, except at places that only a jump of the packet leads away from: then there is no direction
+        to drive. test_goal_memory.py::test_it_does_not_point_through_a_wall, ::test_there_are_no_local_minima.
         """
         n_y, n_x = self.shape[1:]
         if T.shape != (n_y, n_x):
@@ -122,13 +122,14 @@ class GoalMemory:
     def learn(self, cells: NDArray[np.int32], activity: NDArray[np.float32], time_s: float) -> None:
         """Link what is active now with what was active in the iteration before. IROS 2005 eqs. 1-5.
 
-        cells, activity: the active set of the pose cells (`PoseCells.active`); time_s: when, increasing. A clock that stands
-        while the robot waits keeps waiting out of the times.
+        cells, activity: the active set of the pose cells (`PoseCells.active`); time_s: the time, increasing. A clock
+        that stands still while the robot waits keeps the waiting out of the link times.
 
-        [ours] Only cells above `share` of the strongest are linked: at most (cells of a packet above it)^2 links a call.
-        [ours] The iteration before is the last one from which the packet is `stride_m` away. At 10 Hz a packet is wider
-        than its move, and every cell in it would be linked to every other by the same 0.1 s, however slow the robot is:
-        times would know nothing of speed. test_goal_memory.py::test_the_faster_way_wins_over_the_shorter_one.
+        [ours] Only cells above `share` of the strongest are linked: at most (cells of a packet above it)^2 links a
+        call. [ours] The iteration before is one from which the packet has moved `stride_m`. At 10 Hz a packet is wider
+        than its movement in a tick, so every cell in it would be linked to every other with the same 0.1 s, however
+        slow the robot is, and the times would not depend on speed.
+        test_goal_memory.py::test_the_faster_way_wins_over_the_shorter_one.
         """
         time_s = require_finite("time_s", time_s)
         last = self._last
@@ -150,7 +151,7 @@ class GoalMemory:
         self._last, self._graph = now, None
 
     def interrupt(self) -> None:
-        """The next iteration follows no other: the packet was not driven to where it is."""
+        """The next iteration is linked to none before it: the packet was not driven to where it is."""
         self._last = None
 
     # ------------------------------------------------------------ inside
@@ -185,7 +186,7 @@ class GoalMemory:
 @kind("iteration/1")
 @dataclass(slots=True)
 class _Iteration:
-    """What was active when."""
+    """Which cells of the plane were active, and when."""
 
     flats: NDArray[np.int64]  # cells of the plane, y * n_x + x
     activity: NDArray[np.float64]  # G of each

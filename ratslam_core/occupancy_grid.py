@@ -73,8 +73,8 @@ class MetricPicture:
 
 @kind("map grid/1")
 class MapGrid:
-    """[ours] The picture that bends with the experience map: scans are kept with the experience that they were made from, in
-    its own frame, and drawn where it is now. test_occupancy_grid.py::test_the_picture_bends_with_the_map.
+    """[ours] The picture that bends with the experience map. Each scan is kept in the frame of the experience that was
+    active, and drawn where that experience is now. test_occupancy_grid.py::test_the_picture_bends_with_the_map.
     """
 
     def __init__(self, params: OccupancyParams | None, sonar_angles_rad: Sequence[float] | NDArray[np.float64]) -> None:
@@ -114,7 +114,7 @@ class MapGrid:
         self._known = max(self._known, experience + 1)
 
     def draw(self, poses: NDArray[np.float64], cell_m: float = 0.25) -> MetricPicture:
-        """All kept scans through the experiences' poses of now, shape (n, 3): x, y (m), heading (rad). On demand, not each step.
+        """Draw all kept scans at these poses of the experiences, shape (n, 3): x, y (m), heading (rad). Not called every step.
 
         The picture reaches as far as the beams do. A map too large for MOST_CELLS a side is drawn with larger cells.
         """
@@ -177,7 +177,7 @@ def _ranges(ranges_m: NDArray[np.floating], angles: NDArray[np.float64]) -> NDAr
 def _none_negative(ranges: NDArray[np.float64]) -> bool:
     bad = 0
     for r in ranges:
-        bad += not r >= 0.0  # which no number is neither
+        bad += not r >= 0.0  # so that nan is bad, too
     return bad == 0
 
 
@@ -226,8 +226,8 @@ def _scan(
     p = (1 + occupied O) / 2 around it,       O = (1 - ((d - R) / eps)^2) (1 - (theta / w)^2)
     d, theta: distance and angle of a cell's middle from the sonar's axis. After Moravec and Elfes 1985.
 
-    [ours] eps and w, half the beam's width, are widened by half a cell as it is seen from the robot, so that near
-    the robot, where the beam is narrower than a cell, it is not lost between two of them.
+    [ours] eps and w, half the beam's width, are widened by half a cell as seen from the robot. Near the robot, where
+    the beam is narrower than a cell, it is then not lost between two cells.
     test_occupancy_grid.py::test_a_beam_is_never_lost_between_cells.
     """
     n_y, n_x = log_odds.shape
@@ -248,14 +248,14 @@ def _scan(
         for at_y in range(y_low, y_high + 1):
             dy = (at_y - y) * cell_m
             first, last = x_low, x_high
-            if abs(s) > 0.01:  # of a row, only where the beam crosses it
+            if abs(s) > 0.01:  # only that part of the row where the beam crosses it
                 middle, aside = x + c * dy / s / cell_m, wide / abs(s) / cell_m
                 first, last = max(first, int(np.ceil(middle - aside))), min(last, int(np.floor(middle + aside)))
             for at_x in range(first, last + 1):
                 dx = (at_x - x) * cell_m
                 d = np.sqrt(dx * dx + dy * dy)
                 across = c * dy - s * dx
-                if d >= far or abs(across) > d * sine + half:  # the second spares most cells the angle below
+                if d >= far or abs(across) > d * sine + half:  # the second test spares most cells the angle below
                     continue
                 w = half_beam + (np.arcsin(half / d) if d > half else 0.5 * np.pi)
                 off = np.arctan2(across, c * dx + s * dy) / w if d > 0.0 else 0.0

@@ -1,6 +1,6 @@
-"""What RatSlam asks of its parts: any of them may be another class, in a file of one's own (docs/engine.md has three).
+"""What RatSlam requires of its parts. Any of them may be another class, in a user's own file (docs/engine.md shows three).
 
-A part whose class is named with `disk.kind` is in the brain's digest and in its file like ours.
+A part whose class is named with `disk.kind` is included in the brain's digest and file, as ours are.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ class LocalViewPart(Protocol):
     """Recognises scenes."""
 
     params: Any
-    image_change: float  # since the step before, as a share of what driving cannot do
+    image_change: float  # since the step before, as a share of what driving can explain; above 1 it cannot
 
     def __len__(self) -> int: ...
 
     def observe(self, image: NDArray[np.uint8] | None, scene: int | None = None, /) -> Recognition:
-        """The active cell for what is seen now. ValueError before anything has changed."""
+        """The active cell for what is seen now. When it raises a ValueError, nothing may have changed."""
         ...
 
     def strength(self, seen: Recognition, /) -> float:
@@ -34,7 +34,7 @@ class LocalViewPart(Protocol):
 
 
 class PoseCellsPart(Protocol):
-    """Holds where the robot is. Cells go by a flat index, (theta * n_y + y) * n_x + x."""
+    """Represents where the robot is. Cells have a flat index, (theta * n_y + y) * n_x + x."""
 
     params: Any
     shape: tuple[int, int, int]  # layers, cells along y' and x'
@@ -55,7 +55,7 @@ class PoseCellsPart(Protocol):
     def winner(self) -> Packet: ...
 
     def integrate(self, distance_m: float, turn_rad: float, /) -> None:
-        """The robot moved so, as its wheels say."""
+        """Path integration: the robot moved as its wheels say."""
         ...
 
     def inject(self, cells: NDArray[np.int32], values: NDArray[np.float32], /) -> None:
@@ -63,7 +63,7 @@ class PoseCellsPart(Protocol):
         ...
 
     def attract(self) -> Packet:
-        """The competition of one step; the packet that leads."""
+        """Let the packets compete for one step; returns the winner."""
         ...
 
     def cells_apart(self, x1: float, y1: float, x2: float, y2: float, /) -> float: ...
@@ -71,7 +71,7 @@ class PoseCellsPart(Protocol):
 
 
 class ExperienceMapPart(Protocol):
-    """Makes a map of it. The pilot and the page ask more of it: inherit from ExperienceMap for those."""
+    """Builds the map. The pilot and the page need more than this; for them, inherit from ExperienceMap."""
 
     active: int
     agrees: bool
@@ -87,7 +87,7 @@ class ExperienceMapPart(Protocol):
         ...
 
     def declare_kidnapped(self) -> None:
-        """The robot was moved without its wheels."""
+        """The robot was carried, not driven."""
         ...
 
     def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int, /) -> bool:
@@ -104,13 +104,13 @@ class Optimiser(Protocol):
     params: Any
 
     def correct(self, map_: ExperienceMap, /) -> None:
-        """`map_.poses` (n, 3) is changed in place; the first experience stays where it is. `map_.links` and `map_.moves`
-        say what is asked: the end of each link in the frame of its beginning (m, m, rad)."""
+        """Change `map_.poses` (n, 3) in place; the first experience stays where it is. `map_.links` and `map_.moves`
+        are the constraints: where the end of each link should be, in the frame of its beginning (m, m, rad)."""
         ...
 
 
 class KidnapDetectorPart(Protocol):
-    """Notices that the robot was carried away, and that it knows again where it is."""
+    """Notices that the robot was carried away, and when it knows again where it is."""
 
     kidnapped: bool
     params: Any

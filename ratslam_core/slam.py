@@ -22,7 +22,7 @@ from ratslam_core.standard_parts import StandardParts
 from ratslam_core.types import Estimate, Odometry, Recognition
 from ratslam_core.visual_association import VisualAssociation
 
-# Of `RatSlam.step`; in the papers' own order the second and the third change places (`pose_cells.move_first`).
+# The stages of `RatSlam.step`. In the papers the second and the third change places (`pose_cells.move_first` off).
 STAGES = ("view match", "path integration", "injection", "attractor", "experience", "correction", "memories")
 
 
@@ -30,7 +30,7 @@ STAGES = ("view match", "path integration", "injection", "attractor", "experienc
 class RatSlam:
     """The whole engine: local view, pose cells, experience map, and beside them goal memory and occupancy.
 
-    Any part may be handed in (`parts.py`); what is not is made from the parameters.
+    Any part may be handed in (`parts.py`); the others are made from the parameters.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class RatSlam:
         self.params = p = params or RatSlamParams()
         self.rng = rng or np.random.default_rng(0)
         ours = StandardParts(p, self.rng)
-        # A part that was handed in does what `parts.py` says; who asks it for more has to know its class.
+        # A part that was handed in does what `parts.py` says. Code that needs more has to know its class.
         self.local_view = ours.local_view() if local_view is None else cast(LocalView, local_view)
         self.pose_cells = ours.pose_cells() if pose_cells is None else cast(PoseCells, pose_cells)
         shape, cell_m = self.pose_cells.shape, p.pose_cells.cell_m
@@ -79,10 +79,10 @@ class RatSlam:
     ) -> Estimate:
         """One iteration at the end of a movement: `odometry` is what the wheels report of it, `image` what is seen then.
 
-        image: (h, w) or (h, w, 3) uint8; scene: its number, for the front end "scene numbers", which looks
-        at no image; behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: what the
-        sonars say, shape (n_sonars,), for the occupancy and to notice a kidnap; watch: called after each of STAGES with its
-        name, to look and not to touch. ValueError when one of them cannot be; then nothing has changed.
+        image: (h, w) or (h, w, 3) uint8; scene: its number, for the front end "scene numbers", which ignores the image;
+        behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: the sonars' ranges in m, shape
+        (n_sonars,), for the occupancy pictures and to notice a kidnap; watch: called after each of STAGES with its
+        name; it may look but change nothing. ValueError when one of them is not valid; nothing has changed then.
         """
         require_behaviour(behaviour)
         scan = None if ranges_m is None else self._require_sonars(ranges_m)
@@ -121,13 +121,13 @@ class RatSlam:
         return self.kidnap_detector.kidnapped
 
     def declare_kidnapped(self) -> None:
-        """[ours] The robot was moved and knows it: image and sonars jumped though the wheels did not, or it is told so."""
+        """[ours] The robot was carried and knows it: image and sonars jumped although the wheels did not, or it is told so."""
         self.kidnap_detector.declare(len(self.experience_map))
         if self.lost:
             self.experience_map.declare_kidnapped()
 
     def digest(self) -> bytes:
-        """SHA-256 of all that decides what the engine will do: equal for equal histories."""
+        """SHA-256 of everything that decides what the engine will do: equal for equal histories."""
         return bytes.fromhex(encode(self).digest())
 
     def set_params(self, params: RatSlamParams) -> None:
@@ -149,8 +149,8 @@ class RatSlam:
     # ------------------------------------------------------------ inside
 
     def _cell_stages(self) -> list[tuple[str, Callable[[Recognition, Odometry], None]]]:
-        """[ours] The image belongs to the end of the movement, so that path integration comes first: else every view is linked
-        one step behind. ACRA 2004 section 4 associates first. test_papers.py.
+        """[ours] The image belongs to the end of the movement, so path integration comes first. Otherwise every view
+        would be linked one step behind. ACRA 2004 section 4 associates first. test_papers.py.
         """
         stages = [("path integration", self._integrate), ("injection", self._associate)]
         return stages if self.params.pose_cells.move_first else stages[::-1]
@@ -165,7 +165,8 @@ class RatSlam:
     def _remember(self, odometry: Odometry, scan: NDArray[np.float64] | None, relocalised: bool) -> None:
         """Goal memory learns while the robot drives, the occupancy pictures always.
 
-        [ours] A packet that jumped has not driven: nothing is linked over it. test_slam.py::test_a_leap_of_the_packet_is_no_way.
+        [ours] The robot did not drive where the packet jumped, so nothing is linked across the jump.
+        test_slam.py::test_a_leap_of_the_packet_is_no_way.
         """
         if (relocalised or self.lost) and not self.params.goal_memory.over_jumps:
             self.goal_memory.interrupt()
@@ -183,4 +184,4 @@ class RatSlam:
 
 
 def _nobody(_stage: str) -> None:
-    """Watches."""
+    """The default for `watch`: does nothing."""

@@ -1,4 +1,4 @@
-"""The parts that parameters ask for: the papers' own or, beside each, what is ours. Which it is is decided here and once."""
+"""The parts that the parameters choose: those of the papers or, beside them, ours."""
 
 from __future__ import annotations
 

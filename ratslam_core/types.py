@@ -1,4 +1,4 @@
-"""The small frozen values that go into and come out of the engine. SI units, radians, counter-clockwise positive."""
+"""The small frozen values that go into the engine and come out of it. SI units, radians, counter-clockwise positive."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Recognition:
     recruited: bool  # the cell is new
     best_view: int  # the most similar view known before, -1 when there was none
     difference: float  # mean absolute difference to it in levels of the front end, inf when there was none
-    facing_rad: float | None = 0.0  # heading relative to where the active view was taken from; None = it does not tell
+    facing_rad: float | None = 0.0  # heading relative to that at which the active view was taken; None = unknown
     false_positive: bool = False  # the active view was put in the place of `best_view`, which was the right one
 
 

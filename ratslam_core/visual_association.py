@@ -1,4 +1,7 @@
-"""Visual association and calibration: views learn where they are seen, and put activity back. ACRA 2004 section 4, eqs. 2-4."""
+"""Visual association and calibration: a view learns where it is seen, and later puts activity there.
+
+ACRA 2004 section 4, eqs. 2-4.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from ratslam_core.types import Recognition
 
 @kind("visual association/1")
 class VisualAssociation:
-    """Between the active view and the pose cells, once a step."""
+    """Links the active view with the pose cells, once per step."""
 
     def __init__(self, params: LocalViewParams) -> None:
         self.params = params
@@ -24,12 +27,12 @@ class VisualAssociation:
         self.params = self.links.params = params
 
     def step(self, seen: Recognition, strength: float, dt: float, pose_cells: PoseCellsPart, lost: bool) -> None:
-        """Learn what the view shows together with the packets, and inject what it is linked to.
+        """Link the active view to the active pose cells, and inject activity into the cells it is linked to.
 
         strength: how sure the recognition is, 0 to 1; lost: the robot knows that it was carried away.
 
-        [ours] What is injected was learnt before this step, and a view younger than `rest` injects nothing: it would hold the
-        packet back where it was just learnt. The twin is `learn_first`, with `rest` 0.
+        [ours] What is injected was learnt before this step, and a view younger than `rest` injects nothing. Otherwise
+        it would hold the packet back where it has just been learnt. The plain twin is `learn_first`, with `rest` 0.
         test_slam.py::test_a_young_view_does_not_hold_the_packet_back.
         """
         self._time_s += dt
@@ -55,10 +58,10 @@ class VisualAssociation:
     def _rate(self, strength: float, confidence: float) -> float:
         """The Hebbian learning rate of this step: fixed, or adaptive.
 
-        [ours] Adaptive, which ACRA 2004 section 6.3 names as future work: twice the rate x strength of vision (1 for a view
-        like the one known, 0 at the threshold) x confidence (the winning packet's share of all activity, 0 while lost).
-        What is hardly recognised, or seen while hypotheses compete, is hardly learnt; a clear sight at a sure place is
-        learnt twice as fast. test_slam.py::test_the_adaptive_rate_follows_vision_and_confidence.
+        [ours] Adaptive, which ACRA 2004 section 6.3 names as future work: twice the rate x strength of vision (1 for a
+        view equal to the known one, 0 at the threshold) x confidence (the winning packet's share of all activity, 0
+        while lost). A view that is hardly recognised, or seen while hypotheses compete, is hardly learnt; a clear one
+        at a certain place is learnt twice as fast. test_slam.py::test_the_adaptive_rate_follows_vision_and_confidence.
         """
         p = self.params
         return 2 * p.learning_rate * strength * confidence if p.adaptive else p.learning_rate

@@ -14,10 +14,11 @@ ROOM = 4  # half-edges that a new node has room for
 class Adjacency:
     """Each node owns a block of half-edges in one arena: `half[start[node]:][:used[node]]`, in the order of creation.
 
-    A link from i to j that is row r elsewhere appears twice: at i as half 2 r, with `other` j, and at j as half 2 r + 1, with
-    `other` i. A full block moves to the end of the arena with twice the room, so that a walk over all nodes reads memory
-    nearly in order. Rows need not be consecutive and may be used again once they were removed. All arrays are uint32, since
-    compiled code need not ask whether such an index counts from the end; they have room to spare.
+    A link from i to j that is row r elsewhere appears twice: at i as half 2 r, with `other` j, and at j as half 2 r +
+    1, with `other` i. A full block moves to the end of the arena with twice the room, so that a walk over all nodes
+    reads memory nearly in order. Row numbers need not be consecutive, and a removed one may be used again. All arrays
+    are uint32, since compiled code need not test whether an unsigned index counts from the end; they are longer than
+    what is in use.
     """
 
     def __init__(self) -> None:
@@ -27,7 +28,7 @@ class Adjacency:
         self.other = np.zeros(4096, np.uint32)
         self._room = np.zeros(1024, np.uint32)
         self._nodes = self._end = 0
-        self.changes = 0  # counts nodes and links that came or went
+        self.changes = 0  # how often a node or a link was added or removed
 
     def add_node(self) -> None:
         if self._nodes == len(self.start):
@@ -46,7 +47,7 @@ class Adjacency:
         self.changes += 1
 
     def remove_link(self, i: int, j: int, row: int) -> None:
-        """Take a link out again; the others keep their order. O(links at i and j)."""
+        """Remove a link; the others keep their order. O(links at i and j)."""
         at = self._find(i, 2 * row), self._find(j, 2 * row + 1)
         if min(at) < 0:
             raise ValueError(f"row {row!r} must link {i!r} to {j!r} to be removed, but it does not")
@@ -75,7 +76,7 @@ class Adjacency:
         self.used[node] = used + 1
 
     def _reserve(self, room: int) -> int:
-        """Where so much room begins at the end of the arena."""
+        """Reserve room at the end of the arena; returns where it begins."""
         while self._end + room > len(self.half):
             self.half, self.other = _double(self.half), _double(self.other)
         self._end += room

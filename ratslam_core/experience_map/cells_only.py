@@ -1,4 +1,4 @@
-"""No experience map, as in 2004: where the packet is, is where the robot is."""
+"""No experience map, as in 2004: the packet's place in the pose cells is the robot's place."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, w
 class CellsOnly(ExperienceMap):
     """One experience, made where the robot woke up. In its frame the winning packet's place in the pose cells is the robot's.
 
-    A packet that crosses the border of the network comes in at the other side, and so does the robot: the network has to be as
-    large as the building. Whoever asks for a way gets none.
+    A packet that leaves the network on one side comes in on the other, and with it the estimate of the robot's place.
+    The network therefore has to be as large as the building. There are no links, so there are no routes.
     """
 
     def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0) -> bool:  # noqa: ARG002
@@ -31,4 +31,4 @@ class CellsOnly(ExperienceMap):
         return False
 
     def declare_kidnapped(self) -> None:
-        """The pose cells find it again, or nothing does."""
+        """Nothing is done: only the pose cells can relocalise the robot."""

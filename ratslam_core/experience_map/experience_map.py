@@ -1,4 +1,4 @@
-"""The experience map: experiences tie pose cells and scenes to places of a map that stays true. ACRA 2006 section 3.
+"""The experience map: experiences tie states of the pose cells and scenes to places in a consistent map. ACRA 2006 section 3.
 
 An experience stands for a state of the pose cells (x', y', theta') and a scene V, and has a pose of its own in the map. A
 link is a transition that the robot made: distance, bearing and change of facing by odometry, and the time it took.
@@ -40,23 +40,23 @@ class ExperienceMap(MapReading):
         super().__init__(shape, cell_m, params, filter_params)
         self.optimiser: Optimiser = optimiser or ExactSolver(SolverParams())
         self.yaw_bias = 0.0  # rad/s, learnt
-        self.agrees = True  # what was seen last, with where the robot believed to be
+        self.agrees = True  # whether the last look agreed with where the robot believed itself to be
         self.closures = 0  # links made to experiences that existed before
         self.steps = 0
-        self._offset = IDENTITY  # the robot in the frame of the active experience when it was seen best
-        self._sigma = 0.0  # how well that is known, m
+        self._offset = IDENTITY  # the robot in the frame of the active experience, at the best look so far
+        self._sigma = 0.0  # how far off that may be, m
         self._travel = IDENTITY  # odometry since then
-        self._kidnapped = False  # since the active experience was entered: what led here is not a transition
+        self._kidnapped = False  # since the active experience was entered: the way from there is no transition
         self._leg = PreintegratedOdometry()  # since the last link was learnt
         self._arrival: _Arrival | None = None
         self._verifier = LoopVerifier(filter_params or PoseFilterParams())
         self._edges = OdometryEdges() if self.params.odometry_edges else NoOdometryEdges()
 
     def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0) -> bool:
-        """One step: the robot moved as the odometry says and is now in this state. True when a new experience was made.
+        """One step: the robot moved as the odometry says, to this packet and this view. True when a new experience was made.
 
-        behaviour: 0 to 15, the local movement that brought it here; links remember it. ValueError for another one, and for
-        a packet that is nowhere.
+        behaviour: 0 to 15, the local movement that led here; links remember it. ValueError for another number, and for
+        a packet whose place or heading is not finite.
         """
         require_behaviour(behaviour)
         require_finite("packet", packet.x + packet.y + packet.heading_rad)
@@ -91,18 +91,18 @@ class ExperienceMap(MapReading):
         self.pose_filter.params = self._verifier.params = filter_params
 
     def tried(self, i: int, j: int, reached: bool) -> bool:
-        """One trial of the way between two experiences, either way round; True when a link was deleted for it.
+        """Count one trial of the links between two experiences, in both directions. True when a link was deleted for it.
 
-        [ours] The paper counts every departure under a link's behaviour as a trial (`link_trials_are`), but where many ways
-        leave a place, none of them is what the behaviour is expected to bring. Who follows a route knows what it tries.
-        test_transitions.py::test_exploring_deletes_nothing_of_what_was_not_tried.
+        [ours] The paper counts every departure under a link's behaviour as a trial (`link_trials_are`). Where several
+        links leave a place, however, the behaviour does not say which of them to expect. A robot on a route knows which
+        it tries. test_transitions.py::test_exploring_deletes_nothing_of_what_was_not_tried.
         """
         rows = [self.transitions.row_of.get(ends, -1) for ends in ((i, j), (j, i))]
         deleted = [self._judge(row, reached) for row in rows if row >= 0]
         return any(deleted)
 
     def declare_kidnapped(self) -> None:
-        """[ours] The robot was moved without its wheels: what led here is not a transition, and odometry starts anew.
+        """[ours] The robot was carried, not driven: the way here is no transition, and odometry starts afresh.
 
         test_experience_map.py::test_a_kidnap_makes_no_way.
         """
@@ -111,7 +111,7 @@ class ExperienceMap(MapReading):
         self._edges.forget()
 
     def calibrated(self, odometry: Odometry) -> Odometry:
-        """[ours] Odometry without the yaw bias that the map has learnt; wheels that stand have none."""
+        """[ours] Odometry without the yaw bias that the map has learnt. Wheels that stand still have no bias."""
         if self.yaw_bias == 0.0 or (odometry.speed == 0 and odometry.yaw_rate == 0):
             return odometry
         return Odometry(odometry.speed, odometry.yaw_rate - self.yaw_bias, odometry.dt)
@@ -131,11 +131,11 @@ class ExperienceMap(MapReading):
         return _Departure(self.active, self._offset.compose(self._travel), self._sigma, self._kidnapped)
 
     def _most_energetic(self, packet: Packet, view: int) -> int:
-        robot = self.robot if view < 0 else IDENTITY  # who sees something is not asked where it is in the map
+        robot = self.robot if view < 0 else IDENTITY  # the place in the map counts only when nothing is seen
         return self._experiences.most_energetic(packet, view, self.params, robot)
 
     def _look(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
-        """Where the robot is in the frame of an experience: it may enter the zone beside the centre."""
+        """The look: the robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
         if not self.params.zone_offset:
             return IDENTITY
         dx, dy, dtheta = self._experiences.cells_from(experience, packet)
@@ -143,12 +143,12 @@ class ExperienceMap(MapReading):
         c, s = math.cos(facing), math.sin(facing)
         dx, dy = dx * self.cell_m, dy * self.cell_m
         turn = seen.facing_rad if seen.view >= 0 else None
-        if turn is None:  # only the pose cells tell
+        if turn is None:  # only the pose cells tell the heading
             turn = dtheta * 2 * math.pi / self.shape[0]
         return Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(turn))
 
     def _confirmed(self, experience: int, look: Pose2) -> bool:
-        """Who knows that it was carried away is surprised by nothing."""
+        """Whether to believe a look. A robot that knows that it was carried away believes every look at once."""
         needed = 0 if self.pose_filter.lost else self.params.confirm_jumps
         return self._verifier.believes(self.robot, self.pose(experience).compose(look), needed)
 
@@ -166,11 +166,11 @@ class ExperienceMap(MapReading):
         self.agrees = self.pose_filter.see(look, sigma)
 
     def _deviation(self, seen: Recognition) -> float:
-        """How far (m) the robot may be from where a view was taken that differs so much."""
+        """How far (m) the robot may be from where the view was taken: the more the view differs, the farther."""
         return self.params.anchor_sigma * seen.difference if seen.view >= 0 else self.params.blind_sigma
 
     def _see_better(self, seen: Recognition) -> None:
-        """[ours] The robot is nearer to where the active experience was made than before: measure the way here anew.
+        """[ours] The robot is nearer than before to where the active experience was made: measure the transition again.
 
         test_experience_map.py::test_the_best_look_decides_the_transition.
         """
@@ -185,7 +185,7 @@ class ExperienceMap(MapReading):
         self._measure(arrival)
 
     def _learn_link(self, before: _Departure, behaviour: int) -> None:
-        """The transition to the active experience took this move and this time; repeats are averaged. ACRA 2006 eqs. 5-6."""
+        """Learn move and time of the transition to the active experience; repeats are averaged. ACRA 2006 eqs. 5-6."""
         i, j, t, leg = before.experience, self.active, self.transitions, self._leg
         self._leg = PreintegratedOdometry()
         row = None if before.kidnapped else t.row_of.get((i, j))
@@ -201,7 +201,7 @@ class ExperienceMap(MapReading):
             self._count(row, behaviour)
 
     def _count(self, row: int, behaviour: int) -> None:
-        """The robot came this way: a trial of it, and maybe of the others that lead from there. ACRA 2006 3.4, eq. 9."""
+        """Count a trial of the link just driven; by "departures", also of the others from there. ACRA 2006 3.4, eq. 9."""
         t, failed = self.transitions, []
         if self.params.link_trials_are == "departures":
             departures = t.departures(int(t.ends[row, 0]), behaviour)
@@ -214,16 +214,16 @@ class ExperienceMap(MapReading):
     def _judge(self, row: int, reached: bool) -> bool:
         deleted = self.transitions.judge(row, reached, self.params)
         if deleted and self._arrival is not None and self._arrival.row == row:
-            self._arrival = None  # nothing more is to be measured
+            self._arrival = None  # there is no link left to measure
         return deleted
 
     def _weight_of_way(self, way_m: float) -> float:
         return self._weight_of(self.params.odometry_drift * way_m)
 
     def _weight_of(self, sigma: float) -> float:
-        """[ours] What a transition counts in map correction: 1 by odometry over a step, less the worse its ends are known.
+        """[ours] The weight of a transition in map correction: 1 for odometry over one step, less when its ends are less certain.
 
-        With anchor_sigma and odometry_drift 0 every transition counts the same, as in the papers.
+        With anchor_sigma and odometry_drift 0 every transition has the same weight, as in the papers.
         """
         least = self.params.odometry_sigma**2
         return least / (least + sigma**2)
@@ -240,17 +240,17 @@ class _Departure:
 
     experience: int
     came: Pose2  # the robot in the frame of that experience as it arrived at the next
-    sigma: float  # how well its place in that frame was known, m
+    sigma: float  # how far off its place in that frame may be, m
     kidnapped: bool
 
 
 @kind("arrival/1")
 @dataclass(slots=True)
 class _Arrival:
-    """The transition that led to the active experience, as long as it may be measured better."""
+    """The transition that led to the active experience, kept as long as a better look may measure it again."""
 
     row: int
     move: NDArray[np.float64]  # of the row before this passage
-    weight: float
-    came: Pose2  # the robot in the frame of the experience before, when the active one was seen best
+    weight: float  # of the row before this passage
+    came: Pose2  # the robot in the frame of the experience before, at the best look at the active one
     sigma: float

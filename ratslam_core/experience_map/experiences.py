@@ -1,6 +1,6 @@
-"""The experiences themselves: what state of pose cells and scene each stands for, and which one fits best. ACRA 2005 4.1.
+"""The experiences themselves: which state of the pose cells and which scene each stands for, and which fits best. ACRA 2005 4.1.
 
-Chains of experiences, those of one view and those of one bucket of pose cells, keep the choice quick among many.
+The experiences of one view form a chain, and so do those of one bucket of pose cells, which keeps the search quick.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from disk import kind
 from ratslam_core.params import ExperienceMapParams
 from ratslam_core.types import Packet, Pose2
 
-BUCKET = 4  # cells and layers
+BUCKET = 4  # cells and layers along a side
 
 
 @kind("experiences/1")
@@ -30,7 +30,7 @@ class Experiences:
         self.at = np.zeros((1024, 3))  # x', y', theta' in cells and layers
         self.view = np.zeros(1024, np.int64)
         self._newest_of_view: dict[int, int] = {}
-        self._before_of_view = np.full(1024, -1, np.int64)  # the one made before it of the same view, -1 for none
+        self._before_of_view = np.full(1024, -1, np.int64)  # the experience before it of the same view, -1 for none
         self._newest_in = np.full([-(-n // BUCKET) for n in shape], -1, np.int64)
         self._before_in = np.full(1024, -1, np.int64)
 
@@ -54,7 +54,7 @@ class Experiences:
         return i
 
     def _state(self, packet: Packet) -> tuple[float, float, float]:
-        """x', y' in cells and theta' in layers, from 0 on."""
+        """x', y' in cells and theta' in layers, from 0 to below the size of the network."""
         n_theta, n_y, n_x = self.shape
         return packet.x % n_x, packet.y % n_y, (packet.heading_rad * n_theta / (2 * math.pi)) % n_theta
 
@@ -79,8 +79,9 @@ class Experiences:
     def most_energetic(self, packet: Packet, view: int, p: ExperienceMapParams, robot: Pose2) -> int:
         """The experience with the most energy above the threshold, the oldest of equals; -1 for none.
 
-        [ours] Where there is nothing to see only the pose cells speak, and they use the same cells for places far apart:
-        then an experience must be near the robot in the map, too. test_experience_map.py::test_seeing_nothing_closes_no_loop.
+        [ours] When there is nothing to see, only the pose cells tell places apart, and they may use the same cells for
+        places far apart. The experience must then be near the robot in the map, too.
+        test_experience_map.py::test_seeing_nothing_closes_no_loop.
         """
         old = p.energy == "2005"
         state = (*self._state(packet), *self.shape, p.zone_xy, p.zone_theta)
@@ -170,7 +171,7 @@ def _best_in_buckets(
     most: float,
     pose: NDArray[np.float64],
 ) -> int:
-    """Over the buckets that the zone touches."""
+    """The best experience in the buckets that the zone touches."""
     best = -1
     first_t, count_t = _buckets(theta, zone_theta, n_theta, newest.shape[0])
     first_y, count_y = _buckets(y, zone_xy, n_y, newest.shape[1])
@@ -191,8 +192,8 @@ def _best_in_buckets(
 
 @njit(cache=True, nogil=True, inline="always")
 def _buckets(middle: float, reach: float, n: int, buckets: int) -> tuple[int, int]:
-    """First bucket and how many from there on, round the ring, hold [middle - reach, middle + reach]."""
-    reach += 1e-9  # so that rounding leaves nobody out
+    """The first bucket, and how many from there, round the ring, cover [middle - reach, middle + reach]."""
+    reach += 1e-9  # so that rounding leaves no experience out
     if 2 * reach + BUCKET >= n:
         return 0, buckets
     first = int((middle - reach) % n) % n // BUCKET

@@ -1,4 +1,4 @@
-"""What an experience map says when it is asked. Learning it is experience_map.py."""
+"""Reading an experience map. How it is learnt is in experience_map.py."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class MapReading:
         return float(x), float(y), float(theta), int(self.views[experience])
 
     def energy(self, experience: int, packet: Packet, view: int) -> float:
-        """How well this state of pose cells and scene fits an experience; at most 2. `Experiences.energy`."""
+        """How well this state of pose cells and scene fits an experience; at most 2. See `Experiences.energy`."""
         return self._experiences.energy(self._require(experience), packet, view, self.params)
 
     def _require(self, experience: int) -> int:
@@ -77,7 +77,7 @@ class MapReading:
 
     @property
     def local_pose(self) -> Pose2:
-        """Where the robot believes to be in the frame of the active experience."""
+        """Where the robot believes itself to be, in the frame of the active experience."""
         return self.pose_filter.local
 
     @property
@@ -98,7 +98,7 @@ class MapReading:
 
     @property
     def moves(self) -> NDArray[np.float64]:
-        """Of every link: dx, dy (m) in the frame of the first experience and change of facing (rad), shape (m, 3)."""
+        """dx, dy (m) in the frame of the first experience and change of facing (rad) of every link, shape (m, 3)."""
         return self.transitions.move[self._travelled]
 
     @property
@@ -115,24 +115,24 @@ class MapReading:
     def link_times(self) -> NDArray[np.float64]:
         """Seconds that each transition takes, shape (m,).
 
-        [ours] Never less than its length in the map takes at the robot's own pace: from the edge of one zone into the next
-        it is only a step, and a route over many such would promise to be there in half the time.
+        [ours] Never less than its length in the map takes at the robot's average pace. From the edge of one zone into
+        the next it is only a step, and a route over many such links would promise to arrive in half the time.
         test_experience_map.py::test_no_link_is_quicker_than_the_robot.
         """
         return self.transitions.seconds(self.poses, self.pace)[self._travelled]
 
     @property
     def pace(self) -> float:
-        """Seconds a metre of all driving so far, 0 before the first, and when `pace_floor` is off."""
+        """Seconds per metre, averaged over all driving so far; 0 before the robot has driven and when `pace_floor` is off."""
         return self._driving_s / self._driven_m if self._driven_m > 0 and self.params.pace_floor else 0.0
 
     @property
     def temporal_map(self) -> TemporalMap:
-        """Times and routes over the links as they are; one for as long as the map lives."""
+        """Times and routes over the current links; the same object for as long as the map lives."""
         return self._temporal_map
 
     def link(self, i: int, j: int) -> Link:
-        """The link from experience i to j, read out; ValueError when there is none."""
+        """The link from experience i to j; ValueError when there is none."""
         row = self.transitions.row_of.get((i, j))
         if row is None:
             raise ValueError(f"there is no link from experience {i!r} to {j!r}")
@@ -140,8 +140,8 @@ class MapReading:
 
     @property
     def residual(self) -> tuple[float, float]:
-        """By how much links and map disagree: root mean square over the links, each as far as it is believed, of the distance
-        (m) and of the angle (rad) between where it says its end is and where the map has it. 0 without links."""
+        """By how much links and map disagree: distance (m) and angle (rad) between where a link says its end is and
+        where the map has it. Root mean squares over the links, weighted by `believed`; 0 without links."""
         t, rows = self.transitions, self._travelled
         weight = t.believed[rows]
         if weight.sum() <= 0:
@@ -152,7 +152,7 @@ class MapReading:
 
     @property
     def dropped_links(self) -> tuple[tuple[int, int], ...]:
-        """From and to of every link that was deleted, in order; one that was driven again may be among the links anew."""
+        """From and to of every link that was deleted, in order. One that was driven again may be among `links`, too."""
         return tuple(self.transitions.dropped)
 
     @property

@@ -1,8 +1,9 @@
-"""Which experiences are of one place, and where pose cells and places do not go together. ACRA 2005 3.6, 3.7.
+"""Which experiences belong to one place, and where pose cells and places do not correspond. ACRA 2005 3.6, 3.7.
 
-Pose cells wrap and snap, so one place may have several states of them (multiple representations), and one state several
-places (a hash collision). The corrected map overlaps the former and parts the latter, so it can tell. [ours] How it is told:
-the paper shows both by eye. test_places.py::test_places_are_those_of_a_loop_over_all.
+Pose cells wrap and snap. One place may therefore have several states of the pose cells (multiple representations), and
+one state may stand for several places (a hash collision). The corrected map tells: it brings the experiences of the
+former together and keeps those of the latter apart. [ours] The method; the paper shows both by eye.
+test_places.py::test_places_are_those_of_a_loop_over_all.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from ratslam_core.experience_map.map_reading import MapReading
 
 @dataclass(frozen=True, slots=True)
 class MultipleRepresentation:
-    """One place that several states of the pose cells stand for, looked at in the same direction."""
+    """One place that several states of the pose cells stand for, with the robot facing the same way."""
 
     place: int
     experiences: tuple[int, ...]  # the first of each state
@@ -46,18 +47,19 @@ class Places:
     hash_collisions: tuple[HashCollision, ...]
 
     def together_with(self, experience: int) -> NDArray[np.int64]:
-        """All experiences of the same place, itself among them."""
+        """All experiences of the same place, including this one."""
         if not 0 <= experience < len(self.place_of):
             raise ValueError(f"experience must be from 0 to {len(self.place_of) - 1}, got {experience!r}")
         return np.flatnonzero(self.place_of == self.place_of[experience])
 
 
 def find_places(map_: MapReading, radius_m: float = 0.5) -> Places:
-    """Group the experiences of a map, whichever way they face, and find what goes wrong between places and pose cells.
+    """Group the experiences of a map, whichever way they face, and find multiple representations and hash collisions.
 
-    radius_m: how far (m) an experience may be from the first of its place. Two states of the pose cells are the same when
-    they are no farther apart than the place is wide, and a zone of influence; two places of one state are apart when they
-    are farther than a place and the zones are wide. ValueError for a radius that is not positive.
+    radius_m: how far (m) an experience may be from the first of its place. Two states of the pose cells are the same
+    when they are no farther apart than the width of a place plus the radius of a zone of influence. Two places of one
+    state are distinct when they are farther apart than the widths of a place and of a zone. ValueError for a radius
+    that is not positive.
     """
     if not (math.isfinite(radius_m) and radius_m > 0):
         raise ValueError(f"radius_m must be a positive number of metres, got {radius_m!r}")
@@ -94,7 +96,7 @@ def _groups(owner: NDArray[np.int64], chosen: NDArray[np.bool_]) -> list[list[in
 
 @njit(cache=True, nogil=True, inline="always")
 def _between(a: float, b: float, ring: float) -> float:
-    """How far two coordinates are apart, round a ring unless that is 0."""
+    """How far apart two coordinates are, on a ring of this size, or on a line when the size is 0."""
     d = abs(a - b)
     return min(d, ring - d) if ring > 0.0 else d
 
@@ -103,9 +105,10 @@ def _between(a: float, b: float, ring: float) -> float:
 def _first_near(
     at: NDArray[np.float64], ring_x: float, ring_y: float, ring_t: float, reach: float, reach_t: float
 ) -> NDArray[np.int64]:
-    """(n,): the earliest leader within reach of each row, itself if there is none; such a row becomes a leader.
+    """(n,): the earliest leader within reach of each row. A row that has none becomes a leader, its own.
 
-    at: (n, 3). Leaders lie in buckets as wide as the reach, found by a hash of the bucket; near are those next to it.
+    at: (n, 3). Leaders are kept in hashed buckets as wide as the reach, so only a row's own bucket and those beside it
+    count.
     """
     n = at.shape[0]
     mask = 1
@@ -115,7 +118,7 @@ def _first_near(
     newest = np.full(mask + 1, -1, np.int64)
     before = np.full(n, -1, np.int64)
     leader = np.empty(n, np.int64)
-    around = np.empty((3, 3), np.int64)  # of each coordinate: what its own bucket and those beside it add to the hash
+    around = np.empty((3, 3), np.int64)  # for each coordinate, what its own bucket and those beside it add to the hash
     for i in range(n):
         count_x = _buckets(around[0], at[i, 0], ring_x, reach, 73856093)
         count_y = _buckets(around[1], at[i, 1], ring_y, reach, 19349663)
@@ -141,8 +144,10 @@ def _first_near(
 
 @njit(cache=True, nogil=True, inline="always")
 def _buckets(around: NDArray[np.int64], value: float, ring: float, reach: float, prime: int) -> int:
-    """The own bucket, then its neighbours, each once, times a prime; returns how many. They are a little wider than the
-    reach, so that rounding parts nobody who is within it."""
+    """Write the coordinate's own bucket, then its neighbours, each once and times a prime; returns how many.
+
+    Buckets are a little wider than the reach, so that rounding never hides a row that is just within it.
+    """
     width = reach * (1.0 + 1e-9)
     if ring == 0.0:
         own = math.floor(value / width)
@@ -166,7 +171,7 @@ def _rivals(
 ) -> NDArray[np.bool_]:
     """(n,): the first experiences of states that share place and facing with another state.
 
-    place: (n,) the first experience of the place of each.
+    place: (n,) the first experience of each one's place.
     """
     n = place.shape[0]
     newest = np.full(n, -1, np.int64)  # state of a place
@@ -201,7 +206,10 @@ def _turned(a: float, b: float) -> float:
 
 @njit(cache=True, nogil=True)
 def _apart_in_map(state: NDArray[np.int64], poses: NDArray[np.float64], far: float) -> NDArray[np.bool_]:
-    """(n,): the first experience at each place of a state, when places of it are `far` apart; state: (n,) its first one."""
+    """(n,): whether an experience is the first of its state at its place; places are more than `far` (m) apart.
+
+    state: (n,) the first experience of each one's state.
+    """
     n = state.shape[0]
     newest = np.full(n, -1, np.int64)
     before = np.full(n, -1, np.int64)

@@ -1,4 +1,4 @@
-"""What odometry adds up to since some moment."""
+"""Odometry summed up since a certain moment."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ratslam_core.types import IDENTITY, Odometry, Pose2, wrap_angle
 @kind("preintegrated odometry/1")
 @dataclass(slots=True)
 class PreintegratedOdometry:
-    """The movement in the frame of where it began, the way, and the time of which the wheels turned."""
+    """The movement in the frame of where it began, the distance driven, the time the wheels turned, and all the time."""
 
     moved: Pose2 = IDENTITY
     way_m: float = 0.0
@@ -27,7 +27,7 @@ class PreintegratedOdometry:
 
 
 def moved_by(odometry: Odometry) -> Pose2:
-    """One step in the robot's own frame: along the heading in its middle."""
+    """One step in the robot's own frame: straight along the heading in the middle of the step."""
     middle = odometry.yaw_rate * odometry.dt / 2
     step = odometry.speed * odometry.dt
     return Pose2(step * math.cos(middle), step * math.sin(middle), wrap_angle(2 * middle))

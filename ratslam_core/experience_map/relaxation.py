@@ -17,12 +17,12 @@ from ratslam_core.solvers.laplacian import eliminate
 if TYPE_CHECKING:
     from ratslam_core.experience_map.experience_map import ExperienceMap
 
-LEAST_STRENGTH = 1e-9  # below it rounding is all that tells the bias from a bent way
+LEAST_STRENGTH = 1e-9  # below it, only rounding tells a bias from a bend in the way
 
 
 @kind("relaxation/1")
 class Relaxation:
-    """The papers' way: so many sweeps in every step."""
+    """The papers' way: a fixed number of sweeps in every step."""
 
     def __init__(self, params: SolverParams) -> None:
         self.params = params
@@ -46,10 +46,10 @@ def sweep(
     weights: NDArray[np.float64],
     alpha: float,
 ) -> None:
-    """One sweep over all experiences but the first, each moved by 2 alpha of its links' mean residual, in place.
+    """One sweep, in place: each experience but the first is moved by 2 alpha times the weighted mean residual of its links.
 
-    One experience after the other (Gauss-Seidel), place and heading in one go: places by the headings of before the sweep. Of the
-    rows only those that `graph` knows count.
+    Experiences are moved one after the other (Gauss-Seidel), place and heading together; places use the headings from
+    before the sweep. Only rows that are in `graph` count.
     """
     ends = links.view(np.uint64)[: len(moves)]
     _sweep(poses, graph.start, graph.used, graph.half, graph.other, ends, moves, weights, 2 * alpha)
@@ -67,7 +67,7 @@ def _sweep(
     weights: NDArray[np.float64],
     gain: float,
 ) -> None:
-    """dx_i, dy_i, dth_i = alpha sum of what the links ask, over the weights' sum. B eqs. 12-14."""
+    """dx_i, dy_i, dth_i = gain times the weighted sum of the links' residuals over the sum of the weights. B eqs. 12-14."""
     n, one = np.uint64(poses.shape[0]), np.uint64(1)
     turned = _turned(poses, ends, moves)
     for i in range(one, n):
@@ -98,10 +98,11 @@ def sweep_by_link(
     travelled: NDArray[np.bool_],
     alpha: float,
 ) -> None:
-    """One sweep over all experiences but the first, each moved by alpha of what a link asks, link after link, in place.
+    """One sweep, in place: each experience but the first is moved by alpha times the residual of each of its links in turn.
 
-    All links of one experience at once, as ACRA 2005 eqs. 12-14 may be read, swing for ever where four meet, and fly apart where
-    more do. test_papers.py::test_a_biased_loop_is_corrected_as_in_the_twin. Places by the headings of before the sweep.
+    ACRA 2005 eqs. 12-14 may also be read as all links of an experience at once. That oscillates for ever where four
+    links meet, and diverges where more do. Places use the headings from before the sweep.
+    test_papers.py::test_a_biased_loop_is_corrected_as_in_the_twin.
     """
     ends = links.view(np.uint64)[: len(moves)]
     _sweep_by_link(poses, graph.start, graph.used, graph.half, graph.other, ends, moves, travelled, alpha)
@@ -140,7 +141,7 @@ def _turned(poses: NDArray[np.float64], ends: NDArray[np.uint64], moves: NDArray
     c, s = np.empty(n), np.empty(n)
     for i in range(n):
         c[i] = poses[i, 2]
-    for i in range(n):  # apart from the other loops, so that the compiler makes it four at a time
+    for i in range(n):  # a loop of its own, so that the compiler computes four at a time
         c[i], s[i] = _facing(c[i])
     turned = np.empty((m, 2))
     for row in range(m):
@@ -172,10 +173,10 @@ def _wrapped(angle: float) -> float:
 
 
 class Solution(NamedTuple):
-    """What came of an exact correction."""
+    """The outcome of an exact correction."""
 
-    bias: float  # of the yaw rate, rad/s, that the loops speak of beyond what is known
-    work: float  # how much there was to calculate; 100,000 are half a millisecond or so
+    bias: float  # of the yaw rate, rad/s, that the loops show beyond the bias that is known
+    work: float  # how much was computed; 100,000 take about half a millisecond
 
 
 def solve(
@@ -188,8 +189,9 @@ def solve(
 ) -> Solution:
     """The fixed point of the sweeps, in place: headings, then positions, each a sparse Laplacian with the first node fixed.
 
-    A map that is too entangled for that is left to the sweeps. Every experience must be linked, over others, to the first.
-    Headings are linear once their residuals are wrapped; `params.rounds` lets the wrapping settle.
+    A map that is too entangled for that is left to the sweeps. Every experience must be connected to the first by
+    links. Headings are a linear problem once their residuals are wrapped; `params.rounds` solutions let the wrapping
+    settle.
     """
     p, n = params or SolverParams(), len(poses)
     if n < 2 or len(links) == 0:
@@ -199,7 +201,7 @@ def solve(
     if net is None:
         return Solution(0.0, p.entangled_work)
     seconds = np.zeros(len(links)) if turning_s is None else turning_s
-    drift = net.solve(_asked(n, links, weights * seconds))  # headings that a unit of bias would bend the map to
+    drift = net.solve(_asked(n, links, weights * seconds))  # how a bias of 1 rad/s would bend the headings
     unexplained = seconds - drift[j] + drift[i]
     strength = float(np.sum(weights * seconds * unexplained))
     bias = 0.0
@@ -220,7 +222,7 @@ def solve(
 def disagreement(
     poses: NDArray[np.float64], links: NDArray[np.int64], moves: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Where each link says its end is, less where the map has it: dx, dy (m) in the map's frame and angle (rad), shape (m, 3)."""
+    """Where each link says its end is, minus where the map has it: dx, dy (m) in the map's frame, angle (rad), shape (m, 3)."""
     out = np.empty((len(links), 3))
     for row in range(len(links)):
         i, j = links[row]
@@ -240,10 +242,11 @@ def trust(
     sigma: float,
     p: SolverParams,
 ) -> NDArray[np.float64]:
-    """[ours] By how much each link is believed, 0 to 1, given what the map has made of it.
+    """[ours] How far each link is believed, 0 to 1, given how well the map fits it.
 
-    weights are sigma^2 / variance. Looks pull with a force that stops growing (Huber); odometry, which cannot be far off,
-    lets go (Cauchy): many looks that agree tear the one link over which the robot was carried, and no single look does.
+    weights: sigma^2 / variance; chain: rows of odometry, the others are looks. The pull of a look stops growing with
+    its error (Huber). Odometry cannot be far off, so its pull even falls (Cauchy). Many looks that agree thus tear the
+    one link along which the robot was carried, and a single look does not.
     test_relaxation.py::test_many_looks_tear_the_link_of_a_kidnap.
     """
     ex, ey, turn = disagreement(poses, links, moves).T
@@ -255,7 +258,7 @@ def trust(
 
 @njit(cache=True, nogil=True)
 def _asked(n: int, links: NDArray[np.int64], errors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What each experience is asked to move in sum, when every link asks its end to follow and its beginning to come back."""
+    """How far the links ask each experience to move, in sum: each moves its end by its error, its beginning by minus that."""
     asked = np.zeros(n)
     for row in range(len(links)):
         asked[links[row, 0]] -= errors[row]

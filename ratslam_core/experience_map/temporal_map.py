@@ -31,13 +31,14 @@ class Route:
 class TemporalMap:
     """Times over the links of an experience map, both ways along each link; of parallel links the quickest counts.
 
-    It lives as long as its map and reads the map's own links; nothing is rebuilt when links come and go. Every answer is exact
-    for the links, their times and the places of the moment of asking. For the goal that was asked for last the tree is kept: if
-    nothing has changed the answer is there; else the tree is mended, which costs a pass over the links and what has become
-    quicker. A mended answer has the bits of a fresh one, so who else asks in between changes nothing.
+    It lives as long as its map and reads the map's own links, so nothing is rebuilt when links are added or removed.
+    Every answer is exact for the links, their times and the places at the moment of asking. The tree of the last goal
+    is kept. If nothing has changed, the answer is ready. Otherwise the tree is mended, at the cost of a pass over the
+    links and of the nodes that have become quicker to reach. A mended answer equals a fresh one to the bit, so it does
+    not matter who asks in between.
 
-    [ours] With `experience_map.shortcut_m` experiences that are closer than this in the map and not linked count as linked, by
-    the time that the robot takes so far at its own pace (named as future work in IROS 2005).
+    [ours] With `experience_map.shortcut_m`, experiences that are closer than this in the map count as linked even
+    without a link; the time is that of their distance at the robot's average pace (named as future work in IROS 2005).
     test_temporal_map.py::test_a_shortcut_saves_the_way_round.
     """
 
@@ -46,7 +47,7 @@ class TemporalMap:
     def __init__(self, experiences: MapReading) -> None:
         self._map = experiences
         self._goal: int | None = None
-        self._asked: _Asked | None = None  # what the answer was for
+        self._asked: _Asked | None = None  # the links and places that the answer holds for
         self._times = np.zeros(0)
         self._parent = np.zeros(0, np.int32)
 
@@ -56,7 +57,7 @@ class TemporalMap:
         return self._times.copy()
 
     def route(self, start: int, goal: int) -> Route | None:
-        """The quickest way, None when there is none; where ways are equal, the one over experiences with lower numbers."""
+        """The quickest way, None when there is none. Among equal ways, the one over experiences with lower numbers."""
         self._require(start)
         asked = self._answer(goal)
         if not np.isfinite(self._times[start]):
@@ -65,7 +66,7 @@ class TemporalMap:
         return Route(nodes, self._times[start] - self._times[nodes])
 
     def _answer(self, goal: int) -> _Asked:
-        """See to it that times and tree are those of the moment."""
+        """Bring times and tree up to date for this goal; returns what they hold for."""
         self._require(goal)
         asked, before, n = _Asked(self._map), self._asked, len(self._map)
         if goal != self._goal or before is None:

@@ -5,7 +5,7 @@ weight is sigma^2 / variance, 1 for the odometry of one step. Since the move is 
 the map by itself, which is equation 8. test_transitions.py::test_links_turn_with_their_experience.
 """
 
-# Whoever calls may check no types.
+# Callers may not be type-checked.
 # pyright: reportUnnecessaryIsInstance=false
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ BEHAVIOURS = 16
 
 
 def require_behaviour(behaviour: int) -> int:
-    """The number of a local movement behaviour, or a ValueError that says which there are."""
+    """The number of a local movement behaviour, or a ValueError that says which numbers there are."""
     if isinstance(behaviour, bool) or not isinstance(behaviour, int | np.integer) or not 0 <= behaviour < BEHAVIOURS:
         raise ValueError(f"behaviour must be a whole number from 0 to {BEHAVIOURS - 1}, got {behaviour!r}")
     return int(behaviour)
@@ -34,7 +34,7 @@ def require_behaviour(behaviour: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """One transition i -> j, read out. ACRA 2005 4.2, ACRA 2006 3.2 and 3.4."""
+    """One transition i -> j, as plain values. ACRA 2005 4.2, ACRA 2006 3.2 and 3.4."""
 
     from_experience: int
     to_experience: int
@@ -44,15 +44,15 @@ class Link:
     time_s: float  # mean over the passages
     behaviour: int  # under which it was learnt
     passages: int
-    trials: int  # how often it was to be expected
+    trials: int  # how often the robot was expected to arrive by it
     confidence: float  # c_ij: share of the trials in which the robot arrived
     weight: float  # in map correction, 1 for odometry over a step
-    believed: float  # the same, times how far the map bears it out
+    believed: float  # the weight times how far the map agrees with it, 0 to 1
 
 
 @kind("transitions/1")
 class Transitions:
-    """Rows that are added, made more precise and dropped. Arrays have room to spare; `count` rows are used."""
+    """Rows that are added, averaged and dropped. Arrays have room to spare; `count` rows are used."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -60,12 +60,12 @@ class Transitions:
         self.ends = np.zeros((1024, 2), np.int64)
         self.move = np.zeros((1024, 3))
         self.weight = np.zeros(1024)
-        self.believed = np.zeros(1024)  # the weight times how far the map bears the row out
+        self.believed = np.zeros(1024)  # the weight times how far the map agrees with the row
         self.turning_s = np.zeros(1024)  # time during which the wheels turned
         self.time_s = np.zeros(1024)
         self.passages = np.zeros(1024, np.int64)
-        self.travelled = np.zeros(1024, np.bool_)  # a way that the robot drove; the others only serve map correction
-        self.chain = np.zeros(1024, np.bool_)  # odometry by which an experience was made, not a look at a known one
+        self.travelled = np.zeros(1024, np.bool_)  # a way that the robot drove; the others serve map correction only
+        self.chain = np.zeros(1024, np.bool_)  # odometry to an experience that was just made, not a look at a known one
         self.behaviour = np.zeros(1024, np.int8)
         self.trials = np.zeros(1024, np.int64)
         self.confidence = np.zeros(1024)
@@ -95,28 +95,28 @@ class Transitions:
         self.weight[row] = self.believed[row] = old_weight + weight
 
     def take_time(self, row: int, seconds: float, turning_s: float) -> None:
-        """One more passage took so long: running means."""
+        """Add the times of one more passage to the running means."""
         n = self.passages[row]
         self.time_s[row] += (seconds - self.time_s[row]) / (n + 1)
         self.turning_s[row] += (turning_s - self.turning_s[row]) / (n + 1)
         self.passages[row] = n + 1
 
     def seconds(self, poses: NDArray[np.float64], pace: float) -> NDArray[np.float64]:
-        """What each row takes, shape (count,): its time, or its length in the map at this pace (s/m); inf for no way."""
+        """Seconds of each row, shape (count,): its time, or if longer its length at this pace (s/m); inf for no way."""
         rows = slice(self.count)
         return _seconds(self.ends[rows], self.time_s[rows], self.travelled[rows], poses, pace)
 
     def departures(self, i: int, behaviour: int) -> NDArray[np.int64]:
-        """Rows of the ways from i that were learnt under this behaviour."""
+        """Rows of the links from i that were learnt under this behaviour."""
         rows = slice(self.count)
         own = (self.ends[rows, 0] == i) & (self.behaviour[rows] == behaviour) & self.travelled[rows]
         return np.flatnonzero(own)
 
     def judge(self, row: int, reached: bool, p: ExperienceMapParams) -> bool:
-        """One more trial of a way; True when it failed so often that the link was deleted. ACRA 2006 eq. 9.
+        """Count one more trial of a link; True when it has failed so often that it was deleted. ACRA 2006 eq. 9.
 
-        c_ij = n_ij / n while `link_recency` is 0; else the newest trial counts at least so much, the next step that the
-        paper names (3.4).
+        With `link_recency` 0, c_ij = n_ij / n. Otherwise the newest trial has at least this weight, which the paper
+        names as the next step (3.4).
         """
         n = self.trials[row] = self.trials[row] + 1
         self.confidence[row] += max(p.link_recency, 1 / n) * (reached - self.confidence[row])
@@ -126,7 +126,7 @@ class Transitions:
         return True
 
     def _drop(self, row: int) -> None:
-        """No longer a way. What odometry says of it still holds the map together; a look at a known place has no such task."""
+        """The row is no longer a way. A row of odometry goes on holding the map together; a look at a known place is dropped."""
         i, j = int(self.ends[row, 0]), int(self.ends[row, 1])
         del self.row_of[i, j]
         self.travelled[row] = False
@@ -135,7 +135,7 @@ class Transitions:
         self.dropped.append((i, j))
 
     def link(self, row: int) -> Link:
-        """One row, read out."""
+        """One row, as plain values."""
         i, j = self.ends[row]
         dx, dy, turn = self.move[row]
         return Link(

@@ -1,10 +1,10 @@
-"""[ours] The fixed point of the sweeps, computed directly now and then while loops close: sweeps alone lag behind a growing map.
+"""[ours] The fixed point of the sweeps, computed directly from time to time while loops close.
 
-With a large map more seldom, so that a step costs the same on average. Links that the map contradicts weigh less in it
-(`robust`), and what no map can explain but a biased yaw rate can is learnt (`calibrate`).
-test_relaxation.py::test_sweeps_and_solution_agree,
-test_experience_map.py::test_a_correction_that_was_hard_is_followed_by_a_long_rest.
-`relaxation.Relaxation` is the plain twin: sweeps and nothing else.
+Sweeps alone lag behind a growing map. A larger map is solved less often, so that a step costs the same on average.
+Links that the map contradicts weigh less (`robust`). A disagreement that no map can explain, but a bias of the yaw rate
+can, is learnt as that bias (`calibrate`). test_relaxation.py::test_sweeps_and_solution_agree,
+test_experience_map.py::test_a_correction_that_was_hard_is_followed_by_a_long_rest. `relaxation.Relaxation` is the plain
+twin: sweeps and nothing else.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @kind("exact solver/1")
 class ExactSolver:
-    """Sweeps in every step, the exact solution in some."""
+    """Sweeps in every step, and the exact solution in some."""
 
     def __init__(self, params: SolverParams) -> None:
         self.params = params

@@ -1,7 +1,7 @@
-"""[ours] Sights that would move the robot through the map are believed when several in a row agree.
+"""[ours] A sight that would make the robot jump in the map is believed only after several in a row agree.
 
-One look-alike is not enough to close a loop with. test_loop_verifier.py::test_one_look_alike_closes_no_loop. With
-`experience_map.confirm_jumps` 0 each is believed at once, as in the papers.
+One look-alike must not close a loop. test_loop_verifier.py::test_one_look_alike_closes_no_loop. With
+`experience_map.confirm_jumps` 0 every sight is believed at once, as in the papers.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class LoopVerifier:
         self._dx = self._dy = self._turn = 0.0
 
     def believes(self, robot: Pose2, claimed: Pose2, needed: int) -> bool:
-        """Whether the robot, which believes to be at one pose of the map, may take a look that says another."""
+        """Whether to believe a look that claims another pose in the map than the robot's. needed: sights that must agree."""
         p = self.params
         dx, dy = claimed.x - robot.x, claimed.y - robot.y
         turn = wrap_angle(claimed.heading_rad - robot.heading_rad)

@@ -1,8 +1,9 @@
-"""[ours] What odometry says between an experience and the one made before it, when known ones lie between.
+"""[ours] Odometry between an experience and the one made before it, when the robot passed known ones in between.
 
-Only for map correction, never travelled: without it a stretch over known experiences, each known to some decimetres only, cuts
-the rigid chain of odometry, and the map shrinks. test_experience_map.py::test_odometry_past_known_places_keeps_the_chain_rigid.
-`NoOdometryEdges` is the plain twin: in the papers only transitions tie experiences.
+These edges serve map correction only; no route takes them. Without them a stretch over known experiences, each known to
+some decimetres only, interrupts the rigid chain of odometry, and the map shrinks.
+test_experience_map.py::test_odometry_past_known_places_keeps_the_chain_rigid. `NoOdometryEdges` is the plain twin: in
+the papers only transitions tie experiences.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from ratslam_core.types import Odometry, Pose2
 
 @kind("odometry edges/1")
 class OdometryEdges:
-    """Remembers the experience made last: where it was made is known exactly."""
+    """Remembers the newest experience: where it was made is known exactly."""
 
     def __init__(self) -> None:
         self.latest = -1
@@ -27,11 +28,11 @@ class OdometryEdges:
         self.since.add(moved, odometry)
 
     def forget(self) -> None:
-        """The robot was carried away."""
+        """The robot was carried away: odometry no longer ties it to the newest experience."""
         self.latest = -1
 
     def made(self, active: int, before: int, transitions: Transitions, weight_of: Callable[[float], float]) -> None:
-        """`active` was just made, coming from `before`. weight_of: what a row counts after so much way (m)."""
+        """`active` was just made, coming from `before`. weight_of: the weight of a row after a distance (m)."""
         if self.latest >= 0 and self.latest != before:
             row = transitions.add(self.latest, active, travelled=False)
             weight = weight_of(self.since.way_m)
@@ -42,7 +43,7 @@ class OdometryEdges:
 
 @kind("no odometry edges/1")
 class NoOdometryEdges:
-    """As the papers."""
+    """As in the papers."""
 
     def move(self, _moved: Pose2, _odometry: Odometry) -> None:
         """Nothing is remembered."""

@@ -1,8 +1,8 @@
-"""[ours] Where the robot is in the map: what it sees, weighed against where odometry says it must have come to.
+"""[ours] Where the robot is in the map: each look is weighed against odometry.
 
-A single look tells place and heading within decimetres and degrees only; taken at its word at each experience, it makes
-the robot swerve. test_pose_filter.py::test_a_doubtful_look_moves_the_belief_little. `LatestLook` is the plain twin: ACRA 2006
-section 3 has the robot at the active experience and odometry since.
+A single look is precise to decimetres and degrees only. If each were taken as it is, the estimate would swerve.
+test_pose_filter.py::test_a_doubtful_look_moves_the_belief_little. `LatestLook` is the plain twin: in ACRA 2006 section
+3 the robot is at the active experience, moved on by the odometry since.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class PoseEstimate(Protocol):
         ...
 
     def see(self, look: Pose2, sigma_m: float, /) -> bool:
-        """A look says that the robot is at `look`, give or take `sigma_m`. Whether that agrees with where it believed to be."""
+        """A look puts the robot at `look`, give or take `sigma_m`. Returns whether that agrees with the pose so far."""
         ...
 
 
@@ -68,7 +68,7 @@ class PoseFilter:
 
 @kind("latest look/1")
 class LatestLook:
-    """As the papers: the robot is where it was seen last, and where odometry has brought it since."""
+    """As in the papers: the robot is where the last look put it, moved on by the odometry since."""
 
     def __init__(self, params: PoseFilterParams) -> None:
         self.params = params
@@ -86,5 +86,5 @@ class LatestLook:
 
 
 def pose_estimate(params: PoseFilterParams) -> PoseEstimate:
-    """The one that the parameters name."""
+    """The estimate that the parameters choose."""
     return PoseFilter(params) if params.enabled else LatestLook(params)

@@ -1,8 +1,8 @@
-"""[ours] How much the sonars changed at once. Driving past a corner changes one or two, being carried away most of them.
+"""[ours] How much the sonars changed at once. Driving past a corner changes one or two of them, being carried away most.
 
-The image alone misses one kidnap in five, since walls look alike, and is startled now and then by what is near; with the
-sonars it misses one in forty, and is startled half as often.
-test_scan_change.py, test_slam.py::test_sonars_help_to_notice_a_kidnap.
+The image alone misses one kidnap in five, since walls look alike, and sometimes raises a false alarm when something is
+near. With the sonars, one in forty is missed, and false alarms are half as frequent. test_scan_change.py,
+test_slam.py::test_sonars_help_to_notice_a_kidnap.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ class ScanChange:
         self._last: NDArray[np.float64] | None = None
 
     def observe(self, ranges_m: NDArray[np.float64] | None, p: KidnapParams) -> float:
-        """By how much at least half of the sonars differ from the scan before, at most `sonar_most_m`, beyond `sonar_still_m`;
-        below 0 they hardly changed. 0 when there is nothing to compare with.
+        """By how much (m) half of the sonars or more differ from the scan before, at most `sonar_most_m`, minus `sonar_still_m`.
 
-        ranges_m: (n,) metres, none negative; None forgets.
+        Below 0 they hardly changed; 0 when there is nothing to compare with. ranges_m: (n,) metres, none negative; None
+        forgets the scan before.
         """
         last, self._last = self._last, None if ranges_m is None else ranges_m.copy()
         if last is None or ranges_m is None:
@@ -39,7 +39,7 @@ def _half_changed(before: NDArray[np.float64], now: NDArray[np.float64], reach: 
     changes = np.empty(len(now))
     for k in range(len(now)):
         change, at = abs(min(now[k], reach) - min(before[k], reach)), k
-        while at > 0 and changes[at - 1] > change:  # sorted in by hand: numpy's sort takes two seconds to compile
+        while at > 0 and changes[at - 1] > change:  # insertion sort by hand: numpy's sort takes two seconds to compile
             changes[at] = changes[at - 1]
             at -= 1
         changes[at] = change

@@ -1,4 +1,4 @@
-"""What is true of a whole brain: of each part, and between them."""
+"""What is true of a whole brain: of each part, and between the parts."""
 
 # Laws look at all of a state, and take nothing for granted.
 # pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
@@ -66,7 +66,7 @@ def _is_ours(part: object) -> bool:
 
 
 def _handed_in(brain: RatSlam) -> dict[str, Any]:
-    """Parts of a class that is not ours: what is true of them, their own `check` says, where they have one."""
+    """The parts whose class is not ours. What must be true of such a part, its own method `check` says, if it has one."""
     parts: dict[str, Any] = {name: getattr(brain, name) for name in ("local_view", "pose_cells", "kidnap_detector")}
     parts |= {"experience_map": brain.experience_map, "optimiser": getattr(brain.experience_map, "optimiser", None)}
     handed = {name: part for name, part in parts.items() if part is not None and not _is_ours(part)}
@@ -79,7 +79,7 @@ def _handed_in(brain: RatSlam) -> dict[str, Any]:
 
 
 def _agree(brain: RatSlam, handed: dict[str, Any]) -> None:
-    """All parts have the brain's parameters, its pose cells' shape and the size of one."""
+    """All parts have the brain's parameters, and the shape and cell size of its pose cells."""
     p = brain.params
     parts: list[tuple[Any, object]] = [
         (brain.view_links, p.local_view), (brain.association, p.local_view), (brain.goal_memory, p.goal_memory)

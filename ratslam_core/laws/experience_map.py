@@ -16,7 +16,7 @@ from ratslam_core.laws import experiences as law
 from ratslam_core.laws.measures import FAR_M, array, number, pose, true, whole, within
 
 LONGEST = 1e12  # metres and seconds
-FASTEST = 10.0  # rad/s that a yaw rate may be off by
+FASTEST = 10.0  # rad/s, the largest yaw bias
 
 
 def experience_map(map_: ExperienceMap, views: int) -> None:

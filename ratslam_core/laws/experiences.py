@@ -34,7 +34,7 @@ def experiences(known: Experiences, views: int) -> None:
 
 
 def _chains(known: Experiences, n: int, room: int) -> None:
-    """Each experience knows the one made before it of its view and of its bucket; they end, since numbers fall."""
+    """Each experience names the one before it of its view and of its bucket. The chains end, since the numbers fall."""
     before = array("before of the view", known._before_of_view, np.int64, (room,))
     expected, newest = _before(known.view[:n])
     true(np.array_equal(before[:n], expected), "each experience must know the one before it of its view")
@@ -105,7 +105,7 @@ def transitions(t: Transitions, nodes: int) -> None:
 
 
 def _halves(t: Transitions, n: int, nodes: int) -> None:
-    """Every row is there twice: at its beginning and at its end, each naming the other."""
+    """Every row appears twice, at its beginning and at its end, and each of the two names the other."""
     graph, used = t.graph, t.graph.used[:nodes].astype(np.int64)
     at = places(graph.start[:nodes].astype(np.int64), used)
     half, other = graph.half[at].astype(np.int64), graph.other[at].astype(np.int64)

@@ -1,6 +1,6 @@
-"""Every attribute is of the kind that it has in a brain that was just made."""
+"""Every attribute is of the type that it has in a brain that was just made."""
 
-# What isinstance tells of a value that may be any is an array or a number of unknown type.
+# Of a value of any type, isinstance tells the checker no more than "an array or a number of unknown type".
 # pyright: reportUnknownArgumentType=false, reportUnknownMemberType=false, reportUnknownVariableType=false
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _PLAIN: tuple[tuple[type, tuple[type, ...]], ...] = (
 
 
 def same_kind(name: str, value: Any, fresh: Any, seen: set[tuple[int, int]] | None = None) -> None:
-    """ValueError when a value cannot stand where `fresh` stands. What is None in a new brain is left to the laws."""
+    """ValueError when a value is not of the type, dtype or length of `fresh`. What is None in a new brain is left to the laws."""
     seen = set() if seen is None else seen
     if fresh is None or (id(value), id(fresh)) in seen:
         return
@@ -64,7 +64,7 @@ def _may_be_none(kind: type, attribute: str) -> bool:
 
 
 def attributes(value: Any) -> dict[str, Any]:
-    """By name; those of a dataclass that are missing are left out."""
+    """The attributes of an object by name; missing fields of a dataclass are left out."""
     if dataclasses.is_dataclass(value):
         names = [item.name for item in dataclasses.fields(value)]
         return {name: getattr(value, name) for name in names if hasattr(value, name)}

@@ -1,6 +1,6 @@
-"""What laws are made of: a value, its name, and what would be right; ValueError with all three when it is not."""
+"""The checks that laws are made of. When one fails, a ValueError names the value and says what would be right."""
 
-# What isinstance tells of a value that may be any is an array or a number of unknown type.
+# Of a value of any type, isinstance tells the checker no more than "an array or a number of unknown type".
 # pyright: reportUnknownArgumentType=false, reportUnknownMemberType=false, reportUnknownVariableType=false
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ratslam_core.types import Pose2
 
-MOST = 2**53  # of whole numbers: what a double still counts exactly
+MOST = 2**53  # a double counts whole numbers exactly up to here
 FAR_M = 1e6  # no robot drives so far
 TURN = math.pi + 1e-6  # a wrapped angle, give or take its rounding
 
@@ -31,7 +31,7 @@ def whole(name: str, value: object, low: int = 0, high: int = MOST) -> int:
 
 
 def number(name: str, value: object, low: float = 0.0, high: float = math.inf) -> float:
-    """The value, a number from low to high; that it is infinite must be allowed by `high`."""
+    """The value, a number from low to high; it may be infinite only when `high` is."""
     if isinstance(value, bool) or not isinstance(value, int | float | np.floating) or not low <= value <= high:
         raise ValueError(f"{name} must be a number from {low:g} to {high:g}, got {_short(value)}")
     return float(value)
@@ -61,14 +61,14 @@ def array(name: str, value: object, kind: Any, shape: tuple[int | None, ...]) ->
 
 
 def within(name: str, values: NDArray[Any], low: float, high: float) -> None:
-    """All of them are from low to high, so none is nan."""
+    """All values are from low to high, so none is nan."""
     if values.size and not (values.min() >= low and values.max() <= high):
         at = int(np.argmin((values >= low) & (values <= high)))
         raise ValueError(f"{name} must be from {low:g} to {high:g}, got {values.flat[at]:g} in place {at}")
 
 
 def apart(name: str, start: NDArray[Any], room: NDArray[Any], end: int, size: int) -> None:
-    """Blocks of an arena: each lies before its end, none in another; the end is no farther than the size."""
+    """Blocks of an arena lie before its end and do not overlap; the end is no farther than the size."""
     true(0 <= end <= size, f"{name} must end within {size}, got {end}")
     start, room = start.astype(np.int64), room.astype(np.int64)
     within(f"{name}: start", start, 0, end)

@@ -13,7 +13,7 @@ from ratslam_core.pose_cells import packet_kernels
 from ratslam_core.pose_cells.network import PoseCells
 from ratslam_core.types import require_finite
 
-MOST_ACTIVITY = 1e6  # packets put there by hand add to the 1 of all others until the next step
+MOST_ACTIVITY = 1e6  # packets injected by hand add to the sum of 1 until the next step
 
 
 def pose_cells(cells: PoseCells, fresh: PoseCells) -> None:
@@ -38,7 +38,7 @@ def _buffers(cells: PoseCells) -> None:
 
 
 def _derived(cells: PoseCells, fresh: PoseCells) -> None:
-    """What follows from the parameters, and the scratch between two steps."""
+    """Arrays that follow from the parameters, and scratch arrays between two steps."""
     for name in ("_patch", "_headings", "_excite", "_inhibit"):
         wanted = getattr(fresh, name)
         found = array(name[1:], getattr(cells, name), wanted.dtype, wanted.shape)

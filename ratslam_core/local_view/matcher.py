@@ -1,7 +1,7 @@
 """The nearest stored view: sums of absolute differences under horizontal shifts, one pass through memory. ACRA 2006 section 7.
 
-Features are columns of bytes, column after column, so that turning the robot moves them by whole columns: 12 columns of 8, or
-what a front end of one's own says.
+Features are stored column after column, so that turning the robot shifts them by whole columns. There are 12 columns of
+8 bytes unless the front end says otherwise.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from disk import kind
 
 COLUMNS, ROWS = 12, 8
 SIZE = COLUMNS * ROWS
-BLOCK = 128  # stored views that stay in the nearest cache while all shifts look at them
+BLOCK = 128  # stored views that stay in the processor's nearest cache while all shifts are tried
 
 Features = NDArray[np.uint8]  # (columns * rows,)
 
 
 @kind("matcher/1")
 class Matcher:
-    """Finds the nearest of the stored views. Owns its small buffers, so that a look allocates nothing."""
+    """Finds the nearest of the stored views. Owns its small buffers, so that a search allocates nothing."""
 
     def __init__(self, columns: int = COLUMNS, rows: int = ROWS) -> None:
         self.columns, self.rows = columns, rows
@@ -38,8 +38,8 @@ class Matcher:
     def nearest(self, known: NDArray[np.uint8], new: Features, most: int) -> tuple[int, float, int]:
         """The nearest view, its mean absolute difference over the columns that overlap, and the shift.
 
-        known: (n, columns * rows); with none known (-1, inf, 0). Shifts from -most to most columns are tried; of equals the
-        first shift and then the first view wins.
+        known: (n, columns * rows); with none known (-1, inf, 0). Shifts from -most to most columns are tried. Among
+        equals the first shift wins, then the first view.
         """
         if len(known) == 0:
             return -1, math.inf, 0
@@ -80,7 +80,7 @@ def _nearest(
         for k in range(width):
             shifted[row, there + k] = new[here + k]
     tried = slice(first, columns + most)
-    if known.shape[1] == SIZE:  # as a constant it is five times as quick
+    if known.shape[1] == SIZE:  # five times as quick with the size as a constant
         _least_sums(known, shifted[tried], masks[tried], SIZE, least, at)
     else:
         _least_sums(known, shifted[tried], masks[tried], known.shape[1], least, at)
@@ -101,10 +101,10 @@ def _least_sums(
     least: NDArray[np.int32],
     at: NDArray[np.int64],
 ) -> None:
-    """Per shift the least sum of absolute differences and the first view that has it.
+    """For each shift, the least sum of absolute differences and the first view that has it.
 
-    int32 arithmetic (np.add, np.subtract keep it) over a fixed number of bytes is what LLVM turns into one instruction for
-    16 differences; hence every shift looks at all bytes, masked where nothing overlaps.
+    LLVM turns int32 arithmetic (np.add, np.subtract keep the type) over a fixed number of bytes into one instruction
+    for 16 differences. Hence every shift covers all bytes, masked where nothing overlaps.
     """
     least[:] = 1 << 30
     at[:] = -1

@@ -1,7 +1,7 @@
-"""Local view cells: each stands for one scene, found again by the sum of absolute differences of its features.
+"""Local view cells: each stands for one scene, recognised by the sum of absolute differences of its features.
 
-ACRA 2006 section 7 (view matcher), ACRA 2004 section 3.3 (one cell per scene), IROS 2005 (recruitment). What the features are is
-the front end's business.
+ACRA 2006 section 7 (view matcher), ACRA 2004 section 3.3 (one cell per scene), IROS 2005 (recruitment). The front end
+decides what the features are.
 """
 
 from __future__ import annotations
@@ -32,16 +32,14 @@ class LocalView:
         rng: np.random.Generator | None = None,
         front_end: FrontEnd | None = None,
     ) -> None:
-        """front_end: one of one's own, in the place of the one that the parameters name."""
+        """front_end: used instead of the one that the parameters choose."""
         self.params = params or LocalViewParams()
         self.rng = rng or np.random.default_rng(0)  # draws false positives and nothing else
         self.front_end: FrontEnd = front_end or named_front_end(self.params)
         size = self.front_end.columns * self.front_end.rows
         self.features = np.zeros(size, np.uint8)  # of what is seen now
         self.recognition = Recognition(NOTHING, False, NOTHING, math.inf)
-        self.image_change = (
-            0.0  # how far the image is from what driving could make of the one before; above 1 none could
-        )
+        self.image_change = 0.0  # since the image before, as a share of what driving can explain; above 1 it cannot
         self.false_positives = 0  # so far
         self._templates = np.zeros((1024, size), np.uint8)
         self._count = 0
@@ -58,7 +56,7 @@ class LocalView:
 
     @property
     def memory_bytes(self) -> int:
-        """What the known scenes take, room for more included."""
+        """Memory of the known scenes, including room for more."""
         return self._templates.nbytes
 
     def stored(self, view: int) -> Features:
@@ -80,12 +78,13 @@ class LocalView:
         return 1.0 if seen.recruited or limit <= vague else 1 - (seen.difference - vague) / (limit - vague)
 
     def observe(self, image: NDArray[np.uint8] | None, scene: int | None = None) -> Recognition:
-        """The active cell for what is seen now; a new one if it is like none known.
+        """The active cell for what is seen now; a new one if no known one is like it.
 
         image: (h, w) grey or (h, w, 3) RGB, uint8. scene: for the front end "scene numbers", which looks at nothing else.
 
-        [ours] What shows nothing (a wall at arm's length) activates no cell and recruits none, since such views look alike
-        everywhere. test_local_view.py::test_a_bland_view_shows_nothing. With vision off nothing does.
+        [ours] An image that shows nothing (a wall at arm's length) activates no cell and recruits none, since such
+        images look alike everywhere. test_local_view.py::test_a_bland_view_shows_nothing. With vision off, no image
+        does.
         """
         features = self.front_end.look(image, scene)
         self.image_change = self._jump(features)
@@ -103,9 +102,9 @@ class LocalView:
         return self.recognition
 
     def _recognised(self, best: int, apart: float, shift: int) -> Recognition:
-        """The view that was found, or now and then another: N_vis of ACRA 2006 section 5.1.
+        """The view that was found or, with probability `false_positives`, another: N_vis of ACRA 2006 section 5.1.
 
-        A new scene is still recruited, and nothing is replaced by itself.
+        New scenes are still recruited, and a view is never replaced by itself.
         """
         if self.params.false_positives > 0 and self._count > 1 and self.rng.random() < self.params.false_positives:
             other = int(self.rng.integers(self._count - 1))
@@ -114,13 +113,13 @@ class LocalView:
         return Recognition(best, False, best, apart, self._facing(best, shift))
 
     def _facing(self, view: int, shift: int) -> float | None:
-        """[ours] How the robot stands to where the view was taken from, by the shift; None when columns tell no heading."""
+        """[ours] The heading (rad) relative to that at which the view was taken, from the shift; None if columns tell none."""
         if not self.front_end.shifts or not self.params.facing:
             return None
         return self._sub_column(view, shift) * self.params.field_of_view / self.front_end.columns
 
     def _jump(self, features: Features) -> float:
-        """How much the last image, turned as it may be within one tick, differs from this one, as a share of the limit."""
+        """By how much the last image, shifted as one tick of turning may shift it, differs from this one, over the limit."""
         limit = self.front_end.surprise(self.params)
         if self._last is None or not self.params.enabled or math.isinf(limit):
             return 0.0
@@ -131,7 +130,7 @@ class LocalView:
         return least / limit
 
     def _sub_column(self, view: int, shift: int) -> float:
-        """The shift in fractions of a column: where the two flanks of the difference around its least value meet."""
+        """The shift to a fraction of a column: where the flanks of the difference on both sides of its minimum meet."""
         if self.params.shift == 0:
             return 0.0
         left, least, right = (self._apart(self.features, self._templates[view], shift + k) for k in (-1, 0, 1))
@@ -145,7 +144,7 @@ class LocalView:
         if self._count == len(self._templates):
             more = np.zeros(
                 (self._count // 2, features.size), np.uint8
-            )  # half as many again: a view stays below 150 bytes
+            )  # half as many again, which keeps a view below 150 bytes
             self._templates = np.concatenate([self._templates, more])
         self._templates[self._count] = features
         self._count += 1

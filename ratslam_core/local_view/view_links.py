@@ -1,7 +1,8 @@
 """Hebbian links from local view cells to pose cells. ACRA 2004 equations 2-4.
 
-Links are sparse: each view has a block of (pose cell, strength) in one arena. A block that is full moves to the end with a
-quarter more room; when the arena is full, the blocks move together into another, a third larger than all of them.
+Links are sparse: each view has a block of (pose cell, strength) in one arena. A full block moves to the end, with a
+quarter more room. When the arena is full, the blocks are copied without gaps into a new one, a third larger than all of
+them.
 """
 
 from __future__ import annotations
@@ -38,8 +39,10 @@ class ViewLinks:
         return self._cells.size
 
     def views_at(self, column: int, columns: int, views: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
-        """The views below `views` that are linked to pose cells of one x', y' = flat index modulo `columns`, in order, and
-        the sums of those links. For looking: it goes through all links."""
+        """The views, of the first `views`, that are linked to pose cells at one place x', y', and the sums of those links.
+
+        column: the place, a flat index modulo `columns`. For inspection only: it goes through all links.
+        """
         strength = np.zeros(max(views, 1), np.float32)
         _sum_at(self._blocks, min(views, len(self._blocks)), self._cells, self._strength, column, columns, strength)
         linked = np.flatnonzero(strength).astype(np.int32)
@@ -69,8 +72,9 @@ class ViewLinks:
     def recall(self, view: int, lost: bool = False) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """What the active view injects: min(beta, s_max) per link. ACRA 2004 eq. 4.
 
-        [ours] Scaled down so that all links together inject at most `injection`: one look-alike must not move a packet, a
-        row of agreeing views must. test_view_links.py::test_injection_is_capped_in_sum.
+        [ours] Scaled down so that all links together inject at most `injection`: one look-alike must not move a packet,
+        but several views that agree must. A lost robot's view injects `lost_injection` in sum.
+        test_view_links.py::test_injection_is_capped_in_sum.
         """
         cells, strength = self.of(view)
         values = np.minimum(strength, np.float32(self.params.saturation))
@@ -102,7 +106,7 @@ class ViewLinks:
         self._end += wanted
 
     def _move_together(self, wanted: int) -> None:
-        """The blocks without the gaps that moved ones left, and so much more."""
+        """Copy the blocks without gaps into a new arena that has room for `wanted` more."""
         size = (int(self._blocks[:, 2].sum()) + wanted) * 4 // 3
         cells, strength = np.zeros(size, np.int32), np.zeros(size, np.float32)
         self._end = _copy_blocks(self._blocks, self._cells, self._strength, cells, strength)
@@ -126,7 +130,7 @@ def _copy_blocks(
     cells: NDArray[np.int32],
     strength: NDArray[np.float32],
 ) -> int:
-    """One after the other, by the number of the view; returns where the last one ends."""
+    """Copy the blocks one after the other, in the order of the views; returns where the last one ends."""
     end = 0
     for view in range(len(blocks)):
         start, used = blocks[view, 0], blocks[view, 1]

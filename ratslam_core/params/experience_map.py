@@ -15,7 +15,7 @@ class ExperienceMapParams:
 
     enabled: bool = param(
         True,
-        meaning="experiences; off = one, in whose frame the packet is the robot's place: the map of 2004",
+        meaning="build an experience map; off = the packet's place in the pose cells is the robot's place, as in 2004",
         source="A",
         live=False,
     )
@@ -26,19 +26,19 @@ class ExperienceMapParams:
         2.0, symbol="θ_a", unit="layers", low=0.5, high=20.0, meaning="zone of influence in θ'", source="D eq. 3"
     )
     threshold: float = param(
-        0.0, low=0.0, high=2.0, meaning="a new experience when no energy is above it", source="B 4.1"
+        0.0, low=0.0, high=2.0, meaning="a new experience is made when no energy is above this", source="B 4.1"
     )
     energy: str = param(
         "2006",
         symbol="E",
         choices=("2006", "2005"),
-        meaning="2006: nothing outside the zone; 2005: place and heading count each for itself",
+        meaning="2006: zero outside the zone; 2005: place and heading count separately",
         source="D eqs. 1-4, B eqs. 4-9",
     )
     match_view: bool = param(
         True,
         symbol="E_V",
-        meaning="the scene switches experiences on and off; off = only the pose cells count",
+        meaning="only experiences of the current view have energy; off = only the pose cells count",
         source="B eq. 8",
     )
     correction: float = param(
@@ -46,7 +46,7 @@ class ExperienceMapParams:
         symbol="α",
         low=0.0,
         high=0.95,
-        meaning="correction rate; 0.5 settles a node at once, from 1 on it would swing for ever",
+        meaning="correction rate; 0.5 settles a node at once, 1 or more would oscillate for ever",
         source="B table 1, D 3.3",
     )
     anchor_sigma: float = param(
@@ -54,18 +54,18 @@ class ExperienceMapParams:
         unit="m per grey level",
         low=0.0,
         high=1.0,
-        meaning="how far off a match may be; looser matches weigh less in map correction, 0 = all weigh the same",
+        meaning="error of a match per level of its difference; worse matches weigh less in map correction, 0 = all alike",
         source="ours",
     )
     odometry_sigma: float = param(
-        0.01, unit="m", low=1e-4, high=1.0, meaning="error of a transition of one step", source="ours"
+        0.01, unit="m", low=1e-4, high=1.0, meaning="odometry error of a transition of one step", source="ours"
     )
     odometry_drift: float = param(
         0.03,
         unit="m/m",
         low=0.0,
         high=1.0,
-        meaning="how the error of odometry grows with the way",
+        meaning="growth of the odometry error with the distance driven",
         source="ours",
     )
     blind_m: float = param(
@@ -73,38 +73,47 @@ class ExperienceMapParams:
         unit="m",
         low=0.0,
         high=100.0,
-        meaning="so near in the map is an experience of nothing to see, or it is not meant",
+        meaning="when there is nothing to see, only experiences this near in the map can become active",
         source="ours",
     )
     blind_sigma: float = param(
-        0.5, unit="m", low=0.0, high=10.0, meaning="how far off one may be that shows nothing", source="ours"
+        0.5,
+        unit="m",
+        low=0.0,
+        high=10.0,
+        meaning="how far off the robot may be when an experience becomes active with nothing to see",
+        source="ours",
     )
     carried_sigma: float = param(
         100.0, unit="m", low=1.0, high=1e4, meaning="how far off the robot may be after it was carried", source="ours"
     )
     zone_offset: bool = param(
         True,
-        meaning="the robot enters an experience's zone beside its centre; off = it is at the experience",
+        meaning="the robot enters an experience's zone beside its centre; off = at its centre",
         source="ours",
     )
     best_look: bool = param(
-        True, meaning="a transition is measured where the robot comes nearest; off = where it enters", source="ours"
+        True,
+        meaning="a transition is measured where the robot comes nearest to the experience; off = where it enters the zone",
+        source="ours",
     )
     odometry_edges: bool = param(
         True,
-        meaning="odometry also ties experiences made one after the other past known ones",
+        meaning="odometry also ties experiences made one after the other when known ones lie between",
         source="ours",
         live=False,
     )
     pace_floor: bool = param(
-        True, meaning="a link takes at least what its length in the map takes at the robot's pace", source="ours"
+        True,
+        meaning="a link takes at least as long as its length in the map at the robot's average pace",
+        source="ours",
     )
     confirm_jumps: int = param(
         0,
         unit="sights",
         low=0,
         high=50,
-        meaning="a match more than 1 m or 0.8 rad off in the map is believed after so many that agree; 0 = at once",
+        meaning="sights that must agree on a match farther off than `snap_m` or `snap_rad`; 0 = believed at once",
         source="ours",
     )
     link_confidence: float = param(
@@ -112,25 +121,27 @@ class ExperienceMapParams:
         symbol="c_min",
         low=0.0,
         high=1.0,
-        meaning="a link of less confidence is deleted; 0 = never",
+        meaning="a link with less confidence is deleted; 0 = never",
         source="D 3.4; value ours",
     )
-    link_trials: int = param(5, symbol="n_min", low=1, high=1000, meaning="not before so many trials", source="ours")
+    link_trials: int = param(
+        5, symbol="n_min", low=1, high=1000, meaning="least trials before a link is deleted", source="ours"
+    )
     link_recency: float = param(
         0.3,
         low=0.0,
         high=1.0,
-        meaning="least that the newest trial of a link counts; 0 = all count the same",
+        meaning="least weight of the newest trial of a link; 0 = all count the same",
         source="D 3.4, as next step",
     )
     link_trials_are: str = param(
         "tried",
         choices=("tried", "departures"),
-        meaning="a link is on trial when it is driven or tried by a route, or at every departure under its behaviour",
+        meaning="a link is on trial when it is driven or a route takes it, or at every departure under its behaviour",
         source="ours; D eq. 9",
     )
     robust: bool = param(
-        True, meaning="looks and odometry that the map contradicts weigh less in its exact correction", source="ours"
+        True, meaning="looks and odometry that the map contradicts weigh less in the exact correction", source="ours"
     )
     calibrate: bool = param(
         True, meaning="learn the bias of the yaw rate from what the map cannot explain", source="ours"
@@ -138,7 +149,7 @@ class ExperienceMapParams:
     sweep: str = param(
         "by experience",
         choices=("by experience", "by link"),
-        meaning="an experience is moved by the weighted mean of what its links ask, or by each link in turn",
+        meaning="an experience is moved by the weighted mean of its links' residuals, or by each link in turn",
         source="ours; B 4.3",
     )
     sweeps: int = param(1, unit="1/step", low=0, high=100, meaning="correction sweeps in each step", source="B 4.3")
@@ -147,7 +158,7 @@ class ExperienceMapParams:
         unit="steps",
         low=0,
         high=10_000,
-        meaning="exact correction this often while loops close; 0 = never",
+        meaning="least time between exact corrections, made while loops close; 0 = never",
         source="ours",
     )
 

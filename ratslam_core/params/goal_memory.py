@@ -17,16 +17,28 @@ class GoalMemoryParams:
         1.0, symbol="α", low=0.0, high=10.0, meaning="weight of the time between two iterations", source="C IV.C"
     )
     activity_weight: float = param(
-        0.25, symbol="β", unit="s", low=0.0, high=10.0, meaning="added between weakly active cells", source="C IV.C"
+        0.25,
+        symbol="β",
+        unit="s",
+        low=0.0,
+        high=10.0,
+        meaning="time added between weakly active cells",
+        source="C IV.C",
     )
     distance_weight: float = param(
-        0.1, symbol="γ", unit="s/cell", low=0.0, high=10.0, meaning="added for the distance of cells", source="C IV.C"
+        0.1,
+        symbol="γ",
+        unit="s/cell",
+        low=0.0,
+        high=10.0,
+        meaning="time added for the distance between cells",
+        source="C IV.C",
     )
     rate: float = param(
         0.2,
         low=0.01,
         high=1.0,
-        meaning="what the newest time counts in a link's moving average",
+        meaning="weight of the newest time in a link's moving average",
         source="C III.A; ours",
     )
     share: float = param(
@@ -37,29 +49,43 @@ class GoalMemoryParams:
         unit="m",
         low=0.0,
         high=5.0,
-        meaning="the packet moves so far before its cells are linked; 0 = linked in every iteration",
+        meaning="distance the packet moves before its cells are linked; 0 = linked in every iteration",
         source="ours",
     )
     over_jumps: bool = param(
         False,
-        meaning="cells are linked over a jump of the packet, too; off = it has not driven there",
+        meaning="cells are linked across a jump of the packet, too; off = not, since the robot did not drive there",
         source="C; off is ours",
     )
     arrived: float = param(
-        1.0, unit="cells", low=0.1, high=10.0, meaning="so near the goal the robot is there", source="C III.B"
+        1.0,
+        unit="cells",
+        low=0.1,
+        high=10.0,
+        meaning="distance from the goal within which the robot has arrived",
+        source="C III.B",
     )
     wider: int = param(
-        3, low=1, high=10, meaning="times `reach` is looked for a way when there is none nearer", source="ours"
+        3,
+        low=1,
+        high=10,
+        meaning="largest multiple of `reach` that is searched when there is no way nearer",
+        source="ours",
     )
     centre: int = param(
-        3, unit="cells", low=1, high=10, meaning="around the strongest one that say where the packet is", source="ours"
+        3,
+        unit="cells",
+        low=1,
+        high=10,
+        meaning="half-width around the strongest cell within which the packet's centre is computed",
+        source="ours",
     )
     reach: int = param(
         3,
         unit="cells",
         low=1,
         high=10,
-        meaning="how far around the packet the way is looked for",
+        meaning="radius around the packet in which the way is searched",
         source="C III.B; ours",
     )
 

@@ -1,4 +1,4 @@
-"""The parameters of noticing a kidnap, and of being found again. Sources are named in params/__init__.py."""
+"""The parameters of noticing a kidnap and of relocalising after it. Sources are named in params/__init__.py."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ratslam_core.params.parameter import check_ranges, param
 @kind("parameters of kidnap/1")
 @dataclass(frozen=True, slots=True)
 class KidnapParams:
-    """Image and sonars that jump though the wheels did not. The papers' robots did not know that they were carried away."""
+    """When a jump of image and sonars counts as a kidnap. The papers' robots did not notice that they were carried."""
 
     enabled: bool = param(
         True, meaning="notice a kidnap; off = a jump of the image is only another view", source="ours", live=False
@@ -20,23 +20,48 @@ class KidnapParams:
         0.5,
         low=0.0,
         high=1.0,
-        meaning="share of its threshold that the image must change by, however much the sonars do",
+        meaning="the image must change by this share of its threshold, however much the sonars change",
         source="ours",
     )
     sonar_reach_m: float = param(
-        3.0, unit="m", low=0.1, high=20.0, meaning="echoes from beyond come and go: they count as this", source="ours"
+        3.0,
+        unit="m",
+        low=0.1,
+        high=20.0,
+        meaning="longer ranges count as this, since distant echoes come and go",
+        source="ours",
     )
     sonar_most_m: float = param(
-        1.0, unit="m", low=0.01, high=20.0, meaning="a larger change of half of the sonars is no surer", source="ours"
+        1.0,
+        unit="m",
+        low=0.01,
+        high=20.0,
+        meaning="a larger change of half of the sonars counts as this",
+        source="ours",
     )
     sonar_still_m: float = param(
-        0.17, unit="m", low=0.0, high=5.0, meaning="a smaller change of half of them speaks against it", source="ours"
+        0.17,
+        unit="m",
+        low=0.0,
+        high=5.0,
+        meaning="a smaller change of half of the sonars speaks against a kidnap",
+        source="ours",
     )
     found_again: int = param(
-        8, unit="sights", low=1, high=1000, meaning="of known places that agree end being lost", source="ours"
+        8,
+        unit="sights",
+        low=1,
+        high=1000,
+        meaning="sights of known places that must agree before the robot is no longer lost",
+        source="ours",
     )
     settled: int = param(
-        1200, unit="steps", low=1, high=10**6, meaning="without a contradiction end being lost, too", source="ours"
+        1200,
+        unit="steps",
+        low=1,
+        high=10**6,
+        meaning="steps without a contradiction after which the robot is no longer lost, either",
+        source="ours",
     )
 
     def __post_init__(self) -> None:

@@ -17,7 +17,7 @@ class LocalViewParams:
     front_end: str = param(
         "template",
         choices=("template", "complex cells", "hue and saturation", "scene numbers"),
-        meaning="what a view is made of",
+        meaning="what the features of a view are",
         source="D 7; A 3.3; B 7; B 5",
         live=False,
     )
@@ -26,7 +26,7 @@ class LocalViewParams:
         unit="grey levels",
         low=0.0,
         high=255.0,
-        meaning="mean absolute difference below which a view is recognised",
+        meaning="mean absolute difference up to which a view is recognised",
         source="D 7; value ours",
     )
     edge_threshold: float = param(
@@ -34,7 +34,7 @@ class LocalViewParams:
         unit="levels",
         low=0.0,
         high=255.0,
-        meaning="the same for complex cells",
+        meaning="as `match_threshold`, for complex cells",
         source="A 3.3; value ours",
     )
     colour_threshold: float = param(
@@ -42,14 +42,14 @@ class LocalViewParams:
         unit="levels",
         low=0.0,
         high=255.0,
-        meaning="the same for hue and saturation",
+        meaning="as `match_threshold`, for hue and saturation",
         source="B 7; value ours",
     )
     shift: int = param(
         2, unit="columns", low=0, high=5, meaning="horizontal shifts tried to either side", source="D 7; value ours"
     )
     facing: bool = param(
-        True, meaning="the shift of a recognised view tells how the robot is turned against it", source="ours"
+        True, meaning="the shift of a recognised view gives the robot's heading relative to that view", source="ours"
     )
     field_of_view: float = param(
         math.radians(50),
@@ -63,20 +63,29 @@ class LocalViewParams:
         12.0, unit="grey levels", low=0.0, high=255.0, meaning="a view with less contrast shows nothing", source="ours"
     )
     min_edges: float = param(
-        16.0, unit="levels", low=0.0, high=255.0, meaning="complex cells that see less edge see nothing", source="ours"
+        16.0,
+        unit="levels",
+        low=0.0,
+        high=255.0,
+        meaning="complex cells with a lower mean response see nothing",
+        source="ours",
     )
     min_colour: float = param(
-        0.6, low=0.0, high=1.0, meaning="a view with a smaller share of colour shows no hue", source="ours"
+        0.6,
+        low=0.0,
+        high=1.0,
+        meaning="a view with a smaller share of colour shows nothing to hue and saturation",
+        source="ours",
     )
     learning_rate: float = param(0.15, symbol="η", low=0.0, high=1.0, meaning="Hebbian learning rate", source="C IV.C")
     adaptive: bool = param(
         False,
-        meaning="learning rate that follows the strength of vision and the confidence of the estimate",
+        meaning="the learning rate follows the strength of vision and the confidence of the estimate",
         source="A 6.3 (future work); ours",
     )
     learn_first: bool = param(
         False,
-        meaning="a view injects what it has learnt in this very step, too; off = what it had learnt before",
+        meaning="a view learns before it injects; off = it injects only what it had learnt before this step",
         source="A 4; off is ours",
     )
     decay: float = param(
@@ -97,28 +106,28 @@ class LocalViewParams:
         unit="grey levels",
         low=0.0,
         high=255.0,
-        meaning="an image that differs so much from the one before was not driven to",
+        meaning="difference from the image before that driving cannot explain",
         source="ours",
     )
     edge_surprise: float = param(
-        20.0, unit="levels", low=0.0, high=255.0, meaning="the same for complex cells", source="ours"
+        20.0, unit="levels", low=0.0, high=255.0, meaning="as `surprise`, for complex cells", source="ours"
     )
     colour_surprise: float = param(
-        20.0, unit="levels", low=0.0, high=255.0, meaning="the same for hue and saturation", source="ours"
+        20.0, unit="levels", low=0.0, high=255.0, meaning="as `surprise`, for hue and saturation", source="ours"
     )
     range_surprise: float = param(
         1.5,
         unit="1/m",
         low=0.0,
         high=10.0,
-        meaning="what half of the sonars add to the surprise, a metre of change beyond 0.17 m; 1 is a kidnap",
+        meaning="added to the image's change for each metre that half of the sonars change by; above 1 is a kidnap",
         source="ours",
     )
     lost_injection: float = param(
         0.5,
         low=0.0,
         high=5.0,
-        meaning="what a view may inject while the robot knows that it is lost",
+        meaning="what all links of a view inject together while the robot knows that it is lost",
         source="ours",
     )
     false_positives: float = param(
@@ -137,7 +146,7 @@ class LocalViewParams:
         unit="pixels",
         low=1,
         high=35,
-        meaning="width of the neighbourhood whose brightness complex cells divide an edge by",
+        meaning="width of the neighbourhood by whose brightness complex cells divide an edge",
         source="A 3.3; value ours",
         live=False,
     )
@@ -155,7 +164,7 @@ class LocalViewParams:
         unit="levels",
         low=1.0,
         high=1e5,
-        meaning="what a complex cell answers to an edge as strong as the brightness around it",
+        meaning="response of a complex cell to an edge as strong as the brightness around it",
         source="ours",
         live=False,
     )
@@ -163,7 +172,7 @@ class LocalViewParams:
         0.5,
         low=0.01,
         high=1.0,
-        meaning="saturation from which on all falls into the last bin",
+        meaning="saturation from which on a pixel falls into the last bin",
         source="ours",
         live=False,
     )
@@ -171,7 +180,7 @@ class LocalViewParams:
         0.1,
         low=1e-3,
         high=1.0,
-        meaning="saturation from which on a hue is taken at its word",
+        meaning="saturation from which on the hue of a pixel is trusted",
         source="ours",
         live=False,
     )

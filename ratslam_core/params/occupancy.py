@@ -18,16 +18,30 @@ class OccupancyParams:
         math.radians(15), unit="rad", low=0.01, high=1.5, meaning="width of a sonar's beam", source="Moravec and Elfes"
     )
     farthest_m: float = param(
-        5.0, symbol="R_max", unit="m", low=0.5, high=20.0, meaning="a range from here on is no echo", source="ours"
+        5.0,
+        symbol="R_max",
+        unit="m",
+        low=0.5,
+        high=20.0,
+        meaning="a range of this or more means no echo",
+        source="ours",
     )
     depth_m: float = param(
         0.1, symbol="ε", unit="m", low=0.0, high=1.0, meaning="how far off an echo may be", source="Moravec and Elfes"
     )
     free: float = param(
-        0.4, low=0.0, high=0.95, meaning="how sure one echo is of the free floor before it", source="A 6.1; value ours"
+        0.4,
+        low=0.0,
+        high=0.95,
+        meaning="how certain one echo makes it that the floor before it is free",
+        source="A 6.1; value ours",
     )
     occupied: float = param(
-        0.6, low=0.0, high=0.95, meaning="how sure one echo is of what it met", source="A 6.1; value ours"
+        0.6,
+        low=0.0,
+        high=0.95,
+        meaning="how certain one echo makes it that something stands there",
+        source="A 6.1; value ours",
     )
     bound: float = param(
         5.0, low=0.5, high=20.0, meaning="log odds stay within ± this, so that the picture can change", source="ours"
@@ -37,7 +51,7 @@ class OccupancyParams:
         unit="m",
         low=0.0,
         high=5.0,
-        meaning="a scan as near as this to the newest of its experience, and facing as it does, takes its place",
+        meaning="a scan no farther than this from the newest of its experience, and facing the same way, replaces it",
         source="ours",
     )
     same_facing: float = param(
@@ -45,14 +59,14 @@ class OccupancyParams:
         unit="rad",
         low=0.0,
         high=3.2,
-        meaning="the turn up to which it faces as it does",
+        meaning="largest difference in heading that counts as facing the same way",
         source="ours",
     )
     scans: int = param(
         6,
         low=1,
         high=100,
-        meaning="scans kept for each experience, the oldest gives way",
+        meaning="scans kept for each experience; a new one replaces the oldest",
         source="ours",
         live=False,
     )

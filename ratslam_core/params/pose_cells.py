@@ -68,18 +68,18 @@ class PoseCellParams:
     )
     carry: bool = param(True, meaning="give back the motion that the attractor swallows", source="ours")
     divide_spread: bool = param(
-        True, meaning="the way of a packet is not shortened by the spread of its headings", source="ours"
+        True, meaning="keep the spread of a packet's headings from shortening its movement", source="ours"
     )
     least_agreement: float = param(
         0.25,
         low=0.01,
         high=1.0,
-        meaning="agreement of a packet's headings, 1 = all the same, below which its way is lengthened no further",
+        meaning="lower limit of the agreement of headings (1 = all the same) that a packet's movement is divided by",
         source="ours",
     )
     arc: bool = param(
         True,
-        meaning="the way points along the heading in the middle of the movement; off = at its beginning",
+        meaning="a packet moves along the heading in the middle of the movement; off = at its beginning",
         source="ours",
     )
     iterations: int = param(

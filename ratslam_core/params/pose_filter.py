@@ -11,7 +11,7 @@ from ratslam_core.params.parameter import check_ranges, param
 @kind("parameters of pose filter/1")
 @dataclass(frozen=True, slots=True)
 class PoseFilterParams:
-    """What is seen weighed against odometry, and when a look that disagrees is believed."""
+    """How a look is weighed against odometry, and when a look that disagrees is believed."""
 
     enabled: bool = param(
         True,
@@ -20,19 +20,39 @@ class PoseFilterParams:
         live=False,
     )
     snap_m: float = param(
-        1.0, unit="m", low=0.05, high=100.0, meaning="a look that is farther off is believed at once", source="ours"
+        1.0, unit="m", low=0.05, high=100.0, meaning="a look farther off than this is believed at once", source="ours"
     )
     snap_rad: float = param(
-        0.8, unit="rad", low=0.05, high=3.2, meaning="a look that is turned by more is believed at once", source="ours"
+        0.8,
+        unit="rad",
+        low=0.05,
+        high=3.2,
+        meaning="a look turned by more than this is believed at once",
+        source="ours",
     )
     least_sigma_m: float = param(
-        0.06, unit="m", low=1e-4, high=1.0, meaning="it is never firmer, so that it can follow the map", source="ours"
+        0.06,
+        unit="m",
+        low=1e-4,
+        high=1.0,
+        meaning="the error of the estimate is never taken as smaller, so that it can follow the map",
+        source="ours",
     )
     agrees_m: float = param(
-        0.5, unit="m", low=0.01, high=10.0, meaning="so near are sights that confirm each other", source="ours"
+        0.5,
+        unit="m",
+        low=0.01,
+        high=10.0,
+        meaning="largest distance between sights that confirm each other",
+        source="ours",
     )
     agrees_rad: float = param(
-        0.4, unit="rad", low=0.01, high=3.2, meaning="so alike turned are sights that confirm each other", source="ours"
+        0.4,
+        unit="rad",
+        low=0.01,
+        high=3.2,
+        meaning="largest difference in heading between sights that confirm each other",
+        source="ours",
     )
 
     def __post_init__(self) -> None:

@@ -1,7 +1,7 @@
-"""What each paper says and nothing else, as values of parameters: `preset("paper-2006")`. What runs by default is "ours".
+"""What each paper says and nothing else, as values of parameters: `preset("paper-2006")`. The default is "ours".
 
-A value that no paper names, a threshold or a rate of learning, is the same in all of them. Which addition is whose switch stands
-in additions.py and docs/additions.md; test_papers.py holds whole runs with all of them off against a literal twin.
+A value that no paper names, such as a threshold, is the same in all presets. additions.py and docs/additions.md list
+our additions with their switches; test_papers.py compares whole runs without them with a literal twin.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import replace
 from ratslam_core.params import RatSlamParams
 from ratslam_core.params.additions import ADDITIONS, Value
 
-# Off by default as it is: another learning rate, jumps that are confirmed, short cuts.
+# Also off in the papers, and off by default: the adaptive learning rate, confirmation of jumps, shortcuts.
 _ALSO_OFF: dict[str, Value] = {
     "local_view.adaptive": False,
     "experience_map.confirm_jumps": 0,

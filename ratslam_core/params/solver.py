@@ -11,7 +11,7 @@ from ratslam_core.params.parameter import check_ranges, param
 @kind("parameters of solver/1")
 @dataclass(frozen=True, slots=True)
 class SolverParams:
-    """The fixed point of the sweeps, computed directly now and then. When, and what it learns, says `experience_map`."""
+    """The fixed point of the sweeps, computed directly. When, and what it learns, is set by `experience_map`."""
 
     enabled: bool = param(
         True, meaning="exact corrections beside the sweeps; off = sweeps alone", source="ours", live=False
@@ -20,43 +20,43 @@ class SolverParams:
         1e5,
         low=1.0,
         high=1e9,
-        meaning="what exact corrections may cost a step on average; 100,000 are half a millisecond or so",
+        meaning="work of exact corrections per step, on average; 100,000 take about half a millisecond",
         source="ours",
     )
     work_an_experience: float = param(
-        90.0, low=0.0, high=1e6, meaning="what each experience adds to the work of an exact correction", source="ours"
+        90.0, low=0.0, high=1e6, meaning="work that each experience adds to an exact correction", source="ours"
     )
     largest: int = param(
         4000,
         unit="experiences",
         low=1,
         high=20_000,
-        meaning="a map of which more than these hang together inextricably is left to the sweeps; 4,000 take 2 s, 250 MB",
+        meaning="a map with a larger densely linked core is left to the sweeps; 4,000 take 2 s and 250 MB",
         source="ours",
     )
     entangled_work: float = param(
         1e9,
         low=0.0,
         high=1e12,
-        meaning="what an attempt on such a map counts as, so that the next comes late",
+        meaning="work that an attempt at such a map counts as, so that the next one comes late",
         source="ours",
     )
     rounds: int = param(
-        2, low=1, high=20, meaning="times that headings are solved, so that their wrapping settles", source="ours"
+        2, low=1, high=20, meaning="how often headings are solved, so that their wrapping settles", source="ours"
     )
     rad_per_m: float = param(
         0.7,
         unit="rad/m",
         low=0.01,
         high=10.0,
-        meaning="a link that is off by a metre is off by so much in heading",
+        meaning="error in heading that counts as much as an error of one metre",
         source="ours",
     )
     odometry_gives: float = param(
         5.0, unit="σ", low=0.1, high=100.0, meaning="disagreement at which odometry counts half", source="ours"
     )
     look_gives: float = param(
-        1.0, unit="σ", low=0.1, high=100.0, meaning="disagreement from which a look pulls no harder", source="ours"
+        1.0, unit="σ", low=0.1, high=100.0, meaning="disagreement from which on a look pulls no harder", source="ours"
     )
 
     def __post_init__(self) -> None:

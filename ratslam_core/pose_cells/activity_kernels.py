@@ -1,8 +1,8 @@
-"""Compiled array functions of the pose cells. They touch active cells only, so that size costs nothing.
+"""Compiled array functions of the pose cells. They touch active cells only, so a larger network costs no more time.
 
 A set of active cells is (cells, values, n): in the first n rows of `cells` x, y, theta and the flat index
 (theta * n_y + y) * n_x + x, in `values` their activities. `slot[flat]` is 1 + the row of an active cell, 0 for all others;
-every function says which set it indexes. Coordinates are kept because integer division is what would cost most.
+every function says which set it indexes. Coordinates are stored because integer division would be the largest cost.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def add(x: int, y: int, t: int, flat: int, value: float, cells: Cells, values: V
 
 @njit(cache=True, nogil=True, inline="always")
 def wrap(place: int, size: int) -> int:
-    """A place on a ring of this size, from less than one turn beyond."""
+    """A coordinate on a ring of this size; `place` is less than two turns."""
     return place - size if place >= size else place
 
 
@@ -70,7 +70,7 @@ def clear(cells: Cells, n: int, slot: Slot) -> None:
 
 @njit(cache=True, nogil=True)
 def first_bad(flats: NDArray[np.int32], more: NDArray[np.float32], size: int) -> int:
-    """The first row with a cell outside the network or an activity that is none, -1 when all are right."""
+    """The first row with a cell outside the network or an activity that is negative or not finite, -1 when all are right."""
     for i in range(flats.size):
         if not (0 <= flats[i] < size and 0.0 <= more[i] < np.inf):
             return i
@@ -116,10 +116,10 @@ def shift(
 ) -> int:
     """P'_xyz = sum over a 2x2x2 cube of alpha_abc P. A eqs. 5-9. `slot` indexes the input, afterwards the output.
 
-    owner: the packet of each cell; moves, shape (packets, 4): the packet's way forwards and to its left (cells, each layer
-    along its own heading, headings[t] = cos, sin), and what is added to x and y of all its layers; yaws: layers.
-    patch: scratch, PATCH x PATCH zeros. Rows of cells in the same layer are laid out there first, so that each cell of the
-    result is looked up twice rather than eight times.
+    owner: the packet of each cell; moves, shape (packets, 4): how far the packet moves forwards and to its left (cells,
+    each layer along its own heading, headings[t] = cos, sin), and what is added to x and y of all its layers; yaws: its
+    turn in layers. patch: scratch, PATCH x PATCH zeros. Successive cells of the same layer are summed up there first,
+    so that each cell of the result is looked up twice rather than eight times.
     """
     n_theta, n_y, n_x = shape
     clear(cells, n, slot)
@@ -182,11 +182,11 @@ def cluster(
     peaks: NDArray[np.int32],
     bounds: NDArray[np.int8],
 ) -> tuple[int, int]:
-    """Give every active cell to a cluster: the strongest free cell and all free cells within `window` of it, again and again.
+    """Divide the active cells into clusters: repeatedly, the strongest free cell and all free cells within `window` of it.
 
-    Writes the cluster of each cell to `owner`, the row of each cluster's strongest cell to `peaks`, and how far the cluster
-    reaches from there to `bounds`: lowest x, y, theta, highest x, y, theta. Returns the number of clusters and the cells of
-    all their boxes with `radius` more on each side.
+    Writes the cluster of each cell to `owner`, the row of each cluster's strongest cell to `peaks`, and how far the
+    cluster reaches from there to `bounds`: lowest x, y, theta, highest x, y, theta. Returns the number of clusters, and
+    how many cells their boxes have in all with a margin of `radius` on each side.
     """
     n_theta, n_y, n_x = shape
     wx, wy, wt = min(window, (n_x - 1) // 2), min(window, (n_y - 1) // 2), min(window, (n_theta - 1) // 2)
@@ -202,7 +202,7 @@ def cluster(
         px, py, pt = cells[peak, X], cells[peak, Y], cells[peak, THETA]
         low_x = low_y = low_t = high_x = high_y = high_t = 0
         best = -1
-        most = np.float32(-1.0)  # cells may hold nothing
+        most = np.float32(-1.0)  # the activity of a cell may be 0
         for i in range(n):
             if owner[i] >= 0:
                 continue

@@ -52,9 +52,9 @@ def convolve(
 ) -> int:
     """P <- eps * P: circular convolution with a 3-D Gaussian as three 1-D passes. A eq. 10.
 
-    `owner`, `peaks`, `bounds` split the active cells into clusters that fit a small dense box each; the boxes' results add up,
-    since convolution is linear. Cells up to `floor` are left out where no other box can add to them: inhibition would take
-    them at once. `slot` indexes the input, afterwards the output. box_a, box_b: scratch.
+    `owner`, `peaks`, `bounds` split the active cells into clusters, each of which fits a small dense box. The boxes'
+    results add up, since convolution is linear. Cells up to `floor` are left out where no other box can add to them,
+    since inhibition would remove them at once. `slot` indexes the input, afterwards the output. box_a, box_b: scratch.
     """
     n_theta, n_y, n_x = shape
     clear(cells, n, slot)
@@ -80,7 +80,7 @@ def convolve(
                 box_a[(dt * by + dy) * bx + dx] = values[i]
         # The margin of zeros lets each pass run over the box as one long row.
         inner = radius * layer, size - radius * layer
-        _pass(box_a, box_b, size, inner, layer // layer, weights)  # 1 as a number like the others: else compiled twice
+        _pass(box_a, box_b, size, inner, layer // layer, weights)  # 1, but no literal: else compiled twice
         _pass(box_b, box_a, size, inner, bx, weights)
         _pass(box_a, box_b, size, inner, layer, weights)
         alone = bx <= n_x and by <= n_y and bt <= n_theta
@@ -126,7 +126,7 @@ def _pass(
 def _apart(
     c: int, clusters: int, cells: Cells, peaks: NDArray[np.int32], bounds: NDArray[np.int8], radius: int, shape: Shape
 ) -> bool:
-    """No other cluster's box, with its margin, shares a cell with that of cluster c."""
+    """Whether no other cluster's box, with its margin, shares a cell with that of cluster c."""
     for other in range(clusters):
         touching = other != c
         for axis in range(3):

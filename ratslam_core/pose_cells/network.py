@@ -1,10 +1,10 @@
-"""Pose cells: a three-dimensional continuous attractor network that holds where the robot is. ACRA 2004 section 4.
+"""Pose cells: a three-dimensional continuous attractor network that represents where the robot is. ACRA 2004 section 4.
 
 Activity P[theta, y, x] >= 0 sums to 1 and wraps in all directions. Packets of activity move with the odometry (path
 integration), are pulled by recognised scenes (visual calibration) and compete (attractor).
 """
 
-# Whoever calls may check no types.
+# Callers may not be type-checked.
 # pyright: reportUnnecessaryIsInstance=false
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class PoseCells:
 
     @property
     def activity(self) -> NDArray[np.float32]:
-        """P as a dense array, shape (n_theta, n_y, n_x), no unit, sums to 1. A copy: for looking, not for every step."""
+        """P as a dense array, shape (n_theta, n_y, n_x), no unit, sums to 1. A copy: for inspection, not for every step."""
         dense = np.zeros(self._slot.size, np.float32)
         dense[self._cells[: self._n, kernels.FLAT]] = self._values[: self._n]
         return dense.reshape(self.shape)
@@ -73,7 +73,7 @@ class PoseCells:
 
     @property
     def memory_bytes(self) -> int:
-        """All that the network's arrays take: 4 bytes a cell for `slot`, and room for active cells that does not grow with it."""
+        """Memory of all arrays: 4 bytes per cell for `slot`; the room for active cells does not grow with the network."""
         return sum(a.nbytes for a in vars(self).values() if isinstance(a, np.ndarray))
 
     @property
@@ -104,7 +104,7 @@ class PoseCells:
         return self.attract()
 
     def place(self, x: int, y: int, theta: int) -> None:
-        """All activity in one cell, a new packet. Whole numbers of cells; ValueError outside the network."""
+        """Put all activity into one cell, as a new packet. Whole numbers of cells; ValueError outside the network."""
         for name, value, size in (("theta", theta, 0), ("y", y, 1), ("x", x, 2)):
             if isinstance(value, bool) or not (isinstance(value, int | np.integer) and 0 <= value < self.shape[size]):
                 raise ValueError(f"{name} must be a cell from 0 to {self.shape[size] - 1}, got {value!r}")
@@ -114,7 +114,7 @@ class PoseCells:
         self._find()
 
     def settle(self) -> None:
-        """Make what was injected a packet at once, without the attractor: the activity sums to 1 again."""
+        """Make packets of what was injected at once, without the attractor. The activity then sums to 1 again."""
         self._n = attractor.inhibit_and_normalise(self._cells, self._values, self._n, self._slot, np.float32(0))
         self._find()
 
@@ -138,12 +138,12 @@ class PoseCells:
         self._n = kernels.inject(cells, values, self._cells, self._values, self._n, self._owner, self._slot, self.shape)
 
     def integrate(self, distance_m: float, turn_rad: float) -> None:
-        """Shift the activity as the wheels say: each layer along its own heading. ACRA 2004 eqs. 5-9.
+        """Shift the activity as the wheels say, each layer along its own heading. ACRA 2004 eqs. 5-9.
 
-        [ours] Each packet's move is divided by the mean of exp(i theta) over its headings, because their spread would shorten
-        it (`divide_spread`); what the last attractor iteration pulled the packet back is added again (`carry`); the heading is
-        that in the middle of the movement, so that the end does not depend on the rate (`arc`).
-        test_pose_cells.py::test_gain_is_one_at_any_speed, ::test_an_arc_ends_where_it_should,
+        [ours] Each packet's movement is divided by the mean of exp(i theta) over its headings, because their spread
+        would shorten it (`divide_spread`). What the attractor pulled the packet back in the last step is added
+        (`carry`). The heading is that in the middle of the movement, so that where it ends does not depend on the tick
+        rate (`arc`). test_pose_cells.py::test_gain_is_one_at_any_speed, ::test_an_arc_ends_where_it_should,
         test_papers.py::test_a_run_is_that_of_the_literal_twin.
         """
         along = require_finite("distance_m", distance_m) / self.params.cell_m
@@ -164,14 +164,14 @@ class PoseCells:
 
     @property
     def iterations_due(self) -> int:
-        """How often the next `attract` iterates, for the way driven since the last one."""
+        """How many iterations the next `attract` makes, for the distance driven since the last one."""
         return min(max(1, math.ceil(self._way - 1e-6)), self.params.iterations)
 
     def attract(self) -> Packet:
         """Excite, inhibit, normalise. ACRA 2004 eqs. 10-12. Returns the winner.
 
-        [ours] A way longer than one cell since the last call gets an iteration for each cell (at most `iterations`): layers
-        of one packet drift apart as they are driven, and the attractor is what holds them together.
+        [ours] If the robot has driven farther than one cell since the last call, there is an iteration for each cell
+        (at most `iterations`): driving makes the layers of a packet drift apart, and the attractor holds them together.
         """
         due, self._way = self.iterations_due, 0.0
         for _ in range(due):
@@ -198,7 +198,7 @@ class PoseCells:
             )
 
     def set_params(self, params: PoseCellParams) -> None:
-        """Take new live parameters; the size stays what it is."""
+        """Take new live parameters; the size cannot change."""
         p = self.params
         if (params.n_theta, params.n_y, params.n_x, params.cell_m) != (p.n_theta, p.n_y, p.n_x, p.cell_m):
             raise ValueError(f"the size of the pose cells is fixed at {p.n_x} x {p.n_y} x {p.n_theta} until a reset")
@@ -228,7 +228,7 @@ class PoseCells:
         self._swap(m)
 
     def _weigh(self, sign: float) -> None:
-        """Add the packets' centres to their carry: once before and once, taken away, after the attractor."""
+        """Add sign times the packets' centres to their carry: + before the attractor and - after it."""
         if self.params.carry:
             reach = 2 * self.params.window
             packet_kernels.weigh(self._cells, self._values, self._n, self.shape, reach, self._rows, self._found, sign)
@@ -272,12 +272,12 @@ class PoseCells:
         self._owner, self._peaks, self._spare_owner = grow(self._owner), grow(self._peaks), grow(self._spare_owner)
 
     def _find(self) -> None:
-        """Packets of the activity as it is now, each with the id of the one that was expected there."""
+        """Find the packets in the activity as it is now. Each has the id of the one that was expected there."""
         clusters, _ = self._cluster(0)
         if clusters > len(self._spare_rows):
             self._spare_rows = np.zeros((2 * clusters, packet_kernels.ROW))
             self._spare_ids = np.zeros(2 * clusters, np.int64)
-        if clusters > len(self._moves):  # rows take turns with their spares, moves do not: each grows for itself
+        if clusters > len(self._moves):  # rows swap with their spares, moves do not: each grows by itself
             self._moves, self._yaws = np.zeros((2 * clusters, 4)), np.zeros(2 * clusters)
         cells, values, shape, owner, peaks = self._cells, self._values, self.shape, self._owner, self._peaks
         packet_kernels.join_flanks(cells, values, self._slot, shape, owner, peaks, clusters)

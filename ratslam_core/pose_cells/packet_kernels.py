@@ -1,6 +1,6 @@
-"""Compiled array functions of packets: which clusters of active cells are one, where they are, go and keep their ids.
+"""Compiled array functions of packets: which clusters form one packet, where packets are, how they move and keep their ids.
 
-A packet is a row: x, y, theta, then the columns named below. Sets of active cells are those of `kernels`.
+A packet is a row: x, y, theta, then the columns named below. Sets of active cells are those of `activity_kernels`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def join_flanks(
     peaks: NDArray[np.int32],
     clusters: int,
 ) -> None:
-    """Clusters whose strongest cell has a stronger neighbour are flanks of its cluster: one packet. `slot` indexes P.
+    """A cluster whose strongest cell has a stronger neighbour is a flank of that one's cluster: one packet. `slot` indexes P.
 
     peaks[c] becomes the strongest cell of the packet that cluster c belongs to.
     """
@@ -55,7 +55,7 @@ def packet_rows(
     headings: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> int:
-    """The packets, heaviest first, and how many; clusters with the same peak are one. `owner` names packets afterwards.
+    """Write the packets, heaviest first; returns how many. Clusters with the same peak are one. `owner` then names packets.
 
     out rows: x, y, theta (cells, fractions), mass, mean cosine and sine of the headings; the carry is cleared.
     """
@@ -121,8 +121,9 @@ def follow(
     shape: Shape,
     window: int,
 ) -> None:
-    """Give packets their ids: each old one, heaviest first, goes on as the nearest new one. The others get the least numbers
-    that no packet bears, not even one that has just gone: it would seem to live on elsewhere."""
+    """Give packets their ids: each old packet, heaviest first, goes on as the nearest new one. The others get the
+    lowest numbers that no packet has. The number of one that has just gone is not used, or it would seem to live on
+    elsewhere."""
     new_ids[:n_new] = 0
     for p in range(n_old):
         best, least = -1, np.inf
@@ -159,11 +160,11 @@ def advance(
     moves: NDArray[np.float64],
     yaws: NDArray[np.float64],
 ) -> None:
-    """Where packets go: rows are moved on, what `shift` needs is written to moves and yaws. cells, rad.
+    """Move the rows of packets on, and write what `shift` needs to moves and yaws. distance: cells; turn: rad.
 
-    arc: the way is one, so its chord points along the heading in the middle of it; else straight on, as in the papers. divide:
-    layers of a packet head differently, which shortens and turns its way by the mean of exp(i theta); the move is divided by
-    that complex number, whose size is taken for `least_agreement` at least.
+    arc: the robot drives an arc, whose chord points along the heading in its middle; else straight on, as in the
+    papers. divide: the layers of a packet have different headings, which multiplies its movement by the mean of exp(i
+    theta). The movement is divided by that complex number, whose modulus counts as at least `least_agreement`.
     """
     unit = 2.0 * np.pi / shape[0]
     bend = turn / 2 if arc else 0.0
@@ -190,7 +191,7 @@ def advance(
 
 @njit(cache=True, nogil=True)
 def _half_way_to_the_next(rows: NDArray[np.float64], packets: int, shape: Shape) -> NDArray[np.float64]:
-    """Squares of half the distance from each packet to the nearest other: within, no other can be nearer."""
+    """Squares of half the distance from each packet to the nearest other; a cell within that has no nearer packet."""
     own = np.full(packets, np.inf)
     for p in range(packets):
         for q in range(p):
@@ -205,10 +206,10 @@ def _half_way_to_the_next(rows: NDArray[np.float64], packets: int, shape: Shape)
 def weigh(
     cells: Cells, values: Values, n: int, shape: Shape, reach: int, rows: NDArray[np.float64], packets: int, sign: float
 ) -> None:
-    """Add sign times each packet's centre, as the offset from where its row says, to the row's carry.
+    """Add sign times each packet's centre, as the offset from the place in its row, to the row's carry.
 
-    A cell counts for the nearest packet, up to `reach` away along each axis: the same cells of the torus before and after the
-    attractor, however packets grow and shrink.
+    A cell counts for the nearest packet that is within `reach` along each axis. So the same part of the torus counts
+    before and after the attractor, however packets grow and shrink.
     """
     n_theta, n_y, n_x = shape
     wx, wy, wt = min(reach, (n_x - 1) // 2), min(reach, (n_y - 1) // 2), min(reach, (n_theta - 1) // 2)
@@ -219,7 +220,7 @@ def weigh(
         before, mine, least = mine, -1, np.inf
         x = y = t = 0.0
         for k in range(packets):
-            p = k if before < 0 else (before + k) % packets  # most often the nearest is that of the cell before
+            p = k if before < 0 else (before + k) % packets  # the nearest is most often that of the cell before
             dx = offset(cells[i, X], rows[p, X], n_x)
             dy = offset(cells[i, Y], rows[p, Y], n_y)
             dt = offset(cells[i, THETA], rows[p, THETA], n_theta)

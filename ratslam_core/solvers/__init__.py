@@ -1,1 +1,1 @@
-"""Sparse systems and shortest ways, which know nothing of RatSLAM."""
+"""Solvers for sparse systems and for shortest ways. They know nothing of RatSLAM."""

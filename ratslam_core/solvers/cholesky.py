@@ -1,4 +1,4 @@
-"""Symmetric dense systems: Cholesky's factor, block by block, and what it solves."""
+"""Symmetric dense systems: Cholesky's factor, block by block, and solving with it."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-BLOCK = 32  # columns that are taken off at once
+BLOCK = 32  # columns that are eliminated together
 
 
 @njit(cache=True, nogil=True)
 def factor(matrix: NDArray[np.float64]) -> bool:
-    """Its lower triangle becomes L with L L^T = matrix, False when a pivot is not positive.
+    """The lower triangle becomes L with L L^T = matrix; False when a pivot is not positive.
 
-    A library's would be twice as quick, but its last digits depend on how many cores there are.
+    A library's factor would be twice as quick, but its last digits depend on how many cores there are.
     """
     n = len(matrix)
     for first in range(0, n, BLOCK):
@@ -44,7 +44,10 @@ def factor(matrix: NDArray[np.float64]) -> bool:
 
 @njit(cache=True, nogil=True)
 def solve_rows(triangle: NDArray[np.float64], rows: NDArray[np.int64], out: NDArray[np.float64]) -> None:
-    """x with L L^T x = b, each column of b in these rows of `out`, where x takes its place. triangle: (k, k) L; rows: (k,)."""
+    """Solve L L^T x = b in place: each column of b is in these rows of `out`, and x takes its place.
+
+    triangle: (k, k), L; rows: (k,).
+    """
     x = np.empty(len(rows))
     for k in range(out.shape[1]):
         for i in range(len(rows)):

@@ -1,8 +1,8 @@
-"""Shortest times to one node along links and, where there is a reach, across to nodes that are close in the map.
+"""Shortest times to one node along links and, when there is a reach, by shortcuts to nodes that are close in the map.
 
-Dijkstra's algorithm on a binary heap, in which a node whose time fell stands twice, and the second is passed over. A time is
-that of the next node on the way plus that of the link, rounded; such sums only grow, so the least of them do not depend on the
-order in which they are found. Starting afresh and mending an older tree end at the same bits:
+Dijkstra's algorithm on a binary heap. A node whose time fell stands in it twice, and the older entry is skipped. A time
+is that of the next node on the way plus that of the link, rounded. Such sums only grow, so the least of them do not
+depend on the order in which they are found. Starting afresh and mending an older tree therefore end at the same bits:
 test_temporal_map.py::test_a_map_that_was_mended_is_as_good_as_new.
 
 links: start, used, half, other of an `Adjacency` and the seconds of each row, inf for no way.
@@ -24,12 +24,12 @@ Links: TypeAlias = tuple[
 ]
 Near: TypeAlias = tuple[NDArray[np.float64], float, float, NDArray[np.int32], NDArray[np.int32]]
 Heap: TypeAlias = tuple[NDArray[np.float64], NDArray[np.uint32]]  # seconds, and the node of each
-LEAST_S = 1e-3  # no way takes less, so that none leads round in circles
+LEAST_S = 1e-3  # no link takes less, so that no way leads round in circles
 
 
 @njit(cache=True, nogil=True)
 def fresh(goal: int, times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near) -> None:
-    """Seconds from every node to the goal into `times`, inf for no way; the next node on the way, or -1, into `parent`."""
+    """Write the seconds from every node to the goal to `times`, inf for no way, and the next node or -1 to `parent`."""
     times[:] = np.inf
     parent[:] = -1
     times[goal] = 0.0
@@ -39,9 +39,9 @@ def fresh(goal: int, times: NDArray[np.float64], parent: NDArray[np.int32], link
 
 @njit(cache=True, nogil=True)
 def mend(goal: int, times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near) -> None:
-    """The same from an older tree in `parent`, whatever has become of the links and their times since.
+    """The same, beginning with an older tree in `parent`, however links and times have changed since.
 
-    First the times along the old tree, so far as it stands: none is too short. Then whatever offers less is followed.
+    First come the times along what is left of the old tree: none is too short. Then every shorter way is followed up.
     """
     n = len(times)
     stack = np.empty(n, np.int32)
@@ -73,7 +73,7 @@ def mend(goal: int, times: NDArray[np.float64], parent: NDArray[np.int32], links
 
 @njit(cache=True, nogil=True)
 def trace(start: int, goal: int, times: NDArray[np.float64], links: Links, near: Near) -> NDArray[np.int64]:
-    """Nodes of the quickest way; of equal ways the one whose next node has the lowest number."""
+    """Nodes of the quickest way; among equal ways, the one whose next node has the lowest number."""
     path: list[Whole] = [start]
     node: Whole = start
     other: Whole
@@ -211,7 +211,7 @@ def _push(size: Whole, heap: Heap, time: float, node: Whole) -> None:
 
 @njit(cache=True, nogil=True, inline="always")
 def _pop(size: Whole, heap: Heap) -> None:
-    """Take the first away; `size` is what is left."""
+    """Remove the first entry; `size` entries are left."""
     key, name = heap
     one, at, end = np.uint64(1), np.uint64(0), np.uint64(size)
     last, node = key[end], name[end]

@@ -1,10 +1,9 @@
-"""Sparse Laplacian systems, solved exactly by taking one node after the other out of the net (star-mesh transform).
+"""Sparse Laplacian systems, solved exactly by eliminating one node of the net after the other (star-mesh transform).
 
-A net of springs or resistors: what a node is asked is answered by moving it and, over its links, all others. Taking out a
-node joins its neighbours directly, link by link the product of their weights over the sum; that is Gaussian elimination,
-with nothing but sums of positive numbers. The node with the fewest neighbours goes first, which keeps nets of chains,
-as maps are, nearly as sparse as they were. What is left at last, where most hang together with many, is solved as a dense
-matrix.
+The system is a net of springs or resistors. Eliminating a node links each two of its neighbours directly, with the
+product of their weights over the sum of all. This is Gaussian elimination, with sums of positive numbers only. The node
+with the fewest neighbours goes first, which keeps nets of chains, as maps are, nearly as sparse as they were. The rest,
+in which most nodes have many neighbours, is solved as a dense matrix.
 """
 
 from __future__ import annotations
@@ -17,28 +16,28 @@ from numpy.typing import NDArray
 
 from ratslam_core.solvers.cholesky import factor, solve_rows
 
-SPARE = 2  # neighbours that a node has room for from the beginning, beside its own
-DENSE = 8  # a rest whose nodes each hang together with an eighth of it or more
-DENSE_IS_QUICKER = 100  # times, a product in a dense matrix than one of two links
+SPARE = 2  # neighbours that a node has room for at first, in addition to its own
+DENSE = 8  # the rest is dense when each of its nodes is linked to an eighth of it or more
+DENSE_IS_QUICKER = 100  # how many times quicker a product in a dense matrix is than one of two links
 
 
 class Elimination(NamedTuple):
-    """What is left of a net of n nodes: `start[v]` to `start[v] + used[v]` are v's neighbours as it was taken out."""
+    """A net of n nodes, eliminated: `start[v]` to `start[v] + used[v]` are v's neighbours when it was eliminated."""
 
-    order: NDArray[np.int64]  # the nodes that were taken out; the first stays where it is
+    order: NDArray[np.int64]  # the eliminated nodes, in order; node 0 is fixed and not among them
     start: NDArray[np.int64]
     used: NDArray[np.int64]
-    other: NDArray[np.uint32]  # unsigned: no look at whether an index is negative
+    other: NDArray[np.uint32]  # unsigned: compiled code need not test for negative indices
     weight: NDArray[np.float64]
     total: NDArray[np.float64]  # (n,) sum of the weights, 0 for a node without links
-    rest: NDArray[np.int64]  # (k,) nodes that were left together
+    rest: NDArray[np.int64]  # (k,) nodes of the dense rest
     triangle: NDArray[np.float64]  # (k, k) Cholesky's factor of their matrix
-    work: int  # products of weights that it took, or what took as long
+    work: int  # how many products of weights it took, or what took as long
 
     def solve(self, asked: NDArray[np.float64]) -> NDArray[np.float64]:
         """x with sum over the links w (x_i - x_j) = asked_i at each node i but the first, whose x is 0; shape (n,) or (n, k).
 
-        Nodes that no way of links leads to from the first are asked for nothing that could be answered.
+        There is no such x for nodes that are not connected to the first by links.
         """
         out = np.array(asked, np.float64).reshape(len(asked), -1)
         _solve(self.order, self.start, self.used, self.other, self.weight, self.total, self.rest, self.triangle, out)
@@ -48,9 +47,9 @@ class Elimination(NamedTuple):
 def eliminate(
     n: int, links: NDArray[np.int64], weights: NDArray[np.float64], largest: int = 4000
 ) -> Elimination | None:
-    """Take the net apart. links: (m, 2) nodes from 0 to n - 1; weights: (m,), 0 or more; links that repeat add up.
+    """Eliminate the nodes. links: (m, 2) nodes from 0 to n - 1; weights: (m,), 0 or more; links that repeat add up.
 
-    None when it is so entangled that a rest of more than `largest` nodes stays.
+    None when the net is so entangled that a rest of more than `largest` nodes is left.
     """
     order, start, used, other, weight, total, work = _eliminate(n, links, weights, DENSE)
     left = np.ones(n, np.bool_)
@@ -59,7 +58,7 @@ def eliminate(
     if len(rest) > largest:
         return None
     triangle = _matrix(n, rest, start, used, other, weight)
-    if not factor(triangle):  # weights too far apart for differences; sums bear that
+    if not factor(triangle):  # weights differ too much for differences, not for sums
         order, start, used, other, weight, total, work = _eliminate(n, links, weights, 0)
         rest, triangle = rest[:0], np.zeros((0, 0))
     work += len(rest) ** 3 // DENSE_IS_QUICKER
@@ -118,7 +117,7 @@ def _eliminate(n: int, links: NDArray[np.int64], weights: NDArray[np.float64], d
 def _net(
     n: int, links: NDArray[np.int64], weights: NDArray[np.float64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.uint32], NDArray[np.float64], int]:
-    """Each node's neighbours in one arena: where they start, room for how many, how many, who, by how much; and its end."""
+    """Each node's neighbours in one arena: start, room and use of each block, neighbours, weights; and the arena's end."""
     start, room = np.zeros(n, np.int64), np.full(n, SPARE)
     for row in range(len(links)):
         room[links[row, 0]] += 1
@@ -148,7 +147,7 @@ def _meet(
     count: int,
     where: NDArray[np.uint32],
 ) -> int:
-    """a's neighbours become these others too, each by so much of its weight; returns how many a has now."""
+    """Make these others neighbours of a, too, with this share of their weights; returns how many neighbours a has now."""
     for q in range(count):
         where[own[q]] = q
     for k in range(len(others)):
@@ -174,7 +173,7 @@ def _join(
     other: NDArray[np.uint32],
     weight: NDArray[np.float64],
 ) -> None:
-    """j becomes a neighbour of i, or a nearer one."""
+    """Make j a neighbour of i, or add to the weight between them."""
     for q in range(start[i], start[i] + used[i]):
         if other[q] == j:
             weight[q] += more
@@ -192,7 +191,7 @@ def _leave(
     other: NDArray[np.uint32],
     weight: NDArray[np.float64],
 ) -> None:
-    """j is no neighbour of i any more."""
+    """Remove j from the neighbours of i."""
     q, last = start[i], start[i] + used[i] - 1
     while other[q] != j:
         q += 1
@@ -202,7 +201,7 @@ def _leave(
 
 @njit(cache=True, nogil=True)
 def _put(v: int, count: int, first: NDArray[np.int64], after: NDArray[np.int64], before: NDArray[np.int64]) -> None:
-    """v is now one of those with so many neighbours."""
+    """Add v to the list of nodes with this many neighbours."""
     after[v], before[v] = first[count], -1
     if after[v] >= 0:
         before[after[v]] = v
@@ -252,7 +251,7 @@ def _solve(
     triangle: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
-    for v in order:  # what is asked of a node is handed on to those that were left when it went
+    for v in order:  # a node's right-hand side goes to the neighbours that it had when it was eliminated
         for q in range(start[v], start[v] + used[v]):
             share = weight[q] / total[v]
             for k in range(out.shape[1]):

@@ -1,4 +1,4 @@
-"""What a view is made of: four ways from an image (or a scene number) to the bytes that are stored and compared."""
+"""Front ends: four ways from an image (or a scene number) to the bytes that are stored and compared."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from ratslam_core.params import LocalViewParams
 
 
 class FrontEnd(Protocol):
-    """Features are (columns * rows,) uint8; equal views have equal ones, the mean absolute difference says how unlike two are."""
+    """Features are uint8, shape (columns * rows,). Their mean absolute difference says how unlike two views are."""
 
     columns: int
     rows: int  # bytes of each column
     shifts: bool  # features are columns of the image: turning the robot shifts them, and the shift tells its heading
     scale: float  # levels for a mean difference of one byte; in levels all front ends are about equally strict
-    vague: float  # levels by which even an equal view leaves the place open
+    vague: float  # the least difference in levels: even an equal view leaves the place uncertain by so much
 
     def look(self, image: NDArray[np.uint8] | None, scene: int | None, /) -> Features:
         """The features of what is seen now; ValueError says what is wrong with it."""
@@ -37,20 +37,20 @@ class FrontEnd(Protocol):
         ...
 
     def surprise(self, params: LocalViewParams, /) -> float:
-        """The difference between two images in a row from which on the robot was not driven here; inf = no telling."""
+        """The difference between two successive images above which driving cannot explain it; inf = cannot be told."""
         ...
 
     def picture(self, features: Features, /) -> NDArray[np.uint8]:
-        """For people: (h, w) grey or (h, w, 3) RGB."""
+        """The features as a picture for people: (h, w) grey or (h, w, 3) RGB."""
         ...
 
     def words(self, features: Features, /) -> str:
-        """For people who cannot see it."""
+        """The features in words, for people who cannot see the picture."""
         ...
 
 
 def named_front_end(params: LocalViewParams) -> FrontEnd:
-    """The one that the parameters name."""
+    """The front end that the parameters choose."""
     match params.front_end:
         case "template":
             return Template()

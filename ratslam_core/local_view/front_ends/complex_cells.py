@@ -1,4 +1,7 @@
-"""Complex cells: how much edge of each orientation lies where, whatever its phase. ACRA 2004 section 3.3, Prasser et al. 2004."""
+"""Complex cells: how strong edges of each orientation are in each place, whatever their phase.
+
+ACRA 2004 section 3.3, Prasser et al. 2004.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ GLYPH = 9  # pixels of the small picture that stands for one place
 
 @kind("complex cells/1")
 class ComplexCells:
-    """Energy of quadrature pairs of Gabor filters, divided by the brightness around: the light may change."""
+    """Energy of quadrature pairs of Gabor filters, divided by the brightness around, so that the light may change."""
 
     columns, rows = COLUMNS, ROWS
     shifts, scale, vague = True, 1.0, 0.0
@@ -51,7 +54,7 @@ class ComplexCells:
         return params.edge_surprise
 
     def picture(self, features: Features) -> NDArray[np.uint8]:
-        """Short bars along the edges, the brighter the more there is of them."""
+        """Short bars along the edges; the stronger the edges, the brighter the bars."""
         glyphs = _glyphs()[None, None] * features.reshape(COLUMNS, BANDS, ORIENTATIONS, 1, 1)
         return glyphs.max(axis=2).transpose(1, 2, 0, 3).reshape(BANDS * GLYPH, COLUMNS * GLYPH).astype(np.uint8)
 
@@ -60,7 +63,7 @@ class ComplexCells:
 
 
 def gabor_pair(across_rad: float) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Even and odd Gabor filter, blind to brightness; `across_rad` is the way across the edge, 0 = to the right."""
+    """Even and odd Gabor filter, blind to brightness; `across_rad` is the direction across the edge, 0 = to the right."""
     y, x = np.mgrid[-REACH : REACH + 1, -REACH : REACH + 1].astype(np.float64)
     envelope = np.exp(-(x**2 + y**2) / (2 * SIGMA**2))
     phase = 2 * math.pi / WAVELENGTH * (x * math.cos(across_rad) + y * math.sin(across_rad))

@@ -1,4 +1,4 @@
-"""How much of the image has which hue and saturation. ACRA 2005 section 7, Prasser et al. 2005."""
+"""A histogram of the image's hues and saturations. ACRA 2005 section 7, Prasser et al. 2005."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
 from ratslam_core.params import LocalViewParams
 
 HUES, SATURATIONS = COLUMNS, ROWS  # bins
-WIDTH, HEIGHT = 32, 24  # pixels: smaller than the camera's, which quiets its noise
+WIDTH, HEIGHT = 32, 24  # pixels; fewer than the camera's, which averages out its noise
 
 
 @kind("hue and saturation/1")
 class HueSaturation:
-    """A histogram of the whole image: brightness does not count, nor where in the image a colour is."""
+    """A histogram of the whole image. Neither brightness nor where in the image a colour is makes a difference."""
 
     columns, rows = COLUMNS, ROWS
     shifts, scale, vague = False, 2.5, 0.0
@@ -36,7 +36,7 @@ class HueSaturation:
         return np.minimum(np.rint(255 / self._full_bin * shares), 255).astype(np.uint8).ravel()
 
     def bland(self, features: Features, params: LocalViewParams) -> bool:
-        """Grey all over."""
+        """An image that is grey all over."""
         return self._full_bin / 255 * float(features.reshape(HUES, SATURATIONS)[:, 1:].sum()) < params.min_colour
 
     def threshold(self, params: LocalViewParams) -> float:
@@ -46,7 +46,7 @@ class HueSaturation:
         return params.colour_surprise
 
     def picture(self, features: Features) -> NDArray[np.uint8]:
-        """Hue to the right, saturation downwards, each bin in its colour, the brighter the more of it there is."""
+        """Hue to the right, saturation downwards; each bin in its colour, the brighter the larger its share."""
         value = np.minimum(features.reshape(HUES, SATURATIONS).T * 2.5, 255).astype(np.uint8)
         hue = np.tile((np.arange(HUES) * 180 // HUES).astype(np.uint8), (SATURATIONS, 1))
         saturation = np.tile((np.arange(SATURATIONS) * 255 // (SATURATIONS - 1)).astype(np.uint8)[:, None], (1, HUES))
@@ -60,12 +60,11 @@ class HueSaturation:
 def histogram(
     hue_deg: NDArray[np.float32], saturation: NDArray[np.float32], full: float, certain: float
 ) -> NDArray[np.float64]:
-    """Shares of the bins, shape (12, 8), sum 1. Every pixel is shared by the two nearest hues and the two nearest saturations;
-    `full` and more are the last.
+    """Shares of the bins, shape (12, 8), sum 1. Every pixel is divided between the two nearest hues and the two nearest
+    saturations; a saturation of `full` or more falls into the last bin.
 
-    [ours] The greyer a pixel below `certain`, the more evenly it is spread over all hues: none jumps from one hue to another
-    by noise.
-    test_front_ends.py::test_grey_has_no_hue.
+    [ours] A pixel of a saturation below `certain` is spread over all hues, the more evenly the greyer it is, so that
+    noise does not make it jump from one hue to another. test_front_ends.py::test_grey_has_no_hue.
     """
     level = np.minimum(saturation / full, 1.0) * (SATURATIONS - 1)
     low = np.minimum(level.astype(np.int64), SATURATIONS - 2)

@@ -1,6 +1,6 @@
-"""Scene numbers handed over by a simulator, as the papers' own had them. ACRA 2005 section 5, ACRA 2006 section 5.1."""
+"""Scene numbers given by a simulator, as in the papers' own simulations. ACRA 2005 section 5, ACRA 2006 section 5.1."""
 
-# Whoever calls may check no types.
+# Callers may not be type-checked.
 # pyright: reportUnnecessaryIsInstance=false
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ NUMBER = slice(0, 8)  # where the number is kept in the features
 
 @kind("scene numbers/1")
 class SceneNumbers:
-    """Each number is one local view cell, recruited at first sight. The image is not looked at."""
+    """Each number is one local view cell, recruited at first sight. The image is ignored."""
 
     columns, rows = COLUMNS, ROWS
-    shifts, scale, vague = False, 1000.0, 5.0  # other numbers are 10 levels away at least; a square is no point
+    shifts, scale, vague = False, 1000.0, 5.0  # other numbers are 10 levels away or more; a scene is no point
 
     def look(self, _image: NDArray[np.uint8] | None, scene: int | None = None) -> Features:
         if not isinstance(scene, numbers.Integral) or isinstance(scene, bool) or not 0 <= scene <= LARGEST:
@@ -37,11 +37,11 @@ class SceneNumbers:
         return False
 
     def threshold(self, _params: LocalViewParams) -> float:
-        """A number is known or it is not."""
+        """A number is either known or not."""
         return self.vague
 
     def surprise(self, _params: LocalViewParams) -> float:
-        """Numbers say nothing of how far apart scenes are."""
+        """Numbers do not tell how far apart scenes are."""
         return float("inf")
 
     def picture(self, features: Features) -> NDArray[np.uint8]:

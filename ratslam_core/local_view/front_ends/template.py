@@ -14,7 +14,7 @@ from ratslam_core.params import LocalViewParams
 
 @kind("template/1")
 class Template:
-    """Sensitive to all that changes, the light included: several views stand for one place."""
+    """Every change counts, the light included, so several views may stand for one place."""
 
     columns, rows = COLUMNS, ROWS
     shifts, scale, vague = True, 1.0, 0.0
