@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from web.messages import PoseCellLayer
 
-FLAT = (0.5, 1.0, 1.0)  # theta', y', x': a layer counts half of a cell
+FLAT = (0.5, 1.0, 1.0)  # theta', y', x': one layer counts as half a cell
 
 
 def owners(layer: PoseCellLayer) -> NDArray[np.int64]:
-    """(k,) rows of `layer.packets`: the nearest of each cell, around the torus; 0 when there are none."""
+    """(k,) rows of `layer.packets`: the packet nearest to each cell, around the torus; 0 when there are no packets."""
     if not layer.packets:
         return np.zeros(len(layer.cells), np.int64)
     turn = layer.shape[0] / math.tau

@@ -1,4 +1,4 @@
-"""A one-slot hand-over between the engine's thread and everyone who looks: the newest snapshot wins."""
+"""Hands the newest snapshot from the engine's thread to all readers: one slot, the newest wins."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Latest(Generic[T]):
         self._changed = threading.Condition()
         self._value: T | None = None
         self._version = 0
-        self.waking = "starting"  # what goes on until the first value is there, for people
+        self.waking = "starting"  # what is going on until the first value is there, in words for people
 
     def put(self, value: T) -> None:
         with self._changed:

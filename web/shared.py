@@ -1,7 +1,7 @@
 """What the page shares with Python, written from the Python side: `python -m web.shared` after a change of either.
 
-`static/shared.js` holds the names that the page uses while it runs, `types/shared.d.ts` what only the type check reads: the
-commands, the world file and the ids of the page's elements. `--check` says whether both are as they would be written now.
+`static/shared.js` holds the names that the page uses at run time. `types/shared.d.ts` holds what only the type check
+reads: the commands, the world file and the ids of the page's elements. `--check` says whether both are up to date.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _HEAD = "// Written by `python -m web.shared` from the models in Python: change 
 
 
 def names_text() -> str:
-    """The lists as JavaScript, each of the type of its very words."""
+    """The lists as JavaScript; the type of each is exactly its words."""
     world = WorldFile.model_json_schema()["$defs"]
     values = {
         "VIEWS": VIEWS,
@@ -62,7 +62,7 @@ def types_text() -> str:
 
 
 class _Ids(HTMLParser):
-    """Which element each id of a page names; a symbol is only ever drawn by reference."""
+    """Which element each id of a page names. Symbols are left out, since they are only drawn by reference."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -96,7 +96,7 @@ def _declared(models: dict[str, type[BaseModel]]) -> list[str]:
 
 
 def _type(schema: dict[str, Any]) -> str:
-    """One JSON schema as a TypeScript type: limits are the server's to check."""
+    """One JSON schema as a TypeScript type, without its limits, which the server checks."""
     if "$ref" in schema:
         return _public(schema["$ref"].split("/")[-1])
     if "const" in schema or "enum" in schema:

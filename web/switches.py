@@ -1,4 +1,4 @@
-"""What is switched on for all who look: layers over the plates, and what a click on the map does."""
+"""The switches that all pages share: layers over the plates, and what a click on the map does."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Switch:
     tab: str
     words: str
     hint: str
-    on: bool  # from the start
+    on: bool  # at the start
 
 
 SWITCHES = (
@@ -55,12 +55,12 @@ SWITCHES = (
 
 
 class Switches:
-    """From any thread. `on` is another object after each turn."""
+    """May be used from any thread. `on` is another object after each change."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self.on: frozenset[Name] = frozenset(switch.name for switch in SWITCHES if switch.on)
-        self.on_turn: Callable[[], None] | None = None  # called after each turn, in its thread
+        self.on_turn: Callable[[], None] | None = None  # called after each change, in the thread that made it
 
     def is_on(self, name: Name) -> bool:
         return name in self.on

@@ -1,4 +1,4 @@
-"""The theme each page has chosen, and that a page which chooses another leaves the stage it is shown."""
+"""The theme that each page has chosen. A page that chooses the other one leaves the viewer it is shown."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST_PAGES = 1024
 
 
 class Themes:
-    """In the server's loop. A page has an id of its own each time it is loaded and says its theme when it comes."""
+    """Used in the server's loop. A page has a new id each time it is loaded, and says its theme when it connects."""
 
     def __init__(self) -> None:
         self._chosen: dict[str, Theme] = {}
@@ -33,7 +33,7 @@ class Themes:
 
     @contextlib.contextmanager
     def shown(self, page: str) -> Generator[tuple[Theme, asyncio.Event], None, None]:
-        """What a page is to be shown, and the event that it has chosen otherwise since."""
+        """The theme that a page is to be shown, and an event that is set when it chooses the other."""
         turned = self._turned[page] = asyncio.Event()
         try:
             yield self.of(page), turned

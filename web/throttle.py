@@ -1,4 +1,4 @@
-"""How often something may be shown: the newest wins, and what is not due waits without being forgotten."""
+"""How often something may be shown. The newest wins, and what is not due yet waits without being forgotten."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 
 class Throttle:
-    """Shows its content when that is another object than the last shown, at most `hz` times a second."""
+    """Shows its content when that is another object than was shown last, at most `hz` times a second."""
 
     def __init__(self, hz: float, show: Callable[..., object]) -> None:
         self._period_s, self._show = 1.0 / hz, show

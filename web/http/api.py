@@ -46,7 +46,7 @@ _ERRORS: dict[int | str, dict[str, Any]] = {
 def create_app(
     latest: Latest[Snapshot], submit: Submit, viewers: ViewersLike, port: int, offered: Offered | None = None
 ) -> ASGIApp:
-    """The whole application behind its guard. `port`: that Host and Origin must name; `offered`: a brain kept before."""
+    """The whole application behind its guard. `port`: the one that Host and Origin must name; `offered`: a kept brain."""
     cameras, themes = Cameras(), Themes()
     stream = Stream(latest, submit, cameras, themes, viewers.switches)
 
@@ -81,7 +81,7 @@ def create_app(
 def _add_state(app: FastAPI, latest: Latest[Snapshot], stream: Stream) -> None:
     @app.get("/healthz", tags=["state"])
     def healthz() -> Response:
-        """Alive, and at which tick; 503 while it is starting, and what it does."""
+        """Whether the engine is alive, and at which tick; 503 while it is starting, and what it is doing."""
         _, snapshot = latest.get()
         if snapshot is None:
             return json_response(to_json({"status": "starting", "doing": latest.waking, "tick": None}), 503)
@@ -125,7 +125,7 @@ def _add_brain(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
         responses={200: binary, 403: _ERRORS[403], 429: _ERRORS[429], 503: _ERRORS[503], 507: too_large},
     )
     async def save() -> Response:
-        """The whole brain as one file, as `--save-brain` writes it; who asks while it is made or sent gets the same."""
+        """The whole brain as one file, as `--save-brain` writes it. Requests while it is made or sent get the same file."""
         limits.pass_on("brain")
         _, snapshot = latest.get()
         world = "" if snapshot is None else f"-{re.sub(r'[^A-Za-z0-9]+', '-', snapshot.world.name)}-seed{snapshot.seed}"
@@ -136,7 +136,7 @@ def _add_brain(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
 
     @app.post("/api/brain", tags=["brain"], openapi_extra={"requestBody": body}, responses=_ERRORS)
     async def use(request: Request) -> Response:
-        """Start anew in the same world with a saved brain. What is no brain is refused, and the session goes on."""
+        """Start anew in the same world with a saved brain. A file that is no brain is refused, and the session goes on."""
         limits.pass_on("brain")
         raw = await body_of(request, MAX_BRAIN_BYTES)
         try:
@@ -156,7 +156,7 @@ def _add_commands(app: FastAPI, submit: Submit) -> None:
 
     @app.post("/api/commands", tags=["commands"], openapi_extra={"requestBody": body}, **route)
     async def command(request: Request) -> Response:
-        """One command. The answer comes when the engine has taken or refused it; nothing is half done."""
+        """One command. The answer comes when the engine has taken or refused it. A command is carried out wholly or not."""
         document = read_object(await body_of(request))
         limits.pass_on(str(document.get("type")))
         answer = await told(submit, check(document))

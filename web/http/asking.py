@@ -1,5 +1,5 @@
-"""The one place in `web` that asks the engine, and what becomes of a refusal: a `Declined`, which every way out turns into
-an answer (`answer_declined` for HTTP, the stream for its pages)."""
+"""The one place in `web` that asks the engine. A refusal becomes a `Declined`, which is turned into an answer further
+out: by `answer_declined` for HTTP, by the stream for its pages."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ TICK_TIMEOUT_S = 0.1  # a step is answered when its ticks are done
 
 
 class NoAnswer(Declined):
-    """The engine did not answer in time, or failed at the command; `status` is what HTTP calls that."""
+    """The engine did not answer in time, or failed at the command; `status` is the HTTP status."""
 
 
 async def told(submit: Submit, command: Command | EngineRequest, timeout_s: float | None = None) -> Accepted:
-    """What the engine says to a command when it has taken it. Raises Malformed when it refuses, and NoAnswer."""
+    """The engine's answer to a command that it has taken. Raises Malformed when it refuses, and NoAnswer."""
     answer = asyncio.wrap_future(submit(command))
     if timeout_s is None:
         timeout_s = ANSWER_TIMEOUT_S + (TICK_TIMEOUT_S * command.ticks if isinstance(command, Step) else 0.0)

@@ -1,4 +1,4 @@
-"""The bodies of requests: read up to their limit, checked against a model, and what the document says of them."""
+"""The bodies of requests: read up to their limit, checked against a model, and described in the OpenAPI document."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ async def checked_body(request: Request, model: type[_W], limits: Limits, most: 
 
 
 def takes(model: type[BaseModel]) -> dict[str, Any]:
-    """What a route says of its body in the OpenAPI document."""
+    """The description of a route's body in the OpenAPI document."""
     schema = model.model_json_schema()
     definitions = schema.pop("$defs", {})
     for part in definitions.values():  # inline: they are used once

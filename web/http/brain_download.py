@@ -1,4 +1,4 @@
-"""The brain on its way to whoever asks for it: made once, by one thread, for all that ask meanwhile; one in memory at a time."""
+"""The brain as a download: made once, in one thread, for all who ask meanwhile. One is in memory at a time."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from web.http.brain_files import packed
 from web.http.commands import Malformed
 from web.messages import ReadBrain
 
-FRESH_S = 10.0  # so old may be what is sent to one who asks now
-SENT_WITHIN_S = 300.0  # who does not take it keeps nobody else from it for longer
+FRESH_S = 10.0  # how old a file may be that is sent to a new request
+SENT_WITHIN_S = 300.0  # a reader that does not take the file keeps others from a new one for no longer than this
 COPY_TIMEOUT_S = 10.0  # the engine copies between two ticks
 
 
@@ -27,7 +27,7 @@ class BrainDownload:
         self._submit = submit
         self._file: asyncio.Task[bytes] | None = None
         self._asked_s = 0.0
-        self._wanted = 0  # by so many
+        self._wanted = 0  # by how many requests the file is in use
 
     async def answer(self, headers: dict[str, str]) -> Response:
         """The file as an answer. Raises NoAnswer when the engine gives none, or an older one is still being sent."""
@@ -44,7 +44,7 @@ class BrainDownload:
         return _Sent(self, data, headers)
 
     def done(self) -> None:
-        """One less wants it; the last one lets it go."""
+        """One request less uses the file; after the last one it is dropped."""
         self._wanted -= 1
         if self._wanted == 0:
             self._file = None

@@ -21,7 +21,7 @@ class Client:
         self.confirms = confirms  # says "got" to each state
         self.got = asyncio.Event()
         self.page = page
-        self.reader = reader  # of the side panel
+        self.reader = reader  # the side panel's, for this page
         self.news = asyncio.Event()
         self.limits = Limits()
         self.moving = False  # its last drive command asked for motion
@@ -43,7 +43,7 @@ class Client:
         self.news.clear()
 
     def background(self, work: Coroutine[Any, Any, None]) -> None:
-        """Done beside what it listens to; it ends with the page, and its failure ends nothing else."""
+        """Run work beside the page's listening. It ends with the page, and its failure ends nothing else."""
         task = asyncio.create_task(work)
         self.tasks.add(task)
         task.add_done_callback(lambda done: (self.tasks.discard(done), done.cancelled() or done.exception()))

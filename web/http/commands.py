@@ -1,4 +1,4 @@
-"""A command out of JSON: checked, and what is wrong with it said in a plain sentence with field, value and remedy."""
+"""Commands from JSON: checked, and errors said in a plain sentence with the field, its value and what would be right."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _MOST_LEVELS, _MOST_PARTS = 20, 100_000
 
 
 class Wrong(BaseModel):
-    """One thing that is wrong: the field (null when it is none in particular), its value, and what would be right."""
+    """One thing that is wrong: the field (null for none in particular), its value, and what would be right."""
 
     field: str | None
     value: Any
@@ -40,7 +40,7 @@ class CommandAccepted(BaseModel):
 
 
 class Declined(Exception):  # noqa: N818
-    """Something that is not done: what HTTP calls that, and why."""
+    """A request that is not carried out: its HTTP status, and why."""
 
     def __init__(self, wrongs: list[dict[str, Any]], status: int) -> None:
         super().__init__("; ".join(wrong["reason"] for wrong in wrongs))
@@ -48,7 +48,7 @@ class Declined(Exception):  # noqa: N818
 
     @classmethod
     def of(cls, status: int, reason: str) -> Declined:
-        """It concerns no field in particular."""
+        """One that concerns no field in particular."""
         return cls([wrong(None, None, reason)], status)
 
 
@@ -60,7 +60,7 @@ class Malformed(Declined):
 
 
 def read_object(raw: bytes | str) -> dict[str, Any]:
-    """The JSON object in `raw`. Raises Malformed when it is something else, or more than anybody means."""
+    """The JSON object in `raw`. Raises Malformed when it is something else, or larger than any command can be."""
     opened = raw.count("[") + raw.count("{") if isinstance(raw, str) else raw.count(b"[") + raw.count(b"{")
     if opened > _MOST_PARTS:  # each takes thirty times as much memory as text
         raise Malformed([wrong(None, None, f"this has {opened} brackets [ and {{; at most {_MOST_PARTS} can be")])
@@ -142,7 +142,7 @@ def _shown(value: object) -> str:
 
 
 def _echo(value: object) -> Any:
-    """The value itself where it is small and can be sent, else the beginning of it as text."""
+    """The value itself when it is small and can be sent, else its beginning as text."""
     try:
         encoded = orjson.dumps(value, option=orjson.OPT_SERIALIZE_NUMPY)
         if len(encoded) <= _LONGEST_ECHO:

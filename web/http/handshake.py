@@ -1,7 +1,8 @@
-"""Websocket requests that cannot be read are answered; of itself, uvicorn leaves whoever sent one waiting for ever.
+"""Answers websocket requests that cannot be read. By itself, uvicorn leaves their senders waiting for ever.
 
-uvicorn reads a request with h11 and then has websockets read it again, which takes fewer and shorter headers. Browsers send
-the cookies of every server at this address, whatever its port, so a long line is no fault of ours or theirs.
+uvicorn reads a request with h11 and then has websockets read it again, which accepts fewer and shorter headers.
+Browsers send the cookies of every server at this address, whatever its port, so a long header need not be anybody's
+fault.
 """
 
 from __future__ import annotations
@@ -14,13 +15,13 @@ from websockets.exceptions import SecurityError
 from web.http.commands import problem
 
 MAX_HEADER_BYTES = 64 * 1024  # of a request, all headers together
-websockets.http11.MAX_LINE_LENGTH = MAX_HEADER_BYTES  # read anew for each request; 8 KiB of itself
+websockets.http11.MAX_LINE_LENGTH = MAX_HEADER_BYTES  # read anew for each request; 8 KiB by default
 
 
 class WebSocketProtocol(WebSocketsSansIOProtocol):
-    """uvicorn's protocol, with an answer to what websockets does not take for a request.
+    """uvicorn's protocol, with an answer to what websockets does not accept as a request.
 
-    And with an end to a refusal: uvicorn takes a request that was answered with a sentence for one that was forgotten.
+    It also completes a refusal: uvicorn takes a request that was answered with a sentence for one that was forgotten.
     """
 
     async def send(self, message: ASGISendEvent) -> None:

@@ -1,4 +1,4 @@
-"""The brain of an earlier program, offered to whoever opens the page: woken up, or put aside for good."""
+"""The brain of an earlier run of the program, offered to whoever opens the page: it is woken up or put aside for good."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ WAKE_TIMEOUT_S = 60.0  # in a world of 10,000 walls
 
 @dataclass(frozen=True, slots=True)
 class Offered:
-    """Of what it is. `read` gives the brain, or raises ValueError with a sentence that names the file; it waits for the disk."""
+    """What the kept brain is of. `read` gives the brain; its ValueError names the file. It waits for the disk."""
 
     world: str
     seed: int
@@ -36,7 +36,7 @@ class Offered:
 
 
 class AnswerOffer(Body):
-    """`use`: begin anew with this brain, in its world and with its seed. Else it is not offered again."""
+    """`use`: begin anew with this brain, in its world and with its seed. Otherwise it is not offered again."""
 
     use: bool
 
@@ -64,7 +64,7 @@ class KeptOffer:
         self._limits, self._answering = Limits(), asyncio.Lock()
 
     def told(self) -> bytes:
-        """What it is of as JSON, or null."""
+        """The description of the kept brain as JSON, or null."""
         kept = self._offered
         if kept is None:
             return b"null"
@@ -86,7 +86,7 @@ class KeptOffer:
         return to_json({"used": use})
 
     async def _wake(self, kept: Offered) -> None:
-        """A new run with it, or Malformed and all is as before."""
+        """Begin a new run with the brain. Raises Malformed, and leaves everything as it was, when that fails."""
         world = (await told(self._submit, ReadFiled(kept.world))).result
         try:
             if not isinstance(world, World):
@@ -102,7 +102,7 @@ def add_kept_offer(app: FastAPI, offered: Offered | None, latest: Latest[Snapsho
 
     @app.get("/api/brain/kept", tags=["brain"], responses={200: {"model": KeptBrain | None}})
     async def kept() -> Response:
-        """The brain that an earlier program kept last; null when there is none, or somebody has answered the offer."""
+        """The brain that an earlier program kept last; null when there is none or somebody has answered the offer."""
         return json_response(offer.told())
 
     @app.post("/api/brain/kept", tags=["brain"], openapi_extra=takes(AnswerOffer),

@@ -1,9 +1,9 @@
-"""viser's client and websocket through our own port, to the viewer of each page's theme, and which of its clients is whose.
+"""viser's client and websocket through our own port, to the viewer of each page's theme, and which viser client is whose.
 
-viser listens on loopback on a port of its own and lets in who knows its secret: everything reaches it through here, after the
-guard. Its client is a single page, so that one path is all that is served of it: there is nothing to traverse.
-Every page brings an unguessable id; viser numbers its clients when their first camera message arrives, so that message
-is let through one page at a time and the number that appears then is that page's.
+viser listens on loopback on a port of its own and admits only who knows its secret, so everything reaches it through
+here, after the guard. Its client is a single page. Only this one path of it is served, so there is nothing to traverse.
+Every page brings an unguessable id. viser numbers its clients when their first camera message arrives. That message is
+let through for one page at a time, so the number that then appears is that page's.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from web.viewer.camera_views import Camera
 from web.viewer.viser_server import SECRET_HEADER, client_page
 
 VIEWS = ("all", "office", "pose", "map")
-PROTOCOL = re.compile(r"viser-v[\w.+-]{1,32}", re.ASCII)  # the client's version; viser refuses another than its own
+PROTOCOL = re.compile(r"viser-v[\w.+-]{1,32}", re.ASCII)  # the client's version; viser refuses any but its own
 PAGE_ID = re.compile(r"[A-Za-z0-9_-]{22,64}")
 SEND_TIMEOUT_S = 10.0
 CLOSE_TIMEOUT_S = 1.0
@@ -39,15 +39,15 @@ MOST_CLIENTS = 32
 class ViewerLike(Protocol):
     """What the page needs from a 3-D viewer."""
 
-    on_connect: Callable[[int], None] | None  # set by us; called with viser's client number when a browser is there
+    on_connect: Callable[[int], None] | None  # set by us; called with viser's client number when a browser connects
     on_complaint: Callable[[int, str], None] | None  # set by us; called with that number and why something was refused
 
     @property
     def port(self) -> int: ...
     @property
-    def secret(self) -> str: ...  # what viser's port asks for
+    def secret(self) -> str: ...  # the secret that viser's port requires
     def fly(self, client_id: int, view: str, at_once: bool = False, turned: Camera | None = None) -> None: ...
-    def turned(self, client_id: int) -> Camera | None: ...  # where somebody has turned this camera to
+    def turned(self, client_id: int) -> Camera | None: ...  # where somebody has turned this camera by hand
 
 
 class ViewersLike(Protocol):
@@ -57,11 +57,11 @@ class ViewersLike(Protocol):
     def start(self) -> None: ...
     def stop(self) -> None: ...
     @property
-    def switches(self) -> Switches: ...  # for all who look
+    def switches(self) -> Switches: ...  # shared by all pages
 
 
 class Cameras:
-    """Which viser client is whose, the view each page asked for last, and where it had turned its camera when it left."""
+    """Which viser client is whose, the view that each page asked for last, and where its camera was turned when it left."""
 
     def __init__(self) -> None:
         self._one_at_a_time = asyncio.Lock()
@@ -73,13 +73,13 @@ class Cameras:
         self.on_notice: Callable[[str, str], None] | None = None  # called with a page and what it should be told
 
     def listen(self, viewer: ViewerLike) -> None:
-        """Hear of a viewer's new clients and of refusals (in other threads) from now on, in the running loop."""
+        """From now on, hear of a viewer's new clients and of refusals in the running loop; they happen in other threads."""
         loop = asyncio.get_running_loop()
         viewer.on_connect = lambda client_id: _call(loop, self._arrived, viewer, client_id)
         viewer.on_complaint = lambda client_id, text: _call(loop, self._complained, viewer, client_id, text)
 
     async def show(self, page: str, view: str) -> None:
-        """Fly this page's camera; remembered when its viewer is not there yet."""
+        """Fly this page's camera to a view; remembered for later when its viewer is not connected yet."""
         self._turned.pop(page, None)
         _remember(self._wanted, page, view)
         if page in self._client_of:
@@ -102,7 +102,7 @@ class Cameras:
                 return False
             finally:
                 self._arrival = None
-        if page in self._wanted:  # it comes to this viewer from another, or comes back: no flight
+        if page in self._wanted:  # the page comes from another viewer or comes back: no flight
             turned = self._turned.pop(page, None)
             await asyncio.to_thread(viewer.fly, client_id, self._wanted[page], at_once=True, turned=turned)
         return True
@@ -111,7 +111,7 @@ class Cameras:
         return page in self._client_of
 
     def unpair(self, page: str, viewer: ViewerLike) -> None:
-        """This page has left this viewer; it may be at another by now."""
+        """This page has left this viewer; it may already be connected to another."""
         if page in self._client_of and self._client_of[page][0] is viewer:
             turned = viewer.turned(self._client_of.pop(page)[1])
             if turned is not None:
@@ -123,7 +123,7 @@ class Cameras:
         late = [page for page, its in self._overdue.items() if its is viewer]
         if self._arrival is not None and self._arrival[0] is viewer and not self._arrival[1].done():
             self._arrival[1].set_result(client_id)
-        elif len(late) == 1:  # and there is no doubt whose it is
+        elif len(late) == 1:  # there is no doubt whose number it is
             del self._overdue[late[0]]
             self._client_of[late[0]] = viewer, client_id
 
@@ -137,7 +137,7 @@ def _remember(kept: dict[str, Any], page: str, what: object) -> None:
     kept.pop(page, None)
     kept[page] = what
     if len(kept) > 2 * MOST_CLIENTS:
-        del kept[next(iter(kept))]  # of the page that has been quiet for longest
+        del kept[next(iter(kept))]  # that of the page that has been quiet for longest
 
 
 class ViserProxy:
@@ -167,7 +167,7 @@ class ViserProxy:
         return Response(body, headers=headers, media_type="text/html")
 
     async def relay(self, browser: WebSocket, page: str) -> None:
-        """Both directions until one side ends or the page wants the other theme: then its browser comes again at once.
+        """Relay both directions until one side ends or the page chooses the other theme; its browser then reconnects at once.
 
         The guard has checked Host and Origin before this.
         """
@@ -225,7 +225,7 @@ class ViserProxy:
 
 
 def spoken(browser: WebSocket) -> list[websockets.Subprotocol]:
-    """Those of the subprotocols a browser offers that viser may understand."""
+    """Those of the subprotocols offered by a browser that viser may understand."""
     return [websockets.Subprotocol(name) for name in browser.scope["subprotocols"] if PROTOCOL.fullmatch(name)]
 
 
@@ -237,7 +237,7 @@ async def _to_browser(viser: ClientConnection, browser: WebSocket) -> None:
 
 
 async def end_all(tasks: set[asyncio.Task[Any]]) -> None:
-    """Cancel these tasks and see them end; what they raised concerned a browser that is gone."""
+    """Cancel these tasks and wait for their end. What they raised concerned a browser that is gone."""
     for task in tasks:
         task.cancel()
     await asyncio.wait(tasks)
@@ -247,7 +247,7 @@ async def end_all(tasks: set[asyncio.Task[Any]]) -> None:
 
 
 async def close_quietly(socket: WebSocket, code: int = 1000) -> None:
-    """Say goodbye to a browser that is still there, without waiting for one that takes nothing."""
+    """Close the socket of a browser that is still there, without waiting for one that reads nothing."""
     if socket.client_state is WebSocketState.CONNECTED:
         with contextlib.suppress(Exception):
             async with asyncio.timeout(CLOSE_TIMEOUT_S):

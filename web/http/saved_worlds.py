@@ -26,8 +26,8 @@ _T = TypeVar("_T")
 class SaveWorld(Body):
     name: Name
     title: Title | None = None
-    replace: bool = False  # another world of this name that has been saved before
-    rename: bool = False  # the one that has been saved under the name so far goes
+    replace: bool = False  # overwrite another world that has been saved under this name
+    rename: bool = False  # delete what was saved under the name so far
 
 
 class NamedWorld(Body):
@@ -62,24 +62,24 @@ def add_saved_worlds(app: FastAPI, submit: Submit, limits: Limits) -> None:
     @app.post("/api/worlds/save", tags=["worlds"], openapi_extra=takes(SaveWorld),
               responses={200: {"model": Saved}, **ERRORS})  # fmt: skip
     async def save(request: Request) -> Response:
-        """Write the office as it is now into the folder of one's own worlds; it bears this name from then on."""
+        """Write the office as it is now into the folder of your own worlds. From then on it has this name."""
         return json_response(await _save(request, submit, limits))
 
     @app.post("/api/worlds/delete", tags=["worlds"], openapi_extra=takes(NamedWorld),
               responses={200: {"model": Saved}, **ERRORS})  # fmt: skip
     async def delete(request: Request) -> Response:
-        """Delete one of one's own worlds; `file` is where it is kept. The one that is open goes on, and is not saved then."""
+        """Delete one of your own worlds; `file` is where it is kept. If it is open it goes on, but is then not saved."""
         return json_response(await _delete(request, submit, limits))
 
     @app.post("/api/worlds/restore", tags=["worlds"], openapi_extra=takes(NamedWorld),
               responses={200: {"model": Restored}, **ERRORS})  # fmt: skip
     async def restore(request: Request) -> Response:
-        """Bring the world of this name back that was deleted last."""
+        """Bring back the world of this name that was deleted last."""
         return json_response(await _restore(request, submit, limits))
 
 
 def not_taken(name: str) -> None:
-    """Raises Malformed when another world has this name, or it is none."""
+    """Raises Malformed when another world has this name, or when it is not a valid name."""
     _free(name)
     if not own_worlds.is_name(name):
         raise Malformed([wrong("name", name, f"a name has {own_worlds.NAME_RULE}, got {name!r}")])
@@ -119,7 +119,7 @@ async def _save(request: Request, submit: Submit, limits: Limits) -> bytes:
 
 
 async def _is_ours(name: str, now: str, submit: Submit) -> None:
-    """Raises Malformed when what is saved under this name is not what this dashboard read there or wrote itself."""
+    """Raises Malformed when what is saved under this name is not what this dashboard read or wrote there."""
     if name != now:
         reason = f"there is a world {name!r} already; replace it or choose another name"
         raise Malformed([wrong("replace", False, reason)])
@@ -148,7 +148,7 @@ async def _restore(request: Request, submit: Submit, limits: Limits) -> bytes:
 
 
 async def _done(name: str, work: Callable[[], _T]) -> _T:
-    """What the work in the folder gives; raises Malformed with its reason."""
+    """Do some work in the folder and return its result. Raises Malformed with the reason when it fails."""
     try:
         return await asyncio.to_thread(work)
     except ValueError as error:

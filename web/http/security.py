@@ -1,12 +1,12 @@
 """Who may talk to the server: exact Host and Origin, JSON only, bounded bodies, and the headers that bind the browser.
 
-A local server is reachable by every page its user has open (DNS rebinding, cross-site websockets), so the check is pure
-ASGI: it runs before a websocket is accepted, which ordinary HTTP middleware does not. The rules:
+A local server can be reached by every page that its user has open (DNS rebinding, cross-site websockets). The check is
+therefore pure ASGI: it runs before a websocket is accepted, which ordinary HTTP middleware does not. The rules:
 
 - Host must be one of ours with our port, once. Missing or repeated: 400. Anything else: 403.
 - Origin, where there is one, must be "http://" + that Host. A websocket must have one (browsers always send it, so
   whoever leaves it out is a program and can add it); other requests may come without, as curl's do.
-- What costs much, a brain, a whole map or a world, is not read for another site either (Sec-Fetch-Site).
+- What is costly to make (a brain, a whole map, a world) is not read for another site (Sec-Fetch-Site).
 - A request that is neither GET nor HEAD must not be cross-site (Sec-Fetch-Site) and must carry JSON of at most 64 KiB,
   24 MiB with plans; a brain that is uploaded is application/octet-stream (no form can send that either) of at most 256 MiB.
 """
@@ -33,8 +33,8 @@ PAGE_POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self' ws://{host}; "
     "frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'"
 )
-# viser's client is one page that unpacks its own code and style with WebAssembly, whose glue makes functions out of
-# text, and runs its socket in a blob worker. Nothing that a person types ever becomes part of it.
+# viser's client is one page that unpacks its own code and style with WebAssembly, whose glue code makes functions from
+# text, and that runs its socket in a blob worker. Nothing that a person types ever becomes part of it.
 VISER_POLICY = (
     "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval' blob:; style-src 'unsafe-inline'; "
     "img-src 'self' data: blob:; font-src data:; connect-src 'self' data: blob: ws://{host}; worker-src blob: data:; "

@@ -27,7 +27,7 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class CannotListen(Exception):  # noqa: N818
-    """The address cannot be had; the message says why and what to do."""
+    """The address is not available; the message says why and what to do."""
 
 
 class Dashboard:
@@ -62,12 +62,12 @@ class Dashboard:
         return f"http://{host}:{self._port}/"
 
     def bind(self) -> None:
-        """Take the port now, before anything slow starts. Raises CannotListen with a sentence."""
+        """Bind the port now, before anything slow starts. Raises CannotListen with a sentence."""
         self._socket = listening_socket(self._host, self._port)
         self._port = self._socket.getsockname()[1]
 
     def run(self) -> None:
-        """Serve until told to stop. Exits with code 2 and a sentence when the address cannot be had."""
+        """Serve until told to stop. Exits with code 2 and a sentence when the address is not available."""
         try:
             if self._socket is None:
                 self.bind()
@@ -111,7 +111,7 @@ class Dashboard:
 
 
 class _Server(uvicorn.Server):
-    """uvicorn that says when it listens and that ends quietly on a signal instead of raising it again."""
+    """A uvicorn server that says when it listens, and that ends quietly on a signal instead of raising it again."""
 
     def __init__(self, config: uvicorn.Config, on_ready: Callable[[], None]) -> None:
         super().__init__(config)

@@ -1,7 +1,7 @@
-"""A snapshot as JSON: the contract of `/api/state` word for word, and what the page itself needs beside it.
+"""A snapshot as JSON: exactly the contract of `/api/state`, and what the page needs beyond it.
 
 Numbers that are not finite become null; the speed "as fast as possible" (infinite) becomes 0, as in `set_speed`.
-Every text is computed once per snapshot, whoever asks.
+Each text is made at most once per snapshot, however many ask for it.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def state(snapshot: Snapshot) -> dict[str, Any]:
 
 
 def map_fields(layer: MapLayer, turn_rad: float) -> dict[str, Any]:
-    """The map's nodes: ids and places (map frame, metres) row by row, and the turn in which the page shows them."""
+    """The map's nodes: ids and places (map frame, metres) row by row, and the angle by which the page turns them."""
     return {"ids": layer.ids, "xy": layer.xy, "turn_rad": turn_rad}
 
 
@@ -105,7 +105,7 @@ def event_fields(event: Event) -> dict[str, Any]:
 
 
 def experience_fields(report: ExperienceReport) -> dict[str, Any]:
-    """`/api/experience/{id}`. Its view's strongest links to pose cells as rows theta', y', x' with their strengths."""
+    """`/api/experience/{id}`. The strongest links of its view to pose cells are rows theta', y', x' with strengths."""
     x, y, theta = report.cell
     return {
         "id": report.id,
@@ -168,7 +168,7 @@ class StateText:
         return self.light(snapshot)[:-1] + b',"map":' + self._map + b"}"
 
     def page(self, snapshot: Snapshot) -> bytes:
-        """What the page needs beside the contract."""
+        """What the page needs beyond the contract."""
         return self._once(snapshot, "page")
 
     def _once(self, snapshot: Snapshot, kind: str) -> bytes:
@@ -184,7 +184,7 @@ def _pose(pose: Pose) -> dict[str, float]:
 
 
 def _living(layer: LivingLayer) -> dict[str, Any]:
-    """Doors from 0 (shut) to 1, lamps that shine, how many people and boxes are there, daylight (1 = as painted)."""
+    """Doors from 0 (shut) to 1 (open), lamps that shine, how many people and boxes are there, daylight (1 = as painted)."""
     return {
         "doors": dict(zip(layer.door_names, layer.door_opening.tolist(), strict=True)),
         "lamps": dict(zip(layer.lamp_names, (layer.lamps[:, 3] > 0).tolist(), strict=True)),

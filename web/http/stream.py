@@ -1,13 +1,14 @@
 """The page's websocket: the newest state to everyone, ten to twenty times a second, and commands back.
 
-Out: {"type": "hello", ...} once, {"type": "waking", "doing"} before the first tick, {"type": "state", "state": <contract>,
-"page": ...}, {"type": "events", ...}, {"type": "panel", ...}: what the open tabs of the side panel show, framed with arrays
-(web/panel), {"type": "answer", "id", ...} to whatever carried an id or went wrong, and {"type": "notice", "text"}: why something
-done on this page's plates was refused. In: any command of `POST /api/commands` with an optional "id"; three that concern this
-page alone: {"type": "view", "name"}, {"type": "theme", "name"} and {"type": "tabs", "names"}, those of the side panel that it has
-open: nobody is sent what nobody sees; and {"type": "switch", "name", "on"}, for all who look.
-Each browser has its own sender, newest wins; one that takes nothing for five seconds is let go. A page that connects with
-`got=1` says {"type": "got"} after each state and gets no other before: a slow one never falls behind in what lies in buffers.
+Out: {"type": "hello", ...} once; {"type": "waking", "doing"} before the first tick; {"type": "state", "state":
+<contract>, "page": ...}; {"type": "events", ...}; {"type": "panel", ...}: what the open tabs of the side panel show,
+framed with arrays (web/panel); {"type": "answer", "id", ...} to every message that carried an id or went wrong;
+{"type": "notice", "text"}: why something done on this page's plates was refused. In: any command of `POST
+/api/commands` with an optional "id". Three messages concern this page alone: {"type": "view", "name"}, {"type":
+"theme", "name"} and {"type": "tabs", "names"}, the tabs of the side panel that are open, since only those are sent.
+{"type": "switch", "name", "on"} concerns all pages. Each browser has its own sender, and the newest state wins. A
+browser that takes nothing for five seconds is disconnected. A page that connects with `got=1` says {"type": "got"}
+after each state and gets no other before, so that a slow page never falls behind because of what lies in buffers.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from web.panel.panel import TABS, Panel, PanelReader
 from web.switches import NAMES, Switches
 from web.themes import THEMES, Themes
 
-PERIOD_S = 0.045  # at x1 the engine ticks ten times a second; what a command changes need not wait for that
+PERIOD_S = 0.045  # at x1 the engine ticks ten times a second; the effect of a command is shown sooner
 MOST_CLIENTS = 32
 
 
@@ -69,7 +70,7 @@ class Stream:
             await asyncio.sleep(PERIOD_S)
 
     async def serve(self, socket: WebSocket, page: str, confirms: bool = False) -> None:
-        """One page from its arrival to its end."""
+        """Serve one page until it leaves."""
         await socket.accept()
         client = Client(socket, page, confirms, PanelReader(self._panel))
         self._clients.add(client)
@@ -86,7 +87,7 @@ class Stream:
     # ------------------------------------------------------------ out
 
     def notify(self, page: str, text: str) -> None:
-        """A sentence for one page alone."""
+        """Send a sentence to one page alone."""
         for client in self._clients:
             if client.page == page:
                 client.background(client.send(_text({"type": "notice", "text": text})))
@@ -195,7 +196,7 @@ class Stream:
         raise Malformed([wrong("name", name, f"switch takes on, true or false, and name, one of: {', '.join(NAMES)}")])
 
     async def _confirm(self, client: Client, identity: object) -> None:
-        """A message about pages alone has been taken; whoever gave it an id hears of it."""
+        """Answer a message that concerns pages alone, when it had an id."""
         if identity is not None:
             _, snapshot = self._latest.get()
             tick = None if snapshot is None else snapshot.tick

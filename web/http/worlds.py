@@ -1,6 +1,6 @@
-"""The world as a file: read it, download it, open what somebody drops on the page, and begin an empty one.
+"""The world as a file: read it, download it, open a file dropped on the page, and begin an empty one.
 
-Importing runs in a thread of its own, one at a time; the engine only hears of worlds that are sound.
+Imports run in a thread of their own, one at a time. The engine is given only worlds that have been checked.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from web.http.state import office_fields, to_json
 from web.latest import Latest
 from web.messages import OpenWorld, Snapshot
 
-OPEN_TIMEOUT_S = 30.0  # a world of 10,000 walls is painted in seconds
+OPEN_TIMEOUT_S = 30.0  # painting a world of 10,000 walls takes seconds
 
 
 class UploadedFile(Body):
@@ -39,8 +39,8 @@ class OpenFiles(Body):
     """Files that belong together: a world or a vector map (.json), a picture, or a map_server .yaml with its picture."""
 
     files: Annotated[list[UploadedFile], Field(min_length=1, max_length=4)]
-    scale_m: float | None = None  # metres a pixel, for a plain picture
-    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] = 0  # of the looks that bare walls get
+    scale_m: float | None = None  # metres per pixel, for a plain picture
+    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] = 0  # for the looks that bare walls get
 
 
 class NewWorld(Body):
@@ -53,7 +53,7 @@ class NewWorld(Body):
 
 
 class Opened(BaseModel):
-    """The session begins anew in it."""
+    """The world in which the session begins anew."""
 
     name: str
     title: str
@@ -83,7 +83,7 @@ def add_worlds(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
     @app.post(PLAN_PATH, tags=["worlds"], openapi_extra=takes(OpenFiles),
               responses={200: {"model": Opened}, **ERRORS})  # fmt: skip
     async def open_files(request: Request) -> Response:
-        """Begin anew in a world or plan. When it cannot be, the session stays as it was."""
+        """Begin anew in a world or plan. When that is not possible, the session stays as it was."""
         if importing.locked():
             raise Declined.of(429, "another plan is being imported; wait until it is there")
         async with importing:
@@ -92,7 +92,7 @@ def add_worlds(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
     @app.post("/api/worlds/new", tags=["worlds"], openapi_extra=takes(NewWorld),
               responses={200: {"model": Opened}, **ERRORS})  # fmt: skip
     async def new(request: Request) -> Response:
-        """Begin anew in an empty room. It is in no file until it is saved."""
+        """Begin anew in an empty room, which is in no file until it is saved."""
         return json_response(await _new(request, submit, limits))
 
 
@@ -135,7 +135,7 @@ async def _begin(submit: Submit, world: World, filed: bool) -> bytes:
 
 
 def _plain(name: str) -> str:
-    """The name alone of what a browser calls a file."""
+    """The bare file name in what a browser calls a file, without folders."""
     return os.path.basename(name.replace("\\", "/")) or name
 
 
@@ -147,7 +147,7 @@ def _bytes(file: UploadedFile) -> bytes:
 
 
 def _main(files: dict[str, bytes]) -> str:
-    """The file that refers to the others: the map_server one where there is one, else the only one."""
+    """The file that refers to the others: the map_server file if there is one, else the only file."""
     yaml = [name for name in files if name.lower().endswith((".yaml", ".yml"))]
     if len(yaml) == 1:
         return yaml[0]

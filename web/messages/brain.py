@@ -1,4 +1,4 @@
-"""What the robot senses, believes and is after. Parts of a snapshot.
+"""What the robot senses, what it believes and where it is going. Parts of a snapshot.
 
 The map frame is the experience map's own (first experience at its origin); pose cells are indices [theta, y, x], one layer
 10 degrees. SI units and radians.
@@ -25,16 +25,16 @@ class Pose:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Senses:
-    """What the robot sees now and what it reminds it of."""
+    """What the robot sees now, and the stored view that is most like it."""
 
     camera: NDArray[np.uint8]  # (h, w, 3) RGB
-    front_end: str  # what views are made of
+    front_end: str  # the name of the front end
     seen: NDArray[np.uint8]  # (h, w) grey or (h, w, 3) RGB: what the front end makes of the image
     seen_words: str
-    best: NDArray[np.uint8] | None  # the same of the best stored view
+    best: NDArray[np.uint8] | None  # the same for the best stored view
     best_words: str
     best_view: int  # its number, -1 when there is none
-    difference: float  # to it, in levels of the front end; inf when there is none
+    difference: float  # from it, in levels of the front end; inf when there is none
     threshold: float
     active_view: int  # the view that is active now, -1 when there is nothing to see
     recruited: bool  # the active view is new
@@ -106,10 +106,10 @@ class OccupancyPicture:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OccupancyLayer:
-    """What the sonars met. `draw_map` takes tens of milliseconds: for whoever shows it, in a thread of their own."""
+    """What the sonars met. `draw_map` takes tens of milliseconds, so call it in another thread, and only to show it."""
 
     cells: NDArray[np.float32]  # (n_y, n_x) probability in the pose cells' frame
-    draw_map: Callable[[], OccupancyPicture]  # from copies: the same picture whenever it is called
+    draw_map: Callable[[], OccupancyPicture]  # works on copies, so the picture is the same whenever it is called
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,7 +119,7 @@ class GoalMemoryLayer:
     links: int
     goal: tuple[int, int] | None  # the goal's cell x', y'
     seconds: NDArray[np.float32] | None  # (n_y, n_x) to the goal, inf where no way is known; None without a goal
-    direction_rad: float | None  # in which they decrease fastest at the packet; None there and where no way is known
+    direction_rad: float | None  # where they fall fastest at the packet; None at the goal or without a way
 
 
 GoalState = Literal["tracking", "coasting", "exploring", "arrived", "unreachable"]

@@ -1,4 +1,4 @@
-"""What people tell the engine: pydantic models, strict and closed. Their names and docstrings are the HTTP API's."""
+"""The commands that people give the engine: pydantic models, strict and closed. Names and docstrings are the HTTP API's."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class SetMode(_Command):
 
 
 class Drive(_Command):
-    """Drive by hand; expires 0.3 s after the last one. m/s forwards, rad/s counter-clockwise."""
+    """Drive by hand. m/s forwards, rad/s counter-clockwise. Stops 0.3 s after the last such command."""
 
     type: Literal["drive"]
     speed: Annotated[float, Field(ge=-0.5, le=0.5)]
@@ -41,7 +41,7 @@ class Drive(_Command):
 
 
 class Kidnap(_Command):
-    """Put the robot elsewhere (office frame) without telling it. Without a place: a free one by chance."""
+    """Put the robot elsewhere (office frame) without telling it. Without a place, a random free one is taken."""
 
     type: Literal["kidnap"]
     x: Finite | None = None
@@ -58,19 +58,19 @@ class Resume(_Command):
 
 
 class Step(_Command):
-    """Pause and advance by so many ticks of 0.1 s."""
+    """Pause and advance by this many ticks of 0.1 s."""
 
     type: Literal["step"]
     ticks: Annotated[int, Field(ge=1, le=1000)] = 1
 
 
-SLOWEST, FASTEST = 0.25, 16.0  # what the page offers, beside as fast as possible
+SLOWEST, FASTEST = 0.25, 16.0  # what the page offers besides "as fast as possible"
 SPEEDS = f"0 (as fast as possible) or from {SLOWEST:g} to {FASTEST:g}"
 _SPEED_SCHEMA = {"anyOf": [{"const": 0}, {"type": "number", "minimum": SLOWEST, "maximum": FASTEST}]}
 
 
 def is_speed(factor: float) -> bool:
-    """Whether a session can run so fast: `SPEEDS` in words."""
+    """Whether a session can run at this speed; `SPEEDS` says which are possible."""
     return factor == 0 or SLOWEST <= factor <= FASTEST
 
 
@@ -88,7 +88,7 @@ class SetSpeed(_Command):
 
 
 class Reset(_Command):
-    """Start anew; what is left out stays as it is."""
+    """Start anew. Fields that are left out keep their values."""
 
     type: Literal["reset"]
     world: Annotated[str, Field(max_length=64)] | None = None
@@ -106,7 +106,7 @@ _Size = Annotated[float, Field(ge=0.05, le=20.0)]
 
 
 class SetDoor(_Command):
-    """Open or shut a door of the office; it moves from the next tick on, and waits for who stands in it."""
+    """Open or shut a door of the office. It moves from the next tick on, and waits for anyone who stands in it."""
 
     type: Literal["set_door"]
     name: _Name
@@ -120,7 +120,7 @@ class SetLamp(_Command):
 
 
 class PutBox(_Command):
-    """Put a box down (office frame, metres); refused where it would cover the robot. A reset takes it away."""
+    """Put a box down (office frame, metres). Refused where it would cover the robot. A reset removes it."""
 
     type: Literal["put_box"]
     name: _Name
@@ -145,14 +145,14 @@ class UsePreset(_Command):
 
 
 class StepStage(_Command):
-    """Pause and show the next stage of a tick, or the one before; after the last stage the next tick begins."""
+    """Pause and show the next stage of a tick, or the previous one. After the last stage the next tick begins."""
 
     type: Literal["step_stage"]
     back: bool = False
 
 
 class InjectPacket(_Command):
-    """Add a packet of activity at a place of the pose cells (cells and radians), to watch it compete: no sense says it.
+    """Add a packet of activity at a place in the pose cells (cells, radians), to watch it compete. No sensor supports it.
 
     share: of all activity afterwards.
     """
@@ -165,7 +165,7 @@ class InjectPacket(_Command):
 
 
 class Inspect(_Command):
-    """Choose what everybody looks at: an experience, a view, or the pose cells at x', y'; nothing of it: nothing.
+    """Choose what everybody inspects: an experience, a view, or the pose cells at x', y'. Without any of them: nothing.
 
     Changes nothing in the robot.
     """
@@ -183,19 +183,19 @@ OfficeList = Literal[
 
 
 class EditStep(_Command):
-    """One item of one list of the world file: added at the end, changed, or deleted. `item` is written as in that file.
+    """One item in one list of the world file: added at the end, changed, or deleted. `item` is written as in that file.
 
-    `daylight` counts as a list of one item at most.
+    `daylight` counts as a list of at most one item.
     """
 
     do: Literal["add", "change", "delete"]
     list: OfficeList
     number: Annotated[int, Field(ge=0, le=100_000)] | None = None  # of the item to change or delete, from 0
-    item: dict[str, Any] | None = None  # to add, or to change into; a wall without a colour gets looks of its own
+    item: dict[str, Any] | None = None  # the new item; a wall without a colour gets looks of its own
 
 
 class EditWorld(_Command):
-    """Change the office under the running robot, all steps or none. Refused when the world would not be sound, when the
+    """Change the office under the running robot: all steps or none. Refused when the world would not be valid, when the
     robot would be covered, or when the office is no longer the edition that the editor saw. Undone as one."""
 
     type: Literal["edit_world"]
@@ -204,13 +204,13 @@ class EditWorld(_Command):
 
 
 class UndoEdit(_Command):
-    """Take the last change of the office back."""
+    """Undo the last change of the office."""
 
     type: Literal["undo_edit"]
 
 
 class RedoEdit(_Command):
-    """Do again what was taken back last."""
+    """Redo the change that was undone last."""
 
     type: Literal["redo_edit"]
 

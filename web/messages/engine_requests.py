@@ -1,4 +1,4 @@
-"""What the server asks of the engine beside commands, and the answers to both."""
+"""The server's own requests to the engine, and the answers to requests and commands."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class ReadExperience:
 
 @dataclass(frozen=True, slots=True)
 class ReadBrain:
-    """The answer's `result` is a copy of the whole brain, the engine's own class, which nobody drives."""
+    """The answer's `result` is a copy of the whole brain, of the engine's own class; nothing runs it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +30,9 @@ class Warn:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UseBrain:
-    """Start anew with this brain, the engine's own class; what cannot be used is refused.
+    """Start anew with this brain, of the engine's own class. A brain that cannot be used is refused.
 
-    In the same world and with the same seed, or in a world as its file has it, and with its seed.
+    It starts in the same world with the same seed or, when they are given, in `world` and with `seed`.
     """
 
     brain: object
@@ -46,7 +46,7 @@ class ReadWorld:
 
 @dataclass(frozen=True, slots=True)
 class ReadFiled:
-    """The answer's `result` is the World of this name as it was last read from its file, or written there; None if never."""
+    """The answer's `result` is the World of this name as last read from or written to its file; None if never."""
 
     name: str
 
@@ -61,7 +61,7 @@ class OpenWorld:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorldSaved:
-    """The world that was read has been saved, named as `world` is."""
+    """The world that was read has been saved under the name of `world`."""
 
     was: World
     world: World
@@ -69,14 +69,14 @@ class WorldSaved:
 
 @dataclass(frozen=True, slots=True)
 class WorldDeleted:
-    """The saved world of this name is in no file any more. Where it is open, it stays until another is opened."""
+    """The saved world of this name is no longer in any file. If it is open, it stays until another is opened."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class WorldRestored:
-    """It is in its file again."""
+    """The world of this name is in its file again."""
 
     name: str
     title: str
@@ -93,7 +93,7 @@ EngineRequest = (
     | WorldSaved
     | WorldDeleted
     | WorldRestored
-)  # what no command can hold; goes the same way
+)  # what no command can hold; it takes the same way
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The office as the page draws it: what stands, what moves, what an editor has made of it. Parts of a snapshot.
+"""The office as the page draws it: what stands, what moves, and which edition an editor has made. Parts of a snapshot.
 
 The office frame is the simulator's true one. SI units and radians.
 """
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorldDrawing:
-    """All that the stage needs to draw an office. Office frame."""
+    """All that the viewer needs to draw an office. Office frame."""
 
     name: str
     title: str
@@ -52,9 +52,9 @@ class LivingLayer:
 
 @dataclass(frozen=True, slots=True)
 class OfficeEdition:
-    """Which state of the office this is, for editors."""
+    """Which edition of the office this is, for editors."""
 
-    number: int  # grows with every change of the world and every other world
-    undo: str  # what would be taken back; empty: nothing
+    number: int  # grows with every change of the world and with every other world
+    undo: str  # what would be undone; empty: nothing
     redo: str
-    saved: bool  # as it was opened or saved last
+    saved: bool  # whether it is as last opened or saved

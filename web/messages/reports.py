@@ -28,7 +28,7 @@ class LinkReport:
 
 @dataclass(frozen=True, slots=True)
 class Times:
-    """When something was there, seconds since the reset; None: not in this run."""
+    """When something was met, in seconds since the reset; None: not in this run."""
 
     first_s: float | None
     last_s: float | None
@@ -47,7 +47,7 @@ class HebbianReport:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ExperienceReport:
-    """One experience and all that hangs on it."""
+    """One experience with its links, its view and its times."""
 
     id: int
     cell: tuple[float, float, float]  # x', y' (cells), theta' (layers)
@@ -58,23 +58,23 @@ class ExperienceReport:
     zone_theta: float  # layers
     energy: float  # how well the present state fits it, at most 2
     active: bool
-    links: tuple[LinkReport, ...]  # that begin here, then that end here
+    links: tuple[LinkReport, ...]  # first those that begin here, then those that end here
     hebbian: HebbianReport  # of its view
     times: Times
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ViewReport:
-    """One local view cell: what it stands for, beside what is seen now."""
+    """One local view cell: the view it stands for, beside what is seen now."""
 
     id: int
     picture: NDArray[np.uint8]  # (h, w) or (h, w, 3) as it is stored
-    now: NDArray[np.uint8]  # the same of what is seen now
-    camera: NDArray[np.uint8]  # (h, w, 3) the image that it was made of
+    now: NDArray[np.uint8]  # the same for what is seen now
+    camera: NDArray[np.uint8]  # (h, w, 3) the image from which `now` was made
     difference: float  # between the two at the best shift, as in Senses
     threshold: float
     active: bool
-    experiences: tuple[int, ...]  # that were made with it
+    experiences: tuple[int, ...]  # those that were made with it
     hebbian: HebbianReport
     times: Times
 
@@ -87,9 +87,9 @@ class CellReport:
     y: int
     by_heading: NDArray[np.float32]  # (n_theta,) activity
     packet: Packet | None  # to which most of it belongs; None: nothing is active here
-    views: tuple[tuple[int, float], ...]  # linked here, with the sum of their links, strongest first, at most 24
+    views: tuple[tuple[int, float], ...]  # views linked here, with the sum of their links, strongest first, at most 24
     view_count: int  # how many are linked here
-    experiences: tuple[int, ...]  # whose zone of influence this is in
+    experiences: tuple[int, ...]  # those in whose zone of influence this is
 
 
 Report = ExperienceReport | ViewReport | CellReport

@@ -1,9 +1,9 @@
-"""What the page shows, out of the engine's thread: `Snapshot` and its parts.
+"""What the page shows, as it leaves the engine's thread: `Snapshot` and its parts.
 
-Snapshots are immutable: frozen dataclasses over fresh read-only arrays. Parts that change seldom (world, map, times,
-parameters, events) are the same object in the next snapshot while they are unchanged, so that `is` tells what to redraw.
-Frames: `office` is the simulator's true frame, `map` the experience map's own (first experience at its origin), `cells`
-are pose-cell indices [theta, y, x], one layer 10 degrees. SI units and radians.
+Snapshots are immutable: frozen dataclasses over fresh read-only arrays. Parts that seldom change (world, map, times,
+parameters, events) stay the same object from snapshot to snapshot while they are unchanged, so `is` tells what to
+redraw. Frames: `office` is the simulator's true frame, `map` the experience map's own (first experience at its origin),
+`cells` are pose-cell indices [theta, y, x], one layer 10 degrees. SI units and radians.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Parameter:
     meaning: str
     source: str
     live: bool  # False: takes effect with the next reset
-    choices: tuple[str, ...] = ()  # of text; empty for numbers and switches
+    choices: tuple[str, ...] = ()  # the texts that it may be; empty for numbers and switches
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,7 +100,7 @@ class Snapshot:
     timings: tuple[Timing, ...]  # the parts of a tick, in their order
     events: tuple[Event, ...]
     parameters: tuple[Parameter, ...]
-    no_room: Callable[[float, float], str | None]  # why the robot cannot be put there (office frame), None: it fits
+    no_room: Callable[[float, float], str | None]  # why the robot cannot be put there (office frame); None: it fits
     occupancy: OccupancyLayer | None = None  # None without sonars
     goal_memory: GoalMemoryLayer | None = None
     living: LivingLayer | None = None  # None: nothing lives in this world
@@ -109,6 +109,6 @@ class Snapshot:
     active_experience: int = -1
     walk: TickWalk | None = None  # None: nothing is shown stage by stage
     presets: tuple[str, ...] = ()
-    preset: str = ""  # the one whose values are all set
+    preset: str = ""  # the preset whose values are all set; empty: none
     office: OfficeEdition | None = None
-    map_turn_rad: float = 0.0  # of the map's frame in the office's, for the eye: turned so it lies as the office does
+    map_turn_rad: float = 0.0  # turns the map, for the eye only, so that it lies as the office does

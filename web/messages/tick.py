@@ -1,4 +1,4 @@
-"""One tick looked into: its stages, and what its parts cost. Parts of a snapshot."""
+"""One tick in detail: its stages, and what its parts cost. Parts of a snapshot."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """What a part of a tick costs: over the last hundred ticks, milliseconds."""
+    """What a part of a tick costs, in milliseconds, over the last hundred ticks."""
 
     part: str
     mean_ms: float
@@ -25,7 +25,7 @@ class TickStage:
 
 @dataclass(frozen=True, slots=True)
 class TickWalk:
-    """A tick that is shown stage by stage: the snapshot's pose cells, map and estimate are those of stage `at`."""
+    """A tick shown stage by stage. The snapshot's pose cells, map and estimate are those of stage `at`."""
 
     stages: tuple[TickStage, ...]
     at: int

@@ -1,1 +1,1 @@
-"""The side panel: what each of its tabs is told. The page draws it (static/panel)."""
+"""The side panel: what each of its tabs is sent. The page draws it (static/panel)."""

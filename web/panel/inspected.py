@@ -1,4 +1,4 @@
-"""Inspect: what is to be said of one experience, one view, one column of pose cells."""
+"""Inspect: what the tab says about one experience, one view or one column of pose cells."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LINKS, NUMBERS = 24, 6
 
 
 def active(snapshot: Snapshot) -> Content:
-    """What there is to look at just now; -1: nothing. Where no view is active, the best one."""
+    """What can be inspected just now; -1: nothing. When no view is active, the best one."""
     senses = snapshot.senses
     view = senses.active_view if senses.active_view >= 0 else senses.best_view
     return Content({"experience": snapshot.active_experience, "view": view})
@@ -111,7 +111,7 @@ def _experiences(title: str, numbers: tuple[int, ...]) -> dict[str, Any]:
 
 
 def _choices(title: str, kind: str, entries: list[tuple[int, str]], count: int, empty: str) -> dict[str, Any]:
-    """Numbers that a click inspects, each with a word; how many are left out, or why there are none."""
+    """Numbers that a click inspects, each with a word, and how many are left out or why there are none."""
     return {"title": title, "kind": kind, "entries": entries, "more": count - len(entries), "empty": empty}
 
 
@@ -129,7 +129,7 @@ def _links(report: ExperienceReport) -> dict[str, Any]:
 
 
 def _link(link: LinkReport, here: int) -> dict[str, Any]:
-    """Where it leads by odometry, and what the robot knows of going there."""
+    """Where a link leads by odometry, and what the robot knows about going there."""
     word, other = ("to", link.end) if link.start == here else ("from", link.start)
     way = f"{link.distance_m:.2f} m at {degrees(link.bearing_rad)}, turns {degrees(link.facing_rad)}"
     trust = f"confidence {percent(link.confidence)}" if link.trials else "not tried yet"

@@ -1,4 +1,4 @@
-"""Memory: what the network has stored, where it wants to go, when it snapped, which packets compete."""
+"""Memory: what has been stored, the goal, the last snap, and the packets that compete."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _packets(layer: PoseCellLayer) -> dict[str, Any]:
 
 
 def _attractor(layer: PoseCellLayer) -> dict[str, Any]:
-    """What excitation, inhibition and normalisation leave as it is, checked here and now. ACRA 2004 eqs. 10-12."""
+    """What must hold after excitation, inhibition and normalisation, checked here. ACRA 2004 eqs. 10-12."""
     whole, positive = abs(layer.total - 1) < 1e-4, layer.least >= 0
     verdict = "broken" if not positive else "holds" if whole else "not normalised yet"
     rows = [

@@ -1,4 +1,4 @@
-"""Office: what this world has and whether it lives, one switch each; the robot's presets."""
+"""Office: what moves in this world, one switch each, and the robot's presets."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from web.panel.tune import knob
 from web.panel.words import counted
 
 NOTHING = "Nothing lives in this world: no people, doors, lamps, boxes, daylight or script. The pencil above lets you draw some."
-MOST = 40  # switches of one kind; beyond that a click on the door itself will do
+MOST = 40  # switches of one kind; beyond that, click on the door itself
 
 
 def office(
@@ -18,7 +18,7 @@ def office(
     preset: str,
     shown: tuple[str, ...],
 ) -> Content:
-    """`shown`: those parameters of the office that do something in this world."""
+    """shown: those parameters of the office that have an effect in this world."""
     doors, lamps = [], []
     if layer is not None:
         doors = list(zip(layer.door_names, map(bool, layer.door_wanted), strict=True))[:MOST]
@@ -37,7 +37,7 @@ def office(
 
 
 def words(layer: LivingLayer | None, shown: tuple[str, ...]) -> str:
-    """What is there now."""
+    """What is there now, in a sentence."""
     if layer is None:
         return "Nothing moves in this world." if shown else NOTHING
     parts: list[str] = []

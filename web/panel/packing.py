@@ -1,7 +1,7 @@
-"""A message with arrays: a head of JSON and the bytes of each, so that the page draws them as they are.
+"""A message with arrays: a head of JSON and the bytes of each array, so that the page can draw them as they are.
 
-Four bytes with the head's length (little-endian), the head, then the arrays one after the other. Each begins at a multiple of
-four: the head ends in spaces, an array in zeros.
+Four bytes with the head's length (little-endian), the head, then the arrays one after the other. Each array begins at a
+multiple of four: the head is padded with spaces, an array with zeros.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 import orjson
 from numpy.typing import NDArray
 
-MANY_BYTES = 4096  # a camera's image, several times a second: as JPEG, colours whole, it is a fifth of its pixels
+MANY_BYTES = 4096  # larger colour pictures go as JPEG with whole colours, a fifth of the bytes
 _JPEG = (cv2.IMWRITE_JPEG_QUALITY, 93, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444)
 
 
@@ -29,7 +29,7 @@ class Packed:
 
 
 def packed(array: NDArray[Any]) -> Packed:
-    """An array as it travels: large colour pictures as JPEG, all else as it is."""
+    """An array as it is sent: large colour pictures as JPEG, all others as they are."""
     if array.dtype == np.uint8 and array.ndim == 3 and array.nbytes > MANY_BYTES:
         _, image = cv2.imencode(".jpg", np.ascontiguousarray(array[..., ::-1]), _JPEG)
         return Packed("jpeg", array.shape, image.tobytes())

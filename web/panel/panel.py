@@ -1,7 +1,8 @@
-"""The side panel as data: which part is filled with what, how often, and what one page has been told of it.
+"""The side panel as data: what each part holds, how often it is sent, and what each page has been sent.
 
-A part's message is {"type": "panel", "part", "data"}, framed with its arrays where it has some (packing.py). Only the parts of
-open tabs are sent, only what has changed, and of its arrays only those that have; each is made once for all who look.
+A part's message is {"type": "panel", "part", "data"}, framed with its arrays if it has any (packing.py). Only the parts
+of open tabs are sent, only when they have changed, and only those arrays that have changed. Each is made once for all
+pages.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ from web.switches import SWITCHES, Switches
 from web.throttle import Throttle
 
 TABS = ("Senses", "Memory", "Inspect", "Tick", "Truth", "Office", "Tune")
-SOON_S = 0.05  # when what came too early is looked at again
+SOON_S = 0.05  # after this time, content that came too early is tried again
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sight:
-    """All that the panel is made of at one moment."""
+    """Everything that the panel is made from at one moment."""
 
     snapshot: Snapshot
     recent: tuple[int, ...]  # views
@@ -43,7 +44,7 @@ class Part:
     tab: str
     name: str
     hz: float
-    of: Callable[[Sight], tuple[Any, ...]]  # what it is made of: made again when one is another object
+    of: Callable[[Sight], tuple[Any, ...]]  # what it is made from; made again when one is another object
     make: Callable[..., Content]
 
 
@@ -75,14 +76,14 @@ def _office(snapshot: Snapshot) -> tuple[Any, ...]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Made:
-    """A part's content as it travels."""
+    """A part's content as it is sent."""
 
     data: bytes
     arrays: dict[str, Packed]
 
 
 class Panel:
-    """What there is to show, for all pages: each content is made once."""
+    """What there is to show, for all pages. Each content is made once."""
 
     def __init__(self, switches: Switches) -> None:
         self._switches = switches
@@ -90,7 +91,7 @@ class Panel:
         self._made: dict[str, tuple[tuple[Any, ...], Made]] = {}
 
     def remember(self, snapshot: Snapshot) -> None:
-        """Keeps what the newest snapshot alone does not tell. For every snapshot that is sent."""
+        """Keep what the newest snapshot alone does not tell. To be called for every snapshot that is sent."""
         self._recent.remember(snapshot)
 
     def sight(self, snapshot: Snapshot) -> Sight:
@@ -108,7 +109,7 @@ class Panel:
 
 
 class PanelReader:
-    """One page: the tabs that it has open, and what it has been told."""
+    """One page: the tabs that it has open, and what it has been sent."""
 
     def __init__(self, panel: Panel) -> None:
         self.tabs: Collection[str] = ()
@@ -127,7 +128,7 @@ class PanelReader:
 
     @property
     def soon_s(self) -> float | None:
-        """When to ask again although nothing may be new: something came too early."""
+        """After how long to ask again even if nothing is new, because something came too early; None: not needed."""
         waiting = any(throttle.waiting for part, throttle in self._throttles.items() if part.tab in self.tabs)
         return SOON_S if waiting else None
 

@@ -1,4 +1,4 @@
-"""What a part of the panel is filled with."""
+"""The content of a part of the panel."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Content:
-    """Words and numbers for JSON, and arrays that travel as they are."""
+    """Words and numbers for JSON, and arrays that are sent as they are."""
 
     data: Mapping[str, Any]
     arrays: Mapping[str, NDArray[Any]] = field(default_factory=dict[str, NDArray[Any]])

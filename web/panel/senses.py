@@ -1,4 +1,4 @@
-"""Senses: what the camera sees, the best view it reminds of, how different they are, which cells are active."""
+"""Senses: the camera's image, the stored view most like it, how different they are, and which cells are active."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MOST = 65535  # the strongest column of pose cells
 
 
 class RecentViews:
-    """The views that were active lately, oldest first."""
+    """The views that were active recently, oldest first."""
 
     def __init__(self) -> None:
         self.numbers: tuple[int, ...] = ()
@@ -37,8 +37,8 @@ class RecentViews:
 
 
 def views(snapshot: Snapshot, recent: tuple[int, ...]) -> Content:
-    """Camera and verdict, what the front end makes of it and the best match, the difference against its threshold, and which
-    of all views were active lately."""
+    """Camera image and verdict, what the front end makes of it, the best match, the difference against the threshold, and the
+    views that were active recently."""
     senses = snapshot.senses
     data = {
         "known": snapshot.views,
@@ -58,7 +58,7 @@ def views(snapshot: Snapshot, recent: tuple[int, ...]) -> Content:
 
 
 def _verdict(senses: Senses) -> dict[str, str]:
-    """Whether the active view is new, and how that is to be taken."""
+    """Whether the active view is new, known, a false positive or none, in words."""
     if senses.false_positive:
         words = f"false positive {senses.false_positives}: rightly #{senses.best_view}"
         return {"tone": "false", "words": words}
@@ -72,7 +72,7 @@ def _verdict(senses: Senses) -> dict[str, str]:
 
 
 def _difference(senses: Senses) -> dict[str, Any]:
-    """Full scale is twice the threshold."""
+    """The difference as a bar, whose full length is twice the threshold."""
     known = senses.difference <= senses.threshold
     if not math.isfinite(senses.difference):
         return {"words": "difference: nothing to compare with", "share": 1.0, "known": known}
@@ -90,7 +90,7 @@ def cells(layer: PoseCellLayer) -> Content:
 
 
 def from_above(layer: PoseCellLayer) -> tuple[NDArray[np.uint32], NDArray[np.uint8], NDArray[np.uint16]]:
-    """Each packet's activity summed over theta': rows of x' y' (y' n_x + x'), the packet's rank, and how much of the most."""
+    """Each packet's activity summed over theta': places (y' n_x + x'), the packet's rank, and the share of the strongest."""
     _, n_y, n_x = layer.shape
     place = layer.cells[:, 1] * n_x + layer.cells[:, 2]
     rank = np.minimum(owners(layer), 255)

@@ -17,7 +17,7 @@ def walk(walk: TickWalk | None) -> Content:
 
 
 def timings(timings: tuple[Timing, ...], parameters: tuple[Parameter, ...]) -> Content:
-    """Milliseconds of each part over the last hundred ticks, and how many there are for a tick at x1."""
+    """Milliseconds of each part over the last hundred ticks, and how many a tick may take at x1."""
     rate_hz = next((float(p.value) for p in parameters if p.name == RATE), 10.0)
     parts = [(timing.part, round(timing.mean_ms, 3), round(timing.worst_ms, 2)) for timing in timings]
     return Content({"there_are_ms": 1000 / rate_hz, "parts": parts})

@@ -1,4 +1,4 @@
-"""Truth: how far map and odometry are from where the robot really is, and how far the map is from its own links."""
+"""Truth: how far map and odometry are from the robot's true place, and how far the map is from its own links."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def numbers(snapshot: Snapshot) -> Content:
 
 
 def series(series: Series) -> Content:
-    """The columns of the plots, and what map and links disagree by now."""
+    """The columns of the plots, and by how much map and links disagree now."""
     if len(series.time_s) < 2:
         return Content({"residual": None})
     now = f"{series.residual_mm[-1]:.1f} mm and {math.degrees(series.residual_mrad[-1] / 1000):.2f}°"

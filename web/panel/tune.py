@@ -14,7 +14,7 @@ def tune(parameters: tuple[Parameter, ...]) -> Content:
 
 
 def knob(parameter: Parameter) -> dict[str, Any]:
-    """One parameter as the page makes a control of it."""
+    """One parameter, as the page needs it to make a control."""
     return {
         "name": parameter.name,
         "value": parameter.value,
@@ -53,7 +53,7 @@ def _range(parameter: Parameter) -> str:
 
 
 def step(parameter: Parameter) -> float | int | None:
-    """A hundredth of the range, rounded down to 1, 2 or 5; whole numbers go by one; None: no number."""
+    """A hundredth of the range, rounded down to 1, 2 or 5 times a power of ten; 1 for whole numbers; None: no number."""
     if isinstance(parameter.value, bool | str):
         return None
     if isinstance(parameter.value, int):

@@ -1,4 +1,4 @@
-"""Numbers as the panel says them, and tables of them."""
+"""Numbers as the panel writes them, and tables of them."""
 
 from __future__ import annotations
 

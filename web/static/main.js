@@ -103,7 +103,7 @@ const restart = (/** @type {number} */ seed) => {
   command({ type: "reset", seed }, `Started anew with seed ${seed}.`);
 };
 
-/** A saved brain goes up as it is; what is wrong with it comes back as a sentence. @param {File} file */
+/** Uploads a saved brain as it is; the server says in a sentence what is wrong with it. @param {File} file */
 async function loadBrain(file) {
   const headers = { "Content-Type": "application/octet-stream" };
   try {
@@ -164,11 +164,11 @@ $("speed").addEventListener("change", () => {
 $("world").addEventListener("change", async () => {
   const target = $("world");
   const [world, title] = [target.value, target.selectedOptions[0].text];
-  target.blur(); // the list shows the present world again until there is another
+  target.blur(); // the list shows the current world again until there is another
   if (await mayLeave()) command({ type: "reset", world }, `Started anew in ${title}.`);
 });
 
-/** Whether what has been drawn and not saved may be left behind. @returns {Promise<boolean>} */
+/** Whether unsaved changes may be lost. @returns {Promise<boolean>} */
 async function mayLeave() {
   if (isSaved()) return true;
   const dialog = $("leave-dialog");
@@ -180,7 +180,7 @@ async function mayLeave() {
 }
 $("help-dialog").addEventListener("click", ({ target }) => target === $("help-dialog") && toggleHelp());
 
-/** True when the key meant something. @param {string} name */
+/** True when the key had a meaning. @param {string} name */
 function act(name) {
   const view = VIEWS[Number(name) - 1];
   if (view) viewer.show(view);
@@ -202,7 +202,7 @@ function act(name) {
 function on(id, action) {
   $(id).addEventListener("click", (event) => {
     action();
-    if (/** @type {MouseEvent} */ (event).detail > 0) $(id).blur(); // after a mouse click the space bar is play and pause again
+    if (/** @type {MouseEvent} */ (event).detail > 0) $(id).blur(); // after a mouse click, the space bar plays and pauses again
   });
 }
 
@@ -213,18 +213,18 @@ function theme() {
   return document.documentElement.dataset.theme === "light" ? "light" : "dark";
 }
 
-/** The one chosen in this browser before, else the system's. @returns {Theme} */
+/** The theme chosen earlier in this browser, else the system's. @returns {Theme} */
 function firstTheme() {
   const preferred = window.matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
   try {
     const kept = localStorage.getItem("theme");
     return THEMES.find((name) => name === kept) ?? preferred;
   } catch {
-    return preferred; // a browser that keeps nothing
+    return preferred; // this browser stores nothing
   }
 }
 
-/** The stage follows: the server shows this page the one of its theme. @param {Theme} name */
+/** The viewer follows: the server shows this page the viewer of its theme. @param {Theme} name */
 function showTheme(name) {
   document.documentElement.dataset.theme = name;
   setIcon($("theme"), name === "dark" ? "sun" : "moon");
@@ -238,7 +238,7 @@ function toggleTheme() {
   try {
     localStorage.setItem("theme", other);
   } catch {
-    // it is forgotten with the page
+    // The choice is forgotten with the page.
   }
 }
 

@@ -13,7 +13,7 @@ View = Literal["all", "office", "pose", "map"]
 VIEWS: tuple[View, ...] = get_args(View)
 NEAR, FAR = 1.0, 300.0
 FLIGHT_S = 0.7
-PHONE_ASPECT = 0.85  # width by height, below which a screen is a phone's
+PHONE_ASPECT = 0.85  # width over height below which a screen counts as a phone's
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ _TALL = {
 
 
 def camera_for(view: View, aspect: float) -> Camera:
-    """`aspect`: width by height of the canvas that can be seen."""
+    """aspect: width over height of the visible canvas."""
     framing = (_TALL if aspect < PHONE_ASPECT else _WIDE)[view]
     fov, up, turn = (math.radians(d) for d in (framing.fov_deg, framing.elevation_deg, framing.azimuth_deg))
     half = math.tan(fov / 2)
@@ -61,7 +61,7 @@ def camera_for(view: View, aspect: float) -> Camera:
 
 
 def seen_by(camera: Camera, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(n, 2) right and up in the plane through `look_at`, and how much larger (n,) each point appears than there."""
+    """(n, 2) right and up in the plane through `look_at`, and (n,) how much larger each point appears than in that plane."""
     ahead = camera.look_at - camera.position
     distance = float(np.linalg.norm(ahead))
     ahead = ahead / distance
@@ -74,7 +74,7 @@ def seen_by(camera: Camera, points: NDArray[np.float64]) -> tuple[NDArray[np.flo
 
 @dataclass
 class Flight:
-    """From one camera to another, slow at both ends."""
+    """A flight from one camera to another, slow at both ends."""
 
     start: Camera
     end: Camera

@@ -1,4 +1,4 @@
-"""Every browser's camera: where it looks, its flights from view to view, framed anew when the window changes shape."""
+"""Every browser's camera: where it looks, its flights from view to view, and its framing when the window changes shape."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from numpy.typing import ArrayLike
 from web.viewer.camera_views import FAR, NEAR, PHONE_ASPECT, Camera, Flight, View, camera_for
 
 SCREEN_ASPECT = 1.5
-RESHAPED = 0.01  # a change of aspect that asks for another framing
-TURNED = 0.02  # as far from its view a camera has been turned by hand
+RESHAPED = 0.01  # a larger change of aspect needs another framing
+TURNED = 0.02  # a camera farther from its view than this has been turned by hand
 
 
 def aspect_of(camera: viser.CameraHandle) -> float:
-    """Width by height of the canvas; one without pixels, as a browser that hides it has, is taken for a screen's."""
+    """Width over height of the canvas. A canvas without pixels, as in a browser that hides it, counts as a screen's."""
     width, height = camera.image_width, camera.image_height
     return width / height if width > 0 and height > 0 else SCREEN_ASPECT
 
 
 class Cameras:
-    """Runs in the stage's thread; `post` brings work there from viser's callbacks."""
+    """Runs in the viewer's thread; `post` brings work there from viser's callbacks."""
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Callable[[], None]], None]) -> None:
         self._server, self._post = server, post
         self._views: dict[int, View] = {}
-        self._ends: dict[int, Camera] = {}  # where the last flight of each went
+        self._ends: dict[int, Camera] = {}  # where the last flight of each camera ended or will end
         self._flights: dict[int, Flight] = {}
         camera, initial = camera_for("all", SCREEN_ASPECT), server.initial_camera
         initial.position, initial.look_at, initial.fov = camera.position, camera.look_at, camera.fov_rad
@@ -42,8 +42,8 @@ class Cameras:
     def welcome(self, client: viser.ClientHandle) -> None:
         """A new browser: a phone begins on the map, a screen with all three plates.
 
-        viser's client goes to the initial camera when it has drawn its first frame, which may be after our first word to
-        it: whoever is seen to stand there, and should not, is sent on once more.
+        viser's client goes to its initial camera when it has drawn its first frame, which may be after our first
+        message. A camera that is found there, and should not be, is sent on once more.
         """
         aspect = aspect_of(client.camera)
         self.take_off(client.client_id, "map" if aspect < PHONE_ASPECT else "all")
@@ -68,7 +68,7 @@ class Cameras:
             self.take_off(client_id, self._views[client_id])
 
     def turned(self, client_id: int) -> Camera | None:
-        """Where somebody has turned a camera to by hand; None when it stands at its view or is on its way. From any thread."""
+        """Where somebody has turned a camera by hand; None when it is at its view or in flight. From any thread."""
         client, view = self._server.get_clients().get(client_id), self._views.get(client_id)
         if client is None or view is None or client_id in self._flights:
             return None
@@ -78,7 +78,7 @@ class Cameras:
     def take_off(
         self, client_id: int | None, view: str, now_s: float | None = None, turned: Camera | None = None
     ) -> None:
-        """Flies one browser (or all) to a view or where it was turned from there, beginning `now_s`; without a time it jumps."""
+        """Flies one browser's camera (None: all) to a view, or to where it was turned from there. Without `now_s` it jumps."""
         for client in self._server.get_clients().values():
             if client_id in (None, client.client_id):
                 camera, wanted = client.camera, cast(View, view)
@@ -101,7 +101,7 @@ class Cameras:
             self._flights[client_id] = Flight(self._ends[client_id], self._ends[client_id], -math.inf)
 
     def fly_on(self, now_s: float) -> None:
-        """Moves every camera in flight."""
+        """Moves every camera that is in flight."""
         if not self._flights:
             return
         clients = self._server.get_clients()

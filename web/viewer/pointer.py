@@ -21,7 +21,7 @@ from web.viewer.plates.plate import point_on_plane
 Answer = Accepted | Refused
 PATIENCE_S = 3.0  # how long a clicked marker waits for its goal
 GRIP_Z = 0.15
-DOOR_Z = 0.25  # half as high as a leaf
+DOOR_Z = 0.25  # half the height of a leaf
 
 
 @dataclass(frozen=True)
@@ -44,13 +44,13 @@ class Pointer:
     def __init__(
         self, send: Callable[[Command, Callable[[Answer], None]], None], complain: Callable[[int, str, str], None]
     ) -> None:
-        """`send` submits and has the answer brought back to this thread; `complain(client, title, body)` notifies."""
+        """send: submits a command and brings the answer back to this thread; complain(client, title, body): notifies."""
         self._send, self._complain = send, complain
         self._asked: tuple[tuple[float, float], float, int | None] | None = None  # place, time, tick of acceptance
         self.dragging = False
 
     def click(self, click: Click, plate: MapPlate, now_s: float, office: OfficePlate | None = None) -> None:
-        """On the map: the marker appears at once and the goal is asked for. On a door: it opens or shuts."""
+        """A click on the map shows the marker at once and asks for the goal. A click on a door opens or shuts it."""
         if office is not None and self._click_door(click, office):
             return
         on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
@@ -92,7 +92,7 @@ class Pointer:
         return None if place is None else plate.nearest(place)
 
     def inspect(self, client_id: int, **wish: int | None) -> None:
-        """What to look at, by the fields of `Inspect`; the panel tells of it."""
+        """Chooses what is inspected, by the fields of `Inspect`; the panel then shows it."""
 
         def answered(answer: Answer) -> None:
             if isinstance(answer, Refused):
@@ -101,7 +101,7 @@ class Pointer:
         self._send(Inspect(type="inspect", **wish), answered)  # type: ignore[arg-type]
 
     def settle(self, snapshot: Snapshot, plate: MapPlate, now_s: float) -> None:
-        """Takes the clicked marker away when its goal is there, or when nothing came of it."""
+        """Removes the clicked marker when its goal is set, or when it has not been set in time."""
         if self._asked is None:
             return
         _, asked_s, accepted = self._asked
@@ -110,7 +110,7 @@ class Pointer:
             self._forget_click(plate)
 
     def moved(self, plate: MapPlate) -> None:
-        """The map has another fit: the marker follows."""
+        """The map has another fit, and the marker follows it."""
         if self._asked is not None:
             plate.show_click(self._asked[0])
 
@@ -119,7 +119,7 @@ class Pointer:
         plate.show_click(None)
 
     def drag(self, drag: Drag, plate: OfficePlate, snapshot: Snapshot) -> None:
-        """While dragged the ring shows whether the robot fits; dropped, it is kidnapped."""
+        """While the robot is dragged, a ring shows whether it fits. When it is dropped, it is kidnapped."""
         ray = np.array(drag.pointer) - np.array(drag.eye)
         on_plate = point_on_plane(np.array(drag.eye), ray, plate.origin, GRIP_Z)
         if on_plate is None:
@@ -155,7 +155,7 @@ class Pointer:
 
 
 def ask(submit: Callable[[Command], Future[Answer]], command: Command, bring: Callable[[Answer], None]) -> None:
-    """Submits; `bring` gets the answer in whatever thread it comes, a failure as a refusal."""
+    """Submits a command. `bring` is called with the answer, in the thread in which it arrives; a failure is a refusal."""
 
     def done(future: Future[Answer]) -> None:
         error = None if future.cancelled() else future.exception()

@@ -1,4 +1,4 @@
-"""The three plates under one light and one sky, in one palette."""
+"""The three plates with one light, one sky and one palette."""
 
 from __future__ import annotations
 

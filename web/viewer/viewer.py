@@ -1,6 +1,6 @@
-"""A viewer in one theme: one viser server on the loopback, one thread that draws the newest snapshot and takes what people do.
+"""A viewer in one theme: one viser server on the loopback, and one thread that draws snapshots and handles the pointer.
 
-viser's callbacks only post to `_inbox`; everything that touches handles happens in the one thread.
+viser's callbacks only post to `_inbox`; everything that touches handles happens in that one thread.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ from web.viewer.scenery import Scenery
 from web.viewer.viser_server import guarded_server
 
 DragEvent = viser.SceneNodeDragEvent[viser.MeshHandle]
-FRAME_S = 1 / 30  # no faster than this, however fast snapshots come
-IDLE_S = 0.05  # how long a click waits at most
+FRAME_S = 1 / 30  # least time between two frames, however fast snapshots come
+IDLE_S = 0.05  # longest time that a click waits
 
 
 class Viewer:
@@ -77,24 +77,24 @@ class Viewer:
         self.server.stop()
 
     def turned(self, client_id: int) -> Camera | None:
-        """Where somebody has turned this browser's camera to by hand, if he has."""
+        """Where somebody has turned this browser's camera by hand; None if nobody has."""
         return self._cameras.turned(client_id)
 
     def fly(self, client_id: int | None, view: str, at_once: bool = False, turned: Camera | None = None) -> None:
-        """Takes one browser's camera (or everyone's) to a view: "all", "office", "pose" or "map"; `at_once` it is there.
+        """Takes one browser's camera (None: all) to a view: "all", "office", "pose" or "map"; `at_once`: without a flight.
 
-        `turned`: it had been turned from that view to this."""
+        turned: where the camera had been turned by hand from that view."""
         if view not in VIEWS:
             raise ValueError(f"unknown view {view!r}; expected one of: {', '.join(VIEWS)}")
         now_s = None if at_once else time.monotonic()
         self._inbox.put(lambda: self._cameras.take_off(client_id, view, now_s, turned))
 
     def click(self, click: Click, inspecting: bool = False) -> None:
-        """Somebody has clicked on the plates; `inspecting`: with shift."""
+        """Somebody has clicked on the plates. inspecting: with shift."""
         self._inbox.put(lambda: self._click(click, inspecting))
 
     def drag(self, drag: Drag) -> None:
-        """Somebody drags the robot."""
+        """Somebody is dragging the robot."""
         self._inbox.put(lambda: self._drag(drag))
 
     # ------------------------------------------------------------ the thread
@@ -108,7 +108,7 @@ class Viewer:
             self._stopping.wait(max(0.0, FRAME_S - (time.monotonic() - began_s)))
 
     def tick(self, snapshot: Snapshot | None, now_s: float, watched: bool = True) -> None:
-        """One round: what people did, cameras in flight, and the layers that are new and due."""
+        """One round: handle what people did, move cameras in flight, and draw the layers that are new and due."""
         self._now_s = now_s
         if snapshot is not None:
             self._snapshot = snapshot
@@ -126,7 +126,7 @@ class Viewer:
                 self._forget("robot", "trail", "living")
             offer["living"].offer(now_s, snapshot.living)
             if self._pointer.dragging:
-                self._forget("robot")  # it goes back to the truth when it is let go
+                self._forget("robot")  # when it is let go, it goes back to its true place
             else:
                 offer["robot"].offer(now_s, snapshot.truth, snapshot.senses)
             offer["trail"].offer(now_s, snapshot.trail)
@@ -146,7 +146,7 @@ class Viewer:
             self._pointer.moved(self._scenery.map)
 
     def _draw_overlays(self, snapshot: Snapshot, now_s: float) -> None:
-        """What is switched on; None takes it away."""
+        """Draws the overlays that are switched on, and removes the others."""
         offer, is_on, cells = self._layers, self._switches.is_on, snapshot.pose_cells
         goal = snapshot.goal_memory if is_on("goal_memory") else None
         beneath = snapshot.occupancy if is_on("cell_occupancy") else None
@@ -158,7 +158,7 @@ class Viewer:
             offer["occupancy"].offer(now_s, snapshot.occupancy if is_on("occupancy") else None)
 
     def _draw_occupancy(self, layer: OccupancyLayer | None) -> None:
-        """In another thread, since it may take longer than a frame; what comes back too late for its switch is dropped."""
+        """Draws in another thread, since it may take longer than a frame. If the switch is off by then, it is dropped."""
         if layer is None:
             self._scenery.map.set_occupancy(None)
             return

@@ -1,4 +1,4 @@
-"""A viewer for each theme, so that everybody is shown his own. The second is built when somebody first asks for it."""
+"""A viewer for each theme, so that every page is shown its own. The second is built when it is first needed."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from web.viewer.viewer import Viewer
 
 
 class Viewers:
-    """From any thread. A viewer that nobody looks at draws nothing."""
+    """May be used from any thread. A viewer that nobody looks at draws nothing."""
 
     def __init__(self, latest: Latest[Snapshot], submit: Callable[[Command], Future[Accepted | Refused]]) -> None:
         self._latest, self._submit = latest, submit
         self._lock = threading.Lock()
         self._built: dict[Theme, Viewer] = {}
         self._started = self._stopped = False
-        self.switches = Switches()  # one set for all who look, in both themes
-        self.of("dark")  # at once: if viser cannot be had or guarded, it is said before the robot drives
+        self.switches = Switches()  # one set for all pages, in both themes
+        self.of("dark")  # at once: if viser is not available or cannot be guarded, that is said before the robot drives
 
     def of(self, theme: Theme) -> Viewer:
         """The viewer in a theme; takes a second when it has to be built. Raises ConnectionError after `stop`."""

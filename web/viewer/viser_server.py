@@ -1,12 +1,13 @@
-"""viser's server as a stage uses it: for our proxy alone, silent, and deaf to what we do not use.
+"""viser's server as a viewer uses it: for our proxy alone, silent, and deaf to messages that we do not use.
 
-viser checks nobody, and any page that a browser on this machine has open finds a port on the loopback within seconds. So
-every request, for a page or a websocket, is refused before anything is served or accepted unless it bears the server's
-secret. viser itself has no place for such a check. It makes its server with `websockets.asyncio.server.serve`, which has
-one: while viser starts, that name leads through here. A viser that goes another way is not let loose.
+viser checks nobody, and any page open in a browser on this machine can find a port on the loopback within seconds. So
+every request, for a page or a websocket, is refused before anything is served or accepted unless it carries the
+server's secret. viser itself has no place for such a check. It makes its server with `websockets.asyncio.server.serve`,
+which has one: while viser starts, that name leads through here. A viser that makes its server in another way is not
+used.
 """
 
-# viser keeps to itself what we have to reach.
+# What we have to reach in viser is private there.
 # pyright: reportPrivateUsage=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ from viser.infra import WebsockMessageHandler
 from websockets.http11 import Request, Response
 
 SECRET_HEADER = "X-Stage-Secret"
-# All that is heard of a browser. viser would also open a public tunnel, keep whatever is uploaded, and store for good that a
-# form was touched, whichever.
+# The only messages of a browser that are handled. viser would also open a public tunnel, keep whatever is uploaded, and
+# store for good that any form was touched.
 HEARD: set[type[Any]] = {
     _messages.ViewerCameraMessage,
     _messages.ScenePointerMessage,
@@ -47,7 +48,7 @@ def guarded_server() -> tuple[viser.ViserServer, str]:
     if not asks:
         server.stop()
         raise ValueError(
-            f"viser {viser.__version__} opens its port in another way than viser 1.1 does, so that the stage would be open "
+            f"viser {viser.__version__} opens its port in another way than viser 1.1 does, so that the viewer would be open "
             "to every page in your browser; install viser>=1.1,<1.2"
         )
     _hear_little(server._websock_server)
@@ -62,7 +63,7 @@ def client_page() -> bytes:
 
 
 def knows(request: Request, secret: str) -> bool:
-    """Whether a request bears the secret, once; takes as long for a near miss as for any other."""
+    """Whether a request carries the secret, once. The comparison takes as long for a near miss as for any other."""
     given = request.headers.get_all(SECRET_HEADER)
     return len(given) == 1 and secrets.compare_digest(given[0].encode(errors="surrogateescape"), secret.encode())
 
@@ -73,12 +74,12 @@ def _hear_little(handlers: WebsockMessageHandler) -> None:
 
 
 def _worth_telling(record: logging.LogRecord) -> bool:
-    return record.getMessage() != "opening handshake failed"  # somebody knocked who does not speak websocket
+    return record.getMessage() != "opening handshake failed"  # somebody connected who does not speak websocket
 
 
 @contextlib.contextmanager
 def _asking_for(secret: str) -> Generator[list[str], None, None]:
-    """Servers made meanwhile ask for the secret and serve no pages; yields where they listen."""
+    """Servers that are made meanwhile require the secret and serve no pages; yields where they listen."""
     plain: Any = serving.serve
     asks: list[str] = []
 

@@ -1,10 +1,10 @@
-// Driving by hand: keys, the pad on the page, a gamepad. While anything is held a drive command goes out sixteen times a
-// second; letting go sends one stop. The engine lets a drive expire after 0.3 s, so silence stops the robot as well.
+// Driving by hand: keys, the pad on the page, a gamepad. While anything is held down, a drive command is sent sixteen times a
+// second; letting go sends one stop. The engine lets a drive expire after 0.3 s, so silence stops the robot, too.
 
 const PERIOD_MS = 60;
 const SPEED = 0.4; // m/s
 const TURN = 1.1; // rad/s
-const DEAD = 0.18; // of a gamepad's stick
+const DEAD = 0.18; // a gamepad's stick counts from here on
 
 export class HandDrive {
   /** @typedef {{ speed: number, yaw_rate: number }} Wish */
@@ -55,7 +55,7 @@ export class HandDrive {
       });
       for (const end of /** @type {const} */ (["pointerup", "pointercancel", "lostpointercapture"]))
         button.addEventListener(end, (event) => this.held.pad.delete(event.pointerId) && this.changed());
-      // Enter or space on a focused button of the pad holds it, for those who use no pointer.
+      // Enter or space on a focused button of the pad holds it down, for people who use no pointer.
       button.addEventListener("keydown", (event) => {
         if (event.key !== " " && event.key !== "Enter") return;
         event.preventDefault();

@@ -1,4 +1,4 @@
-// Which keys mean what, caught before viser sees them, in the page and in the stage's frame alike.
+// Handles keys before viser sees them, in the page and in the viewer's frame.
 
 import { within } from "../elements/dom.js";
 import { directionOf, meaningOf } from "../model/key_meanings.js";
@@ -12,8 +12,8 @@ const PRESSING = "button, summary, a[href], input[type='checkbox'], [role='butto
 
 export class Keys {
   /**
-   * `drive(name, down)` for the driving keys, `act(name)` for all others, which says whether it meant something, `allUp()` when
-   * keys may have been let go unseen.
+   * `drive(name, down)`: for the driving keys. `act(name)`: for all others; returns whether the key had a meaning. `allUp()`:
+   * when keys may have been let go unseen.
    * @typedef {import("../model/key_meanings.js").Direction} Direction
    * @param {{ drive: (name: Direction, down: boolean) => void, act: (name: string) => boolean, allUp: () => void }} calls
    */
@@ -28,7 +28,7 @@ export class Keys {
   listen(target) {
     target.addEventListener("keydown", (event) => this.down(event), true);
     target.addEventListener("keyup", (event) => this.up(event), true);
-    // Focus that only moves between the page and its frame is no loss: both are listened to.
+    // Focus that only moves between the page and its frame is not lost: we listen to both.
     target.addEventListener("blur", () => setTimeout(() => document.hasFocus() || this.calls.allUp()), true);
   }
 

@@ -1,4 +1,4 @@
-// The daylight against time: a small picture of the curve, and its points to type in.
+// The daylight against time: a small picture of the curve, and its points in fields.
 
 import { $, field, find, within } from "../elements/dom.js";
 import { keepingPlace, levelInput, make, mark, removeButton, timeInput } from "../elements/elements.js";
@@ -122,9 +122,9 @@ export class DaylightForm {
   // ---------------------------------------------------------------- what is done
 
   /**
-   * A point as a row or the form says it, or null when it says none.
+   * The point in a row or in the form, or null when what is typed there is none.
    * @param {HTMLElement} place
-   * @param {number} [number] its own, so that it may stay where it is
+   * @param {number} [number] the point's own number, so that it may stay where it is
    * @returns {Point | null}
    */
   read(place, number = -1) {

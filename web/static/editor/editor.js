@@ -1,5 +1,5 @@
-// The world editor: a plan from above, tools that draw on it, undo and redo. What is drawn goes to the engine as commands;
-// the engine's world is the only one, and is read again after each change.
+// The world editor: a plan from above, tools that draw on it, undo and redo. Edits go to the engine as commands. The engine's
+// world is the only one, and it is read again after each change.
 
 import { $, within } from "../elements/dom.js";
 import { Fields } from "./fields.js";
@@ -56,7 +56,7 @@ export class Editor {
     click("edit-finish", () => this.finish());
     click("edit-open", open);
     click("edit-new", begin);
-    $("edit-menu").addEventListener("click", (event) => within(event, "button, a") && closeMenu($("edit-menu")), true); // first: a dialog gives the focus back
+    $("edit-menu").addEventListener("click", (event) => within(event, "button, a") && closeMenu($("edit-menu")), true); // first, since a dialog gives the focus back
     click("edit-save", () => this.saving.ask());
     window.addEventListener("keydown", (event) => this.history(event), true);
     this.use("select");
@@ -98,7 +98,7 @@ export class Editor {
     this.plan.drawRobot(state.robot);
     this.time.at(state.time_s, state.living?.daylight ?? 1);
     if (page.office && edition !== this.office.edition) this.office.load();
-    else $("edit-name").textContent = page.title; // of the plan that is shown: keys pressed now draw on it
+    else $("edit-name").textContent = page.title; // that of the plan that is shown, on which keys now draw
   }
 
   /** @param {boolean} other */
@@ -193,7 +193,7 @@ export class Editor {
     else this.plan.draft(this.points, this.tool);
   }
 
-  /** The end of a stroke that was pulled from the first point to the second. @param {Point} p */
+  /** The end of a stroke that was dragged from the first point to the second. @param {Point} p */
   pressSecond(p) {
     const { takes, chain } = TOOLS[this.tool];
     if (!this.points.length || takes !== 2) return;

@@ -1,4 +1,4 @@
-// The form beside the plan: what can be typed in of the thing that is selected.
+// The form beside the plan, with the properties of the selected thing.
 
 import { field as target, find } from "../elements/dom.js";
 import { length } from "../model/geometry.js";
@@ -37,7 +37,7 @@ export class Fields {
     for (const field of fields) {
       /** @type {HTMLInputElement} */
       const input = find(rows, `[data-key="${CSS.escape(field.key)}"]`);
-      if (input.dataset.typed) continue; // somebody is typing here: news of the office must not wipe it out
+      if (input.dataset.typed) continue; // somebody is typing here, and news of the office must not overwrite it
       const value = read(thing.item, field.key);
       if (field.type === "checkbox") input.checked = value ?? field.key !== "slides";
       else input.value = value ?? DEFAULTS[field.key] ?? "";

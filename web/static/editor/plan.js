@@ -8,7 +8,7 @@ import { endNear, thingNear } from "../model/finding.js";
 import { kindOf } from "../model/things.js";
 
 const JOIN_PX = 9; // a click within this distance of a wall's end joins it
-const NEAR_PX = 12; // a click within this distance means a thing
+const NEAR_PX = 12; // a click within this distance selects a thing
 const LAYERS = [
   "zones",
   "grid",
@@ -25,7 +25,7 @@ const LAYERS = [
   "cursor",
 ];
 
-// What changes while it runs, by its layer: from which list of the world, by which of the methods below.
+// What changes while the office runs, by layer: the list of the world that it is in, and the method below that draws it.
 /** @type {Record<keyof Live, { list: ThingList, draws: "lamp" | "box" | "door" | "person" }>} */
 const KINDS = {
   lamps: { list: "lamps", draws: "lamp" },
@@ -73,7 +73,7 @@ export class Plan extends SvgView {
     else this.draw();
   }
 
-  /** The thing at a point, the small ones first. @param {Point} p @returns {Place | null} */
+  /** The thing at a point; small ones go before large ones. @param {Point} p @returns {Place | null} */
   thingAt(p) {
     return this.world && thingNear(this.world, p, NEAR_PX / this.scale, this.live.walkers);
   }
@@ -87,7 +87,7 @@ export class Plan extends SvgView {
     return found < 0 ? null : found;
   }
 
-  /** An end of a wall near a point, to join it exactly; else null. @param {Point} p */
+  /** The end of a wall near a point, so that the new one joins it exactly; else null. @param {Point} p */
   endNear(p) {
     return this.world && endNear(this.world, p, JOIN_PX / this.scale);
   }
@@ -135,7 +135,7 @@ export class Plan extends SvgView {
     return [...walk, ...stops, this.circle("home", person.path[0], 6, `${person.name} begins here`)];
   }
 
-  /** Somebody where they are now; nobody while they are away. @param {PersonItem} person */
+  /** A person where they are now; nothing while they are away. @param {PersonItem} person */
   person(person) {
     const now = this.live.walkers?.[person.name];
     if (!now) return [];

@@ -1,4 +1,4 @@
-// What pointer and keys do on the editor's plan.
+// What the pointer and the keys do on the editor's plan.
 
 import { $ } from "../elements/dom.js";
 import { at, away } from "../model/geometry.js";
@@ -10,7 +10,7 @@ const DRAG_PX = 6;
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /**
- * What is held down: the plan that is moved, a thing that is pulled, or only the place where it was pressed.
+ * What the pointer holds: the plan that it moves, a thing that it drags, or only the place where it was pressed.
  * @typedef {{ kind: "plan" | "press", pixel: Point }} Press
  * @typedef {{ kind: "thing", pixel: Point, from: Point, to: Point, moves: boolean, grip: number | null, item: any } & Place} Pull
  */
@@ -154,7 +154,7 @@ export class Pointer {
     event.stopPropagation();
   }
 
-  /** True when the key meant something. @param {KeyboardEvent} event */
+  /** True when the key had a meaning. @param {KeyboardEvent} event */
   means({ key, shiftKey, altKey }) {
     const { editor } = this;
     /** @type {Record<string, () => void>} */
@@ -178,7 +178,7 @@ export class Pointer {
     return true;
   }
 
-  // The cross that the arrow keys move: it begins in the middle of what is seen.
+  // The cross that the arrow keys move begins in the middle of the visible part.
   get cross() {
     const { clientWidth, clientHeight } = $("plan");
     return this.plan.crosshair ?? this.snapped(this.plan.metres([clientWidth / 2, clientHeight / 2]), false);

@@ -1,9 +1,9 @@
-// A sheet of paper in metres, drawn as SVG: what part of it is seen, layers, lines and circles, and its grid.
+// A sheet in metres, drawn as SVG: which part of it is visible, layers, lines and circles, and its grid.
 
 import { svg } from "../elements/icons.js";
 import { ViewBox } from "../model/view_box.js";
 
-// `draw()` and `ring`, the corners of all that is on it, are the heir's.
+// Subclasses define `draw()` and `ring`, the corners of everything on it.
 export class SvgView {
   grid = 0.25; // metres from line to line
 
@@ -13,7 +13,7 @@ export class SvgView {
     this.layers = Object.fromEntries(layers.map((name) => [name, svg("g", { class: name })]));
     place.append(...Object.values(this.layers));
     this.view = new ViewBox();
-    this.moved = false; // by hand: until then a plan of another size shows all of it, too
+    this.moved = false; // by hand; until then, a plan of another size is shown as a whole, too
     new ResizeObserver(() => this.resized()).observe(place);
   }
 
@@ -50,7 +50,7 @@ export class SvgView {
     this.draw();
   }
 
-  /** Larger by `factor`; the pixel `around` stays where it is. @param {number} factor @param {Point} [around] */
+  /** Enlarge by `factor`; the pixel `around` stays where it is. @param {number} factor @param {Point} [around] */
   zoom(factor, around = [this.place.clientWidth / 2, this.place.clientHeight / 2]) {
     this.moved = true;
     this.view.zoom(factor, around);

@@ -1,4 +1,4 @@
-// What happens when: the lines of the world's script, sorted by time, to add, change and delete; and the daylight below them.
+// What happens when: the lines of the world's script, sorted by time, to add, change and delete, and the daylight below them.
 
 import { $, field, find, within } from "../elements/dom.js";
 import { NO_LEVEL, DaylightForm } from "./daylight.js";
@@ -19,9 +19,9 @@ export class TimePanel {
     this.form = $("script-add");
     this.now_s = 0;
     this.level = 1;
-    this.shown = ""; // the lines as they were drawn
+    this.shown = ""; // the lines as they were last drawn
     /** @type {number | null} */
-    this.place = null; // of the mark of now among them
+    this.place = null; // of the mark for the present moment among the lines
     this.daylight = new DaylightForm(office, tell);
     this.now = make("li", { className: "now" });
     $("edit-time").addEventListener("click", () => this.toggle());
@@ -55,14 +55,14 @@ export class TimePanel {
     if (!on) return $("edit-time").focus();
     this.show(this.office.world);
     this.draw({ at_s: Math.ceil((this.now_s + 1) / 10) * 10, do: firstAction(this.office.world) });
-    this.box.focus({ preventScroll: true }); // no field: a phone would cover it with its keyboard
+    this.box.focus({ preventScroll: true }); // not a field, since a phone would cover it with its keyboard
   }
 
   // ---------------------------------------------------------------- what there is
 
   /** @param {World | null} world */
   show(world) {
-    if (this.box.hidden || !world) return; // a thousand lines take their time
+    if (this.box.hidden || !world) return; // a thousand lines take a while
     const kinds = /** @type {const} */ (["doors", "lamps", "boxes"]).map((list) => namesOf(world, list));
     const text = JSON.stringify([world.script, kinds]);
     if (text !== this.shown) {
@@ -105,7 +105,7 @@ export class TimePanel {
     return { at_s: 0, text: when.value, do: /** @type {Action} */ (what.value), name: value };
   }
 
-  /** Now: lines above it are of the past. @param {number} time_s */
+  /** The present moment: lines above its mark are in the past. @param {number} time_s */
   at(time_s, level = this.level) {
     this.now_s = time_s;
     this.level = level;
@@ -126,7 +126,7 @@ export class TimePanel {
 
   // ---------------------------------------------------------------- what is done
 
-  /** The line that a row or the form says, or null when it says none. @param {HTMLElement} place @param {HTMLElement | null} changed */
+  /** The line in a row or in the form, or null when it is none. @param {HTMLElement} place @param {HTMLElement | null} changed */
   read(place, changed = null) {
     const [when, what, which] = parts(place);
     if (!when || !what || !this.office.world) return null;
@@ -189,7 +189,7 @@ export class TimePanel {
 const parts = (place) => [".when", ".what", ".which, .level"].map((kind) => place.querySelector(kind));
 
 /**
- * Time, what, and of what: of a line that is there, or of the one to add.
+ * The fields for time, action and thing, of a line that is there or of the one to add.
  * @param {World} world
  * @param {EventItem} item
  * @returns {[HTMLInputElement, HTMLElement, HTMLElement]}

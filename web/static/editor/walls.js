@@ -1,5 +1,5 @@
-// The walls of the plan. A few are SVG as all else; thousands are painted on a sheet beneath, once: whenever the robot moves the
-// browser paints all of the SVG anew, which takes seconds with ten thousand walls in it and no graphics card.
+// The walls of the plan. A few are SVG like everything else. Thousands are painted once on a canvas beneath, since the browser
+// paints all of the SVG again whenever the robot moves, which takes seconds for ten thousand walls without a graphics card.
 
 import { svg } from "../elements/icons.js";
 import { looksOf } from "../model/walls.js";
@@ -8,7 +8,7 @@ import { looksOf } from "../model/walls.js";
 /** @typedef {(p: Point) => Point} Pixel from metres to pixels of the plan */
 
 const MANY = 1000;
-const AT_ONCE = 100; // the more lines there are in one stroke, the longer each of them takes
+const AT_ONCE = 100; // lines in one stroke: the more there are, the longer each takes
 /** @type {Record<Looks, [colour: string, width: number, dashes: number[]]>} */
 const LOOKS = {
   outer: ["--outer", 4, []],
@@ -33,7 +33,7 @@ export class Walls {
     this.canvas = document.createElement("canvas");
     this.canvas.className = "painted";
     place.before(this.canvas);
-    this.paper = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d", { willReadFrequently: true })); // in memory: quicker than a graphics card that is none
+    this.paper = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d", { willReadFrequently: true })); // kept in memory: quicker without a graphics card
     new MutationObserver(() => this.again?.()).observe(document.documentElement, { attributeFilter: ["data-theme"] });
   }
 
@@ -61,7 +61,7 @@ export class Walls {
     this.layer.replaceChildren(...[...paths].map(([kind, d]) => svg("path", { d, class: kind })));
   }
 
-  /** Those in sight. @param {Wall[]} walls @param {Pixel} pixel @param {[kind: string, d: string][]} grid */
+  /** Paint the walls in sight. @param {Wall[]} walls @param {Pixel} pixel @param {[kind: string, d: string][]} grid */
   paint(walls, pixel, grid) {
     const { clientWidth: width, clientHeight: height } = this.place;
     const [{ paper, canvas }, sharp, style] = [this, window.devicePixelRatio || 1, getComputedStyle(this.place)];

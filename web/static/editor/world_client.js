@@ -1,12 +1,12 @@
-// The office as the engine has it: read again after each change; edits one after the other, undo and redo.
+// The office as the engine has it. It is read again after each change; edits, undo and redo go one after the other.
 
 import { plainly, sentence } from "../model/sentences.js";
 
 export class WorldClient {
   /**
    * @param {import("../net/connection.js").Connection} link
-   * @param {(other: boolean) => void} shows when it has been read; whether it is another world
-   * @param {(text: string) => void} wrong when an edit was refused
+   * @param {(other: boolean) => void} shows called when it has been read, with whether it is another world
+   * @param {(text: string) => void} wrong called when an edit was refused
    */
   constructor(link, shows, wrong) {
     this.link = link;
@@ -16,14 +16,14 @@ export class WorldClient {
     this.world = null;
     /** @type {number | null} */
     this.edition = null;
-    this.again = false; // somebody has asked since the last answer
+    this.again = false; // somebody has asked again since the last answer
     /** @type {Promise<void> | null} */
     this.loading = null;
     /** @type {Promise<boolean>} */
     this.busy = Promise.resolve(true);
   }
 
-  // Resolves when it has been read as it is now: who asks while an answer is under way waits for one more.
+  // Resolves when the world has been read as it is now. A caller that asks while an answer is under way waits for one more.
   load() {
     this.again = true;
     this.loading ??= (async () => {
@@ -45,13 +45,13 @@ export class WorldClient {
       this.edition = edition;
       this.shows(other);
     } catch {
-      // the connection is lost, which the page says; it is read again with the next state
+      // The connection is lost, as the page says. The world is read again with the next state.
       this.edition = null;
     }
   }
 
   /**
-   * One edit: the steps that `makes(world)` gives, or a sentence that says why there are none. Resolves to whether it was done.
+   * One edit: `makes(world)` gives its steps, or a sentence that says why there are none. Resolves to whether it was done.
    * @param {(world: World) => EditStep[] | string} makes
    */
   edit(makes) {
@@ -75,7 +75,7 @@ export class WorldClient {
   async send(command) {
     const before = this.busy;
     this.busy = (async () => {
-      await before; // edits that follow each other quickly are made on what the one before left
+      await before; // of edits in quick succession, each is made on the result of the one before
       const wish = command();
       if (!wish) return false;
       const answer = await this.link.ask(wish, { quiet: true });

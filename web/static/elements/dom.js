@@ -9,7 +9,7 @@
 export const $ = (id) => /** @type {any} */ (document.getElementById(id));
 
 /**
- * What a selector finds in a place where it is known to be.
+ * The element that a selector finds in a place where there is one.
  * @template {Element} [T=HTMLElement]
  * @param {ParentNode} place
  * @param {string} selector
@@ -25,7 +25,7 @@ export const find = (place, selector) => /** @type {any} */ (place.querySelector
 export const field = ({ target }) => /** @type {any} */ (target);
 
 /**
- * What of the kind of a selector an event was in, if anything.
+ * The element matching a selector in which an event happened, if any.
  * @param {Event} event
  * @param {string} selector
  * @returns {HTMLElement | null}

@@ -1,4 +1,4 @@
-// Elements by their properties; what a person typed only ever becomes text.
+// Makes elements from their properties. What a person has typed only ever becomes text.
 
 import { icon } from "./icons.js";
 
@@ -63,9 +63,9 @@ export function mark(input, wrong) {
 }
 
 /**
- * Draw a list anew; who was in it stays there, and what somebody is typing stays typed.
+ * Draw a list anew. The focus stays where it was, and so does text that somebody is typing.
  * @param {HTMLElement} list
- * @param {HTMLElement} form where to go when the list is empty
+ * @param {HTMLElement} form gets the focus when the list is empty
  * @param {() => void} draw
  */
 export function keepingPlace(list, form, draw) {

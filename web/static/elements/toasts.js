@@ -1,12 +1,12 @@
-// Short sentences over the stage: what was done, what was refused, what is to be known. Text only, never HTML.
-// One stays until it can be read at leisure, and for as long as somebody points at it; a click or Escape takes it away.
+// Short sentences over the plates: what was done, what was refused, what people should know. Text only, never HTML.
+// A sentence stays long enough to be read, and for as long as somebody points at it; a click or Escape removes it.
 
 import { $ } from "./dom.js";
 import { icon } from "./icons.js";
 
 const MOST = 4;
 const place = $("messages");
-let count = 0; // of all that there were
+let count = 0; // of all toasts so far
 
 /** @param {string} text @param {{ bad?: boolean, notice?: boolean, stays?: boolean }} [kind] */
 export function toast(text, { bad = false, notice = false, stays = false } = {}) {
@@ -31,7 +31,7 @@ export function toast(text, { bad = false, notice = false, stays = false } = {})
   return box;
 }
 
-// True when there was one: the newest goes.
+// Removes the newest; true when there was one.
 export function dismissToast() {
   const newest = all().at(-1);
   newest?.remove();
@@ -51,7 +51,7 @@ function leave(box, after_ms) {
   setTimeout(() => box.isConnected && (unread() ? leave(box, after_ms) : box.remove()), after_ms);
 }
 
-// No more than there is room for; those that stay go last.
+// Keeps no more than there is room for; those marked to stay go last.
 function makeRoom() {
   for (;;) {
     const boxes = all();

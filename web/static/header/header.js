@@ -1,4 +1,4 @@
-// The header: what the session does, and the controls of time, world and goal.
+// The header: what the session is doing, and the controls for time, world and goal.
 
 import { $, find } from "../elements/dom.js";
 import { setIcon } from "../elements/icons.js";
@@ -56,7 +56,7 @@ export class Header {
     chip.dataset.tone = tone;
     chip.title = page.doing;
     const words = find(chip, "span");
-    if (words.textContent !== text) words.textContent = text; // a changed text is read aloud: only then
+    if (words.textContent !== text) words.textContent = text; // only when it changes, since it is then read aloud
   }
 
   // A fault has too many words for a chip.
@@ -80,7 +80,7 @@ export class Header {
     $("walk-next").textContent = walk.at === walk.of ? "Next tick" : "Next stage";
     const title = find(box, ".title");
     if (title.textContent === walk.title && find(box, ".words").textContent === walk.words) return;
-    title.textContent = walk.title; // a changed text is read aloud: only then
+    title.textContent = walk.title; // only when it changes, since it is then read aloud
     find(box, ".words").textContent = walk.words;
   }
 

@@ -1,4 +1,4 @@
-// Times as they are read, and what of them stands beneath the timeline. No DOM.
+// Times for people, and which of them are written below the timeline. No DOM.
 
 const STEPS_S = [10, 30, 60, 120, 180, 300, 600, 900, 1800, 3600, 7200, 14400];
 const PER_TICK_PX = 110;
@@ -11,7 +11,7 @@ export function clock(seconds) {
   return hours ? `${hours}:${two(minutes)}:${two(whole % 60)}` : `${minutes}:${two(whole % 60)}`;
 }
 
-/** The times that are written beneath so many pixels of `end` seconds. @param {number} end @param {number} width */
+/** The times written below a timeline of `end` seconds that is `width` pixels wide. @param {number} end @param {number} width */
 export function tickTimes(end, width) {
   const most = Math.max(3, Math.floor(width / PER_TICK_PX));
   const step = STEPS_S.find((value) => end / value <= most) ?? Math.ceil(end / most / 3600) * 3600;

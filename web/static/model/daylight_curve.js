@@ -1,6 +1,6 @@
 // The daylight against time as a curve in a small picture. No DOM.
 
-export const [WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM] = [316, 112, 26, 8, 8, 20]; // of the picture and round its axes
+export const [WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM] = [316, 112, 26, 8, 8, 20]; // of the picture, and margins around its axes
 const LEAST_S = 60;
 
 export class DaylightCurve {
@@ -22,7 +22,7 @@ export class DaylightCurve {
     return HEIGHT - BOTTOM - ((HEIGHT - TOP - BOTTOM) * Math.min(level, this.most)) / this.most;
   }
 
-  /** Where in the picture a moment is: of a curve that repeats, in its round. @param {number} now_s */
+  /** Where a moment is in the picture; if the curve repeats, within its period. @param {number} now_s */
   now(now_s) {
     return this.x(this.repeat_s ? now_s % this.repeat_s : now_s);
   }

@@ -1,5 +1,5 @@
-// The kinds of events: what each is called, how much it counts where there is no room for all, and its mark. The colours are
-// in page.css. A kind that is not here goes by its own name. No DOM.
+// The kinds of events: each has a name, a weight that decides when there is no room for all, and a mark. The colours are in
+// page.css. A kind that is not listed here is shown under its own name. No DOM.
 
 /** @param {number} r */
 const circle = (r) => `M${-r} 0a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
@@ -36,5 +36,5 @@ export const nameOf = (kind) => known(kind)?.name ?? kind.replaceAll("_", " ");
 /** @param {string} kind */
 export const weightOf = (kind) => (known(kind) ?? UNKNOWN).weight;
 
-/** The outline of its mark, and whether it is only a line. @param {string} kind @returns {{ d: string, open?: boolean }} */
+/** The outline of a kind's mark, and whether it is only a line. @param {string} kind @returns {{ d: string, open?: boolean }} */
 export const markOf = (kind) => known(kind) ?? UNKNOWN;

@@ -1,14 +1,14 @@
-// What of a world is near a point. No DOM.
+// Finds things of a world near a point. No DOM.
 
 import { away } from "./geometry.js";
 import { kindOf } from "./things.js";
 
-const RADIUS_M = 0.22; // of a person whose own is not said
-/** @type {ThingList[]} the small ones first: they lie on the large ones */
+const RADIUS_M = 0.22; // of a person without a radius of their own
+/** @type {ThingList[]} small things first, since they lie on large ones */
 const ORDER = ["places", "starts", "doors", "boxes", "lamps", "people", "walls", "slow_zones"];
 
 /**
- * The thing nearest to a point within `reach` metres, of the first list that has one. Who walks about is also found where
+ * The thing nearest to a point within `reach` metres, from the first list that has one. People who walk are also found where
  * they are now.
  * @param {Partial<World>} world
  * @param {Point} p
@@ -25,7 +25,7 @@ export function thingNear(world, p, reach, walkers = {}) {
       const [x, y] = walkers[item.name];
       return Math.min(far, away([x, y], p) - (item.radius ?? RADIUS_M));
     });
-    const least = fars.reduce((a, b) => Math.min(a, b), Infinity); // ten thousand walls are too many arguments
+    const least = fars.reduce((a, b) => Math.min(a, b), Infinity); // ten thousand walls would be too many arguments for Math.min
     if (least <= reach) return { list, number: fars.indexOf(least) };
   }
   return null;

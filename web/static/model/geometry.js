@@ -8,7 +8,7 @@ export const round = (value, per = ROUND) => Math.round(value * per) / per;
 /** @param {number} x @param {number} y @returns {Point} */
 export const point = (x, y) => [x, y];
 
-/** The same on the millimetre. @param {number} x @param {number} y @returns {Point} */
+/** A point rounded to the millimetre. @param {number} x @param {number} y @returns {Point} */
 export const at = (x, y) => [round(x), round(y)];
 
 /** @param {Point} p @param {Point} d */
@@ -59,7 +59,7 @@ export const tip = (door, opening = 0) => {
   return plus(door.hinge, turned([door.width, 0], door.angle_deg + opening * (door.swing_deg ?? 90)));
 };
 
-/** Where it begins. @param {Door} door @param {number} [opening] */
+/** Where the leaf of a door begins. @param {Door} door @param {number} [opening] */
 export const hinge = (door, opening = 0) =>
   door.slides ? plus(door.hinge, turned([-door.width * opening, 0], door.angle_deg)) : door.hinge;
 

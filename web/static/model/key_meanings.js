@@ -1,10 +1,10 @@
-// Which keys mean what. No DOM: whoever listens says where a key was pressed.
+// What keys mean. No DOM: the caller says where a key was pressed.
 
 /** @typedef {"up" | "down" | "left" | "right"} Direction */
 /** @typedef {{ code: string, key: string, ctrlKey: boolean, metaKey: boolean, altKey: boolean, isComposing: boolean }} Pressed */
 /**
- * What is there where the key was pressed: a place to type, a widget that uses the arrows, one that is pressed with the space
- * bar, and whether a dialog is open.
+ * Where the key was pressed: in a place to type, in a widget that uses the arrows, in one that the space bar presses, and while
+ * a dialog is open.
  * @typedef {{ typing: boolean, arrows: boolean, pressing: boolean, dialog: boolean }} Where
  */
 
@@ -20,11 +20,11 @@ const DRIVE = {
   KeyD: "right",
 };
 
-/** The direction that a key drives to, by where it lies on the keyboard. @param {string} code @returns {Direction | undefined} */
+/** The direction in which a key drives, by its position on the keyboard. @param {string} code @returns {Direction | undefined} */
 export const directionOf = (code) => DRIVE[code];
 
 /**
- * What a key means there: to drive, or the name of something to do; null is for the widget or the browser.
+ * What a key means there: driving, or the name of an action; null: the key is left to the widget or the browser.
  * @param {Pressed} event
  * @param {Where} where
  * @returns {{ drive: Direction } | { act: string } | null}

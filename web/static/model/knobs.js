@@ -1,14 +1,14 @@
-// Parameters as controls: their groups, their words, and which of them a search means. No page.
+// Parameters as controls: their groups, their words, and which of them a search finds. No DOM.
 
 /**
- * A parameter as the server tells of it (web/panel/tune.py).
+ * A parameter as the server sends it (web/panel/tune.py).
  * @typedef {{
  *   name: string, value: number | boolean | string, default: number | boolean | string, symbol: string, unit: string,
  *   low: number | null, high: number | null, step: number | null, choices: string[], live: boolean, hint: string,
  * }} Parameter
  */
 
-/** What a parameter is called within its group. @param {string} name */
+/** The name of a parameter within its group. @param {string} name */
 export const shortName = (name) => name.slice(name.lastIndexOf(".") + 1).replaceAll("_", " ");
 
 /** The heading of its group. @param {string} name */
@@ -31,7 +31,7 @@ export function grouped(parameters) {
 }
 
 /**
- * Whether a search means this parameter: each of its words is in name, symbol, unit or meaning.
+ * Whether a search finds this parameter: each word searched for is in its name, symbol, unit or meaning.
  * @param {Pick<Parameter, "name" | "symbol" | "unit" | "hint">} parameter
  * @param {string} search
  */
@@ -43,11 +43,11 @@ export function means({ name, symbol, unit, hint }, search) {
     .every((word) => text.includes(word));
 }
 
-/** A symbol as it is printed: what stands on the line, and what below it. @param {string} symbol @returns {[string, string]} */
+/** A symbol as it is printed: the part on the line, and the subscript. @param {string} symbol @returns {[string, string]} */
 export function printed(symbol) {
   const [base, ...below] = symbol.split("_");
   return [base, below.join("_").replace(/^\{(.*)\}$/, "$1")];
 }
 
-/** As it was before anybody changed it. @param {Pick<Parameter, "value" | "default">} parameter */
+/** Whether the value is the default. @param {Pick<Parameter, "value" | "default">} parameter */
 export const isDefault = (parameter) => parameter.value === parameter.default;

@@ -1,4 +1,4 @@
-// Pictures out of numbers, as RGBA pixels for a canvas. No page: colours come as triples of bytes.
+// Pictures made of numbers, as RGBA pixels for a canvas. No DOM: colours are triples of bytes.
 
 /**
  * @typedef {[number, number, number]} Rgb
@@ -22,7 +22,7 @@ export function mix(from, to, share) {
 }
 
 /**
- * Grey levels (height, width) or colours (height, width, 3) as they are.
+ * A picture of grey levels (height, width) or colours (height, width, 3), as they are.
  * @param {ArrayLike<number>} values
  * @param {number[]} shape
  * @returns {Pixels}
@@ -71,12 +71,12 @@ export function viewStrip({ views, active, recent }, colours) {
  * @param {ArrayLike<number>} places y′ n_x + x′ of each entry
  * @param {ArrayLike<number>} packets the rank of its packet
  * @param {ArrayLike<number>} strength its activity, in any unit
- * @param {Rgb[]} colours of packets; what has a higher rank has the last one
+ * @param {Rgb[]} colours of the packets by rank; higher ranks have the last one
  * @param {Rgb} ground where nothing is active
  * @returns {Pixels}
  */
 export function fromAbove([height, width], places, packets, strength, colours, ground) {
-  const sums = new Float64Array(4 * width * height); // red, green, blue, all of it: weighted with the activity
+  const sums = new Float64Array(4 * width * height); // red, green and blue weighted with the activity, then the sum of the activity
   for (let k = 0; k < places.length; k++) {
     const colour = colours[Math.min(packets[k], colours.length - 1)];
     for (let c = 0; c < 3; c++) sums[4 * places[k] + c] += colour[c] * strength[k];
@@ -95,7 +95,7 @@ export function fromAbove([height, width], places, packets, strength, colours, g
 }
 
 /**
- * Bars from a common floor as the path of an SVG of `values.length` by 100, the tallest to the top.
+ * Bars on a common floor, as the path of an SVG of `values.length` by 100. The tallest reaches the top.
  * @param {ArrayLike<number>} values
  */
 export function bars(values) {

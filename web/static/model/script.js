@@ -1,4 +1,4 @@
-// The script of a world: what its lines can do and to what, and how times are written. No DOM.
+// The script of a world: what its lines can do, to which things, and how times are written. No DOM.
 
 import { SCRIPT_ACTIONS } from "../shared.js";
 
@@ -6,7 +6,7 @@ import { SCRIPT_ACTIONS } from "../shared.js";
 /** @typedef {"doors" | "lamps" | "boxes"} Actors */
 
 /**
- * What a line of the script does: what people call it, and the list with the things that it can do it to.
+ * What a line of the script can do: its title for people, and the list of the things that it can be done to.
  * @type {Record<Action, { title: string, of?: Actors }>}
  */
 export const ACTIONS = {
@@ -22,7 +22,7 @@ export const ACTIONS = {
 };
 
 /**
- * The line as a file has it, with what belongs to what it does alone: a name, a level, or neither.
+ * The line as it is written in a file, with what its action needs and nothing else: a name, a level, or neither.
  * @param {Partial<World>} world
  * @param {number} at_s
  * @param {Action} action
@@ -44,7 +44,7 @@ export const isLevel = (text) => text !== null && String(text).trim() !== "" && 
 export const namesOf = (world, list) => (world[list] ?? []).map((thing) => thing.name);
 
 /**
- * The steps after which the script's lines about a thing have its new name; without one they are gone.
+ * The steps that give the script's lines about a thing its new name, or delete them when there is none.
  * @param {Partial<World>} world
  * @param {ThingList} list
  * @param {string} name
@@ -61,7 +61,7 @@ export function followingLines(world, list, name, newName) {
         : { do: "change", list: "script", number, item: { ...item, name: newName } },
     );
   });
-  return steps; // from behind: those still to come keep their numbers
+  return steps; // from the last line to the first, so that the others keep their numbers
 }
 
 /** 90, 1:30 or 1:02:30 as seconds; NaN when it is no time. @param {string} text */

@@ -1,12 +1,12 @@
-// Sentences out of what the server says and what is counted. No DOM.
+// Sentences made of what the server says and of counts. No DOM.
 
-/** With a full stop. @param {string} text */
+/** The text with a full stop. @param {string} text */
 export const ended = (text) => text + (/[.!?]$/.test(text) ? "" : ".");
 
-/** With a capital letter, too: what begins with a file's name is better only ended. @param {string} text */
+/** The text with a capital letter and a full stop. For a text that begins with a file's name, use `ended`. @param {string} text */
 export const sentence = (text) => text[0].toUpperCase() + ended(text.slice(1));
 
-/** An edit's refusal without the number that a thing has in the world's file. @param {string} reason */
+/** The refusal of an edit without the numbers that things have in the world's file. @param {string} reason */
 export const plainly = (reason) =>
   reason.replace(/^steps\[\d+\]: /, "").replace(/^\w+\[\d+\] \((.+?)\)(?= would cover)/, "the $1");
 
@@ -24,7 +24,7 @@ export function freeName({ yours, ours }) {
   return name();
 }
 
-/** What is written to offer a kept brain. @param {KeptOffer} kept @param {number} now_s since 1970 */
+/** The words that offer a kept brain. @param {KeptOffer} kept @param {number} now_s since 1970 */
 export function keptWords(kept, now_s) {
   const LONG_AGO_S = 12 * 3600;
   /** @type {Intl.DateTimeFormatOptions} */

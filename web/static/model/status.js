@@ -1,4 +1,4 @@
-// The words of the header: what the session does, and how it stands with the goal. No DOM.
+// The words of the header: what the session is doing, and the state of the goal. No DOM.
 
 /** @typedef {[icon: string, tone: string, words: string]} Chip */
 

@@ -1,10 +1,10 @@
-// The kinds of things in a world file: where they can be gripped, how they are moved, what can be typed in. No DOM.
+// The kinds of things in a world file: where they can be gripped, how they are moved, and their fields. No DOM.
 
 import { LIMITS, WALL_KINDS } from "../shared.js";
 import { at, away, corners, degrees, plus, round, tip, toArea, toPath, toSegment, turned } from "./geometry.js";
 import { fitted, pulledEnds } from "./walls.js";
 
-const LEAST_M = 0.05; // what can be seen and gripped: the file only wants more than 0
+const LEAST_M = 0.05; // the least that can be seen and gripped; a file needs only more than 0
 
 /** @param {Point} p */
 const xy = ([x, y]) => ({ x, y });
@@ -141,17 +141,17 @@ export const THINGS = {
   places: { one: "place", ...point(), fields: [name, ...place("places")] },
 };
 
-/** The kind of a list's things, for whoever holds one without knowing which. @param {ThingList} list */
+/** The kind of a list's things, for callers that do not know statically which list it is. @param {ThingList} list */
 export const kindOf = (list) => /** @type {Kind<any>} */ (THINGS[list]);
 
-/** What an item has at a key: `from.0` is a part of a list, `wait_s.*` stands for all of it. @param {any} item @param {string} key */
+/** The value of an item at a key: `from.0` is one part of a list, `wait_s.*` stands for all parts. @param {any} item @param {string} key */
 export function read(item, key) {
   const [head, rest] = key.split(".");
   if (rest === undefined) return item[head];
   return item[head]?.[rest === "*" ? 0 : Number(rest)];
 }
 
-/** The item with another value there. @template T @param {T} item @param {string} key @param {unknown} value @returns {T} */
+/** The item with another value at a key. @template T @param {T} item @param {string} key @param {unknown} value @returns {T} */
 export function written(item, key, value) {
   const [head, rest] = key.split(".");
   if (rest === undefined) return { ...item, [head]: value };
@@ -168,7 +168,7 @@ export function newName(world, list) {
 }
 
 /**
- * A thing pulled at a grip, or all of it, from one point to another: the item as it is then, and the steps of the edit.
+ * A thing dragged by a grip, or as a whole, from one point to another: the item as it is then, and the steps of the edit.
  * @param {Pick<World, "walls">} world
  * @param {Place & { grip: number | null, item: any }} held
  * @param {Point} from

@@ -1,11 +1,11 @@
-// What of the events has room on the timeline. No DOM.
+// Which events have room on the timeline. No DOM.
 
 import { clock } from "./clock.js";
 import { nameOf, weightOf } from "./event_kinds.js";
 
-const [LETTER_PX, AROUND_PX] = [7.2, 5]; // of a name, and on either side of it
-const NAMED = 60; // of the newest that count
-const APART_PX = 5; // more than one mark of a kind in so many pixels says nothing
+const [LETTER_PX, AROUND_PX] = [7.2, 5]; // width of a letter, and room on either side of a name
+const NAMED = 60; // of the events that count, this many of the newest get names
+const APART_PX = 5; // a second mark of the same kind within this distance would say nothing
 
 /** @typedef {(time_s: number) => number} Axis where a time is, pixels */
 
@@ -13,13 +13,13 @@ const APART_PX = 5; // more than one mark of a kind in so many pixels says nothi
 export const words = (event) => `${clock(event.time_s)} ${nameOf(event.kind)}: ${event.text}`;
 
 /**
- * The marks to draw, those that count most last and so on top.
+ * The marks to draw. Those that count most come last, and so on top.
  * @param {TimelineEvent[]} events oldest first
  * @param {Axis} x
  */
 export function marksOf(events, x) {
   const marks = [];
-  const last = new Map(); // kind -> x of the one drawn last
+  const last = new Map(); // kind -> x of the mark drawn last
   for (const { kind, time_s } of events) {
     const at = x(time_s);
     if (at - (last.get(kind) ?? -Infinity) < APART_PX) continue;
@@ -30,7 +30,7 @@ export function marksOf(events, x) {
 }
 
 /**
- * The names to write, none over another: those that count most first, of equals the newest.
+ * The names to write, none over another. Those that count most go first; among equals, the newest.
  * @param {TimelineEvent[]} events
  * @param {Axis} x
  * @param {number} width

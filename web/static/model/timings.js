@@ -1,9 +1,9 @@
-// What the parts of a tick cost, in words. No page.
+// What the parts of a tick cost, in words. No DOM.
 
 /** @typedef {[part: string, mean_ms: number, worst_ms: number]} Timing */
 
 /**
- * All parts together against the time that there is.
+ * The time of all parts together, compared with the time available.
  * @param {Timing[]} parts
  * @param {number} thereAre_ms
  */
@@ -15,5 +15,5 @@ export function tickWords(parts, thereAre_ms) {
 /** @param {Timing} timing */
 export const partWords = ([, mean_ms, worst_ms]) => `${mean_ms.toFixed(2)}, worst ${worst_ms.toFixed(1)} ms`;
 
-/** Of the dearest part. @param {Timing[]} parts @param {Timing} timing */
+/** A part's time as a share of the most expensive part's. @param {Timing[]} parts @param {Timing} timing */
 export const shareOf = (parts, [, mean_ms]) => mean_ms / Math.max(1e-9, ...parts.map(([, other_ms]) => other_ms));

@@ -1,4 +1,4 @@
-// The drawing tools: how many points each one takes, what to click next, and what comes of the points. No DOM.
+// The drawing tools: how many points each takes, what to click next, and what the points make. No DOM.
 
 import { LIMITS } from "../shared.js";
 import { at, away, degrees, round } from "./geometry.js";
@@ -9,7 +9,7 @@ import { gapSteps } from "./walls.js";
 const adds = (list, item) => [{ do: "add", list, item }];
 
 /**
- * `takes`: points; Infinity: until Enter, with `least`. `says`: what to click next, by how many points there are.
+ * `takes`: how many points; Infinity: until Enter, with at least `least`. `says`: what to click next, by the number of points.
  * `makes(points, world, looks)`: the steps of one edit, or a sentence that says why there are none.
  * @type {Record<ToolName, Tool>}
  */

@@ -1,16 +1,16 @@
-// What part of the office is seen on a sheet, and where: metres to pixels and back. No DOM.
+// Which part of the office is visible on a sheet, and where: metres to pixels and back. No DOM.
 
 const MARGIN_PX = 36;
-const EDGE_PX = 24; // what is nearer to the edge of the sheet counts as out of sight
+const EDGE_PX = 24; // a point nearer to the edge of the sheet counts as out of sight
 const LEAST_GRID_PX = 7;
-const [LEAST, MOST] = [0.1, 2000]; // pixels a metre
+const [LEAST, MOST] = [0.1, 2000]; // pixels per metre
 
 export class ViewBox {
-  scale = 0; // pixels a metre; 0: not shown yet
+  scale = 0; // pixels per metre; 0: not shown yet
   /** @type {Point} */
   origin = [0, 0]; // where (0, 0) is on the sheet, pixels
 
-  /** All of these points on a sheet of this size. @param {Point[]} ring @param {number} width @param {number} height */
+  /** Shows all of these points on a sheet of this size. @param {Point[]} ring @param {number} width @param {number} height */
   fit(ring, width, height) {
     const [xs, ys] = [ring.map((p) => p[0]), ring.map((p) => p[1])];
     const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
@@ -24,7 +24,7 @@ export class ViewBox {
     this.origin = [this.origin[0] + dx, this.origin[1] + dy];
   }
 
-  /** Larger by `factor`; the pixel `around` stays where it is. @param {number} factor @param {Point} around */
+  /** Enlarges by `factor`; the pixel `around` stays where it is. @param {number} factor @param {Point} around */
   zoom(factor, around) {
     const to = within(this.scale * factor);
     const moved = (/** @type {0 | 1} */ k) => around[k] + ((this.origin[k] - around[k]) * to) / this.scale;
@@ -42,7 +42,7 @@ export class ViewBox {
     return [(u - this.origin[0]) / this.scale, (this.origin[1] - v) / this.scale];
   }
 
-  /** By how many pixels the sheet is pushed until a point is in sight. @param {Point} p @param {number} width @param {number} height @returns {Point} */
+  /** By how many pixels the sheet must be moved until a point is in sight. @param {Point} p @param {number} width @param {number} height @returns {Point} */
   push(p, width, height) {
     const [u, v] = this.pixel(p);
     const by = (/** @type {number} */ at, /** @type {number} */ size) =>
@@ -50,7 +50,7 @@ export class ViewBox {
     return [by(u, width), by(v, height)];
   }
 
-  /** The steps of the fine and the coarse lines of a grid, metres: as asked for, or wider where they would be too dense. @param {number} asked */
+  /** The steps of a grid's fine and coarse lines, metres: as asked for, or wider if the lines would be too dense. @param {number} asked */
   gridSteps(asked) {
     let step = asked;
     while (step * this.scale < LEAST_GRID_PX) step *= step < 1 && step * 4 >= 1 ? 1 / step : 5;

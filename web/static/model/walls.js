@@ -1,4 +1,4 @@
-// Walls that change because something else did: their corners stay closed, a door gets its gap. No DOM.
+// Walls that change because something else has changed: corners stay closed, a door gets its gap. No DOM.
 
 import { at, away, length, round, toSegment } from "./geometry.js";
 
@@ -6,7 +6,7 @@ const JOINED_M = 1e-6; // ends nearer than this are one corner
 const ON_THE_WALL_M = 0.03;
 const LEAST_PART_M = 0.02;
 
-/** What stays on a wall whose length has changed. @param {Wall} wall @returns {Wall} */
+/** A wall whose length has changed, with the panels that still fit on it. @param {Wall} wall @returns {Wall} */
 export function fitted(wall) {
   if (!wall.panels) return wall;
   const panels = wall.panels.filter((panel) => panel.at + panel.width <= length(wall) + 1e-9);
@@ -14,7 +14,7 @@ export function fitted(wall) {
 }
 
 /**
- * The steps that move wall ends which lie on one of `moves` ([from, to] points), so that corners stay closed.
+ * The steps that move the ends of walls along with `moves` ([from, to] points), so that corners stay closed.
  * @param {Pick<World, "walls">} world
  * @param {[Point, Point][]} moves
  * @param {number[]} [except] walls that are moved already
@@ -36,7 +36,7 @@ export function pulledEnds(world, moves, except = []) {
 }
 
 /**
- * A door on an inner wall needs a gap in it: the wall becomes the parts on both sides of the leaf.
+ * A door on an inner wall needs a gap: the wall is replaced by its parts on both sides of the leaf.
  * @param {Pick<World, "walls">} world
  * @param {Point} from
  * @param {Point} to
@@ -65,7 +65,7 @@ export function gapSteps(world, from, to) {
 }
 
 /**
- * A wall from one distance along it to another, with the panels that are wholly on it.
+ * The part of a wall from one distance along it to another, with the panels that are wholly on that part.
  * @param {Wall} wall
  * @param {number} begin
  * @param {number} end

@@ -1,4 +1,4 @@
-// The page's websocket: comes back by itself, hands out what arrives, sends commands and finds their answers.
+// The page's websocket: it reconnects by itself, hands out what arrives, sends commands and matches their answers.
 
 import { unframed } from "../model/frames.js";
 
@@ -19,7 +19,7 @@ export class Connection extends EventTarget {
 
   connect() {
     const socket = new WebSocket(`ws://${location.host}/api/stream?got=1&page=${this.page}`);
-    socket.binaryType = "arraybuffer"; // a part of the panel with its arrays
+    socket.binaryType = "arraybuffer"; // for parts of the panel with arrays
     const slow = setTimeout(() => socket.close(), 3000);
     socket.onopen = () => {
       clearTimeout(slow);
@@ -30,7 +30,7 @@ export class Connection extends EventTarget {
       const message = typeof event.data === "string" ? JSON.parse(event.data) : unframed(event.data);
       if (message.type === "answer") this.settle(message);
       else this.dispatchEvent(new CustomEvent(message.type, { detail: message }));
-      if (message.type === "state") this.tell({ type: "got" }); // the next, please: the newest there is by then
+      if (message.type === "state") this.tell({ type: "got" }); // asks for the next, which is the newest by then
     };
     socket.onclose = () => {
       clearTimeout(slow);
@@ -59,7 +59,7 @@ export class Connection extends EventTarget {
   }
 
   /**
-   * Calls back with what each message of a kind holds.
+   * Calls `take` with the content of each message of a kind.
    * @template T
    * @param {string} kind
    * @param {(detail: T) => void} take
@@ -69,7 +69,7 @@ export class Connection extends EventTarget {
   }
 
   /**
-   * Fire and forget: what is sent often, or concerns this page alone. Only a refusal is answered.
+   * Fire and forget, for what is sent often or concerns this page alone. Only a refusal is answered.
    * @param {(Command | PageMessage) & { id?: number }} command
    */
   tell(command) {
@@ -78,7 +78,7 @@ export class Connection extends EventTarget {
   }
 
   /**
-   * Resolves to the answer; never rejects. quiet: whoever asks tells of a refusal.
+   * Resolves to the answer; never rejects. quiet: the caller reports a refusal itself.
    * @param {Command | PageMessage} command
    * @returns {Promise<Answer>}
    */

@@ -1,9 +1,9 @@
-// A change that is no command: JSON to one of the routes.
+// Changes that are not commands: JSON sent to one of the routes.
 
 import { sentence } from "../model/sentences.js";
 
 /**
- * Resolves to what the server told; what was wrong is in `wrong`, in sentences, and `field` says where.
+ * Resolves to the server's answer. If something was wrong, `wrong` says what, in sentences, and `field` says where.
  * @param {string} path
  * @param {object} body
  * @returns {Promise<Told>}

@@ -1,4 +1,4 @@
-// Pictures in canvases: pixels as they come, enlarged without smoothing.
+// Pictures in canvases: pixels as they are, enlarged without smoothing.
 
 import { make } from "../elements/elements.js";
 import { rgb } from "../model/pixels.js";
@@ -11,10 +11,10 @@ export class Picture {
   constructor() {
     this.canvas = make("canvas", { width: 1, height: 1, className: "pixels" });
     this.canvas.setAttribute("role", "img");
-    this.turn = 0; // of what was asked to be shown last: a picture that is unpacked later than a newer one is dropped
+    this.turn = 0; // number of the latest request: a picture that is unpacked after a newer one is dropped
   }
 
-  /** @param {string} words for who cannot see it */
+  /** @param {string} words for people who cannot see it */
   says(words) {
     if (this.canvas.getAttribute("aria-label") !== words) this.canvas.setAttribute("aria-label", words);
     return this;

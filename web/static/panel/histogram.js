@@ -1,4 +1,4 @@
-// Activity by heading: bars from a common floor, 0° to 360°.
+// Activity by heading: bars on a common floor, 0° to 360°.
 
 import { make } from "../elements/elements.js";
 import { svg } from "../elements/icons.js";

@@ -1,4 +1,4 @@
-// A packet put in by hand where a column of pose cells is chosen: watch how it competes with the others.
+// A form that injects a packet by hand at the chosen column of pose cells, to watch how it competes with the others.
 
 import { make } from "../elements/elements.js";
 import { note } from "./parts.js";

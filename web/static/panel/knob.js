@@ -13,7 +13,7 @@ export class Knob {
   constructor(parameter, ask) {
     this.ask = ask;
     this.parameter = parameter;
-    /** @type {Parameter["value"] | undefined} what has been turned to while an answer is awaited */
+    /** @type {Parameter["value"] | undefined} the newest value chosen while an answer is awaited */
     this.next = undefined;
     this.asking = false;
     this.input = control(parameter);
@@ -31,7 +31,7 @@ export class Knob {
     this.show(parameter);
   }
 
-  /** What the session says; what somebody is typing stays typed. @param {Parameter} parameter */
+  /** Shows the session's value; text that somebody is typing stays. @param {Parameter} parameter */
   show(parameter) {
     this.parameter = parameter;
     this.reset.hidden = isDefault(parameter);
@@ -45,7 +45,7 @@ export class Knob {
     return typeof this.parameter.value === "number" ? Number(this.input.value) : this.input.value;
   }
 
-  /** A command, one at a time: what is turned meanwhile waits, the newest wins. @param {Parameter["value"]} value */
+  /** Sends one command at a time. Of the values chosen meanwhile, the newest is sent next. @param {Parameter["value"]} value */
   async turned(value) {
     delete this.input.dataset.typed;
     this.next = value;
@@ -58,7 +58,7 @@ export class Knob {
       if (answer.accepted) this.parameter = { ...this.parameter, value: wish };
     }
     this.asking = false;
-    this.show(this.parameter); // a refusal takes it back
+    this.show(this.parameter); // after a refusal, the old value is shown again
   }
 }
 

@@ -1,4 +1,4 @@
-// Memory: what lies over the plates, what the network has stored, its goal, its snaps, and what the marks mean.
+// Memory: the layers over the plates, what has been stored, the goal, the snaps, and what the marks mean.
 
 import { make } from "../elements/elements.js";
 import { Tables, heading } from "./parts.js";

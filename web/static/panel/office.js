@@ -1,4 +1,4 @@
-// Office: what this world has and whether it lives, one switch each; the robot's presets. A refusal takes a switch back.
+// Office: what moves in this world, one switch each, and the robot's presets. After a refusal a switch goes back.
 
 import { make } from "../elements/elements.js";
 import { Knob } from "./knob.js";
@@ -58,7 +58,7 @@ export class OfficeTab {
   async choose() {
     const name = this.preset.value;
     if (name !== OWN) await this.ask({ type: "use_preset", name });
-    this.preset.value = this.data.preset || OWN; // the session says which one it is
+    this.preset.value = this.data.preset || OWN; // the session decides which one is shown
     this.preset.blur();
   }
 

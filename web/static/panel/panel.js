@@ -19,7 +19,7 @@ import { TuneTab } from "./tune.js";
  */
 
 const EVERY_MS = 150; // the server takes ten messages a second
-const narrow = window.matchMedia("(max-width: 1000px)"); // there it would leave too little of the plates: a sheet over them
+const narrow = window.matchMedia("(max-width: 1000px)"); // there the panel is a sheet over the plates
 
 export class Panel {
   /**
@@ -45,7 +45,7 @@ export class Panel {
       Tune: new TuneTab(ask),
     };
     this.tabs = new TabList(Object.keys(this.views), (name) => this.open(name));
-    /** @type {Map<string, Message>} what was told last of each part, with all its arrays */
+    /** @type {Map<string, Message>} the last message of each part, with all its arrays */
     this.told = new Map();
     /** @type {string | null | undefined} */
     this.looked = undefined;
@@ -59,7 +59,7 @@ export class Panel {
     narrow.addEventListener("change", () => this.show(!narrow.matches));
     document.addEventListener("visibilitychange", () => this.tell());
     link.on("hello", () => {
-      this.told.clear(); // another line: the server tells all of it again
+      this.told.clear(); // a new connection: the server sends everything again
       this.tell();
     });
     link.on("panel", (/** @type {Message} */ message) => this.take(message));
@@ -99,7 +99,7 @@ export class Panel {
     this.tell();
   }
 
-  /** Nobody sees what a hidden panel shows. Whoever runs through the tabs with a held key says where he has come to. */
+  /** Tells the server which tab is open, none while the panel is hidden; not more often than every `EVERY_MS`. */
   tell() {
     clearTimeout(this.later);
     const wait_ms = this.next_ms - performance.now();
@@ -130,7 +130,7 @@ export class Panel {
     this.truth.recolour();
   }
 
-  /** Whoever chooses something sees what is told of it; a page that has just come shows what it showed. @param {string | null} name */
+  /** Opens the tab that tells about what was just chosen; a page that has just loaded keeps its tab. @param {string | null} name */
   inspected(name) {
     const before = this.looked;
     this.looked = name;

@@ -11,14 +11,14 @@ export const note = (words) => make("p", { className: "quiet", textContent: word
 /** @param {string} words */
 export const caption = (words) => make("p", { className: "caption", textContent: words });
 
-/** A text only where it is another: what is read aloud, selected or looked at stays. @param {Node} place @param {string} text */
+/** Sets a text only when it differs, so that one being read or selected stays. @param {Node} place @param {string} text */
 export function say(place, text) {
   if (place.textContent !== text) place.textContent = text;
 }
 
 /** @typedef {{ title: string, rows: [string, string][], empty: string }} TableData */
 
-/** Two columns of words under a title; without rows it says why. */
+/** Two columns of words under a title; without rows, it says why there are none. */
 export class Table {
   constructor() {
     this.title = heading("");
@@ -71,7 +71,7 @@ export class Tables {
   }
 }
 
-/** A bar filled to a share of its width, with a mark across it at another. */
+/** A bar filled to a share of its width, with a mark across it at another share. */
 export class Bar {
   /** @param {number | null} mark */
   constructor(mark = null) {
@@ -92,7 +92,7 @@ export class Bar {
 }
 
 /**
- * Draw a part of the panel anew when what it shows is another; who was on one of its buttons stays there.
+ * Draw a part of the panel anew when its data has changed; a focused button keeps the focus.
  * @param {HTMLElement} box
  * @param {unknown} data
  * @param {() => Node[]} draw

@@ -1,4 +1,4 @@
-// A plot against the session's time, drawn by uPlot, which is fetched when the first one is made.
+// A plot against the session's time, drawn by uPlot, which is fetched when the first plot is made.
 
 import { make } from "../elements/elements.js";
 
@@ -32,7 +32,7 @@ export class Plot {
     await this.build();
   }
 
-  /** Anew, in the colours of the theme. */
+  /** Draws the plot anew, in the colours of the theme. */
   async build() {
     const { default: uPlot } = await import("../vendor/uplot/uPlot.esm.js");
     this.plot?.destroy();
@@ -65,7 +65,7 @@ export class Plot {
     canvas?.setAttribute("aria-label", this.box.getAttribute("aria-label") ?? "");
   }
 
-  /** The legend tells the newest values while nobody points at others. */
+  /** Shows the newest values in the legend while nobody points at others. */
   tellNewest() {
     if (this.plot && this.plot.cursor.idx == null) this.plot.setLegend({ idx: this.plot.data[0].length - 1 });
   }

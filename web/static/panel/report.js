@@ -1,4 +1,4 @@
-// What there is to say of one experience, one view or one column of pose cells.
+// The report on one experience, one view or one column of pose cells.
 
 import { make } from "../elements/elements.js";
 import { Picture } from "./canvases.js";

@@ -1,4 +1,4 @@
-// Senses: what the camera sees, the best view it reminds of, how different they are, which cells are active.
+// Senses: the camera's image, the stored view most like it, how different they are, and which cells are active.
 
 import { make } from "../elements/elements.js";
 import { fromAbove } from "../model/pixels.js";

@@ -1,4 +1,4 @@
-// Switches for all who look, those of one tab (web/switches.py).
+// The switches of one tab that all pages share (web/switches.py).
 
 import { make } from "../elements/elements.js";
 

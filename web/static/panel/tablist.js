@@ -1,4 +1,4 @@
-// Tabs as the keyboard knows them: one of them is in the tab order, the arrows go from one to the next.
+// Tabs for the keyboard: one of them is in the tab order, and the arrows go from one to the next.
 
 import { make } from "../elements/elements.js";
 

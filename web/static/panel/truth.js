@@ -1,4 +1,4 @@
-// Truth: how far map and odometry are from where the robot really is, and how far the map is from its own links.
+// Truth: how far map and odometry are from the robot's true place, and how far the map is from its own links.
 
 import { make } from "../elements/elements.js";
 import { Table, heading, note, say } from "./parts.js";
@@ -59,7 +59,7 @@ export class TruthTab {
     this.residual.show([of("time_s"), of("residual_mm"), of("residual_mrad")]);
   }
 
-  /** Another theme. */
+  /** Draws the plots anew after a change of theme. */
   recolour() {
     for (const plot of [this.errors, this.counts, this.residual]) if (plot.plot) plot.build();
   }

@@ -1,4 +1,4 @@
-// Tune: every parameter by its group, found by any of its words.
+// Tune: every parameter, by group; a search finds it by any of its words.
 
 import { make } from "../elements/elements.js";
 import { grouped, means } from "../model/knobs.js";
@@ -24,7 +24,7 @@ export class TuneTab {
     this.found.setAttribute("role", "status");
     this.groups = make("div");
     this.hint = make("p", { className: "hint", textContent: POINT });
-    this.hint.setAttribute("aria-hidden", "true"); // each control is described by its own
+    this.hint.setAttribute("aria-hidden", "true"); // each control has a description of its own
     const head = make("div", { className: "search" }, this.search, this.found);
     this.box = make("div", { className: "tune" }, head, this.groups, this.hint);
     for (const kind of /** @type {const} */ (["pointerover", "focusin"]))
@@ -50,7 +50,7 @@ export class TuneTab {
     this.find();
   }
 
-  /** Shows what the search means; without one the groups are as people opened them. */
+  /** Shows what the search finds; without a search, groups are open or closed as people left them. */
   find() {
     const search = this.search.value.trim();
     let count = 0;

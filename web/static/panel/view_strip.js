@@ -1,4 +1,4 @@
-// The local view cells as a strip of squares: a click on one inspects its first view, and so do the keys.
+// The local view cells as a strip of squares. A click on a square inspects its first view, and the keys do the same.
 
 import { make } from "../elements/elements.js";
 import { STRIP, viewStrip, viewsASquare } from "../model/pixels.js";

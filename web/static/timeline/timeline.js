@@ -1,5 +1,5 @@
-// The timeline: what happened when, as marks of different shape and colour, with names where there is room; pointed at or
-// touched they say more.
+// The timeline: events as marks of different shape and colour, with names where there is room. Marks that are pointed at or
+// touched say more.
 
 import { $ } from "../elements/dom.js";
 import { make } from "../elements/elements.js";
@@ -79,7 +79,7 @@ export class Timeline {
     this.place.setAttribute("aria-label", `Timeline: ${clock(this.time_s)}, ${this.events.length} events`);
   }
 
-  /** What is beneath the pointer, the newest last. @param {PointerEvent} event */
+  /** Says which events are below the pointer, the newest last. @param {PointerEvent} event */
   point({ clientX }) {
     const { left, width } = this.place.getBoundingClientRect();
     const near = this.events.filter((event) => Math.abs(this.x(event.time_s) - (clientX - left)) <= NEAR_PX);

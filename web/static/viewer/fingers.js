@@ -1,5 +1,5 @@
-// A finger on the stage. viser takes a press on its canvas for a click only while nothing has captured the pointer, and a
-// finger is captured from its first touch on: it is let go while viser looks, and captured again for the drag to come.
+// A finger on the plates. viser takes a press on its canvas for a click only while nothing has captured the pointer, but a
+// finger is captured from its first touch. So it is released while viser looks, and captured again for a drag.
 
 /** @param {Window} inside */
 export function freeFingers(inside) {

@@ -1,5 +1,5 @@
-// Without a graphics card a frame takes most of a second: a third of it goes into smooth edges of what is drawn at three
-// quarters of its size and then enlarged. There viser's canvas is made without them; its lines are smooth all the same.
+// Without a graphics card a frame takes most of a second. A third of that goes into smooth edges, in a picture that is drawn at
+// three quarters of its size and then enlarged. There, viser's canvas is made without them; its lines are smooth all the same.
 
 /** @param {Window & typeof globalThis} inside */
 export function spareSoftware(inside) {

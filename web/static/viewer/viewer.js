@@ -18,7 +18,7 @@ export class Viewer extends EventTarget {
     /** @type {ViewName} */
     this.view = phone.matches ? "map" : "all";
     /** @type {number | string | null} */
-    this.launch = null; // of the server
+    this.launch = null; // the server's, to notice that it has started anew
     this.buttons = /** @type {HTMLElement[]} */ ([...document.querySelectorAll("[data-view]")]);
     for (const button of this.buttons)
       button.addEventListener("click", () => this.show(/** @type {ViewName} */ (button.dataset.view)));
@@ -39,7 +39,7 @@ export class Viewer extends EventTarget {
     for (const button of this.buttons) button.setAttribute("aria-pressed", String(button.dataset.view === this.view));
   }
 
-  // A server that started anew knows no view; one that only lost the line still shows what it did.
+  // A server that has started anew knows no view. After a mere loss of the connection, it still shows the same one.
   /** @param {{ launch: number | string }} hello */
   hello({ launch }) {
     if (launch === this.launch) return;
@@ -51,15 +51,15 @@ export class Viewer extends EventTarget {
     const inside = /** @type {(Window & typeof globalThis) | null} */ (this.frame.contentWindow);
     const paper = this.frame.contentDocument;
     if (!paper || !inside || inside.location.href === "about:blank") return;
-    // viser reconnects only while its own frame has the focus; the person looks at the page as a whole.
+    // viser reconnects only while its own frame has the focus, but people look at the page as a whole.
     paper.hasFocus = () => !document.hidden;
     restBeneathTheEditor(inside);
     spareSoftware(inside);
     freeFingers(inside);
     this.keys.listen(inside);
     this.dispatchEvent(new Event("inside"));
-    // viser prevents the default of a press on a draggable thing in a passive listener: without effect, but the
-    // browser notes an error each time.
+    // viser prevents the default of a press on a draggable thing in a passive listener. That has no effect, but the
+    // browser logs an error each time.
     inside.addEventListener(
       "pointerdown",
       (event) => {
@@ -86,8 +86,8 @@ const HIDE_PANEL =
   ".mantine-Paper-root[style*='fixed'], [data-dock-root] > div:not(:has(> canvas)) { display: none !important; }";
 
 /** @param {Window & typeof globalThis} inside */
-// The editor covers the plates. Without a graphics card a frame of it takes a second that the editor needs: its endless round of
-// frames, known by being asked for again and again, goes once in two seconds meanwhile. All else in the frame goes on as before.
+// The editor covers the plates. Without a graphics card one frame of viser takes a second, which the editor needs. Its endless
+// loop of frames, recognised by being requested again and again, then runs once in two seconds. All else in it goes on as before.
 function restBeneathTheEditor(inside) {
   const [editor, asked, held] = [$("editor"), new WeakMap(), new Map()];
   const [next, drop] = [inside.requestAnimationFrame.bind(inside), inside.cancelAnimationFrame.bind(inside)];
@@ -106,7 +106,7 @@ function restBeneathTheEditor(inside) {
 }
 
 /** @param {Document} paper */
-// viser says for good that there is no graphics card, over our view buttons; a short sentence is enough.
+// viser covers our view buttons for good with a message that there is no graphics card; a short sentence is enough.
 function dismissSlowNotice(paper) {
   for (const title of paper.querySelectorAll(".mantine-Notification-title")) {
     if (!(title.textContent ?? "").startsWith("Software WebGL")) continue;

@@ -1,19 +1,19 @@
-// A drawing of the stage in its place, from the first paint until viser has drawn a whole frame; then it fades.
+// A drawing of the plates in their place, from the first paint until viser has drawn a whole frame; then it fades.
 
 import { $ } from "../elements/dom.js";
 
-const WHOLE = 40; // draw calls: the plates and what is on them, not the sky alone
+const WHOLE = 40; // draw calls of a frame with the plates and what is on them, not the sky alone
 const DRAWS = ["drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"];
 const LONGEST_MS = 30_000;
 const FADE_MS = 400;
 
 /**
- * Resolves when viser has drawn a whole frame, and in any case after a while, so that what it says is seen.
+ * Resolves when viser has drawn a whole frame, or in any case after a while, so that viser's own messages can be seen.
  * @param {Window & typeof globalThis} inside
  * @returns {Promise<void>}
  */
 export function firstFrame(inside) {
-  /** @type {any} its functions are replaced for a while */
+  /** @type {any} some of its functions are replaced for a while */
   const kind = inside.WebGL2RenderingContext.prototype;
   const before = DRAWS.map((name) => kind[name]);
   return new Promise((resolve) => {

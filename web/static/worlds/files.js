@@ -1,4 +1,4 @@
-// Files that are dropped on the page, or chosen: worlds and floor plans. The server says what is wrong with one.
+// Files dropped on the page or chosen: worlds and floor plans. The server says what is wrong with one.
 
 import { $ } from "../elements/dom.js";
 import { ended, megabytes } from "../model/sentences.js";
@@ -52,7 +52,7 @@ export class Files {
   }
 
   /** @param {Window} place */
-  // Also in the stage's frame, which covers most of the page. What follows goes to the sheet that covers all of it.
+  // Also in the viewer's frame, which covers most of the page. What follows goes to the sheet that covers all of it.
   catchDrops(place) {
     place.addEventListener("dragenter", (event) => {
       if (![...(event.dataTransfer?.types ?? [])].includes("Files")) return;
@@ -94,7 +94,7 @@ export class Files {
       this.size = [picture.width, picture.height];
       picture.close();
     } catch {
-      this.size = await portableSize(files[0]); // browsers do not know the kinds that robots write
+      this.size = await portableSize(files[0]); // browsers cannot read the formats that robots write
     }
     this.showSize();
   }
@@ -158,7 +158,7 @@ export class Files {
   }
 }
 
-/** Width and height as a .pgm, .ppm or .pbm says them, or null. @param {File} file @returns {Promise<Point | null>} */
+/** Width and height of a .pgm, .ppm or .pbm, or null. @param {File} file @returns {Promise<Point | null>} */
 async function portableSize(file) {
   const head = (await file.slice(0, 1000).text()).replace(/#.*\n/g, "\n");
   const found = /^P[1-6]\s+(\d+)\s+(\d+)\s/.exec(head);

@@ -1,4 +1,4 @@
-// The brain that an earlier program kept: a quiet offer over the stage, until somebody has answered it on any page.
+// The brain that an earlier program kept: a quiet offer over the plates, until somebody has answered it on any page.
 
 import { $ } from "../elements/dom.js";
 import { experiences, keptWords } from "../model/sentences.js";
@@ -18,7 +18,7 @@ export class KeptBrain {
     document.addEventListener("visibilitychange", () => !document.hidden && !this.box.hidden && this.look());
   }
 
-  // Once there is a state: before that nothing could be woken up.
+  // Called once there is a state; before that, nothing could be woken up.
   ask() {
     if (this.asked) return;
     this.asked = true;
@@ -29,7 +29,7 @@ export class KeptBrain {
     try {
       this.kept = await (await fetch("/api/brain/kept")).json();
     } catch {
-      return; // the connection is lost: what is shown stays
+      return; // the connection is lost; what is shown stays
     }
     if (this.kept) $("kept-words").textContent = keptWords(this.kept, Date.now() / 1000);
     this.box.hidden = !this.kept;

@@ -8,7 +8,7 @@ import { toast } from "../elements/toasts.js";
 export class NewWorld {
   /**
    * @param {() => boolean} isSaved whether nothing would be lost
-   * @param {() => void} begun the robot is in it
+   * @param {() => void} begun called when the robot is in the new world
    */
   constructor(isSaved, begun) {
     this.isSaved = isSaved;

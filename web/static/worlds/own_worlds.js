@@ -17,7 +17,7 @@ export class OwnWorlds {
   }
 
   async show() {
-    for (const part of [$("own"), $("own-wrong")]) part.hidden = true; // what was listed before may be over
+    for (const part of [$("own"), $("own-wrong")]) part.hidden = true; // what was listed before may be out of date
     this.list.replaceChildren();
     const { yours } = await worlds();
     $("own").hidden = !Object.keys(yours).length;

@@ -1,4 +1,4 @@
-"""Between pose cells [theta, y, x] and the glass box on its plate: a torus unrolled into 7 x 7 x 4.6."""
+"""Converts between pose cells [theta, y, x] and the glass box on their plate: a torus unrolled into 7 x 7 x 4.6."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ class CellFit:
         self.voxel = (SIDE / shape[2], SIDE / shape[1], HEIGHT / shape[0])
 
     def cells(self, cells: NDArray[np.integer]) -> Array:
-        """(k, 3) theta, y, x of cells to the (k, 3) middles of their voxels."""
+        """From (k, 3) theta, y, x of cells to the (k, 3) centres of their voxels."""
         share = (cells[:, ::-1].astype(np.float64) + 0.5) / np.array(self.shape[::-1], np.float64)
         return share * np.array([SIDE, SIDE, HEIGHT]) - np.array([SIDE / 2, SIDE / 2, 0.0])
 
     def path(self, path: NDArray[np.floating]) -> Array:
-        """(p, 3) x, y in cells and heading to (p, 3) in the box."""
+        """From (p, 3) x, y in cells and heading to (p, 3) in the box."""
         x = (path[:, 0] + 0.5) / self.shape[2] % 1.0 * SIDE - SIDE / 2
         y = (path[:, 1] + 0.5) / self.shape[1] % 1.0 * SIDE - SIDE / 2
         z = path[:, 2] % math.tau / math.tau * HEIGHT
@@ -37,7 +37,7 @@ class CellFit:
 
 
 def broken_where_it_wraps(points: Array) -> NDArray[np.float32]:
-    """(p, 3) to segments without those that jump around the torus."""
+    """From (p, 3) points to segments, without those that jump around the torus."""
     segments = np.stack([points[:-1], points[1:]], 1)
     jumps = np.abs(segments[:, 1] - segments[:, 0]) > np.array([SIDE, SIDE, HEIGHT]) / 2
     return segments[~jumps.any(1)].astype(np.float32)

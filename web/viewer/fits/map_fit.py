@@ -1,4 +1,4 @@
-"""Between the map frame and the map plate: turned like the office (for the eye only), scaled in steps, invertible."""
+"""Converts between the map frame and the map plate: turned like the office (for the eye only) and scaled in steps."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 WIDTH, DEPTH = 10.0, 8.0  # the floor of the plate
 ROOM = 0.35  # kept clear around the map
-STEP = 2**0.25  # between scales
+STEP = 2**0.25  # ratio of successive scales
 LARGEST = 1.0 * STEP
-GRID = 0.25  # the centre moves in steps of so much, on the plate
+GRID = 0.25  # the centre moves in steps of this size, in plate units
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class MapFit:
     centre: tuple[float, float] = (0.0, 0.0)
 
     def to_plate(self, xy: NDArray[np.floating]) -> NDArray[np.float64]:
-        """(n, 2) metres in the map to (n, 2) on the plate."""
+        """From (n, 2) metres in the map to (n, 2) on the plate."""
         return (np.asarray(xy, np.float64).reshape(-1, 2) - self.centre) @ _turned(self.turn_rad).T * self.scale
 
     def to_map(self, xy: NDArray[np.floating]) -> NDArray[np.float64]:
@@ -33,7 +33,7 @@ class MapFit:
 
 
 def refit(fit: MapFit, xy: NDArray[np.floating], turn_rad: float) -> MapFit:
-    """`fit` itself while the map (n, 2) still suits it, else the largest step that shows all of it."""
+    """`fit` itself while it still suits the map (n, 2), else a fit at the largest scale that shows all of the map."""
     if len(xy) == 0:
         return MapFit(LARGEST, turn_rad)
     if fit.turn_rad == turn_rad and _suits(fit, xy):
@@ -49,7 +49,7 @@ def refit(fit: MapFit, xy: NDArray[np.floating], turn_rad: float) -> MapFit:
 
 
 def _suits(fit: MapFit, xy: NDArray[np.floating]) -> bool:
-    """All of it is on the floor, and it would not fit two steps larger."""
+    """Whether all of the map is on the floor, and would not be at a scale two steps larger."""
     placed = fit.to_plate(xy)
     low, high = placed.min(0), placed.max(0)
     if low[0] < -WIDTH / 2 + 0.2 or high[0] > WIDTH / 2 - 0.2 or low[1] < -DEPTH / 2 + 0.2 or high[1] > DEPTH / 2 - 0.2:

@@ -1,4 +1,4 @@
-"""Between the office frame (metres) and the office plate: any world, scaled to fit 10 x 8 m."""
+"""Converts between the office frame (metres) and the office plate: any world, scaled to fit 10 x 8 m."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 WIDTH, DEPTH = 10.0, 8.0
-METRE_HIGH = 0.62 / 2.5  # plate units of height for a metre of whatever is no wall
+METRE_HIGH = 0.62 / 2.5  # plate units per metre of height, for everything but walls
 
 
 class OfficeFit:
@@ -15,12 +15,12 @@ class OfficeFit:
         self.size_m = (max(high_x - low_x, 1e-3), max(high_y - low_y, 1e-3))
         self.low = np.array([low_x, low_y])
         self.scale = min(WIDTH / self.size_m[0], DEPTH / self.size_m[1])
-        low = min(0.3, 140 * self.scale**2)  # beyond 200 m walls as high as before would hide the rooms between them
-        self.relief = min(1.0, max(1.5 * self.scale, low))  # heights and thicknesses: low where rooms are small
+        low = min(0.3, 140 * self.scale**2)  # in worlds beyond 200 m, higher walls would hide the rooms between them
+        self.relief = min(1.0, max(1.5 * self.scale, low))  # scales heights and thicknesses: low where rooms are small
         self._centre = self.low + np.array(self.size_m) / 2
 
     def to_plate(self, xy: NDArray[np.floating]) -> NDArray[np.float64]:
-        """(n, 2) metres in the office to (n, 2) on the plate."""
+        """From (n, 2) metres in the office to (n, 2) on the plate."""
         return (np.asarray(xy, np.float64) - self._centre) * self.scale
 
     def to_office(self, xy: NDArray[np.floating]) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""What lives in the office, on the stage: leaves of doors, boxes, people, lamps and their light, the dark of daylight.
+"""What moves and changes in the office, in 3-D: leaves of doors, boxes, people, lamps and their light, and daylight.
 
 Handles are moved, not made anew.
 """
@@ -26,13 +26,13 @@ LIT: Rgb = (255, 236, 170)
 POOL_Z, DARK_Z = 0.026, 0.022  # just above the floor
 LATE = np.array(
     (0.0, -20.0, 16.0), np.float32
-)  # see-through meshes are drawn by their origin: near the viewer comes last
+)  # transparent meshes are drawn by their origin: the one nearest to the eye last
 DOOR_RGB: Rgb = (150, 104, 62)
-REACH = 0.35  # plate units: a click so near to a leaf means the door
+REACH = 0.35  # plate units: a click this near to a leaf means the door
 
 
 class LivingThings:
-    """Handles below `root`, by kind; more are made when there are more things, and those too many are hidden."""
+    """Handles below `root`, by kind. More are made when there are more things; those that are not needed are hidden."""
 
     def __init__(self, scene: viser.SceneApi, palette: Palette, root: str) -> None:
         self._scene, self._palette, self._root = scene, palette, root
@@ -74,7 +74,7 @@ class LivingThings:
         self._dim(1.0 if layer is None else layer.daylight, fit)
 
     def _shine(self, lamps: NDArray[np.float64], fit: OfficeFit) -> None:
-        """Light on the floor below each lamp that shines."""
+        """Shows light on the floor below each lamp that shines."""
         shining = lamps[lamps[:, 3] > 0]
         now = (shining.tobytes(), fit.scale)
         if now == self._lit:
@@ -91,7 +91,7 @@ class LivingThings:
             self._pools.vertices = vertices - LATE
 
     def _dim(self, daylight: float, fit: OfficeFit) -> None:
-        """The floor is the darker the less daylight there is."""
+        """Darkens the floor: the less daylight, the darker."""
         now = (round(min(max(daylight, 0.0), 1.0), 2), fit.size_m)
         if now == self._dimmed:
             return
@@ -104,7 +104,7 @@ class LivingThings:
             self._dark.opacity = 0.75 * (1.0 - now[0])
 
     def door_at(self, place: tuple[float, float], fit: OfficeFit) -> tuple[str, bool] | None:
-        """The door on whose leaf a click (plate units) has landed, and whether it is to be open."""
+        """The door whose leaf a click (plate units) has hit, and whether the click opens it."""
         if self.layer is None or len(self.layer.doors) == 0:
             return None
         starts, ends = fit.to_plate(self.layer.doors[:, :2]), fit.to_plate(self.layer.doors[:, 2:])
@@ -142,7 +142,7 @@ class LivingThings:
         self, thing: _Thing, fit: OfficeFit, x: float, y: float, z: float, angle: float,
         size: tuple[float, float, float],
     ) -> None:  # fmt: skip
-        """Only what has changed is sent."""
+        """Moves a thing; only what has changed is sent."""
         px, py = (float(v) for v in fit.to_plate(np.array([[x, y]]))[0])
         now = (px, py, z, angle, size)
         if thing.shown == now:

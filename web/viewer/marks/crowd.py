@@ -1,4 +1,4 @@
-"""All people of the office as one batch: a handle for each of fifty would be six hundred messages a second."""
+"""All people of the office as one batch: handles for each of fifty people would need six hundred messages a second."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from web.viewer.fits.office_fit import METRE_HIGH, OfficeFit
 from web.viewer.primitives import meshes
 from web.viewer.primitives.palette import Palette
 
-HEAD = (0.62, 0.8, 1.0)  # of a person's height: shoulders, chin, top
-AWAY = (0.0, 0.0, -50.0)  # far below the stage
+HEAD = (0.62, 0.8, 1.0)  # shares of a person's height: shoulders, chin, top
+AWAY = (0.0, 0.0, -50.0)  # far below the plates
 
 
 class Crowd:
-    """There is a place for each of those who were there at one time; who has gone is below the stage."""
+    """The batch has a place for each person; the places of people who have left are far below the plates."""
 
     def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
         self._scene, self._palette, self._name = scene, palette, name
@@ -24,7 +24,7 @@ class Crowd:
         self._shown: tuple[bytes, ...] = ()
 
     def show(self, people: NDArray[np.floating], rgb: NDArray[np.uint8], fit: OfficeFit) -> None:
-        """people: (n, 5) x, y, heading, radius, height in metres, as in `LivingLayer`. Only what has changed is sent."""
+        """people: (n, 5) x, y, heading, radius, height, as in `LivingLayer`. Only what has changed is sent."""
         if len(people) > self._places:
             self._make(len(people))
         if self._handle is None:
@@ -69,7 +69,7 @@ class Crowd:
 
 
 def _figure() -> meshes.Mesh:
-    """A person of radius and height 1 who looks along +x."""
+    """A person of radius 1 and height 1 who looks along +x."""
     circle = meshes.circle(1.0, corners=20)
     return meshes.joined(
         meshes.extruded(circle * (0.7, 1.0), 0.0, HEAD[0]),

@@ -1,4 +1,4 @@
-"""The goal's flag on the map: pole, pennant, two rings and a pill with the time that is left."""
+"""The goal's flag on the map: a pole, a pennant, two rings, and a pill with the time left."""
 
 from __future__ import annotations
 

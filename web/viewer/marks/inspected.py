@@ -1,4 +1,4 @@
-"""What is looked at, on the map and among the pose cells: always in the text's colour."""
+"""Marks for what is inspected, on the map and among the pose cells, always in the colour of text."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NOTHING = np.zeros((0, 2, 3), np.float32)
 
 
 class MapMark:
-    """A ring and a name at the experience, its links bright; small rings at all that belong to a view or a cell."""
+    """A ring and a name at the experience, with its links bright; small rings at all that belong to a view or a cell."""
 
     def __init__(self, scene: viser.SceneApi, palette: Palette, root: str) -> None:
         self.frame = scene.add_frame(f"{root}/inspected", show_axes=False, visible=False)
@@ -57,7 +57,7 @@ class MapMark:
 
 
 class CellMark:
-    """An experience's zone of influence as a drum, or a column; and the cells that the view is linked to."""
+    """An experience's zone of influence as a drum, or a column of cells; and the cells that the view is linked to."""
 
     def __init__(self, scene: viser.SceneApi, palette: Palette, root: str) -> None:
         self._scene, self._palette, self._root = scene, palette, root
@@ -103,7 +103,7 @@ class CellMark:
 
 
 def zone_lines(report: ExperienceReport, fit: CellFit) -> np.ndarray:
-    """(n, 2, 3) top and bottom of the zone, which goes on at the other side where it leaves the box."""
+    """(n, 2, 3) top and bottom of the zone. Where it leaves the box, it goes on at the other side."""
     x, y, theta = report.cell
     around = np.vstack([meshes.circle(report.zone_xy, (x, y), CORNERS), [[x + report.zone_xy, y]]])
     turn = math.tau / fit.shape[0]

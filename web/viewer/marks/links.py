@@ -1,4 +1,4 @@
-"""The map's links as lines, some hundred a node: only the nodes in which one has moved are sent again."""
+"""The map's links as lines, some hundred in each scene node. Only nodes in which a line has moved are sent again."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from web.viewer.primitives import meshes
 from web.viewer.primitives.palette import Rgb
 
 A_NODE = 192
-PX = 1.0  # thick, whatever the distance: in the plate's units viser would draw each line twice
+PX = 1.0  # thickness at any distance; with a thickness in plate units, viser would draw each line twice
 
 
 class Links:
@@ -19,7 +19,7 @@ class Links:
         self.nodes: list[viser.LineSegmentsHandle] = []
 
     def show(self, places: NDArray[np.floating], links: NDArray[np.integer]) -> None:
-        """places: (n, 3) of the experiences; links: (m, 2) rows of it. There and back are one line, old ones come first."""
+        """places: (n, 3) of the experiences; links: (m, 2) rows of it. There and back are one line; old lines come first."""
         pairs = np.unique(np.sort(links.reshape(-1, 2), 1)[:, ::-1], axis=0)
         lines = places[pairs].astype(np.float32)
         for k in range(0, max(len(lines), len(self.nodes) * A_NODE), A_NODE):

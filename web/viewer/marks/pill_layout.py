@@ -1,4 +1,4 @@
-"""Keeps pills from covering each other: pushes overlapping bars apart in the plane in which they are seen."""
+"""Keeps pills from covering each other, by pushing overlapping bars apart in the plane in which they are seen."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ GAP = 0.1
 def spread(
     centres: NDArray[np.float64], widths: NDArray[np.float64], height: float, rounds: int = 60
 ) -> NDArray[np.float64]:
-    """(n, 2) centres, moved as little as it takes until no two bars overlap; the first of a pair moves less."""
+    """(n, 2) centres, moved no more than needed so that no two bars overlap; the first of a pair moves less."""
     places = np.array(centres, np.float64)
     for _ in range(rounds):
         moved = False
@@ -24,7 +24,7 @@ def spread(
 
 
 def overlap(a: NDArray[np.float64], b: NDArray[np.float64], width: float, height: float) -> bool:
-    """Whether two bars whose half widths and half heights add up to `width` and `height` cover each other."""
+    """Whether two bars overlap. width, height: the sums of their half widths and of their half heights."""
     return bool(abs(a[0] - b[0]) < width - 1e-9 and abs(a[1] - b[1]) < height - 1e-9)
 
 
@@ -41,7 +41,7 @@ def _part(places: NDArray[np.float64], i: int, j: int, width: float, height: flo
 
 
 def _stacked(places: NDArray[np.float64], height: float) -> NDArray[np.float64]:
-    """The way out that always works: one above the other, in the order of their heights."""
+    """A layout that always works: one above the other, in the order of their heights."""
     order = np.argsort(places[:, 1], kind="stable")
     floor = -np.inf
     for row in order:

@@ -1,4 +1,4 @@
-"""The robot: an orange cylinder with a white turret, a dark camera and two wheels, drawn a quarter too large."""
+"""The robot: an orange cylinder with a white turret, a dark camera and two wheels, drawn a quarter larger than it is."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ class RobotModel:
         )
 
     def resize(self, drawn_radius: float) -> None:
-        """`drawn_radius`: the robot's radius in plate units, before it is enlarged."""
+        """drawn_radius: the robot's radius in plate units, before it is enlarged."""
         self.radius = max(drawn_radius * ENLARGED, SMALLEST)
         for part in self.parts:
             part.scale = self.radius
 
     def place(self, xy: NDArray[np.float64], heading_rad: float) -> None:
-        """`xy` in plate units."""
+        """xy: in plate units."""
         self.frame.position = (float(xy[0]), float(xy[1]), 0.0)
         self.frame.wxyz = (math.cos(heading_rad / 2), 0.0, 0.0, math.sin(heading_rad / 2))

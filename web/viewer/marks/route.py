@@ -1,4 +1,4 @@
-"""The route to the goal: a ribbon on its casing, with pills that say in how many seconds the robot will be there."""
+"""The route to the goal: a ribbon with a casing, and pills that say in how many seconds the robot will be there."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Route:
 def pill_stops(
     xy: NDArray[np.float64], arrival_s: NDArray[np.float64], goal: NDArray[np.float64]
 ) -> list[tuple[float, float, float]]:
-    """(seconds, x, y) every so many seconds, those left out that are too near to another, the robot or the flag."""
+    """(seconds, x, y) at regular times, without those that are too near to another, to the robot or to the flag."""
     stops: list[tuple[float, float, float]] = []
     step = EVERY_S
     while arrival_s[-1] / step > 4 * PILLS:

@@ -19,9 +19,9 @@ Array = NDArray[np.float64]
 FLOOR_PX_PER_UNIT = 96
 HEIGHTS = {"wall": 0.62, "partition": 0.42, "desk": 0.24}
 FRONT = 0.18
-PANEL_THICK = 0.11  # stands out from a wall on its own side
+PANEL_THICK = 0.11  # how far a panel stands out from its side of the wall
 THICK = {"wall": 0.1, "partition": 0.07, "glass": 0.03}
-MANY = 3000  # boxes; of more their narrow ends are too small to be seen, and left out
+MANY = 3000  # boxes; with more, their narrow ends are too small to be seen and are left out
 GLASS_RGB: Rgb = (150, 200, 225)
 
 
@@ -60,7 +60,7 @@ def add_floor(
 
 
 class Boxes(NamedTuple):
-    """Boxes that stand on the plate, in its units: ten thousand walls are a few arrays."""
+    """Boxes that stand on the plate, in its units, as arrays: even ten thousand walls are only a few arrays."""
 
     centre: Array  # (n, 3)
     size: Array  # (n, 3)
@@ -72,7 +72,7 @@ class Boxes(NamedTuple):
 
 
 def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: WorldDrawing, fit: OfficeFit) -> None:
-    """One batch of boxes for walls and panels, one mesh for the closed outlines."""
+    """Draws one batch of boxes for walls and panels, and one mesh for the closed outlines."""
     runs = solid_runs(world)
     walls = _wall_boxes(world, fit, palette)
     glass = np.array([kind == "glass" for kind in world.wall_kind], bool)
@@ -85,7 +85,7 @@ def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: Wor
         if world.wall_kind[rows[0]] == "desk" and not any(inside(outline, float(x), float(y)) for x, y in middles):
             parts += _screens(fit, outline, palette)
     parts.append(walls.of(loose))
-    if not any(len(part.turn_rad) for part in parts):  # viser wants one at least: far below
+    if not any(len(part.turn_rad) for part in parts):  # viser needs at least one: far below
         rgb = np.array([palette.wall], np.uint8)
         parts.append(Boxes(np.full((1, 3), -50.0), np.ones((1, 3)), np.zeros(1), rgb))
     turn = np.concatenate([part.turn_rad for part in parts])
@@ -112,7 +112,7 @@ def add_furniture(scene: viser.SceneApi, name: str, palette: Palette, world: Wor
 
 
 def _add_glass(scene: viser.SceneApi, name: str, panes: Boxes) -> None:
-    """What one sees through: light blue, in one mesh."""
+    """Draws what one can see through, light blue, as one mesh."""
     solid = [
         meshes.turned_box(tuple(centre), tuple(size), turn)
         for centre, size, turn in zip(panes.centre.tolist(), panes.size.tolist(), panes.turn_rad.tolist(), strict=True)
@@ -121,14 +121,14 @@ def _add_glass(scene: viser.SceneApi, name: str, panes: Boxes) -> None:
 
 
 def _heights(world: WorldDrawing) -> Array:
-    """(n,): of the walls, in units of the plate before its relief."""
+    """(n,) heights of the walls, in units of the plate before its relief."""
     metres = np.asarray(world.wall_height_m, np.float64)
     usual = np.array([HEIGHTS.get(kind, 0.0) for kind in world.wall_kind], np.float64)
     return np.where(usual > 0.0, usual, np.clip(metres * METRE_HIGH, 0.1, 0.62))
 
 
 def _wall_boxes(world: WorldDrawing, fit: OfficeFit, palette: Palette) -> Boxes:
-    """Outer walls stand outside the bounds, and the front one is low, so that one can look in."""
+    """The walls as boxes. Outer walls stand outside the bounds, and the front one is low, so that one can look in."""
     ends = np.asarray(world.walls, np.float64).reshape(-1, 4)
     side = _outer_sides(world, ends)
     front = (side == (0.0, -1.0)).all(axis=1)
@@ -144,7 +144,7 @@ def _wall_boxes(world: WorldDrawing, fit: OfficeFit, palette: Palette) -> Boxes:
 
 
 def _outer_sides(world: WorldDrawing, ends: Array) -> Array:
-    """(n, 2): outwards for each of (n, 4) that lies on the bounds, else (0, 0)."""
+    """(n, 2) the outward direction of each wall (n, 4) that lies on the bounds, (0, 0) for the others."""
     low_x, low_y, high_x, high_y = world.bounds
     x1, y1, x2, y2 = ends.T
     upright, level = np.abs(x2 - x1) < 0.06, np.abs(y2 - y1) < 0.06
@@ -169,7 +169,7 @@ def _panel_boxes(world: WorldDrawing, fit: OfficeFit) -> Boxes:
 
 
 def _screens(fit: OfficeFit, outline: Array, palette: Palette) -> list[Boxes]:
-    """A dark screen on each desk, so that desks read as desks."""
+    """A dark screen on each desk, so that it can be told for a desk."""
     corners = fit.to_plate(outline)
     low, high = corners.min(0), corners.max(0)
     if min(high - low) < 0.3:

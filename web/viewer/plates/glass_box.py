@@ -1,4 +1,4 @@
-"""The glass box of the pose cells: far walls that tint, edges, grid, and axes x', y' in metres, theta' in degrees."""
+"""The glass box of the pose cells: tinted far walls, edges, grid, and axes x', y' in metres and theta' in degrees."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class GlassBox:
             self._labels[name] = Sign(scene, f"{root}/axis_{name}", 0.46, anchor=anchor, leaning=True)
 
     def set_extent(self, width_m: float, depth_m: float) -> None:
-        """Writes the axes' numbers."""
+        """Writes the numbers on the axes."""
         ink, faint = self._palette.text, self._palette.text_2
         for k, share in enumerate((0.0, 0.5, 1.0)):
             along = -HALF + share * SIDE
@@ -65,13 +65,13 @@ def _metres(value: float, unit: bool) -> str:
 
 
 def _walls(corners: np.ndarray) -> meshes.Mesh:
-    """Four sides and a top, no bottom; seen from inside (`side="back"`), so that only the far ones tint."""
+    """Four sides and a top, no bottom. They are seen from inside only (`side="back"`), so only the far ones tint."""
     vertices, faces = meshes.extruded(corners, 0.0, HEIGHT)
     return vertices, faces
 
 
 def _lattice() -> np.ndarray:
-    """Lines on the far and the left wall: a quarter turn and a quarter of the way apart."""
+    """Lines on the far and the left wall, a quarter turn and a quarter of the width apart."""
     lines: list[list[list[float]]] = []
     for share in (0.25, 0.5, 0.75):
         at, z = -HALF + share * SIDE, share * HEIGHT

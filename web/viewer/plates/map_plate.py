@@ -1,4 +1,4 @@
-"""The experience map's plate: what the robot built, coloured by the time to the goal (or from the robot)."""
+"""The experience map's plate: the map that the robot has built, coloured by the time to the goal (or from the robot)."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class MapPlate(Plate):
         self.set_heading("Experience map", "what it built")
 
     def _reserve(self, nodes: int) -> None:
-        """Room for so many nodes; places and colours come apart and must be equally many."""
+        """Makes room for this many nodes. Places and colours are sent separately and must be equally many."""
         self._capacity = nodes
         self._nodes = self.scene.add_point_cloud(
             f"{self.root}/nodes",
@@ -89,7 +89,7 @@ class MapPlate(Plate):
         )
 
     def set_map(self, layer: MapLayer, turn_rad: float) -> bool:
-        """Nodes and links; True when the whole map moved on the plate, so that all else on it must follow."""
+        """Draws nodes and links. True when the whole map has moved on the plate, so that all else on it must follow."""
         self._layer = layer
         before, self.fit = self.fit, refit(self.fit, layer.xy, turn_rad)
         room = NODE_STEP * max(1, math.ceil(len(layer.xy) / NODE_STEP))
@@ -112,7 +112,7 @@ class MapPlate(Plate):
         return grew or self.fit is not before
 
     def _draw_grid(self) -> None:
-        """A line each metre of the map (each five in large ones), from the middle of the plate."""
+        """Draws a line per metre of the map (per five in large ones), from the middle of the plate."""
         step = self.fit.scale * (1 if self.fit.scale > 0.35 else 5 if self.fit.scale > 0.08 else 25)
         lines: list[list[list[float]]] = []
         for half, reach, flip in ((WIDTH / 2, DEPTH / 2, False), (DEPTH / 2, WIDTH / 2, True)):
@@ -123,14 +123,14 @@ class MapPlate(Plate):
         self._grid.points = meshes.some(np.array(lines, np.float32), GRID_LINES)
 
     def set_occupancy(self, picture: OccupancyPicture | None) -> None:
-        """What the sonars met, below the map; None: nothing is shown of it."""
+        """Shows below the map what the sonars met; None: nothing."""
         self._picture = picture
         if picture is not None:
             self._occupancy.image = images.upright(map_floor(picture, self.fit, self.palette))
         self._occupancy.visible = picture is not None
 
     def set_times(self, times: TimesLayer) -> None:
-        """Colours of the nodes, and the scale with its numbers."""
+        """Colours the nodes, and sets the numbers of the scale."""
         finite = times.seconds[np.isfinite(times.seconds)]
         longest = _round_up(float(finite.max(initial=1.0)))
         colours = np.zeros((self._capacity, 3), np.uint8)
@@ -161,7 +161,7 @@ class MapPlate(Plate):
         self._route.show(self.fit.to_plate(goal.route_xy), goal.route_arrival_s, at)
 
     def show_click(self, place: tuple[float, float] | None) -> None:
-        """The marker of a goal that was asked for (map frame) and is not there yet."""
+        """Shows the marker of a goal that has been requested (map frame) but is not set yet; None hides it."""
         self._clicked.visible = place is not None
         if place is not None:
             x, y = self.fit.to_plate(np.array([place]))[0]
@@ -206,6 +206,6 @@ def _arrow(size: float, z: float) -> meshes.Mesh:
 
 
 def _round_up(seconds: float) -> float:
-    """To 5, 10, 30 or 60 s, so that colours do not breathe with the last node."""
+    """Rounded up to 5, 10, 30 or 60 s, so that colours do not change with every new node."""
     step = 5 if seconds < 40 else 10 if seconds < 120 else 30 if seconds < 600 else 60
     return math.ceil(seconds / step) * step

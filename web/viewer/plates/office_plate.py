@@ -1,4 +1,4 @@
-"""The office plate: the true world, which the robot cannot know, with the robot and what its sensors reach."""
+"""The office plate: the true world, which the robot cannot know, with the robot and the reach of its sensors."""
 
 from __future__ import annotations
 
@@ -21,7 +21,11 @@ from web.viewer.primitives.tone_mapping import vertex_paint
 ORIGIN = (-5.85, -2.2, 0.0)
 SHEET = (11.0, 10.0, -0.5, 0.45)
 TRAIL_SEGMENTS, TRAIL_STEP = 240, 0.16
-LATE = (0.0, -20.0, 16.0)  # transparent meshes are drawn by the distance of their origin: near the viewer comes last
+LATE = (
+    0.0,
+    -20.0,
+    16.0,
+)  # transparent meshes are drawn by the distance of their origin: the nearest to the eye last
 
 
 class OfficePlate(Plate):
@@ -76,7 +80,7 @@ class OfficePlate(Plate):
         )
 
     def set_world(self, world: WorldDrawing) -> None:
-        """Draws another office: floor with its shadows, walls, furniture, posters."""
+        """Draws another office: floor with shadows, walls, furniture, posters."""
         self.world, self.fit = world, OfficeFit(world.bounds)
         opaque = [kind != "glass" for kind in world.wall_kind]
         self._walls = np.asarray(world.walls, np.float64)[opaque]
@@ -85,11 +89,11 @@ class OfficePlate(Plate):
         add_furniture(self.scene, f"{self.root}/furniture", self.palette, world, self.fit)
 
     def set_living(self, layer: LivingLayer | None) -> None:
-        """Doors, boxes, people and lamps where they are now."""
+        """Shows doors, boxes, people and lamps where they are now."""
         self.things.show(layer, self.fit)
 
     def set_robot(self, truth: Pose, senses: Senses) -> None:
-        """The robot at its true pose, with its field of view and the sonar's echoes."""
+        """Shows the robot at its true pose, with its field of view and the sonars' echoes."""
         if self.world is None:
             return
         self.robot.place(self.fit.to_plate(np.array([[truth.x, truth.y]]))[0], truth.heading_rad)
@@ -119,14 +123,14 @@ class OfficePlate(Plate):
         self._echoes.points = echoes
 
     def set_trail(self, trail: NDArray[np.float32]) -> None:
-        """The true path of the last two minutes, older parts fading into the floor."""
+        """Shows the true path of the last two minutes, with older parts fading into the floor."""
         if len(trail) < 2:
             self._trail.points, self._trail.colors = meshes.NOWHERE, np.zeros((1, 2, 3), np.uint8)
             return
         path = meshes.thinned(self.fit.to_plate(np.asarray(trail, np.float64)), TRAIL_STEP)[-TRAIL_SEGMENTS - 1 :]
         path = meshes.lifted(path, 0.02)
         jumps = np.hypot(*np.diff(path[:, :2], axis=0).T) > 1.2 * self.fit.scale  # a kidnap leaves no line
-        path[:, 2] += np.linspace(0.0, 0.015, len(path))  # where it crosses itself the newer part is on top
+        path[:, 2] += np.linspace(0.0, 0.015, len(path))  # where the path crosses itself, the newer part is on top
         points = meshes.open_line(path)
         points[jumps] = -50.0
         ages = np.linspace(0.0, 1.0, len(points) + 1) ** 0.7
@@ -135,7 +139,7 @@ class OfficePlate(Plate):
         self._trail.points, self._trail.colors = points, np.stack([tints[:-1], tints[1:]], 1)
 
     def show_drop(self, place: tuple[float, float] | None, room: bool, heading_rad: float) -> None:
-        """The ring under a dragged robot (office frame); teal where it fits, red where it does not."""
+        """Shows the ring under a dragged robot (office frame): teal where it fits, red where it does not."""
         self._room_for.visible = place is not None
         if place is None:
             return

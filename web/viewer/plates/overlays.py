@@ -1,4 +1,4 @@
-"""What can be laid over the floors of map and pose cells: where the sonars met something, how long it takes to the goal."""
+"""Layers over the floors of map and pose cells: where the sonars met something, and how long it takes to the goal."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from web.viewer.primitives.images import Pixels
 from web.viewer.primitives.palette import Palette, Rgb
 
 PX_PER_UNIT = 48  # of the map plate
-SURE = 0.45  # from even chances: so far the probability has to go for the full colour
+SURE = 0.45  # how far the probability must be from one half for the full colour
 
 
 def occupancy_colours(probability: NDArray[np.float32], ground: Pixels, palette: Palette) -> Pixels:
-    """`ground` (h, w, 3) brighter where the floor is free, dark where something stands; probability: (h, w)."""
+    """`ground` (h, w, 3), brighter where the floor is free and dark where something stands; probability: (h, w)."""
     sure = np.clip((np.asarray(probability, np.float32) - 0.5) / SURE, -1, 1)[..., None]
     to = np.where(sure < 0, _colour(palette.free), _colour(palette.occupied))
     return (ground + (to - ground) * np.abs(sure) * 0.9).astype(np.uint8)
 
 
 def map_floor(picture: OccupancyPicture, fit: MapFit, palette: Palette) -> Pixels:
-    """The whole floor of the map plate with the occupancy as the map lies on it, first row at the back."""
+    """The whole floor of the map plate with the occupancy, placed as the map is; the first row is at the back."""
     size = round(WIDTH * PX_PER_UNIT), round(DEPTH * PX_PER_UNIT)
     corners = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]) * picture.cell_m + picture.origin_xy_m
     placed = fit.to_plate(corners)
@@ -39,7 +39,7 @@ def map_floor(picture: OccupancyPicture, fit: MapFit, palette: Palette) -> Pixel
 
 
 def cells_occupied(ground: Pixels, probability: NDArray[np.float32], palette: Palette) -> Pixels:
-    """The pose cells' floor with the occupancy in their frame; row 0 of (n_y, n_x) at its front edge."""
+    """The pose cells' floor with the occupancy in their frame; row 0 of (n_y, n_x) is at the front edge."""
     return occupancy_colours(_enlarged(probability, ground, cv2.INTER_LINEAR), ground, palette)
 
 
@@ -60,7 +60,7 @@ def cells_ringed(
     radius: float,
     colour: Rgb,
 ) -> Pixels:
-    """The pose cells' floor with a disc around a place, all in cells, that goes on at the other side where it leaves."""
+    """The pose cells' floor with a disc around a place, all in cells. Where the disc leaves, it goes on at the other side."""
     _, n_y, n_x = shape
     height: int = ground.shape[0]
     width: int = ground.shape[1]

@@ -10,12 +10,16 @@ from web.viewer.primitives.labels import Sign, add_mesh
 from web.viewer.primitives.palette import Palette
 
 TITLE_M, SUBTITLE_M = 0.62, 0.36
-BEHIND = (0.0, 30.0, 0.0)  # opaque meshes are drawn by the distance of their origin: after what covers most of it
+BEHIND = (
+    0.0,
+    30.0,
+    0.0,
+)  # opaque meshes are drawn by the distance of their origin: this after what covers most of it
 SHEET_Z, RIM_Z, TEXT_Z, FLOOR_Z = -0.055, -0.05, -0.035, -0.03
 
 
 class Plate:
-    """The part that all three plates share. Children take names below `self.root`."""
+    """What all three plates have in common. Children take names below `self.root`."""
 
     def __init__(
         self,
@@ -41,7 +45,7 @@ class Plate:
         self._subtitle = Sign(scene, f"{self.root}/subtitle", SUBTITLE_M)
 
     def set_heading(self, title: str, subtitle: str) -> None:
-        """Title and subtitle, flat in front of the content."""
+        """Shows title and subtitle, flat in front of the content."""
         self._title.show(images.text(title, self.palette.text, 96, True), (self.left, self.front + 1.08, TEXT_Z))
         self._subtitle.show(images.text(subtitle, self.palette.text_2, 64), (self.left, self.front + 0.46, TEXT_Z))
 
@@ -49,7 +53,7 @@ class Plate:
 def point_on_plane(
     origin: np.ndarray, direction: np.ndarray, plate: tuple[float, float, float], z: float = 0.0
 ) -> tuple[float, float] | None:
-    """Where a ray (world) meets the plane `z` above a plate, in the plate's frame; None when it does not."""
+    """Where a ray (world frame) meets the plane `z` above a plate, in the plate's frame; None when it does not."""
     if abs(direction[2]) < 1e-9:
         return None
     along = (plate[2] + z - origin[2]) / direction[2]

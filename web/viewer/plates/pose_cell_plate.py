@@ -1,4 +1,4 @@
-"""The pose-cell plate: where the network believes the robot is. Packets as voxels in a glass box, their glow below."""
+"""The pose-cell plate: where the network believes the robot is. Packets are voxels in a glass box; their glow is below."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from web.viewer.primitives.tone_mapping import vertex_paint
 
 ORIGIN = (0.0, 8.5, 0.0)
 SHEET = (9.4, 9.9, -0.75, 0.45)
-VOXELS, VOXEL_STEP, VOXEL_SPARE = 500, 64, 128  # room for them grows in steps, and shrinks when so much is left
+VOXELS, VOXEL_STEP, VOXEL_SPARE = 500, 64, 128  # room for them grows in steps, and shrinks when this much is unused
 PACKETS = 4
 PATH_SEGMENTS, PATH_STEP = 120, 0.1
 DASHES = 48
@@ -33,8 +33,8 @@ FLOOR_PX = 288
 PILL_M = 0.62
 BELIEVES = "where the network believes the robot is"
 SNAPPED = "where it believes to be - S to F: the last snap"
-LEAST_SHARE = 0.005  # a packet below shows as 0 %
-WEAKEST = 0.02  # of the strongest cell
+LEAST_SHARE = 0.005  # a packet with less would show as 0 %
+WEAKEST = 0.02  # share of the strongest cell
 
 
 class PoseCellPlate(Plate):
@@ -47,7 +47,7 @@ class PoseCellPlate(Plate):
         self._shown = 0  # voxels
         self._fit = CellFit((36, 60, 60))
         self._ground = images.gridded_floor((SIDE, SIDE), FLOOR_PX / SIDE, palette.floor, palette.grid, SIDE / 16)
-        self.under = self._ground  # what the glow falls on
+        self.under = self._ground  # the floor image that the glow falls on
         self._floor = add_picture(
             scene,
             f"{self.root}/floor",
@@ -102,7 +102,7 @@ class PoseCellPlate(Plate):
         )
 
     def set_cells(self, layer: PoseCellLayer) -> None:
-        """Voxels and packets: each with its id, the winner always in the first colour."""
+        """Shows voxels and packets, each packet with its id, the winner always in the first colour."""
         self._set_shape(layer)
         self._layer = layer
         owned = np.minimum(owners(layer), PACKETS - 1)
@@ -125,8 +125,8 @@ class PoseCellPlate(Plate):
     def _draw_voxels(self, layer: PoseCellLayer, owned: np.ndarray) -> None:
         strength = layer.activity / max(float(layer.activity.max(initial=0.0)), 1e-9)
         rows = np.flatnonzero(strength > WEAKEST)[:VOXELS]
-        self._shown = len(rows)  # they are the first: strongest first
-        rows = rows[np.lexsort(layer.cells[rows].T)]  # by place: as long as they are the same their places are not sent
+        self._shown = len(rows)  # the first of `layer.cells`, since the strongest come first
+        rows = rows[np.lexsort(layer.cells[rows].T)]  # in order of place, so that unchanged places are not sent again
         if not self._capacity - VOXEL_SPARE <= len(rows) <= self._capacity:
             self._capacity = VOXEL_STEP * max(1, math.ceil(len(rows) / VOXEL_STEP))
             self._voxels = self._add_voxels()
@@ -173,12 +173,12 @@ class PoseCellPlate(Plate):
             pill.show(letter, self.palette.on_goal, (float(at[0]), float(at[1]), float(at[2])))
 
     def set_path(self, path: NDArray[np.float32], shape: tuple[int, int, int]) -> None:
-        """The winner's way of the last two minutes, (p, 3): x', y' in cells and heading."""
+        """Shows the winner's path of the last two minutes, (p, 3): x', y' in cells and heading."""
         points = meshes.thinned(CellFit(shape).path(np.asarray(path, np.float64).reshape(-1, 3)), PATH_STEP)
         self._path.points = meshes.some(broken_where_it_wraps(points), PATH_SEGMENTS)
 
     def set_glow(self, layer: PoseCellLayer, under: images.Pixels) -> None:
-        """The floor's image: the activity projected onto x'y', in its packet's colour, on what lies there."""
+        """Shows on the floor, over `under`, the activity projected onto x'y', in the colour of its packet."""
         self._floor.image = images.upright(glow(layer, under, self.palette))
 
     def set_floor(
@@ -188,7 +188,7 @@ class PoseCellPlate(Plate):
         goal: GoalMemoryLayer | None,
         report: Report | None,
     ) -> None:
-        """What lies on the floor below the glow: each only when it is switched on."""
+        """Sets what lies on the floor below the glow; each layer only when it is switched on."""
         self.under = self._ground
         if occupancy is not None:
             self.under = overlays.cells_occupied(self.under, occupancy.cells, self.palette)
@@ -206,7 +206,7 @@ class PoseCellPlate(Plate):
         self.mark.show(report, shape)
 
     def column_at(self, origin: np.ndarray, direction: np.ndarray) -> tuple[int, int] | None:
-        """The x', y' that a ray of the stage means: the strongest voxel on it, else the floor; None beside the box."""
+        """The x', y' that a ray (world frame) means: the strongest voxel on it, else the floor; None beside the box."""
         if self._layer is None:
             return None
         _, n_y, n_x = self._fit.shape
@@ -225,7 +225,7 @@ class PoseCellPlate(Plate):
         return int((floor[0] / SIDE + 0.5) * n_x), int((floor[1] / SIDE + 0.5) * n_y)
 
     def set_way(self, layer: PoseCellLayer, goal: GoalMemoryLayer | None) -> None:
-        """An arrow at the packet: where the times to the goal fall fastest."""
+        """Shows an arrow at the packet, in the direction in which the times to the goal fall fastest."""
         self._way.visible = goal is not None and goal.direction_rad is not None and bool(layer.packets)
         if goal is None or goal.direction_rad is None or not layer.packets:
             return
@@ -235,14 +235,14 @@ class PoseCellPlate(Plate):
 
 
 def way_arrow(rim: float) -> meshes.Mesh:
-    """From the packet's ring outwards along x; `rim` wider all around."""
+    """An arrow from the packet's ring outwards along x. rim: how much wider it is all around."""
     shaft = np.array([(0.5 - rim, -0.07 - rim), (1.0, -0.07 - rim), (1.0, 0.07 + rim), (0.5 - rim, 0.07 + rim)])
     head = np.array([(1.0 - rim, -0.26 - 1.6 * rim), (1.5 + 2 * rim, 0.0), (1.0 - rim, 0.26 + 1.6 * rim)])
     return meshes.joined(meshes.flat_polygon(shaft, 0.0), meshes.flat_polygon(head, 0.0))
 
 
 def pill_places(tops: np.ndarray, widths: np.ndarray) -> np.ndarray:
-    """(n, 3) places of pills above packets at `tops` (n, 3) that do not cover each other in the view of all plates."""
+    """(n, 3) places for pills above packets at `tops` (n, 3), so that none covers another in the view of all plates."""
     raised = tops + np.array([0.0, 0.0, 0.95])
     seen, larger = seen_by(camera_for("all", 1.2), raised + np.array(ORIGIN))
     height = PILL_M * float(larger.max(initial=1.0))
@@ -251,7 +251,7 @@ def pill_places(tops: np.ndarray, widths: np.ndarray) -> np.ndarray:
 
 
 def glow(layer: PoseCellLayer, ground: images.Pixels, palette: Palette) -> images.Pixels:
-    """`ground` with the cells' light on it; the cells' row 0 is at its front edge."""
+    """`ground` with the light of the cells on it; row 0 of the cells is at its front edge."""
     _, n_y, n_x = layer.shape
     owned = np.minimum(owners(layer), PACKETS - 1)
     out = ground.astype(np.float32)

@@ -30,21 +30,21 @@ def distances(walls: Array, origin: tuple[float, float], angles: Array) -> Array
 
 
 def fan_of_view(walls: Array, pose: Pose, fov_rad: float, rays: int = RAYS) -> Array:
-    """(rays, 2) where the view ends on the walls, from right to left, so that a fan of them faces up."""
+    """(rays, 2) where the rays of the view meet the walls, from right to left, so that a fan of them faces up."""
     angles = pose.heading_rad + np.linspace(-fov_rad / 2, fov_rad / 2, rays)
     offset = walls.reshape(-1, 2, 2) - (pose.x, pose.y)
-    within = ((offset.min(1) <= FAR_M) & (offset.max(1) >= -FAR_M)).all(1)  # of ten thousand walls only those count
+    within = ((offset.min(1) <= FAR_M) & (offset.max(1) >= -FAR_M)).all(1)  # walls in reach
     reach = distances(walls[within], (pose.x, pose.y), angles)
     return np.column_stack([pose.x + reach * np.cos(angles), pose.y + reach * np.sin(angles)])
 
 
 def solids(world: WorldDrawing) -> list[Array]:
-    """Closed outlines (n, 2), counter-clockwise, of furniture: runs of segments that come back to their start."""
+    """Closed outlines (n, 2) of furniture, counter-clockwise: runs of segments that return to their start."""
     return [outline for _, outline in solid_runs(world)]
 
 
 def solid_runs(world: WorldDrawing) -> list[tuple[range, Array]]:
-    """`solids` with the rows of `world.walls` that make them. Desks that lean on a partition are closed along it."""
+    """`solids` with the rows of `world.walls` that make them. Desks that stand against a partition are closed along it."""
     walls = np.asarray(world.walls, np.float64)
     low_x, low_y, high_x, high_y = world.bounds
     largest = 0.25 * (high_x - low_x) * (high_y - low_y)
@@ -64,7 +64,7 @@ def solid_runs(world: WorldDrawing) -> list[tuple[range, Array]]:
 
 
 def _chains(walls: Array, kinds: tuple[str, ...]) -> list[range]:
-    """Longest runs of rows of one kind, each beginning where the one before ends; a closed run ends there."""
+    """Longest runs of rows of one kind in which each wall begins where the one before ends. A run that closes ends there."""
     chains: list[range] = []
     first = 0
     for row in range(1, len(walls) + 1):
@@ -81,7 +81,7 @@ def _chains(walls: Array, kinds: tuple[str, ...]) -> list[range]:
 
 
 def inside(outline: Array, x: float, y: float) -> bool:
-    """Whether (x, y) lies in a polygon (n, 2): an odd number of its edges are to the right."""
+    """Whether (x, y) lies in a polygon (n, 2): then an odd number of its edges lie to the right."""
     after = np.roll(outline, -1, 0)
     spans = (outline[:, 1] > y) != (after[:, 1] > y)
     rise = np.where(spans, after[:, 1] - outline[:, 1], 1.0)

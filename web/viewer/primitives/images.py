@@ -1,4 +1,4 @@
-"""Everything flat on the stage, drawn through Pillow: text, pills, sheets, floors with their shadows, the sky.
+"""Everything flat in the scene, drawn with Pillow: text, pills, sheets, floors with their shadows, the sky.
 
 Arrays are (height, width, 3 or 4) uint8 with the first row at the top; `upright` turns them for viser's scene.
 """
@@ -19,7 +19,7 @@ _FONTS = Path(__file__).parent / "fonts"
 
 
 def upright(image: Pixels) -> Pixels:
-    """The image as `scene.add_image` must be given it: this camera shows it upside down."""
+    """The image as `scene.add_image` needs it, since our camera shows images upside down."""
     return np.ascontiguousarray(image[::-1])
 
 
@@ -30,7 +30,7 @@ def font(size_px: int, bold: bool = False) -> ImageFont.FreeTypeFont:
 
 @lru_cache(maxsize=256)
 def text(words: str, colour: Rgb, size_px: int = 48, bold: bool = False) -> Pixels:
-    """`words` on nothing, RGBA; the height depends on the size alone, so that lines of equal size align."""
+    """`words` on a transparent ground, RGBA. The height depends on the size alone, so that lines of equal size align."""
     face = font(size_px, bold)
     width = max(1, round(face.getlength(words)) + 2)
     image = Image.new("RGBA", (width, round(size_px * 1.3)), (*colour, 0))
@@ -45,7 +45,7 @@ def sky(top: Rgb, bottom: Rgb) -> Pixels:
 
 
 def gridded_floor(size_m: tuple[float, float], px_per_m: float, floor: Rgb, grid: Rgb, step_m: float = 1.0) -> Pixels:
-    """A floor with a line each `step_m`, from its lower left corner."""
+    """A floor with a line every `step_m`, from its lower left corner."""
     width, height = (max(2, round(s * px_per_m)) for s in size_m)
     image = Image.new("RGB", (width, height), floor)
     draw = ImageDraw.Draw(image)
@@ -64,7 +64,7 @@ def contact_shadow(
     reach_px: float,
     share: float,
 ) -> Pixels:
-    """The floor, darker near segments (n, 4) and inside polygons (k, 2): the depth cue."""
+    """The floor, darker near segments (n, 4) and inside polygons (k, 2), as a cue for depth."""
     height, width = floor.shape[:2]
     mask = Image.new("L", (width, height), 0)
     draw = ImageDraw.Draw(mask)
@@ -79,12 +79,12 @@ def contact_shadow(
 
 
 def colour_bar(ramp: NDArray[np.uint8], height_px: int = 22) -> Pixels:
-    """The colour scale, from near to far."""
+    """The bar of the colour scale, from near to far."""
     return np.repeat(ramp[None], height_px, 0)
 
 
 def tint(canvas: Pixels, corners: NDArray[np.float64], colour: Rgb, share: float) -> Pixels:
-    """A colour laid over a polygon (n, 2) of pixels."""
+    """The canvas with a colour laid over a polygon (n, 2) of pixels."""
     mask = Image.new("L", canvas.shape[1::-1], 0)
     ImageDraw.Draw(mask).polygon([(float(x), float(y)) for x, y in corners], fill=255)
     weight = np.asarray(mask, np.float64)[..., None] / 255 * share

@@ -1,4 +1,4 @@
-"""Words on the stage that change in place: a sign lies flat or leans towards the viewer, a pill is a sign on a bar.
+"""Words in the scene that change in place: a sign lies flat or leans towards the eye; a pill is a sign on a bar.
 
 A pill's bar is an opaque mesh, because transparent images hide what is drawn after them.
 """
@@ -34,7 +34,7 @@ def add_picture(
 
 
 class Sign:
-    """Words whose letters are `height` high in all; `anchor` says which end of them stands at the place."""
+    """Words in a line `height` high; `anchor` says which end of them is at the place."""
 
     def __init__(
         self, scene: viser.SceneApi, name: str, height: float, *, anchor: str = "left", leaning: bool = False
@@ -60,7 +60,7 @@ class Sign:
 
 
 class Pill:
-    """Words on a rounded bar that leans towards the viewer, centred at a place."""
+    """Words on a rounded bar that leans towards the eye, centred at a place."""
 
     def __init__(
         self, scene: viser.SceneApi, name: str, height: float, fill: Rgb, palette: Palette, rim: Rgb | None = None

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 Points = NDArray[np.float64]
 Mesh = tuple[NDArray[np.float32], NDArray[np.uint32]]
 
-NOWHERE = np.array([[(-50.0, -50.0, -50.0), (-50.0, -50.1, -50.0)]], np.float32)  # a segment far below the stage
-NOTHING: Mesh = (np.full((3, 3), -50.0, np.float32), np.array([[0, 1, 2]], np.uint32))  # far below the stage
+NOWHERE = np.array([[(-50.0, -50.0, -50.0), (-50.0, -50.1, -50.0)]], np.float32)  # a segment far below the plates
+NOTHING: Mesh = (np.full((3, 3), -50.0, np.float32), np.array([[0, 1, 2]], np.uint32))  # far below the plates
 UNIT_CUBE: Mesh = (
     np.array([[x, y, z] for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)], np.float32),
     np.array(
@@ -25,7 +25,7 @@ UNIT_CUBE: Mesh = (
 
 
 def open_cube(ends: bool = True) -> Mesh:
-    """`UNIT_CUBE` as it is seen on a floor: no bottom, sharp edges, four corners a face. ends: those along x."""
+    """`UNIT_CUBE` for use on a floor: no bottom, sharp edges, four corners per face. ends: with the faces across x."""
     corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
     quads = [[(x, y, 0.5) for x, y in corners]]
     for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1], strict=True):
@@ -45,7 +45,7 @@ def turned_box(centre: tuple[float, float, float], size: tuple[float, float, flo
 
 
 def sharp(mesh: Mesh) -> Mesh:
-    """The same mesh with its own corners for each face, so that edges stay sharp under smooth shading."""
+    """The same mesh with separate corners for each face, so that edges stay sharp under smooth shading."""
     vertices, faces = mesh
     return vertices[faces.reshape(-1)], np.arange(faces.size, dtype=np.uint32).reshape(-1, 3)
 
@@ -62,7 +62,7 @@ def lifted(xy: Points, z: float) -> Points:
 
 
 def smoothed(xy: Points, step: float, rounds: int = 2) -> Points:
-    """The line through (n, 2), corners cut (Chaikin) and then a point each `step`; ends stay where they are."""
+    """The line through (n, 2) with its corners cut (Chaikin), then resampled every `step`; the ends stay where they are."""
     line = np.asarray(xy, np.float64)
     for _ in range(rounds):
         if len(line) < 3:
@@ -73,19 +73,19 @@ def smoothed(xy: Points, step: float, rounds: int = 2) -> Points:
 
 
 def resampled(xy: Points, step: float) -> Points:
-    """A point each `step` along the line and its end; at least two points."""
+    """A point every `step` along the line, and its end; at least two points."""
     arc = arc_length(xy)
     places = np.append(np.arange(0, arc[-1], step), arc[-1]) if arc[-1] > 0 else np.zeros(2)
     return np.column_stack([np.interp(places, arc, xy[:, k]) for k in range(xy.shape[1])])
 
 
 def arc_length(xy: Points) -> Points:
-    """(n,) way from the first point."""
+    """(n,) distance from the first point along the line."""
     return np.append(0.0, np.cumsum(np.hypot(*np.diff(xy[:, :2], axis=0).T)))
 
 
 def ribbon(xy: Points, width: float, z: float) -> Mesh:
-    """A flat band of `width` along (n, 2) with round ends and joints that do not gape."""
+    """A flat band of `width` along (n, 2), with round ends and joints without gaps."""
     line = _distinct(np.asarray(xy, np.float64))
     if len(line) < 2:
         return disc((float(line[0, 0]), float(line[0, 1])), width / 2, z)
@@ -117,7 +117,7 @@ def disc(centre: tuple[float, float], radius: float, z: float, corners: int = 20
 
 
 def ring(radius: float, width: float, z: float = 0.0, corners: int = 48) -> Mesh:
-    """A flat ring around the origin; `radius` is that of its middle line."""
+    """A flat ring around the origin; `radius` is that of its centre line."""
     unit = circle(1.0, corners=corners)
     points = np.stack([unit * (radius + width / 2), unit * (radius - width / 2)], 1).reshape(-1, 2)
     first = np.arange(corners, dtype=np.uint32)[:, None] * 2
@@ -198,20 +198,20 @@ def dashes(a: Points, b: Points, on: float, off: float) -> NDArray[np.float32]:
 
 
 def some(segments: NDArray[np.floating], most: int) -> NDArray[np.float32]:
-    """The last `most` segments; one far below the stage when there are none, since viser wants one at least.
+    """The last `most` segments; one far below the plates when there are none, since viser needs at least one.
 
-    No more are sent than are seen: each costs 24 bytes, and a browser without a graphics card the time to draw it.
+    No more are sent than are seen: each costs 24 bytes, and drawing it takes time in a browser without a graphics card.
     """
     return segments[-most:].astype(np.float32) if len(segments) else NOWHERE
 
 
 def stepped(points: Points) -> Points:
-    """Points in steps of a 256th: what moves by less than can be seen stays the same and is not sent again."""
+    """Points in steps of a 256th. What moves by less than can be seen stays the same and is not sent again."""
     return np.rint(np.asarray(points, np.float64) * 256) / 256
 
 
 def thinned(points: Points, apart: float) -> Points:
-    """Of (n, k) points along a way those that lie `apart` or farther from the one kept before, and the last."""
+    """Those of the (n, k) points along a way that are `apart` or farther from the one kept before, and the last point."""
     kept: list[int] = []
     last = None
     for row, point in enumerate(points.tolist()):

@@ -1,4 +1,4 @@
-"""The stage's colours: one concept, one colour, on every plate, in dark and in light."""
+"""The viewer's colours: one colour for one concept, on every plate, in the dark and in the light theme."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which paint shows as a wanted colour: viser lights meshes and then bends all but images through a film curve.
+"""Which paint shows as a wanted colour: viser lights meshes, and then applies a film curve to everything but images.
 
 The curve is three.js' ACESFilmicToneMapping (S. Hill's fit of the Academy's RRT and ODT), inverted here.
 """
@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 EXPOSURE = 1 / 0.6
-GLOSS = 0.0066  # the share of the light that any mesh throws back, whatever its paint (measured)
-BRIGHTEST = 0.94  # of what a screen can show: white itself would need endless light
+GLOSS = 0.0066  # the share of the light that any mesh reflects, whatever its paint (measured)
+BRIGHTEST = 0.94  # of what a screen can show; white itself would need infinite light
 _INTO = np.array([(0.59719, 0.35458, 0.04823), (0.07600, 0.90834, 0.01566), (0.02840, 0.13383, 0.83777)])
 _OUT_OF = np.array([(1.60475, -0.53108, -0.07367), (-0.10208, 1.10813, -0.00605), (-0.00327, -0.07276, 1.07602)])
 
@@ -30,14 +30,14 @@ def to_srgb(light: Array) -> NDArray[np.uint8]:
 
 
 def film(light: Array) -> Array:
-    """What the renderer makes of light (..., 3) that reaches it."""
+    """What the renderer shows for light (..., 3) that reaches it."""
     v = np.asarray(light) * EXPOSURE @ _INTO.T
     bent = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081)
     return np.clip(bent @ _OUT_OF.T, 0, 1)
 
 
 def before_film(shown: Array) -> Array:
-    """The light (..., 3) that shows as `shown`; colours out of reach are moved to the nearest that is not."""
+    """The light (..., 3) that shows as `shown`; colours out of reach are moved to the nearest one in reach."""
     y = np.clip(np.minimum(shown, BRIGHTEST) @ np.linalg.inv(_OUT_OF).T, 0, 0.99)
     a, b, c = 1 - 0.983729 * y, 0.0245786 - 0.4329510 * y, -0.000090537 - 0.238081 * y
     v = (-b + np.sqrt(b * b - 4 * a * c)) / (2 * a)
