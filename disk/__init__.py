@@ -1,4 +1,4 @@
-"""What every room may use of the disk: states as arrays and JSON, files that are whole or not there, the folder for both."""
+"""The disk for all rooms: states as arrays and JSON, files that are written whole or not at all, and the folder for them."""
 
 from disk.kept import kept_folder
 from disk.kinds import kind

@@ -1,6 +1,6 @@
-"""The file around a snapshot (.npz: arrays, and JSON as bytes), taken apart within limits that are asked before unpacking.
+"""The file around a snapshot (.npz: arrays, and JSON as bytes). Limits are checked before anything is unpacked.
 
-Half a megabyte of zeros can be unpacked to half a gigabyte, and a header can claim anything.
+Half a megabyte of zeros can unpack to half a gigabyte, and a header can claim anything.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 MOST_BYTES = 512 << 20  # of all arrays together, as they lie in memory
-MOST_JSON_BYTES = 16 << 20  # nothing of it grows with the map (state_codec.py)
-FAST = 3  # of zlib: half the time of its usual level, 3 % larger
+MOST_JSON_BYTES = 16 << 20  # no part of the JSON grows with the map (state_codec.py)
+FAST = 3  # zlib's level: half the time of the usual one, 3 % larger
 MOST_ARRAYS = 500
 MOST_DIRECTORY_BYTES = 128 * MOST_ARRAYS
 _HEADER = re.compile(
     rb"\{'descr': '[<|][biuf]([1248])', 'fortran_order': False, 'shape': \(((?:\d{1,12}, )*(?:\d{1,12},?)?)\), \}\s*"
 )
 _LONGEST_HEADER = 256
-_END = b"PK\x05\x06"  # of a zip file: this, counts, and the size of its directory
-# Whatever a file can make its readers say.
+_END = b"PK\x05\x06"  # a zip file ends with this, counts, and the size of its directory
+# The errors that reading a broken file can raise.
 BROKEN = (
     ValueError, LookupError, TypeError, AttributeError, ImportError, EOFError, ArithmeticError, RuntimeError, MemoryError,
     struct.error, zlib.error, zipfile.BadZipFile, zipfile.LargeZipFile,
@@ -36,7 +36,10 @@ BROKEN = (
 
 
 def pack(file: IO[bytes], tree: dict[str, Any], arrays: list[NDArray[Any]], note: str = "") -> None:
-    """Write what `unpack` reads. note: stands in the file's directory. ValueError, before a byte: it could not be read again."""
+    """Write what `unpack` reads. note: stored in the file's directory.
+
+    ValueError, before a byte is written, when it would be too large to be read again.
+    """
     text = np.frombuffer(json.dumps(tree).encode(), np.uint8)
     named = {"json": text} | {f"a{k}": array for k, array in enumerate(arrays)}
     for what, size, most in (("JSON", text.nbytes, MOST_JSON_BYTES), ("arrays", room_of([text, *arrays]), MOST_BYTES)):
@@ -52,12 +55,12 @@ def pack(file: IO[bytes], tree: dict[str, Any], arrays: list[NDArray[Any]], note
 
 
 def room_of(arrays: list[NDArray[Any]]) -> int:
-    """How many of MOST_BYTES they take at most."""
+    """How many of MOST_BYTES the arrays take at most."""
     return sum(array.nbytes + _LONGEST_HEADER for array in arrays)
 
 
 def unpack(file: IO[bytes]) -> tuple[dict[str, Any], list[NDArray[Any]]]:
-    """What is in the file. One of BROKEN says why it cannot be."""
+    """The JSON and the arrays in the file. Raises one of BROKEN when they cannot be read."""
     _require_directory(file)
     with zipfile.ZipFile(file) as archive:
         entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
@@ -81,7 +84,7 @@ def unpack(file: IO[bytes]) -> tuple[dict[str, Any], list[NDArray[Any]]]:
 
 
 def _require_directory(file: IO[bytes]) -> None:
-    """A zip file's directory is read at once and whole, so its size is looked at first."""
+    """Check the size of a zip file's directory first, since the directory is read as a whole."""
     size = file.seek(0, os.SEEK_END)
     if size == 0:
         raise ValueError("the file is empty")
@@ -96,7 +99,7 @@ def _require_directory(file: IO[bytes]) -> None:
 
 
 def _require_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, name: str) -> None:
-    """Nobody parses a header that says more than type and shape, and it claims what there is."""
+    """Check one array's entry: its header says type and shape and nothing else, and its size is what the header claims."""
     if entry.flag_bits & 1:
         raise ValueError(f"{name} is encrypted; a brain is not")
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):

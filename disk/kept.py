@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def kept_folder() -> Path:
-    """It need not exist. ValueError when there is no home: an empty HOME is none, and nothing is written to `/`."""
+    """The folder, which need not exist. ValueError when there is no home: an empty HOME is none, and neither is `/`."""
     return _home() / ".ratslam"
 
 
@@ -19,7 +19,7 @@ def _home() -> Path:
 
 
 def _of_the_account() -> str:
-    """The home directory that the system knows of, where it knows this account."""
+    """The home directory that the system has on record for this account, if it knows the account."""
     try:
         import pwd
 

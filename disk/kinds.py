@@ -1,7 +1,7 @@
-"""Which classes a state may hold, and by which short versioned name each is written: "pose_cells/1", never a module's path.
+"""Which classes a state may hold, and the short versioned name under which each is written: "pose_cells/1", no module path.
 
-A file outlives the module it was written by, and whoever moves a class breaks no file. Another version of what a class holds
-gets the next number.
+A file thus outlives the module that wrote it, and moving a class breaks no file. When the attributes of a class change,
+it gets the next number.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ _name_of: dict[type, str] = {}
 
 
 def kind(name: str) -> Callable[[Class], Class]:
-    """Names a class, `@kind("pose_cells/1")`: from then on a state may hold its objects.
+    """Name a class, `@kind("pose_cells/1")`, so that a state may hold its objects.
 
-    What makes their state are the fields of a dataclass, else all attributes; what the class lists in CACHES is left out,
-    what it lists in SHARED may be one array in two places.
+    The state of an object is the fields of a dataclass, else all attributes. Those that the class lists in CACHES are
+    left out; those in SHARED may be one array in two places.
     """
     if not _NAME.fullmatch(name):
         raise ValueError(f"a kind must be a name and a version, such as 'pose_cells/1', got {name!r}")
@@ -61,7 +61,7 @@ def class_of(name: object) -> type[Any]:
 
 
 def attributes(value: object) -> dict[str, Any]:
-    """All that makes the state of an object; its caches count for nothing."""
+    """The attributes that make up the state of an object. Its caches do not count and are None."""
     if dataclasses.is_dataclass(value):
         return {item.name: getattr(value, item.name) for item in dataclasses.fields(value)}
     return {name: None if name in getattr(value, "CACHES", ()) else item for name, item in vars(value).items()}

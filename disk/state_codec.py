@@ -1,8 +1,8 @@
-"""Any state as arrays and JSON, and its digest. The way back is state_reading.py.
+"""Any state as arrays and JSON, and its digest. The way back is in state_reading.py.
 
-No pickle and no paths of modules: plain values, lists, tables, arrays, generators of numpy, and objects of classes that were
-named with `kind`. What is one object there is one object after the way back; a set comes back in another order, so whoever's
-future depends on an order holds a list.
+No pickle and no module paths: plain values, lists, tables, arrays, numpy's generators, and objects of classes that were
+named with `kind`. An object that is held in two places is one object again after the way back. A set may come back in
+another order, so an object whose future depends on an order must hold a list.
 """
 
 from __future__ import annotations
@@ -23,7 +23,9 @@ from disk.kinds import attributes, name_of
 
 Items: TypeAlias = "tuple[Any, ...] | list[Any] | set[Any] | deque[Any]"
 FORMAT = 3
-LONG = 32  # lists and tables of so many numbers become arrays: JSON that grew with the map would take ten times as long
+LONG = (
+    32  # lists and tables of this many numbers become arrays; JSON that grew with the map would take ten times as long
+)
 
 
 @dataclasses.dataclass(frozen=True, slots=True, eq=False)
@@ -35,13 +37,13 @@ class State:
 
     @property
     def outgrowing(self) -> str | None:
-        """Said in time, for the largest arrays grow by doubling: that a file will soon not hold it."""
+        """A warning that a file will soon not hold the state. It comes early, since the largest arrays grow by doubling."""
         if room_of(self.arrays) <= MOST_BYTES // 2:
             return None
         return f"the brain fills more than half of the {MOST_BYTES >> 20} MiB that a file may hold: save it before it grows"
 
     def digest(self) -> str:
-        """SHA-256 of everything: equal for equal states, and tells a damaged file."""
+        """SHA-256 of everything: equal for equal states. It also reveals a damaged file."""
         whole = hashlib.sha256(json.dumps(self.tree, sort_keys=True, allow_nan=False).encode())
         for array in self.arrays:
             whole.update(f"{array.dtype.str}{array.shape}".encode())
@@ -50,15 +52,18 @@ class State:
 
 
 def encode(value: Any) -> State:
-    """The state of a value that does not go on meanwhile: the arrays are its own. TypeError names what no state may hold."""
+    """The state of a value, whose arrays it shares, so the value must not change meanwhile.
+
+    TypeError names what no state may hold.
+    """
     writer = _Writer()
     return State({"format": FORMAT, "state": writer.encode(value)}, writer.arrays)
 
 
 def write_state(state: State, file: IO[bytes], note: str = "") -> None:
-    """One file (.npz: arrays, and JSON as bytes). note: about it, to be read without unpacking it.
+    """Write one file (.npz: arrays, and JSON as bytes). note: a text about it that can be read without unpacking.
 
-    ValueError, before a byte is written: it is too large to be read again.
+    ValueError, before a byte is written, when it would be too large to be read again.
     """
     pack(file, {"digest": state.digest(), **state.tree}, state.arrays, note)
 
@@ -66,7 +71,7 @@ def write_state(state: State, file: IO[bytes], note: str = "") -> None:
 class _Writer:
     def __init__(self) -> None:
         self.arrays: list[NDArray[Any]] = []
-        self._seen: dict[int, tuple[Any, int]] = {}  # keeps what it has seen alive, so that no id comes twice
+        self._seen: dict[int, tuple[Any, int]] = {}  # keeps every object it has seen alive, so that no id is used twice
 
     def encode(self, value: Any) -> Any:
         if value is None or isinstance(value, bool | str) or type(value) is int:
@@ -116,11 +121,11 @@ class _Writer:
 
 
 def _numbers(items: list[Any]) -> NDArray[Any] | None:
-    """A long list of whole numbers, of floats or of pairs of either as an array; else nothing."""
+    """A long list of whole numbers, of floats or of pairs of either as an array; None for any other list."""
     kinds: set[type] = set(map(type, items)) if len(items) >= LONG else set()
     if kinds == {tuple} and set(map(len, items)) == {2}:
         kinds = set(map(type, chain.from_iterable(items)))
     if kinds not in ({int}, {float}):
         return None
     array = np.array(items)
-    return array if array.dtype.type in (np.int64, np.float64) else None  # what is beyond 64 bits stays as it is
+    return array if array.dtype.type in (np.int64, np.float64) else None  # numbers beyond 64 bits stay a list

@@ -1,6 +1,6 @@
-"""A state copied while it stands still: arrays by memcpy, tables at C speed, so that whoever drives waits for milliseconds.
+"""Copies a state while nothing changes it: arrays by memcpy, tables at C speed, so that the engine waits for milliseconds.
 
-What is done with the copy, a file say, may take its time in another thread. test_state_copy.py.
+What is then done with the copy, such as writing a file, may take its time in another thread. test_state_copy.py.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ import numpy as np
 
 from disk.kinds import attributes, name_of
 
-PLAIN = {int, float, bool, str, type(None)}  # cannot change: shared
+PLAIN = {int, float, bool, str, type(None)}  # these cannot change, so they are shared
 T = TypeVar("T")
 
 
 def copy_state(value: T) -> T:
-    """Another object in the same state, caches left out; what is one object there is one object here."""
+    """Another object in the same state, without caches. An object held in two places is one object in the copy, too."""
     return _copy(value, {})
 
 
 def _copy(value: object, made: dict[int, tuple[Any, Any]]) -> Any:
-    """made: by the id of what was copied, the copy; beside the original, so that no id comes twice."""
+    """made: the original and its copy, by the original's id. Keeping the original alive prevents an id from being used twice."""
     kind = type(value)
     if kind in PLAIN or issubclass(kind, np.generic):
         return value
@@ -54,7 +54,7 @@ def _copy_once(value: Any, kind: type[Any], made: dict[int, tuple[Any, Any]]) ->
         copy = np.random.default_rng()
         copy.bit_generator.state = value.bit_generator.state
     else:
-        name_of(kind)  # or it must not be held
+        name_of(kind)  # raises TypeError for a class that a state must not hold
         copy = object.__new__(kind)
         made[id(value)] = value, copy
         for name, item in attributes(value).items():
@@ -67,12 +67,12 @@ def _refilled(like: Any, items: list[Any]) -> Any:
 
 
 def _plain(items: Iterable[Any]) -> bool:
-    """Whether nothing of it can change, told without a loop of Python's."""
+    """Whether none of the items can change, found without a loop in Python."""
     return set(map(type, items)) <= PLAIN
 
 
 def _plain_table(table: dict[Any, Any]) -> bool:
-    """The same of keys and values; keys may be pairs."""
+    """The same for keys and values; keys may be pairs."""
     keys = set(map(type, table))
     if keys == {tuple}:
         return _plain(chain.from_iterable(table)) and _plain(table.values())

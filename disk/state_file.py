@@ -1,4 +1,4 @@
-"""Files of whole states: what is wrong with one is a sentence that names it."""
+"""Files of whole states. Errors are sentences that name the file and say what is wrong with it."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ T = TypeVar("T")
 
 
 def save_state(state: State, path: Path | str) -> None:
-    """One file, which is there whole or as it was before. OSError names it; ValueError: too large to be read again."""
+    """Write one file, wholly or not at all. OSError names the file; ValueError: it would be too large to be read again."""
     with whole_file(path) as file:
         write_state(state, file)
 
 
 def load_as(noun: str, path: Path | str, made: Callable[[State], T]) -> T:
-    """What `made` makes of the state in a file. ValueError names the file and what is wrong with it."""
+    """The object that `made` makes from the state in a file. ValueError names the file and says what is wrong with it."""
     try:
         with Path(path).open("rb") as file:
             return read_as(noun, file, made)
@@ -32,7 +32,7 @@ def load_as(noun: str, path: Path | str, made: Callable[[State], T]) -> T:
 
 
 def read_as(noun: str, file: IO[bytes], made: Callable[[State], T]) -> T:
-    """The same of an open file. ValueError says what is wrong with it."""
+    """The same from an open file. ValueError says what is wrong with it."""
     try:
         return made(read_state(file))
     except BROKEN as error:

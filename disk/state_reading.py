@@ -1,7 +1,8 @@
-"""The way back from a state, or from a file, to what it was made of.
+"""The way back from a state, or from a file, to the object that it was made from.
 
-No pickle: only classes that were named with `kind` are made, and numbers are checked against a digest. Whoever can make a file
-can make its digest, too: what comes out is to be held against the laws of its parts before compiled code sees it.
+No pickle: only objects of classes that were named with `kind` are made, and the content is checked against a digest.
+Whoever can make a file can also make its digest, so the object must be checked against the laws of its parts before
+compiled code sees it.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ from disk.state_codec import FORMAT, State
 
 Tree: TypeAlias = "dict[str, Any] | list[Any] | str | float | None"  # whatever JSON holds
 _ROWS: tuple[type[tuple[Any, ...] | list[Any] | set[Any]], ...] = (tuple, list, set)
-MOST_WORDS = 400  # characters: whatever is wrong may be long
+MOST_WORDS = 400  # characters: what a broken file holds may be long
 
 
 def decode(state: State) -> Any:
-    """What `encode` was given; it keeps the state's arrays. One of `archive.BROKEN` says why it cannot be."""
+    """The object that `encode` was given. It keeps the state's arrays. Raises one of `archive.BROKEN` when that fails."""
     found = state.tree.get("format")
     if found in (1, 2):
         raise ValueError(f"of format {found}, which an unreleased version wrote; this one reads {FORMAT}: save it anew")
@@ -33,7 +34,7 @@ def decode(state: State) -> Any:
 
 
 def read_state(file: IO[bytes]) -> State:
-    """What `write_state` wrote. One of `archive.BROKEN` says what is wrong with it."""
+    """The state that `write_state` wrote. Raises one of `archive.BROKEN` when something is wrong with the file."""
     tree, arrays = unpack(file)
     found = tree.pop("digest", None)
     state = State(tree, arrays)
@@ -43,7 +44,7 @@ def read_state(file: IO[bytes]) -> State:
 
 
 def words_of(error: BaseException) -> str:
-    """What an error says that was not made for people."""
+    """An error's text for people, even if the error was not made for them."""
     words = str(error) or type(error).__name__
     if isinstance(error, KeyError):
         words = f"it lacks {error}"
@@ -57,7 +58,7 @@ def words_of(error: BaseException) -> str:
 
 
 class _Reader:
-    """Makes objects of a tree. Each array is given out once; only what a class names in SHARED may be held twice."""
+    """Makes objects from a tree. Each array is given out once; only attributes listed in SHARED may hold one again."""
 
     def __init__(self, arrays: list[NDArray[Any]]) -> None:
         self._arrays: dict[int, NDArray[Any]] = dict(enumerate(arrays))

@@ -1,4 +1,4 @@
-"""A file that is there whole or not at all: written beside its place, forced to the disk, then put there in one step."""
+"""Files that are written whole or not at all: beside their place, forced to the disk, then moved there in one step."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pathlib import Path
 from typing import BinaryIO
 
 _OURS = ".saving-ratslam-"
-OLD_S = 60.0  # nobody writes to a file for a minute without a change to it: who began it has died
+OLD_S = 60.0  # a file that has not changed for a minute is no longer being written: its writer has died
 
 
 @contextlib.contextmanager
 def whole_file(path: Path | str) -> Generator[BinaryIO, None, None]:
-    """Open for writing; it takes the place of `path` when the block ends well, else all is as before. OSError names `path`.
+    """A file open for writing. It replaces `path` when the block ends well; otherwise nothing changes. OSError names `path`.
 
-    A device or a pipe is written to as it is, and of a link what it leads to is replaced.
+    A device or a pipe is written to directly. If `path` is a link, the file it leads to is replaced.
     """
     target = Path(os.path.realpath(path))
     with _naming(path):
@@ -42,13 +42,13 @@ def whole_file(path: Path | str) -> Generator[BinaryIO, None, None]:
 
 
 def write_whole(path: Path | str, text: str) -> None:
-    """`text` as a file, whole or not at all. OSError names it."""
+    """Write `text` to a file, wholly or not at all. OSError names the file."""
     with whole_file(path) as file:
         file.write(text.encode("utf-8"))
 
 
 def sweep(folder: Path, beginning: str = ".saving-") -> None:
-    """Remove what somebody began to write here and did not finish before dying."""
+    """Remove files in this folder whose writers died before finishing them."""
     with contextlib.suppress(OSError):
         for left in folder.glob(f"{beginning}*"):
             if time.time() - left.stat().st_mtime > OLD_S:
@@ -57,7 +57,7 @@ def sweep(folder: Path, beginning: str = ".saving-") -> None:
 
 @contextlib.contextmanager
 def _naming(path: Path | str) -> Generator[None, None, None]:
-    """A full disk does not say whose it is, and nobody knows the name of the temporary file."""
+    """Make errors name `path`: a full disk names no file, and nobody knows the name of the temporary one."""
     try:
         yield
     except OSError as error:
@@ -66,13 +66,13 @@ def _naming(path: Path | str) -> Generator[None, None, None]:
 
 
 def _keep_mode(target: Path, handle: int) -> None:
-    """Who may read the file stays as it was; a new one is as the person's umask has it."""
+    """Keep the permissions of the file that is replaced; a new one gets those of the person's umask."""
     with contextlib.suppress(FileNotFoundError):
         os.fchmod(handle, stat.S_IMODE(target.stat().st_mode))
 
 
 def _sync_folder(folder: Path) -> None:
-    """So that the new name outlasts a power cut. Not all file systems can; the file is in its place all the same."""
+    """Make the new name outlast a power cut. Not all file systems can do that; the file is in its place all the same."""
     with contextlib.suppress(OSError):
         handle = os.open(folder, os.O_RDONLY)
         try:
@@ -82,7 +82,7 @@ def _sync_folder(folder: Path) -> None:
 
 
 def require_writable(option: str, file: Path | None) -> None:
-    """Before the work, not after it: whether an option's file can be written. ValueError says why not."""
+    """Check, before the work and not after it, that an option's file can be written. ValueError says why not."""
     if file is None:
         return
     folder = file.absolute().parent
