@@ -1,4 +1,4 @@
-"""No test depends on how fast the machine is, and each run of the suite tries the same examples."""
+"""Settings for all tests: none depends on how fast the machine is, and each run of the suite tries the same examples."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ settings.load_profile("suite")
 
 @pytest.fixture(scope="session", autouse=True)
 def _a_home_of_its_own(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Nothing is read from what somebody has kept, and nothing is left in his home."""
+    """Nothing is read from what a person has kept, and nothing is left in their home."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("RATSLAM_BRAINS", str(tmp_path_factory.mktemp("kept") / "brains"))
         patch.setenv("RATSLAM_WORLDS", str(tmp_path_factory.mktemp("kept") / "worlds"))

@@ -1,7 +1,7 @@
 """A made-up session, snapshot by snapshot, to develop and test the page with: test material only.
 
-`fake_snapshot(tick)` is a function of its arguments alone. Parts that change seldom are the same objects for as long as
-a real session would keep them.
+`fake_snapshot(tick)` depends on its arguments alone. Parts that seldom change stay the same objects for as long as a
+real session would keep them.
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ def _world() -> WorldDrawing:
 
 @lru_cache(maxsize=1)
 def _fit() -> RobotFit:
-    """The same authority as a real session's, over the same walls."""
+    """The same check of fit as in a real session, over the same walls."""
     drawn = _world()
     walls = [
         Wall(*map(float, row), kind, float(height), (0, 0, 0), outer=i < 4)
@@ -166,7 +166,7 @@ def _fit() -> RobotFit:
 
 @lru_cache(maxsize=1)
 def _way() -> NDArray[np.float64]:
-    """A long walk between stops that see each other, (n, 2), one point each 5 cm, corners rounded."""
+    """A long walk between stops in sight of each other, (n, 2): a point every 5 cm, with rounded corners."""
     rng = np.random.default_rng(7)
     stops = np.array(_STOPS)
     sees = [[j for j in range(len(stops)) if j != i and _clear(stops[i], stops[j])] for i in range(len(stops))]
@@ -504,7 +504,7 @@ def fake_reports() -> dict[str, Report]:
 
 
 def fake_walk(at: int) -> TickWalk:
-    """Of three stages."""
+    """A tick of three stages, at stage `at`."""
     names = ("image", "injection", "correction")
     return TickWalk(tuple(TickStage(n, n.capitalize(), f"This is what the {n} did.") for n in names), at)
 

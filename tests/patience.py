@@ -1,4 +1,4 @@
-"""How long a test waits for what has to come: longer than any machine needs. Only a fault waits to the end."""
+"""How long a test waits for something that must happen: longer than any machine needs. Only a fault waits to the end."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Found = TypeVar("Found")
 
 
 def until(look: Callable[[], Found], what: object = "it") -> Found:
-    """The first thing seen that counts as true."""
+    """The first value seen that counts as true."""
     end = time.monotonic() + PATIENCE_S
     while not (found := look()):
         assert time.monotonic() < end, f"not within {PATIENCE_S:g} s: {what}"

@@ -1,7 +1,7 @@
 """Every check: style, types, imports, then the tests, two files at a time. `make test` calls this.
 
---fast leaves out what takes long: tests in a browser, tests of the whole program, tests marked as slow. Whatever else is given
-goes to pytest. What Python's tests cover, and what they do not, `make coverage` tells.
+--fast leaves out what takes long: tests in a browser, tests of the whole program, tests marked as slow. All other
+arguments go to pytest. `make coverage` shows what the Python tests cover.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ CHECKS = {
 }
 PYTEST = ["pytest", "--numprocesses=2", "--dist=loadfile"]
 FAST = ["-m", "not slow", "tests/unit", "tests/property"]
-# Two processes share two cores: a library that spreads a small product over both waits longer than it computes.
+# Two processes share two cores. A library that spreads a small product over both cores waits longer than it computes.
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 

@@ -1,8 +1,8 @@
-"""Draws the floor plans beside it: `python -m tests.data.make`. One building of our own, in the formats that plans come in.
+"""Draws the floor plans in this folder: `python -m tests.data.make`. One building of our own, in the formats of plans.
 
-Sixteen offices along a corridor, pillars in the corridor, slanted desks: 56 by 16 m. `building.vectormap.json` has its walls
-as lines; `building.yaml` with its picture is what a robot's mapper would leave of it: turned, with noise, the outside
-unknown; `drawing.png` is the plan as a draughtsman's picture.
+Sixteen offices along a corridor, with pillars in the corridor and slanted desks: 56 by 16 m. `building.vectormap.json`
+has the walls as lines. `building.yaml` with its picture is what a robot's mapper would make of it: turned, with noise,
+the outside unknown. `drawing.png` is the plan as a draughtsman's picture.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def drawn(lines: list[Line], metres_a_pixel: float, turn_rad: float, outside: in
 
 
 def scanned(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """As a mapper sees it: single pixels here and there, and walls that are not quite straight."""
+    """The picture as a mapper would see it: stray pixels here and there, and walls that are not quite straight."""
     rng = np.random.default_rng(5)
     dots = (rng.random(picture.shape) < 0.0005) & (picture == 254)
     near_wall = cv2.dilate((picture == 0).astype(np.uint8), np.ones((3, 3), np.uint8)) > 0

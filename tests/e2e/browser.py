@@ -21,7 +21,7 @@ ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-san
 ARGUMENTS += ["--disable-background-networking"]
 PATIENCE_MS = 1000 * PATIENCE_S
 expect.set_options(timeout=PATIENCE_MS)
-# Toasts go after some seconds, in which a burdened machine may not have looked.
+# Toasts disappear after some seconds, in which a busy machine may not have looked.
 KEEP_TOASTS = """if (window === top) {
     window.toasted = new Set();
     const look = () => document.querySelectorAll(".toast").forEach((toast) => toasted.add(toast.textContent));
@@ -32,7 +32,7 @@ _told_camera: weakref.WeakKeyDictionary[Page, dict[str, Any]] = weakref.WeakKeyD
 
 
 def launch(playwright: Playwright) -> Browser:
-    """Debian's Chromium where there is one, else playwright's own."""
+    """Debian's Chromium if there is one, else playwright's own."""
     return playwright.chromium.launch(executable_path=shutil.which("chromium"), args=ARGUMENTS, timeout=PATIENCE_MS)
 
 
@@ -48,10 +48,11 @@ def open_page(
     refused: bool = False,
     stage: bool = True,
 ) -> Iterator[Page]:
-    """The page, awake and alive; afterwards: no error in its console and no request that left its origin.
+    """The page, awake and alive. Afterwards its console must have no error, and no request may have left its origin.
 
-    `gone`: the server goes away meanwhile, so that connections may be refused. `refused`: the server has a reason to refuse
-    an upload, which Chromium notes. `stage`: without it the page is there in a tenth of the time, for what is around it.
+    gone: the server goes away meanwhile, so connections may be refused. refused: the server has a reason to refuse an
+    upload, which Chromium logs. stage: without the viewer the page is there in a tenth of the time, to test what is
+    around it.
     """
     context = browser.new_context(
         viewport={"width": width, "height": height}, color_scheme="light" if light else "dark", has_touch=width < 500
@@ -82,7 +83,7 @@ def open_page(
 
 
 def until(page: Page, condition: str, *, argument: object = None) -> None:
-    """Wait until a JavaScript function says yes. Playwright's own wait is refused by the page's security policy."""
+    """Wait until a JavaScript function returns true. Playwright's own wait is refused by the page's security policy."""
     end = time.monotonic() + PATIENCE_S
     while not page.evaluate(condition, argument):
         assert time.monotonic() < end, f"not within {PATIENCE_S:g} s: {condition}"
@@ -90,12 +91,12 @@ def until(page: Page, condition: str, *, argument: object = None) -> None:
 
 
 def told(page: Page, words: str) -> None:
-    """Wait until a toast has said this, though it may have gone again."""
+    """Wait until a toast has said this, even if it has disappeared again."""
     until(page, "(words) => [...toasted].some((said) => said.includes(words))", argument=words)
 
 
 def _hear_camera(page: Page, socket: WebSocket) -> None:
-    """Keep the newest camera that viser's client has told of."""
+    """Keep the newest camera that viser's client has reported."""
 
     def sent(frame: bytes | str) -> None:
         if isinstance(frame, bytes) and b"ViewerCameraMessage" in frame:
@@ -106,7 +107,7 @@ def _hear_camera(page: Page, socket: WebSocket) -> None:
 
 
 def show(page: Page, view: View) -> None:
-    """Press a view button and wait until the camera is there and two frames are drawn, however slowly."""
+    """Press a view button, and wait until the camera has arrived and two frames are drawn, however slowly."""
     page.click(f"[data-view={view}]")
     end = time.monotonic() + PATIENCE_S
     while not _stands_at(page, view):
@@ -117,7 +118,7 @@ def show(page: Page, view: View) -> None:
 
 
 def eye_of(page: Page) -> np.ndarray:
-    """Where the camera of the page's stage was last."""
+    """Where the camera of the page's viewer was last."""
     return np.array(_told_camera[page]["position"])
 
 
@@ -131,7 +132,7 @@ def _stands_at(page: Page, view: View) -> bool:
 
 
 def calm(page: Page) -> None:
-    """Wait until no change of colour or place is under way; what turns for ever may go on."""
+    """Wait until no transition of colour or place is under way; endless animations may go on."""
     until(
         page,
         """() => document.getAnimations().every(
@@ -140,7 +141,7 @@ def calm(page: Page) -> None:
 
 
 def turn_theme(page: Page) -> None:
-    """Dark becomes light, or light dark."""
+    """Change the theme: dark to light, or light to dark."""
     was = page.get_attribute("html", "data-theme")
     page.evaluate("() => document.getElementById('theme').click()")
     until(page, "(was) => document.documentElement.dataset.theme !== was", argument=was)
@@ -148,7 +149,7 @@ def turn_theme(page: Page) -> None:
 
 
 def on_screen(page: Page, view: View, at: tuple[float, float, float]) -> tuple[float, float]:
-    """Where a point of the stage is on the page when the camera stands at a view."""
+    """Where a point of the scene is on the page when the camera is at a view."""
     canvas = page.frame_locator("#stage").locator("canvas").first.bounding_box()
     assert canvas is not None
     camera = camera_for(view, canvas["width"] / canvas["height"])

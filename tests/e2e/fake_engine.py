@@ -1,6 +1,6 @@
 """A made-up session behind the real page, to develop the page with: `python -m tests.e2e.fake_engine [--port N]`.
 
-Answers commands the way the engine would, on made-up snapshots; test material only, no part of the program.
+It answers commands the way the engine would, with made-up snapshots. Test material only, not a part of the program.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ BOXES = 50  # `WHOLE` of waking.js, and some more
 
 
 class FakeEngine(threading.Thread):
-    """Publishes made-up snapshots at ten a second (times the speed) and takes commands between two of them."""
+    """Publishes ten made-up snapshots a second (times the speed), and takes commands between two of them."""
 
     def __init__(self) -> None:
         super().__init__(daemon=True)
@@ -102,7 +102,7 @@ class FakeEngine(threading.Thread):
 
 
 class FakeViewer:
-    """Boxes where the stage will be, in the dark for everybody: as many as the page takes for a whole frame."""
+    """Boxes in place of the plates, dark for everybody: as many as the page needs to see for a whole frame."""
 
     def __init__(self) -> None:
         self.on_connect: Callable[[int], None] | None = None

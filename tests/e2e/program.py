@@ -19,7 +19,7 @@ import orjson
 
 from tests.patience import PATIENCE_S
 
-# The engine may take longer to answer than a person would wait: it compiles itself, on a machine that does other things.
+# The engine may take longer to answer than a person would wait: it compiles itself, perhaps on a busy machine.
 START = (
     f"import web.http.asking; web.http.asking.ANSWER_TIMEOUT_S = {PATIENCE_S}; "
     "from app.__main__ import main; raise SystemExit(main())"
@@ -30,7 +30,7 @@ class Program:
     """`ratslam run` with these arguments, alive when the constructor returns."""
 
     def __init__(self, *arguments: str, start: str = START, **environment: str) -> None:
-        self._brains = tempfile.TemporaryDirectory()  # where it keeps them; gone afterwards
+        self._brains = tempfile.TemporaryDirectory()  # where the program keeps them; removed afterwards
         self.process = subprocess.Popen(
             [sys.executable, "-c", start, "run", "--no-browser", *arguments],
             stdout=subprocess.PIPE,
@@ -46,13 +46,13 @@ class Program:
             if found:
                 self.url, self.port = found[1], int(found[2])
                 self._listener = threading.Thread(target=self.said.extend, args=(self.process.stdout,), daemon=True)
-                self._listener.start()  # nobody waits for a full pipe
+                self._listener.start()  # so that the program never waits for a full pipe
                 self._awake()
                 return
         raise RuntimeError("".join(self.said))
 
     def _awake(self) -> None:
-        """Wait for the first tick: at a first start the page is there long before it."""
+        """Wait for the first tick. At a first start the page is there long before it."""
         deadline = time.monotonic() + PATIENCE_S
         while True:
             try:

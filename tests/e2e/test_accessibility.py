@@ -1,4 +1,4 @@
-"""axe finds nothing in the page and its documents, dark and light, wide and narrow; the keyboard reaches everything."""
+"""axe finds no fault in the page and its documents, dark and light, wide and narrow; the keyboard reaches everything."""
 
 from __future__ import annotations
 

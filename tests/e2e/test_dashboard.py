@@ -1,4 +1,4 @@
-"""The real program in a real browser: what a person does, and that the truth follows."""
+"""The real program in a real browser: what a person does on the page has its effect in the office."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from web.viewer.plates.office_plate import ORIGIN as OFFICE_ORIGIN
 
 @pytest.fixture(scope="module")
 def explored(program):
-    """Ten minutes of exploring that nobody sees; where the settled map lies in the office is kept as pairs of places."""
+    """Ten minutes of exploring without a page. Where the settled map lies in the office is kept as pairs of places."""
     program.command("pause")
     program.command("reset", seed=5)
     for _ in range(3):
         program.command("step", ticks=1000)
-    pairs = []  # not before: loops close and bend the map under them
+    pairs = []  # collected only now, since closing loops bends the map
     for _ in range(120):
         program.command("step", ticks=25)
         state = program.state()
@@ -35,7 +35,7 @@ def explored(program):
 
 
 def in_office(pairs: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """A place of the map in the office, by the rigid motion that suits the pairs best."""
+    """A place of the map in the office, by the rigid motion that fits the pairs best."""
     on_map, true = pairs[:, 0], pairs[:, 1]
     a, b = on_map - on_map.mean(0), true - true.mean(0)
     angle = math.atan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())
@@ -62,7 +62,7 @@ def test_it_is_alive(program, browser):
         until(page, "() => document.getElementById('clock').textContent >= '0:02'")
         assert program.state()["time_s"] > before
         colours = page.frame_locator("#stage").locator("canvas").first.screenshot()
-        assert len(colours) > 20_000  # an empty canvas packs into far less
+        assert len(colours) > 20_000  # an empty canvas compresses to far less
         assert page.locator("#status span").inner_text() in ("exploring", "lost: 2 packets")
         page.keyboard.press("Space")
         program.wait(lambda state: not state["running"])
@@ -74,7 +74,7 @@ def test_it_is_alive(program, browser):
 
 def test_a_click_on_a_far_node_brings_the_robot_there(explored, browser):
     with open_page(browser, explored.url) as page:
-        page.keyboard.press("t")  # another palette draws the map anew: where it lies follows from its nodes alone
+        page.keyboard.press("t")  # another palette draws the map anew; where it lies depends on its nodes alone
         show(page, "map")
         state = explored.state(full=True)
         nodes = np.array(state["map"]["xy"])
@@ -113,7 +113,7 @@ def test_a_held_key_drives_and_letting_go_stops(program, browser, where):
 
 
 def assert_still(program) -> None:
-    """After a while ticks go by and it stays where it is. The program is asked: what a page says, drawing may hold up."""
+    """After a while, ticks go by and the robot stays where it is. The program is asked, since drawing may delay the page."""
 
     def still() -> bool:
         first = program.state()

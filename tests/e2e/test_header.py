@@ -1,4 +1,4 @@
-"""The header and the stage's room at the sizes people have, in every state of the session: nothing overlaps, nothing is cut."""
+"""The header and the room for the plates at the usual screen sizes, in every state: nothing overlaps, nothing is cut off."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ STATES: dict[str, dict[str, Any]] = {
 }
 SAYS = """words => document.querySelector("#status span").textContent === words
     && document.getElementById("clock").textContent === "12:34:56" """
-# Every part that shows, its box against all others and against the header, and whether its words are all there.
+# Every visible part: its box against all others and against the header, and whether its words are complete.
 WRONG = """() => {
     const wrong = [], header = document.querySelector("header"), frame = header.getBoundingClientRect();
     const parts = [...header.querySelectorAll(".wordmark, button, select, summary, time, .chip, .chip > span, .chip b")]
@@ -90,11 +90,11 @@ def test_all_of_the_header_shows_at_every_size_in_every_state(fake, browser) -> 
                 until(page, SAYS, argument=words)
                 assert page.evaluate(WRONG) == [], (words, size)
                 heights[size].add(page.evaluate("() => document.querySelector('header').offsetHeight"))
-    assert {size: len(seen) for size, seen in heights.items()} == dict.fromkeys(SIZES, 1)  # the stage does not jump
+    assert {size: len(seen) for size, seen in heights.items()} == dict.fromkeys(SIZES, 1)  # the plates do not jump
 
 
 def stage_room(page: Page) -> dict[str, Any]:
-    """What of the window the plates have, and whether the panel is there; viser's own never is."""
+    """Which part of the window the plates have, and whether the panel is there; viser's own panel never is."""
     return page.evaluate("""() => {
         const inside = document.getElementById("stage").contentDocument;
         const theirs = inside.querySelector("[data-dock-region], .mantine-Paper-root[style*='fixed']");
@@ -127,7 +127,7 @@ def test_in_a_narrow_window_the_panel_comes_only_when_called(fake, browser, size
             assert stage_room(page)["panel"]
             beside = "() => document.getElementById('stage').clientWidth === innerWidth - 340"
             until(page, beside)
-            page.keyboard.press("p")  # its room is the plates'
+            page.keyboard.press("p")  # its room goes to the plates
             until(page, "() => document.getElementById('stage').clientWidth === innerWidth")
             page.click("#panel-show")
             until(page, beside)

@@ -1,4 +1,4 @@
-"""Looking into the robot's head in a real browser: clicks that inspect, a tick stage by stage, brains up and down."""
+"""Inspection in a real browser: clicks that inspect, a tick stage by stage, brains uploaded and downloaded."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_a_click_with_shift_on_the_map_and_a_click_into_the_pose_cells_inspect(w
         says(page, "Links to other experiences")
         number = page.get_by_label("experience #")
         assert np.hypot(*(nodes[int(number.input_value())] - nodes[40])) < 0.3
-        assert walked.state()["goal"] is None  # it did not go there
+        assert walked.state()["goal"] is None  # the click was no goal
 
         link = page.get_by_role("tabpanel").get_by_text(re.compile(r"^(to|from) #\d+$")).first
         wanted = link.inner_text().split("#")[1]
@@ -84,7 +84,7 @@ def test_a_click_on_a_view_shows_it_beside_what_is_seen_now(walked, browser):
         page.keyboard.press("ArrowRight")
         page.keyboard.press("Enter")
         selected(page, "Inspect")
-        next_square = -(-walked.state()["views"] // 204)  # so many views a square stands for
+        next_square = -(-walked.state()["views"] // 204)  # a square stands for this many views
         says(page, re.compile(rf"^#{next_square}$"))
 
 

@@ -1,4 +1,4 @@
-"""What an earlier program kept is offered on the page, quietly; whoever answers answers for all pages."""
+"""The brain that an earlier program kept is quietly offered on the page; one answer counts for all pages."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def office() -> Iterator[Program]:
 
 
 def middle_of(door: int) -> tuple[float, float, float]:
-    """On the stage, of a shut leaf, at the height at which a click finds it."""
+    """The middle of a shut leaf in the scene, at the height at which a click finds it."""
     leaf = WORLD.doors[door]
     fit = OfficeFit(WORLD.bounds)
     x, y = fit.to_plate(np.array([[leaf.x + 0.5 * leaf.width, leaf.y]]))[0]
@@ -34,13 +34,13 @@ def middle_of(door: int) -> tuple[float, float, float]:
 
 
 def turn(page: Page, name: str) -> None:
-    """A switch of the Office tab."""
+    """Turn a switch of the Office tab."""
     page.get_by_role("tab", name="Office").click()
     page.get_by_role("tabpanel").get_by_label(name, exact=True).click()
 
 
 def test_a_click_on_a_door_opens_and_shuts_it(office: Program, browser: Browser) -> None:
-    for name in ("doors", "script", "people"):  # nobody stands in it, nothing else moves it
+    for name in ("doors", "script", "people"):  # so that nobody stands in the door and nothing else moves it
         office.command("set_parameter", name=f"office.{name}", value=False)
     office.command("set_door", name="laboratory door", open=False)
     office.wait(lambda state: state["living"]["doors"]["laboratory door"] == 0.0)
@@ -48,7 +48,7 @@ def test_a_click_on_a_door_opens_and_shuts_it(office: Program, browser: Browser)
         show(page, "office")
         page.mouse.click(*on_screen(page, "office", middle_of(2)))
         office.wait(lambda state: state["living"]["doors"]["laboratory door"] == 1.0)
-        assert office.state()["living"]["doors"]["meeting room door"] == 1.0  # no other moved
+        assert office.state()["living"]["doors"]["meeting room door"] == 1.0  # no other door has moved
         turn(page, "laboratory door")
         office.wait(lambda state: state["living"]["doors"]["laboratory door"] == 0.0)
 
@@ -60,7 +60,7 @@ def test_people_lamps_and_presets_are_switched_on_the_page(office: Program, brow
         turn(page, "people")
         office.wait(lambda state: state["living"]["people"] == 0)
         turn(page, "people")
-        office.wait(lambda state: state["living"]["people"] >= 1)  # who stands at the robot waits
+        office.wait(lambda state: state["living"]["people"] >= 1)  # a person who meets the robot waits
         turn(page, "hall west")
         office.wait(lambda state: not state["living"]["lamps"]["hall west"])
         assert office.state()["living"]["lamps"]["hall east"]

@@ -1,4 +1,4 @@
-"""What the page says by itself: refusals and notices as toasts that cover nothing, and the marks of the timeline."""
+"""What the page says by itself: refusals and notices as toasts that cover nothing, and the marks on the timeline."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def fake() -> Iterator[tuple[FakeEngine, str]]:
 
 
 def toasts(page) -> list[str]:
-    """Those there are, but for what a machine without a graphics card is told."""
+    """The toasts there are, except the message about a missing graphics card."""
     return [words for words in page.locator(".toast span").all_text_contents() if "graphics card" not in words]
 
 
@@ -53,8 +53,8 @@ def test_toasts_cover_neither_header_nor_view_buttons_nor_each_other(fake, brows
         for k in range(6):
             page.evaluate(SAY, [f"{k}. {LONG}", {"bad": k % 2 == 0, "stays": True}])
             assert page.evaluate(CLEAR)
-        assert f"5. {LONG}" in toasts(page)  # the newest is always there
-        assert len(toasts(page)) >= 3 or size[1] < 500  # as many as have room
+        assert f"5. {LONG}" in toasts(page)  # the newest is always shown
+        assert len(toasts(page)) >= 3 or size[1] < 500  # as many as there is room for
 
 
 def test_a_toast_stays_for_as_long_as_reading_needs(fake, browser) -> None:
@@ -104,8 +104,8 @@ def test_a_click_or_escape_takes_a_toast_away(fake, browser) -> None:
         for words in ("One.", "Two.", "Three.", "Two."):
             page.evaluate(SAY, [words, {"stays": True, "bad": words == "One."}])
         page.click(".toast:has-text('One.')")
-        assert toasts(page) == ["Three.", "Two."]  # the same only once
-        while "Two." in toasts(page):  # what a machine without a graphics card is told may have come last
+        assert toasts(page) == ["Three.", "Two."]  # the same sentence only once
+        while "Two." in toasts(page):  # the message about the graphics card may have come last
             page.keyboard.press("Escape")
             assert "Three." in toasts(page)
         page.click(".toast:has-text('Three.') button")
@@ -127,7 +127,7 @@ def test_an_unreachable_goal_and_a_fault_are_told_to_everyone(fake, browser) -> 
 
 
 def test_what_the_stage_refuses_is_told_to_whoever_did_it(program, browser) -> None:
-    with open_page(browser, program.url, stage=False):  # there is a state as soon as a page is alive
+    with open_page(browser, program.url, stage=False):  # a page that is alive has a state
         state = program.state()
     robot, world = state["robot"], load_world(state["world"])
     fit = OfficeFit(world.bounds)
@@ -162,7 +162,7 @@ def test_what_the_stage_refuses_is_told_to_whoever_did_it(program, browser) -> N
 
 
 def kinds_of_events() -> set[str]:
-    """All that the program notes: what the calls of `note` in app/ begin with."""
+    """All kinds that the program notes: the first arguments of the calls of `note` in app/."""
     kinds = set()
     for file in sorted(Path(app.__file__).parent.rglob("*.py")):
         for call in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
@@ -211,8 +211,10 @@ def test_a_mark_says_what_happened(fake, browser, size) -> None:
     engine.shown = {"events": tuple(engine.events), "run": 78, "running": False}
     with open_page(browser, url, *size, stage=False) as page:
         until(page, "() => document.querySelectorAll('#timeline .mark').length === 1")
-        where = page.evaluate("""() => { const box = document.querySelector("#timeline .mark").getBoundingClientRect();
-            return [box.left + box.width / 2, box.top + box.height / 2]; }""")  # at once: it is drawn anew all the time
+        where = (
+            page.evaluate("""() => { const box = document.querySelector("#timeline .mark").getBoundingClientRect();
+            return [box.left + box.width / 2, box.top + box.height / 2]; }""")
+        )  # at once, since it is drawn anew all the time
         if size[0] < 500:
             page.touchscreen.tap(*where)
         else:

@@ -1,4 +1,4 @@
-"""Worlds of one's own in a real Chromium: begun empty, saved, renamed, deleted and brought back."""
+"""A person's own worlds in a real Chromium: begun empty, saved, renamed, deleted and brought back."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def test_saving_under_another_name_can_rename(program, browser, own):
         until(page, "() => ![...document.querySelectorAll('#world option')].some((o) => o.value === 'second')")
         assert not (own / "second.json").exists()
         assert (own / "third.json").exists()
-        page.click("#edit-undo")  # an older office, under the name that it has now
+        page.click("#edit-undo")  # an older office, under its present name
         places = "((await (await fetch('/api/world')).json()).world.places ?? [])"
         until(page, f"async () => !{places}.some((place) => place.name === 'p')")
         assert program.state()["world"] == "third"
@@ -136,7 +136,7 @@ def test_a_saved_world_is_opened_deleted_and_brought_back(program, browser, own)
         page.click("#delete-dialog [value=delete]")
         until(page, "() => document.activeElement.getAttribute('aria-label') === 'Bring My laboratory back'")
         assert not (own / "lab.json").exists()
-        until(page, "() => !document.getElementById('edit-unsaved').hidden")  # it goes on, in no file
+        until(page, "() => !document.getElementById('edit-unsaved').hidden")  # it goes on, but is in no file
         assert program.state()["world"] == "lab"
         page.keyboard.press("Enter")
         until(page, "() => document.getElementById('edit-unsaved').hidden")

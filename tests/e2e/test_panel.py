@@ -1,4 +1,4 @@
-"""The side panel in a real browser, without the plates: what it shows, its controls, its keys, its looks."""
+"""The side panel in a real browser, without the plates: what it shows, its controls, its keys, its layout."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The soak: seconds of it for real, and that its judge hears what is wrong."""
+"""The soak benchmark: some seconds of it for real, and that its judge notices what is wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The editor's script and daylight in a real Chromium: added, changed, deleted, refused, undone, and what comes of it."""
+"""The editor's script and daylight in a real Chromium: adding, changing, deleting, refusing, undoing, and the effects."""
 
 from __future__ import annotations
 

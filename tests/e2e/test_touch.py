@@ -1,4 +1,4 @@
-"""Fingers on the stage: a tap sets a goal, a drag looks around or carries the robot away."""
+"""Fingers on the plates: a tap sets a goal, a drag turns the camera or carries the robot away."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def phone(driven, browser) -> Iterator[Page]:
 
 
 def drag(page: Page, start: tuple[float, float], end: tuple[float, float]) -> None:
-    """One finger, as Chromium takes it from the glass."""
+    """A drag with one finger, as Chromium receives it from a touch screen."""
     glass = page.context.new_cdp_session(page)
     for k, (x, y) in enumerate(np.linspace(start, end, STEPS).tolist()):
         finger = {"type": "touchMove" if k else "touchStart", "touchPoints": [{"x": x, "y": y}]}

@@ -1,4 +1,4 @@
-"""A drawing of the stage stands in its place until viser has drawn it."""
+"""A drawing of the plates stands in their place until viser has drawn them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_a_drawing_stands_there_until_the_first_frame(program: Program, browser,
     context = browser.new_context(viewport={"width": width, "height": 800})
     page = context.new_page()
     held: list[Route] = []
-    page.route(FRAME, lambda route: held.append(route))  # a server that takes its time
+    page.route(FRAME, lambda route: held.append(route))  # a slow server
     page.goto(program.url, wait_until="commit")
     page.wait_for_selector("body[data-alive]", timeout=PATIENCE_MS)
     assert page.evaluate(LOOK) == [False, True, 3, "rgb(24, 32, 41)", "rgb(255, 255, 255)"]
@@ -38,7 +38,7 @@ def test_a_drawing_stands_there_until_the_first_frame(program: Program, browser,
     page.wait_for_selector("#stage.awake", timeout=PATIENCE_MS)
     until(page, "() => document.getElementById('waiting').hidden")
     picture = page.frame_locator("#stage").locator("canvas").first.screenshot()
-    assert len(picture) > 20_000  # an empty canvas packs into far less
+    assert len(picture) > 20_000  # an empty canvas compresses to far less
     context.close()
 
 

@@ -30,7 +30,7 @@ DROP = """async ([files, inside]) => {
   return shown;
 }"""
 
-# Where somebody's head is drawn, and who it is, at one moment: the plan is drawn anew ten times a second.
+# Where a person's head is drawn, and whose it is, at one moment, since the plan is drawn anew ten times a second.
 HEAD = """(k) => { const head = document.querySelectorAll("#plan .head")[k], box = head.getBoundingClientRect();
     return [head.querySelector("title").textContent, box.left + box.width / 2, box.top + box.height / 2]; }"""
 
@@ -51,7 +51,7 @@ def started(own: Path) -> Iterator[Program]:
 
 @pytest.fixture
 def program(started: Program) -> Program:
-    """In the office as it comes with the program, whatever was drawn in it before."""
+    """The program in the office that comes with it, whatever was drawn before."""
     started.command("reset", world="loop")
     started.command("reset", world="office")
     return started

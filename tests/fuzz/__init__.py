@@ -1,1 +1,1 @@
-"""Files and messages that somebody has spoilt, by the thousand. `python -m tests.fuzz --count 10000 --seed 1`."""
+"""Spoilt files and messages by the thousand. `python -m tests.fuzz --count 10000 --seed 1`."""

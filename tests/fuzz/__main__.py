@@ -1,4 +1,4 @@
-"""Spoils inputs by the thousand and counts what becomes of them. Exit code 1 when one of them was not processed properly."""
+"""Spoils inputs by the thousand and counts the outcomes. The exit code is 1 when one was not processed properly."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SOUND = ("taken", "refused")
 
 
 class Worker:
-    """A process that is begun again when it dies."""
+    """A process that is started again when it dies."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[str] | None = None
@@ -91,7 +91,7 @@ def main() -> int:
 
 
 def cases(args: argparse.Namespace) -> Iterator[tuple[str, int]]:
-    """Kinds by their share; batches of messages for their number."""
+    """Kinds and seeds of the cases, by the share of each kind; a batch of messages counts as its number of messages."""
     whole = sum(share for _, share in KINDS.values())
     for kind, (_, share) in KINDS.items():
         if args.only in (None, kind):

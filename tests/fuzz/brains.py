@@ -1,4 +1,4 @@
-"""Brains that were spoilt and signed anew, and what a brain that is taken all the same is asked to do."""
+"""Brains that were spoilt and signed again, and what a brain that is accepted all the same is made to do."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def state_spoilt(rng: Random) -> bytes:
 
 
 def state_of(base: State, rng: Random) -> tuple[Any, list[np.ndarray]]:
-    """Its tree or some of its arrays are others."""
+    """The state with another tree or with some other arrays."""
     tree: Any = base.tree
     arrays = [array.copy() for array in base.arrays]
     if rng.random() < 0.4:
@@ -76,7 +76,7 @@ def state_of(base: State, rng: Random) -> tuple[Any, list[np.ndarray]]:
 
 
 def use(data: bytes) -> str:
-    """Wake up with it, drive a little, and be asked for ways. Returns what became of it."""
+    """Wake up with the brain, drive a little, and ask it for routes. Returns what became of it."""
     brain = read_brain(io.BytesIO(data))
     session = Session(load_world(WORLD), 1, Config().with_engine(brain.params), brain, before())
     for tick in range(12):
@@ -89,7 +89,7 @@ def use(data: bytes) -> str:
 
 
 def warm() -> None:
-    """Whatever a case compiles for the first time, so that its own time is what is measured."""
+    """Compile whatever a case needs, so that later only the case's own time is measured."""
     for data in _packed():
         use(data)
 
@@ -119,7 +119,7 @@ def _ask(brain: RatSlam) -> None:
 
 
 def file_of(tree: Any, arrays: list[np.ndarray]) -> bytes:
-    """Signed where it can be; else with the signature of nothing."""
+    """The file of a state, with its digest if it can be computed, else with the digest of nothing."""
     out = io.BytesIO()
     if isinstance(tree, dict) and "nested " not in (text := json.dumps(tree)) and "NaN" not in text:
         try:
@@ -141,7 +141,7 @@ def _array_spoilt(array: np.ndarray, rng: Random, arrays: list[np.ndarray]) -> n
             return np.concatenate([array, array]) if array.ndim else array.astype(np.int8)
         case 2:
             kinds = (np.int64, np.float64, np.int32, np.float32, np.uint8, np.bool_, np.complex64)
-            with np.errstate(invalid="ignore"):  # what is no number becomes some
+            with np.errstate(invalid="ignore"):  # nan becomes some number
                 return array.astype(rng.choice(kinds))
         case 3:
             return array.T if rng.random() < 0.5 else array.ravel()
@@ -173,7 +173,7 @@ def _value(kind: np.dtype, size: int, rng: Random) -> Any:
 
 
 def _zip_spoilt(data: bytes, rng: Random) -> bytes:
-    """Sound as a zip file, and odd: encrypted, packed otherwise, headers that claim more, entries that are too much."""
+    """A valid but odd zip file: encrypted, packed in another way, headers that claim more, too many entries."""
     kind = rng.randrange(6)
     if kind < 2:  # flags or method of one entry, in its own header and in the directory
         entries = zipfile.ZipFile(io.BytesIO(data)).infolist()

@@ -1,4 +1,4 @@
-"""Worlds, plans, pictures, parameters and commands: how each is spoilt, and by which door it comes in."""
+"""Worlds, plans, pictures, parameters and commands: how each is spoilt, and by which way it comes in."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def map_server(rng: Random) -> str:
 
 
 def parameters(rng: Random) -> str:
-    """A TOML file as it comes with --config."""
+    """A TOML file, as given with --config."""
     lines = [line for line in to_toml(Config()).splitlines() if line and not line.startswith("#")]
     for _ in range(rng.choice((1, 1, 2, 5))):
         at = rng.randrange(len(lines))
@@ -106,7 +106,7 @@ def parameters(rng: Random) -> str:
 
 
 def setting(rng: Random) -> str:
-    """--set NAME=VALUE, some at once."""
+    """Some --set NAME=VALUE at once."""
     config, names = Config(), [name for name, _, _ in Config().items()]
     for _ in range(rng.choice((1, 2, 6))):
         value = (
@@ -127,7 +127,7 @@ def command(rng: Random) -> bytes:
 
 
 def upload(rng: Random) -> dict[str, Any]:
-    """What the page sends with a plan that was dropped on it."""
+    """What the page sends when a plan is dropped on it."""
     name, data = rng.choice(
         (("plan.png", _picture("png")), ("w.json", json.dumps(_worlds()[0]).encode()), ("a.yaml", YAML.encode()))
     )
@@ -135,7 +135,7 @@ def upload(rng: Random) -> dict[str, Any]:
 
 
 def warm() -> None:
-    """Whatever a case compiles for the first time."""
+    """Compile whatever a case needs."""
     brains.warm()
     sessions.warm()
     for kind in ("pgm", "png", "jpg", "bmp", "ppm"):

@@ -31,7 +31,7 @@ ROUTES = ("/api/worlds/open", "/api/worlds/new", "/api/worlds/save", "/api/world
 
 @cache
 def client() -> TestClient:
-    """As long as the process lives. Nobody is too quick for it: what is asked here is what is in a message."""
+    """One client for as long as the process lives, without limits of rate, since the content of messages is tested here."""
     os.environ["RATSLAM_WORLDS"] = tempfile.mkdtemp(prefix="ratslam-fuzz-")
     security.Bucket.take = lambda _: True  # type: ignore[method-assign]
     engine = EngineThread(load_world("loop"), 1, Config(), speed=4.0)
@@ -40,7 +40,7 @@ def client() -> TestClient:
 
 
 def http(rng: Random) -> str:
-    """A batch of requests; each is answered, none with a server error."""
+    """A batch of requests. Each must be answered, and none with a server error."""
     for _ in range(BATCH):
         if rng.random() < 0.8:
             path, body = "/api/commands", command(rng)
@@ -63,7 +63,7 @@ def _require_answer(status: int, content: bytes, body: bytes) -> None:
 
 
 def stream(rng: Random) -> str:
-    """A batch of messages over one socket; each with an id is answered, and so is each that cannot be read."""
+    """A batch of messages over one socket. Each that has an id or cannot be read must be answered."""
     with client().websocket_connect(f"/api/stream?page={PAGE}", headers=OURS) as socket:
         waiting, unread = {"last"}, 0
         for k in range(BATCH):

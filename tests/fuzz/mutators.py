@@ -9,7 +9,7 @@ from copy import deepcopy
 from random import Random
 from typing import Any
 
-NESTED = re.compile(r'"nested (\d+)"')  # stands for so many brackets, which json.dumps would not write
+NESTED = re.compile(r'"nested (\d+)"')  # stands for this many brackets, which json.dumps would not write
 ODD: tuple[Any, ...] = (
     None, True, False, 0, -1, 1, 7, 255, 2**31, 2**32, 2**53 + 1, 2**63, 2**64, -(2**63) - 1, 10**30, 10**400, -0.0, 1e-320,
     0.5, 1e9, -1e9, 1e308, float("nan"), float("inf"), float("-inf"), "", "x", "\x00", "\ud800", "é😀", "a" * 5000, "../../x",
@@ -53,7 +53,7 @@ def tree_spoilt(tree: Any, rng: Random) -> Any:
 
 
 def text_of(tree: Any) -> str:
-    """JSON, of what no writer would write, too."""
+    """JSON, including what no writer would write."""
     return NESTED.sub(lambda found: "[" * int(found[1]) + "]" * int(found[1]), json.dumps(tree))
 
 
@@ -103,7 +103,7 @@ def _number(value: float, rng: Random) -> Any:
 
 
 def _places(tree: Any) -> Any:
-    """Every (holder, key) in it."""
+    """Every (holder, key) in a tree."""
     items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
     for key, item in items:
         yield tree, key

@@ -1,4 +1,4 @@
-"""Whole sessions that were spoilt and signed anew, and what one that is taken all the same is asked to do."""
+"""Whole sessions that were spoilt and signed again, and what one that is accepted all the same is made to do."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def state_spoilt(rng: Random) -> bytes:
 
 
 def use(data: bytes) -> str:
-    """Go on with it, in between by hand and elsewhere, and save it again. Returns what became of it."""
+    """Go on with the session, partly by hand and after a kidnap, and save it again. Returns what became of it."""
     session = read_session(io.BytesIO(data))
     for tick in range(12):
         if tick == 4:
@@ -64,6 +64,6 @@ def use(data: bytes) -> str:
 
 
 def warm() -> None:
-    """Whatever a case compiles for the first time."""
+    """Compile whatever a case needs."""
     for data in _packed():
         use(data)

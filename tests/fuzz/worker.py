@@ -1,4 +1,4 @@
-"""One process that processes spoilt inputs, told their kinds and seeds on stdin: a line in, a line out. It may die of them."""
+"""One process for spoilt inputs. It reads kinds and seeds from stdin, a line in and a line out. An input may kill it."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from random import Random
 from tests.fuzz.inputs import KINDS, warm
 from tests.fuzz.messages import MESSAGES
 
-MOST_ADDRESSES = 6 << 30  # the machine's safety; what is judged is how much memory was really used
+MOST_ADDRESSES = 6 << 30  # to protect the machine; what is judged is how much memory was really used
 ALL = {name: work for name, (work, _) in KINDS.items()} | MESSAGES
 
 
 def processed(kind: str, seed: int) -> dict[str, object]:
-    """What became of one input: taken, refused in a sentence, or a traceback."""
+    """What became of one input: accepted, refused in a sentence, or a traceback."""
     began = time.process_time()  # however busy the machine is
     try:
         outcome, words = ALL[kind](Random(f"{kind} {seed}")), ""

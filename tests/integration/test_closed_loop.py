@@ -130,7 +130,7 @@ def test_the_same_seed_gives_the_same_run_with_and_without_a_thread() -> None:
 
 @pytest.mark.parametrize("turn_deg", [-7.0, -3.0, 0.0, 3.0, 7.0])
 def test_the_camera_tells_headings_with_the_right_sign(turn_deg: float) -> None:
-    """A robot turned left by some degrees reads that off the image that it took before."""
+    """A robot that has turned left by some degrees reads that from the image that it took before."""
     read = []
     for x, y in ((1.0, 1.0), (5.0, 4.3), (9.0, 7.0), (5.0, 1.0), (9.0, 4.2), (1.0, 4.0)):
         for heading in (-2.0, 0.0, 1.0, 2.5):

@@ -18,7 +18,7 @@ SELDOM = "import app.kept_brains.keeper as keeper; keeper.EVERY_S = 1e6; " + STA
 
 
 def first_state(program: Program) -> dict[str, Any]:
-    """Of a program whose engine may still be beginning."""
+    """The first state of a program whose engine may still be starting."""
     deadline = time.monotonic() + PATIENCE_S
     while time.monotonic() < deadline:
         with contextlib.suppress(urllib.error.HTTPError):
@@ -28,7 +28,7 @@ def first_state(program: Program) -> dict[str, Any]:
 
 
 def times(folder: Path) -> list[tuple[str, float]]:
-    """World and simulated time of all that is kept, in the order in which it was."""
+    """World and simulated time of all brains that are kept, in the order in which they were."""
     kept = [found.about for path in folder.glob("*.npz") if (found := _read(path)) is not None]
     return [(about.world, about.time_s) for about in sorted(kept, key=lambda about: about.kept_at)]
 
@@ -67,7 +67,7 @@ def test_after_a_kill_the_brain_is_offered_and_used(tmp_path: Path) -> None:
         assert f"There is a brain of loop, seed 7, 1 min, {known} experiences, kept " in offered
         assert "`ratslam run --resume-brain`" in offered
         assert first_state(third)["world"] == "office"
-        assert len(list(tmp_path.glob("*.npz"))) == 1  # two that did nothing have left nothing
+        assert len(list(tmp_path.glob("*.npz"))) == 1  # the two programs that did nothing have left nothing
         third.command("step", ticks=650)
         third.process.send_signal(signal.SIGTERM)
         third.process.wait(timeout=PATIENCE_S)

@@ -1,4 +1,4 @@
-"""The laws of `ratslam_core.laws` hold of living brains, whatever happens to them, and of what comes back from a file."""
+"""The laws of `ratslam_core.laws` hold for running brains, whatever happens to them, and for those read from a file."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ def test_they_hold_of_a_robot_that_drives_and_is_carried_off(robot: str) -> None
 
 
 def test_many_packets_at_once_have_room_to_move() -> None:
-    """Rows of packets take turns with their spares; what they are moved by must have room for either."""
+    """The rows of packets swap with their spares; the arrays of their movements must have room for either."""
     session = Session(load_world(), 3)
     cells = session.brain.pose_cells
     rng = np.random.default_rng(5)
     for packets in (60, 12, 60):
         cells.place(1, 2, 3)
-        cells.place(1, 2, 3)  # once more, so that the other rows have their turn
+        cells.place(1, 2, 3)  # once more, so that the rows are swapped
         flat = np.sort(rng.choice(cells.slot.size, packets, replace=False)).astype(np.int32)
         cells.inject(flat, np.full(packets, 0.05, np.float32))
         cells.attract()

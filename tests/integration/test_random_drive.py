@@ -11,7 +11,7 @@ from sim2d import load_world, world_names
 @pytest.mark.parametrize("name", [name for name, _ in world_names()])
 def test_never_a_centimetre_into_a_wall(name: str) -> None:
     deepest = drive(with_people(load_world(name), seed=11), hours=0.1, seed=11)
-    assert 0.0 < deepest.wall_m <= BAR_M  # it did drive against walls
+    assert 0.0 < deepest.wall_m <= BAR_M  # the robot did drive against walls
     assert deepest.thing_m <= BAR_M
 
 

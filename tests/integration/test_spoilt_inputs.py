@@ -1,6 +1,6 @@
 """A small share of what `python -m tests.fuzz` does by the thousand: spoilt files and messages with fixed seeds.
 
-In a process of its own, since what is looked for may end it.
+They run in a process of their own, since the faults that are looked for may end it.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from ratslam_core.experience_map.adjacency import Adjacency
 
 
 class Lists:
-    """The same, plainly."""
+    """The same with plain lists."""
 
     def __init__(self) -> None:
         self.halves: list[list[tuple[int, int]]] = []

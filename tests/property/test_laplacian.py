@@ -1,4 +1,4 @@
-"""Laws of the exact solution of nets: it is that of the dense equations, whatever the net."""
+"""Laws of the exact solution of nets: it equals that of the dense equations, whatever the net."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ EXAMPLES = settings(max_examples=60)
 
 
 def net(seed: int, nodes: int, links: int) -> tuple[np.ndarray, np.ndarray]:
-    """A tree and so many links more, some of them loops of one node, some repeated, weights over six decades."""
+    """A tree plus `links` more, some from a node to itself and some repeated, with weights over six decades."""
     rng = np.random.default_rng(seed)
     tree = [(int(rng.integers(v)), v) for v in range(1, nodes)]
     more = rng.integers(0, nodes, (links, 2)).tolist()
@@ -67,7 +67,7 @@ def test_each_node_goes_once_and_the_order_of_links_is_no_matter(seed: int, node
 @pytest.mark.parametrize("interpreted", [False, True])
 @pytest.mark.parametrize("dense_from", [0, 8])
 def test_a_net_that_fills_up(dense_from: int, interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Rows outgrow their room, the arena its own, and what is left is a matrix of several blocks or none."""
+    """Rows outgrow their room and the arena outgrows its own; the rest is a matrix of several blocks, or none."""
     if interpreted:
         literal.interpret(laplacian, monkeypatch)
     monkeypatch.setattr(laplacian, "DENSE", dense_from)
@@ -83,7 +83,7 @@ def test_a_net_that_fills_up(dense_from: int, interpreted: bool, monkeypatch: py
 
 @pytest.mark.parametrize("interpreted", [False, True])
 def test_weights_too_far_apart_for_a_matrix(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two halves of a dense net hang on one another by next to nothing: differences lose that, sums do not."""
+    """Two halves of a dense net are tied by a tiny weight. Differences lose it, sums do not."""
     if interpreted:
         literal.interpret(laplacian, monkeypatch)
     half = np.array([(i, j) for i in range(30) for j in range(i)])
@@ -113,7 +113,7 @@ def test_a_chain_costs_no_more_than_its_length() -> None:
 
 
 def test_links_of_no_weight_hold_nothing() -> None:
-    """Nodes 2 and 3 hang together but on nothing else: they stay, and the rest is as if they were not there."""
+    """Nodes 2 and 3 are linked to each other and to nothing else. They stay; the rest is as if they were not there."""
     pairs = np.array([(0, 1), (1, 2), (2, 3)])
     found = taken_apart(4, pairs, np.array([2.0, 0.0, 1.0])).solve(np.array([0.0, 3.0, 1.0, -1.0]))
     assert found[:2].tolist() == [0.0, 1.5]

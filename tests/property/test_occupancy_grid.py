@@ -41,7 +41,7 @@ def literal_scan(
                 log_odds[at] = min(max(odds, -p.bound), p.bound)
 
 
-number = st.integers(0, 1000).map(lambda k: k / 1000)  # the only step of the model is at the very middle of a cell
+number = st.integers(0, 1000).map(lambda k: k / 1000)  # the model's only step is exactly in the middle of a cell
 
 
 @settings(max_examples=60)
@@ -68,7 +68,7 @@ def test_the_beam_is_its_equations(
     assert np.abs(grid.probability - 1 / (1 + np.exp(-slow))).max() < 1e-4
 
 
-off_centre = st.integers(-3000, 3000).map(lambda k: k / 1000 + 0.0003)  # never the very middle of a cell, as above
+off_centre = st.integers(-3000, 3000).map(lambda k: k / 1000 + 0.0003)  # never exactly the middle of a cell, see above
 pose = st.builds(Pose2, off_centre, off_centre, st.floats(-3, 3))
 
 
@@ -82,7 +82,7 @@ def test_moving_the_map_by_whole_cells_moves_the_picture(experience: Pose2, othe
     first, moved = grid.draw(poses), grid.draw(poses + np.array([4.0, -2.5, 0.0]))
     x, y = first.origin_xy_m
     dx, dy = (round((b - a) / CELL_M) for a, b in zip((x + 4.0, y - 2.5), moved.origin_xy_m, strict=True))
-    assert abs(dx) <= 1  # rounding may put the edge, which is unknown floor, into the next cell
+    assert abs(dx) <= 1  # rounding may move the edge, where nothing is known, into the next cell
     assert abs(dy) <= 1
     assert (first.probability > 0.5).any()
     known = np.sort(first.probability[first.probability != 0.5]), np.sort(moved.probability[moved.probability != 0.5])

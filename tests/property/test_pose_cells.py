@@ -94,14 +94,14 @@ shifts = st.tuples(st.integers(-30, 30), st.integers(-30, 30))
 def test_no_place_of_the_torus_is_special(
     dense: np.ndarray, by: tuple[int, int], drives: list[tuple[float, float]]
 ) -> None:
-    """A whole-cell shift of the start is a whole-cell shift of all that follows."""
+    """When the start is shifted by whole cells, everything that follows is shifted by the same."""
     here, there = (network(activity, inhibit=0.0, carry=False) for activity in (dense, np.roll(dense, by, (1, 2))))
     for speed, yaw_rate in drives:
         for pose_cells in (here, there):
             pose_cells._rows[: pose_cells._found, packet_kernels.COS : packet_kernels.CARRY] = (
                 1.0,
                 0.0,
-            )  # equal packets may swap names
+            )  # equal packets may swap ids
             pose_cells.integrate(speed * 0.1, yaw_rate * 0.1)
             pose_cells.attract()
     assert np.abs(np.roll(here.activity, by, (1, 2)) - there.activity).max() < 1e-5

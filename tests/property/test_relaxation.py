@@ -74,7 +74,7 @@ def true_moves(poses: np.ndarray, links: np.ndarray) -> np.ndarray:
 
 @st.composite
 def graphs(draw: st.DrawFn, weighted: bool = True) -> Graph:
-    """Everything is linked to the first node; links run either way, parallel ones too. Links fit the poses exactly."""
+    """Everything is connected to the first node. Links run either way, some are parallel, and all fit the poses exactly."""
     n = draw(st.integers(2, 20))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     links = [(int(rng.integers(k)), k) for k in range(1, n)]
@@ -86,7 +86,7 @@ def graphs(draw: st.DrawFn, weighted: bool = True) -> Graph:
 
 
 def disturb(graph: Graph, place: float, turn: float) -> None:
-    """Errors in the links."""
+    """Add errors to the links."""
     graph.moves[:, :2] += graph.rng.uniform(-place, place, (len(graph.links), 2))
     graph.moves[:, 2] = wrap(graph.moves[:, 2] + graph.rng.uniform(-turn, turn, len(graph.links)))
 
@@ -94,7 +94,7 @@ def disturb(graph: Graph, place: float, turn: float) -> None:
 @EXAMPLES
 @given(graphs(), st.floats(0.0, 1.0))
 def test_a_sweep_never_raises_the_residual(graph: Graph, alpha: float) -> None:
-    """Of the headings, whatever the links say; of the places, while the headings agree with the links."""
+    """That of the headings, whatever the links say; that of the places, while the headings agree with the links."""
     disturb(graph, 3.0, 0.0)
     before = graph.placed_energy(graph.poses)
     for times in (1, 2, 5):
@@ -139,7 +139,7 @@ def test_consistent_links_are_reproduced_exactly(graph: Graph) -> None:
 @EXAMPLES
 @given(graphs(), st.floats(-0.05, 0.05))
 def test_a_bias_of_the_yaw_rate_is_found(graph: Graph, bias: float) -> None:
-    """All links turned a little too far, by the seconds that the wheels turned: loops tell by how much."""
+    """All links are turned too far, in proportion to the seconds that the wheels turned. Loops tell by how much."""
     true = graph.poses.copy()
     n = len(true)
     loop = np.array([[0, 1], [1, 0]])
@@ -159,7 +159,7 @@ def test_a_bias_of_the_yaw_rate_is_found(graph: Graph, bias: float) -> None:
 @EXAMPLES
 @given(graphs(), st.floats(-0.05, 0.05))
 def test_without_a_loop_no_bias_is_found(graph: Graph, bias: float) -> None:
-    """A chain agrees with any bias: then there is none."""
+    """A chain agrees with any bias, so none is found."""
     tree = len(graph.poses) - 1
     graph.links, graph.moves, graph.weights = graph.links[:tree], graph.moves[:tree], graph.weights[:tree]
     turning_s = graph.rng.uniform(0.1, 10.0, tree)
@@ -278,13 +278,16 @@ def test_headings_are_wrapped_and_faced_exactly(interpreted: bool, monkeypatch: 
 
 
 def carried_chain(looks: int) -> tuple[np.ndarray, np.ndarray]:
-    """A straight chain whose middle link hides a carry of 5 m, and looks back across it; poses and trust after settling."""
+    """A straight chain whose middle link hides that the robot was carried 5 m, and looks across it.
+
+    Returns poses and trust after settling.
+    """
     true_x = np.where(np.arange(40) < 20, 0.05 * np.arange(40), 0.05 * np.arange(40) - 5.0)
     chain = [(k, k + 1) for k in range(39)]
     across = [(39 - k, k) for k in range(looks)]
     links = np.array(chain + across)
     moves = np.zeros((len(links), 3))
-    moves[:39, 0] = 0.05  # so the wheels said, the carry included
+    moves[:39, 0] = 0.05  # what the wheels reported, also where the robot was carried
     moves[39:, 0] = [true_x[j] - true_x[i] for i, j in across]
     weights = np.array([1.0] * 39 + [0.02] * looks)
     is_chain = np.arange(len(links)) < 39
@@ -304,7 +307,7 @@ def test_many_looks_tear_the_link_of_a_kidnap(interpreted: bool, monkeypatch: py
     off, trust = carried_chain(looks=20)
     torn = np.flatnonzero(trust[:39] < 0.5)
     assert len(torn) >= 1
-    assert np.abs(off[30:]).max() < 0.3  # beyond the tear the map is right
+    assert np.abs(off[30:]).max() < 0.3  # beyond the torn link the map is right
     assert trust[39:].min() > 0.5
 
 

@@ -1,4 +1,4 @@
-"""The compiled camera against a ray caster written straight from the picture, one ray and one wall at a time."""
+"""The compiled camera against a ray caster written straight from the geometry, one ray and one wall at a time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Times and routes against the papers' own relaxation and SciPy, while links come, go and change."""
+"""Times and routes against the papers' own relaxation and SciPy, while links are added, removed and changed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LEAST_S = 1e-3
 
 @dataclass
 class Links:
-    """As much of an experience map as has to do with time."""
+    """The part of an experience map that has to do with time."""
 
     poses: np.ndarray
     pace: float = 0.0
@@ -54,7 +54,7 @@ class Links:
 
     @property
     def quickest(self) -> dict[tuple[int, int], float]:
-        """Seconds from one experience straight to another, by the definitions."""
+        """Seconds from one experience directly to another, by definition."""
         t, least = self.transitions, {}
         for row in range(t.count):
             i, j = t.ends[row].tolist()
@@ -116,7 +116,7 @@ def check_route(map_: Links, ways: TemporalMap, start: int, goal: int) -> None:
 
 
 def change(map_: Links, data: st.DataObject) -> None:
-    """Something happens to the map."""
+    """Change something in the map."""
     n, t = len(map_), map_.transitions
     node, seconds = st.integers(0, n - 1), st.floats(0, 30)
     what = data.draw(st.sampled_from(["place", "link", "link", "link", "unlink", "time", "move", "pace", "shortcut"]))
@@ -139,7 +139,7 @@ def change(map_: Links, data: st.DataObject) -> None:
 @pytest.mark.parametrize("interpreted", [False, True])
 @pytest.mark.slow
 def test_a_map_that_was_mended_is_as_good_as_new(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same goal again and again, while the map changes: the papers' times, SciPy's, and bits of a fresh answer."""
+    """The same goal again and again while the map changes: the papers' times, SciPy's, and a fresh answer bit for bit."""
     if interpreted:
         literal.interpret(dijkstra, monkeypatch)
         literal.interpret(transitions, monkeypatch)
@@ -172,7 +172,7 @@ def test_a_map_that_was_mended_is_as_good_as_new(interpreted: bool, monkeypatch:
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.0, 0.4]))
 @pytest.mark.slow
 def test_large_maps_agree_with_scipy(seed: int, shortcut_m: float) -> None:
-    """Chains with closures, as a robot makes them; heaps that outgrow their first room."""
+    """Chains with closures, as a robot makes them; heaps outgrow their first room."""
     rng = np.random.default_rng(seed)
     n = 400
     map_ = Links(np.cumsum(rng.normal(0, 0.2, (n, 3)), 0), pace=float(rng.uniform(0, 4)))
@@ -230,7 +230,7 @@ def test_an_answer_is_the_askers_own() -> None:
 
 @pytest.mark.parametrize(("shortcut_m", "saves"), [(0.0, False), (0.5, False), (1.2, True)])
 def test_a_shortcut_saves_the_way_round(shortcut_m: float, saves: bool) -> None:
-    """Up one side of a U and down the other, a metre apart; the robot needs 4 s a metre."""
+    """Up one side of a U and down the other, a metre apart; the robot needs 4 s per metre."""
     up, across, down = [(0.0, y) for y in range(6)], [(0.5, 5.0)], [(1.0, y) for y in range(5, -1, -1)]
     places = np.array([(x, y, 0.0) for x, y in up + across + down])
     map_ = Links(places, pace=4.0, params=ExperienceMapParams(shortcut_m=shortcut_m))
@@ -244,7 +244,7 @@ def test_a_shortcut_saves_the_way_round(shortcut_m: float, saves: bool) -> None:
 
 @pytest.mark.parametrize("interpreted", [False, True])
 def test_a_crowd_within_reach_of_each_other(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Only shortcuts, from everyone to everyone: more of them wait than the heap had room for."""
+    """Only shortcuts, between all pairs: more of them are in the heap than it had room for at first."""
     if interpreted:
         literal.interpret(dijkstra, monkeypatch)
         literal.interpret(transitions, monkeypatch)

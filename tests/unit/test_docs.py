@@ -1,4 +1,4 @@
-"""What the documentation says is run."""
+"""The documentation is tested: its examples are run, and its names and links are looked up."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ ROOT = DOCS.parent
 
 
 def test_every_test_that_is_named_exists() -> None:
-    """In docstrings and documents: files, and functions with or without their file."""
+    """Tests named in docstrings and documents exist: files, and functions with or without their file."""
     tests = list((ROOT / "tests").rglob("test_*"))
     there = {path.name.split(".")[0] for path in tests} | {"test_x"}
     for path in (path for path in tests if path.suffix == ".py"):

@@ -1,4 +1,4 @@
-"""The parts of docs/engine.md, handed in: the closed loop runs with each, twice alike, through its file and on."""
+"""The parts of docs/engine.md, handed in: the closed loop runs with each, twice the same, and goes on from a file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PARTS = {"StepsOfGrey": "local_view", "LeastSquares": "optimiser", "DenseCells":
 
 
 def brain_with(name: str, **more: Any) -> RatSlam:
-    """As the example makes it, and with sonars."""
+    """The brain as the example makes it, but with sonars."""
     brain = made(name)["brain"]
     part = brain.experience_map.optimiser if name == "LeastSquares" else getattr(brain, PARTS[name])
     return RatSlam(brain.params, np.random.default_rng(3), **{PARTS[name]: part}, **more)
@@ -69,7 +69,7 @@ def test_a_part_of_a_class_without_a_kind_is_told_how_it_gets_one() -> None:
         params = None
 
         def correct(self, map_: object) -> None:
-            """Leaves it."""
+            """Changes nothing."""
 
     brain = RatSlam(optimiser=Mine())
     with pytest.raises(TypeError, match=r'must not hold a .*Mine: name its class with @kind\("name/1"\)'):

@@ -1,4 +1,4 @@
-"""The suite's own patience: an example may take as long as a burdened machine makes it."""
+"""The suite's own patience: an example may take as long as a busy machine needs."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ def do(engine: EngineThread, command: m.Command | m.EngineRequest) -> m.Accepted
 
 
 def accept(engine: EngineThread, command: m.Command) -> m.Snapshot:
-    """Give a command that has to be accepted; the snapshot after it."""
+    """Give a command that must be accepted; returns the snapshot after it."""
     answer = do(engine, command)
     assert isinstance(answer, m.Accepted), answer
     return snapshot(engine)

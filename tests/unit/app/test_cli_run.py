@@ -1,4 +1,4 @@
-"""`ratslam run`: what is started and stopped, in which order, and what is said."""
+"""`ratslam run`: what is started and stopped, in which order, and what is printed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from .worlds import room
 
 
 class Doubles:
-    """Stands in for engine, stage and dashboard, and notes what is done with them."""
+    """Stands in for engine, viewers and dashboard, and notes what is done with them."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, refuse: bool = False, compiles: bool = False) -> None:
         self.log: list[str] = []
@@ -145,7 +145,7 @@ def test_a_first_start_serves_while_it_compiles_and_says_so(
 def test_an_engine_that_cannot_begin_ends_the_program_with_a_sentence(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Whether the page is served by then or not."""
+    """Whether or not the page is already being served."""
     world = room(start=(0.1, 0.1, 0.0))
     monkeypatch.setattr(run, "session_of", lambda _args: (world, Config(), None))
     assert cli.main(["run", "--no-browser", "--port", "0"]) == 2

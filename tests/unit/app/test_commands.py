@@ -1,4 +1,4 @@
-"""Every command and every request of the server has one handler, and it is told in one place who that is."""
+"""Every command and every request of the server has exactly one handler, and one table says which."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compiling ahead: what the parts leave nothing to compile for, and when they are run at all."""
+"""Compiling ahead: after the parts, a real run has nothing left to compile; and when they are run at all."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_after_the_parts_a_run_has_nothing_to_compile() -> None:
 
 @pytest.fixture
 def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """One with a kernel that has not been compiled."""
+    """A module with a kernel that has not been compiled."""
     monkeypatch.syspath_prepend(tmp_path)
     (tmp_path / "ahead.py").write_text("from numba import njit\n@njit(cache=True)\ndef one():\n    return 1\n")
     monkeypatch.delitem(sys.modules, "ahead", raising=False)

@@ -1,4 +1,4 @@
-"""An edit is steps on a world: all of them or none, and what is wrong is said."""
+"""An edit is a list of steps on a world. All are done or none, and the refusal says what is wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""However a command ends, it is a sentence and a number: full disks, closed pipes, signals at any moment."""
+"""However a command ends, it ends with a sentence and an exit code: full disks, closed pipes, signals at any moment."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ OFFICE = str(WORLDS / "office.json")
 
 
 def ratslam(*arguments: str, before: str = "", **options) -> subprocess.CompletedProcess[str]:
-    """The program in a process of its own; `before` is run first in it."""
+    """The program in a process of its own, in which `before` is run first."""
     start = f"{before}\nimport sys\nfrom app.__main__ import main\nsys.exit(main())"
     options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
     return subprocess.run([sys.executable, "-c", start, *arguments], text=True, timeout=300, check=False, **options)
 
 
-# A signal that comes while a library is loaded: wherever its import may be caught or its code be in C.
+# A signal that comes while a library is loaded: where its import may be caught, or where its code is in C.
 ON_IMPORT = """
 import signal, sys
 class Finder:
@@ -57,7 +57,7 @@ def test_a_signal_while_starting_ends_it(command: str, module: str, number: str,
     assert os.listdir(tmp_path) == []
 
 
-# As a library does that takes the exception for its own, and one that is in a destructor when it comes.
+# Like a library that takes the exception for its own, and like one that is in a destructor when it comes.
 SWALLOWS = """
 import signal, time, app.cli.command_line
 class Deaf:

@@ -1,4 +1,4 @@
-"""Brains and worlds in and out of a running engine, and edits of the office."""
+"""Brains and worlds read from and given to a running engine, and edits of the office."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The engine's thread: pace, the hand that expires, faults, snapshots."""
+"""The engine's thread: pace, driving by hand that expires, faults, snapshots."""
 
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ def test_fewer_than_two_points_have_no_error() -> None:
 
 
 class Map:
-    """As much of an experience map as the evaluation reads; one experience, the robot beside it."""
+    """The part of an experience map that the evaluation reads: one experience, with the robot beside it."""
 
     def __init__(self) -> None:
         self.poses = np.zeros((1, 3))
@@ -110,7 +110,7 @@ class Map:
 def drive(
     evaluation: Evaluation, map_: Map, ticks: int, *, wrong_m: float = 0.0, turned_rad: float = 0.0, start: int = 0
 ) -> None:
-    """Along +y of the office with 0.3 m/s; the map, which lies elsewhere and turned, is wrong by so much."""
+    """Drive along +y of the office at 0.3 m/s. The map, which lies elsewhere and is turned, is wrong by a given amount."""
     for tick in range(start, start + ticks):
         x = 0.03 * tick
         map_.local_pose = Pose2(x, wrong_m, turned_rad)
@@ -174,7 +174,7 @@ def test_a_kidnap_is_over_when_the_robot_stays_right_for_half_a_second() -> None
     evaluation.kidnapped(9.9, map_)  # type: ignore[arg-type]
     kidnap = evaluation.kidnaps[0]
     drive(evaluation, map_, 50, start=100, wrong_m=3.0)
-    drive(evaluation, map_, 4, start=150)  # right by chance, not for long
+    drive(evaluation, map_, 4, start=150)  # right by chance, but not for long
     drive(evaluation, map_, 36, start=154, wrong_m=-2.0)
     assert kidnap.after_s is None
     drive(evaluation, map_, 40, start=190, wrong_m=0.5)
@@ -227,7 +227,7 @@ def test_experiences_that_a_brain_brought_are_where_the_map_says() -> None:
     evaluation, map_ = Evaluation(known=2000), Map()
     map_.poses = np.zeros((2001, 3))
     map_.poses[:, 0] = np.arange(2001)
-    map_.active = 1500  # not made here
+    map_.active = 1500  # not made in this run
     drive(evaluation, map_, 300, start=1)
     assert evaluation.revisit_consistency is None
     x, y = evaluation.made_at(1510, map_)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Whatever is thrown in the engine's thread is shown, every request is answered, and a reset goes on."""
+"""Whatever is raised in the engine's thread is shown, every request is answered, and after a reset the session goes on."""
 
 from __future__ import annotations
 

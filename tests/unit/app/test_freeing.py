@@ -19,7 +19,7 @@ from .worlds import EXACT, HandMadeMap, room
 @pytest.mark.parametrize("heading", [math.pi, -2.4, -math.pi / 2])
 @pytest.mark.slow
 def test_a_cornered_robot_frees_itself(heading: float, seed: int) -> None:
-    """Pressed into a corner by a hand, then left alone: it is a metre away within a minute."""
+    """Driven into a corner by hand, then left alone, it is a metre away within a minute."""
     simulator = Simulator(room(start=(0.5, 0.5, heading)), EXACT, seed)
     for _ in range(20):
         simulator.step(Drive(0.3, 0.0))
@@ -32,7 +32,7 @@ def test_a_cornered_robot_frees_itself(heading: float, seed: int) -> None:
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.slow
 def test_a_slow_floor_is_no_reason_to_back_off(seed: int) -> None:
-    """On a floor where it is slow, exploring takes long, but the robot hardly ever frees itself of nothing."""
+    """On a slow floor exploring takes long, but the robot hardly ever frees itself without being stuck."""
     world = room(start=(3.0, 2.0, 0.0))
     x, y, right, top = world.bounds
     zone = SlowZone("slippery", ((x, y), (right, y), (right, top), (x, top)), 0.3)

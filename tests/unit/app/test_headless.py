@@ -95,6 +95,6 @@ def test_a_saved_brain_finds_its_way_again(tmp_path: Path) -> None:
     known = len(brain.experience_map)
     report = run_headless(world, 11, 2.0, brain=brain, goals=2)
     goals = report["goals"]
-    assert all(goal["experience"] < known for goal in goals)  # places that this robot has never been to
+    assert all(goal["experience"] < known for goal in goals)  # places where this robot has never been
     assert all(goal["reached"] for goal in goals)
     assert report["error_m"]["map"] < 1.0

@@ -1,4 +1,4 @@
-"""Events, trails and series of a run: what they tell is what happened, and telling it changes nothing."""
+"""Events, trails and series of a run: they record what happened, and recording changes nothing."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_trail_path_and_series_grow() -> None:
         history.watch()
     assert len(history.trails.robot) <= 600  # two minutes
     assert len(history.trails.packet) <= 600
-    assert len(history.trails.robot) > 500  # of driving: while it stands there is nothing to add
+    assert len(history.trails.robot) > 500  # of driving; while it stands, there is nothing to add
 
 
 def test_the_trail_of_a_robot_that_stands_stays_the_same_object() -> None:
@@ -168,11 +168,11 @@ def test_deleted_links_are_noted_once_a_tick() -> None:
     session.tick()
     history.watch()
     assert history.log.events[-1].text == f"deleted: from experience {i} to {j}, tried too often in vain"
-    assert EventWatch(session, history.log)._dropped == 4  # a watcher that comes later does not tell old tales
+    assert EventWatch(session, history.log)._dropped == 4  # a watcher that comes later does not report old events
 
 
 def test_places_that_pose_cells_hold_twice_or_in_common_are_noted() -> None:
-    """Once, when there are more of them than before; looked for every ten seconds."""
+    """They are looked for every ten seconds, and noted once when there are more than before."""
     session = a_session(5)
     history = History(session)
     known = session.brain.experience_map._experiences

@@ -1,4 +1,4 @@
-"""A packet put among the pose cells by hand: there, as heavy as asked for, and it competes."""
+"""A packet injected by hand: it is where and as heavy as asked for, and it competes."""
 
 from __future__ import annotations
 

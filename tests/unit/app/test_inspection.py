@@ -1,4 +1,4 @@
-"""What the inspectors say is what the engine holds."""
+"""What inspection reports is what the engine holds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Brains are kept whole or not at all, each program's own; a disk that is full is told of once and stops nobody."""
+"""Brains are kept whole or not at all, each program its own. A full disk is reported once and stops nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The chosen arc keeps clear of what the sonars heard in the last seconds."""
+"""The chosen arc keeps clear of the sonars' echoes of the last seconds."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_free_floor_is_crossed_towards_the_target(
     else:
         assert math.copysign(1.0, yaw_rate) == math.copysign(1.0, bearing)
     if bearing == 3.0:
-        assert speed <= 0.11  # what lies behind is turned to first
+        assert speed <= 0.11  # to go back, it turns first
 
 
 @pytest.mark.parametrize("interpreted", [False, True])
@@ -82,7 +82,7 @@ def test_the_free_way_is_the_distance_less_the_clearance(interpreted: bool, monk
     assert local.free_way(0.0, USUAL) == pytest.approx(0.73)
     assert local.free_way(math.pi / 2, USUAL) == pytest.approx(0.23)
     assert local.free_way(-math.pi / 2, USUAL) == pytest.approx(1.6)
-    assert local.free_way(3.0, USUAL) == pytest.approx(1.6)  # farther than it cares
+    assert local.free_way(3.0, USUAL) == pytest.approx(1.6)  # farther than it looks
     assert sensed((0.0, 0.1)).free_way(0.0, USUAL) == 0.0
 
 

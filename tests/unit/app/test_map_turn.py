@@ -1,4 +1,4 @@
-"""The map's turn on its plate: as the office lies, whoever looks or not, and calm."""
+"""The turn of the map on its plate: it follows the office, whether anybody looks or not, and keeps still."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_a_session_that_nobody_watched_is_shown_as_the_office_lies(seed: int) ->
     shown = Snapshots(session, history, 1, ()).build(running=True, speed=1.0, real_time_factor=1.0, fault=None)
     true, mapped, _ = session.evaluation.trajectories(session.brain.experience_map)
     assert apart(shown.map_turn_rad, alignment(mapped, true).heading_rad) <= CALM_RAD + 0.02
-    assert sum(a != b for a, b in pairwise(turns)) <= 6  # it stands still nearly always
+    assert sum(a != b for a, b in pairwise(turns)) <= 6  # it nearly always stands still
 
 
 @given(ANGLES, ANGLES)

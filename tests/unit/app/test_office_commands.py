@@ -1,4 +1,4 @@
-"""Orders to the office, presets, and parameters that pull others with them."""
+"""Commands to the office, presets, and parameters that change others with them."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def test_who_tells_the_brain_another_field_of_view_hears_of_it() -> None:
     engine.start()
     try:
         change = m.SetParameter(type="set_parameter", name="local_view.field_of_view", value=1.0)
-        for _ in range(2):  # the second time it is no news
+        for _ in range(2):  # the second time there is no event
             assert isinstance(engine.submit(change).result(PATIENCE_S), m.Accepted)
         snapshot = engine.latest.get()[1]
         assert snapshot is not None
@@ -138,7 +138,7 @@ def test_who_tells_the_brain_another_field_of_view_hears_of_it() -> None:
 def test_the_brain_is_told_of_another_field_of_view(session: Session) -> None:
     assert session.set_parameter("robot.camera_fov_rad", 2 * math.pi)
     assert session.brain.params.local_view.field_of_view == 2 * math.pi
-    session.set_parameter("local_view.field_of_view", 1.0)  # told something wrong on purpose
+    session.set_parameter("local_view.field_of_view", 1.0)  # a wrong value on purpose
     assert session.config.robot.camera_fov_rad == 2 * math.pi
     assert from_toml(to_toml(session.config)) == session.config
     assert from_toml("[local_view]\nfield_of_view = 1.0\n[robot]\ncamera_fov_rad = 2.0").local_view.field_of_view == 1.0
@@ -200,7 +200,7 @@ def test_a_switch_is_shown_for_what_the_world_has(engine: Engine, session: Sessi
     doors = (replace(world.doors[0], period_s=60.0, open_s=30.0),)
     walls = (replace(world.walls[0], kind="glass"), *world.walls[1:])
     session.edit_world(replace(world, doors=doors, walls=walls, **rest))
-    assert set(switches()) == {field.name for field in fields(OfficeParams)}  # each of them has its thing
+    assert set(switches()) == {field.name for field in fields(OfficeParams)}  # there is something for each of them
     session.edit_world(room(start=(2.0, 2.0, 0.0)))
     assert switches() == ()
 

@@ -1,4 +1,4 @@
-"""What the pilot decides: by hand, to a goal, or exploring for one."""
+"""What the pilot decides: driving by hand, going to a goal, exploring."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_driven_by_hand_until_told_otherwise() -> None:
     pilot.drive(0.2, -0.5)
     assert pilot.mode == "manual"
     near = np.full(8, 0.25, np.float32)
-    for _ in range(100):  # it neither avoids nor frees itself: the hand knows better
+    for _ in range(100):  # by hand it neither avoids obstacles nor frees itself
         assert pilot.step(near, True, STILL, map_) == (0.2, -0.5)  # type: ignore[arg-type]
         assert pilot.doing == "driven by hand"
     pilot.drive(0.0, 0.0)
@@ -46,7 +46,7 @@ def test_modes_and_goals() -> None:
     pilot.set_goal(12)
     assert (pilot.mode, pilot.goal, pilot.goal_state) == ("goal", 12, (12, "tracking"))
     pilot.drive(0.1, 0.0)
-    assert pilot.goal == 12  # the hand interrupts; the goal stays
+    assert pilot.goal == 12  # driving by hand interrupts; the goal stays
     pilot.set_mode("goal")
     assert pilot.mode == "goal"
     pilot.cancel_goal()

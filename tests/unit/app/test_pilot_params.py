@@ -14,11 +14,11 @@ from app.pilot import PilotParams
 from app.pilot.behaviours import Behaviour, words_of
 
 ROOM = Path(app.pilot.__file__).parent
-FORM = {-1, 0, 1, 2, 0.5}  # signs, halves and doubles of a formula; nothing, all, the first
+FORM = {-1, 0, 1, 2, 0.5}  # numbers that belong to formulas: signs, halves and doubles, nothing, all, the first
 
 
 def literals(source: str) -> list[tuple[int, float]]:
-    """Line and value of each number, where it is no place in a list: `ranges_m[2:6]` are sonars."""
+    """Line and value of each number that is not an index: `ranges_m[2:6]` names sonars."""
     tree = ast.parse(source)
     places = {id(n) for s in ast.walk(tree) if isinstance(s, ast.Subscript) for n in ast.walk(s.slice)}
     numbers = (n for n in ast.walk(tree) if isinstance(n, ast.Constant) and type(n.value) in (int, float))

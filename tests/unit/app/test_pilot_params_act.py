@@ -1,4 +1,4 @@
-"""Each of the pilot's parameters changes what the pilot does, in a situation where it is what decides."""
+"""Each of the pilot's parameters changes what the pilot does, in a situation where that parameter decides."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ Trace = Iterator[object]
 
 
 def arcs(p: PilotParams) -> Trace:
-    """What is chosen among echoes of all sorts."""
+    """The arcs chosen among many kinds of echoes."""
     rng = np.random.default_rng(1)
     for _ in range(400):
         local = LocalMovement(ANGLES, p.echo_ticks)
@@ -71,14 +71,14 @@ def past_a_shut_door(p: PilotParams) -> Trace:
 
 
 def at_a_wall(p: PilotParams) -> Trace:
-    """The only way is none."""
+    """A route that leads into a wall."""
     map_ = HandMadeMap(*chain((1.0, 0.6), (3.0, 0.6)))
     world = room((2.0, 0.0, 2.0, 3.0), start=(1.0, 0.6, 0.0))
     return to_a_goal(Run(Simulator(world, EXACT, 1), Pilot(p, ANGLES, np.random.default_rng(1)), map_), 900)
 
 
 def standing(p: PilotParams) -> Trace:
-    """On a route whose links go, then near the goal, then between places that face another way."""
+    """Near the goal, then on a route whose links disappear, then between places that face another way."""
     map_ = HandMadeMap(*chain((0.0, 0.0), (6.0, 0.0)))
     goal, links, times = len(map_) - 1, map_.links, map_.link_times
     for away in (0.5, 1.1, 3.0):

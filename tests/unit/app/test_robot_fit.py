@@ -1,4 +1,4 @@
-"""What the ring under a dragged robot says is what the command answers: both ask `RobotFit`."""
+"""The ring under a dragged robot and the answer to the command agree, since both ask `RobotFit`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def session() -> Session:
 
 
 def ring(x: float, y: float) -> str | None:
-    """What the stage is told of a place; None: teal."""
+    """What the viewer is told about a place; None: the ring is teal."""
     made = Snapshots(session(), History(session()), 1, ())
     return made.build(running=True, speed=1.0, real_time_factor=1.0, fault=None).no_room(x, y)
 

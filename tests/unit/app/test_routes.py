@@ -1,4 +1,4 @@
-"""Routes are followed, coasted on, given up and taken back from walls."""
+"""Routes are followed and given up; the robot coasts on the old one for a while, and turns back from walls."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_the_quickest_of_two_ways_is_taken() -> None:
 
 
 def test_a_brand_new_experience_is_left_by_way_of_a_near_one() -> None:
-    """Active, alone, and not linked to anything yet."""
+    """The active experience is new and not linked to anything yet."""
     places, links = chain((0.0, 0.0), (3.0, 0.0))
     map_ = HandMadeMap([*places, (0.3, 0.35)], links)
     map_.robot = Pose2(0.3, 0.34, 0.0)
@@ -95,7 +95,7 @@ def test_a_lost_route_is_coasted_on_then_given_up() -> None:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_blocked_way_is_left(seed: int) -> None:
-    """The map takes for a way what is a wall: the robot looks around instead of pushing for ever."""
+    """The map has a way where there is a wall. The robot looks around instead of pushing for ever."""
     world = room((2.0, 0.0, 2.0, 3.0), start=(1.0, 0.6, 0.0))
     map_ = HandMadeMap(*chain((1.0, 0.6), (3.0, 0.6)))
     run = Run(Simulator(world, EXACT, seed), a_pilot(seed), map_)
@@ -133,7 +133,7 @@ def two_ways() -> tuple[World, list[tuple[float, float]], list[tuple[int, int]]]
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_door_that_was_shut_is_given_up(seed: int) -> None:
-    """Every way through it fails with it, not one after the other, and the robot goes round."""
+    """All ways through the door fail together, not one after the other, and the robot goes round."""
     world, places, links = two_ways()
     map_ = HandMadeMap(places, links)
     map_.patience = 4
@@ -149,7 +149,7 @@ def test_a_door_that_was_shut_is_given_up(seed: int) -> None:
     assert gone
     for i, j in gone:
         assert max(places[i][1], places[j][1]) < 1.5  # nothing of the way round
-    assert {(i, j) for i, j, well in map_.trials if well} - gone  # and what was driven has been a trial, too
+    assert {(i, j) for i, j, well in map_.trials if well} - gone  # and links that were driven have been on trial, too
 
 
 def test_what_was_driven_of_a_route_was_a_trial() -> None:

@@ -68,7 +68,7 @@ def test_equal_runs_have_equal_hashes_and_others_not() -> None:
 @pytest.mark.parametrize("front_end", ["complex cells", "hue and saturation", "scene numbers"])
 @pytest.mark.slow
 def test_each_front_end_maps_the_office(front_end: str) -> None:
-    """Known places are known again and nothing is far off; what is pictured is what the front end sees."""
+    """Known places are recognised and nothing is far off; the picture shows what the front end sees."""
     session = a_session(1200, config=Config().with_value("local_view.front_end", front_end))
     map_error, _ = session.evaluation.errors(session.brain.experience_map)
     assert map_error < 1.5

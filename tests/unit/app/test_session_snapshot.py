@@ -1,4 +1,4 @@
-"""A session that is saved and loaded goes on bit for bit, wherever it was; a file that is none is refused in a sentence."""
+"""A session that is saved and loaded goes on bit for bit, at any moment; any other file is refused in a sentence."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def saved_and_loaded(session: Session) -> Session:
 
 
 def goes_on(session: Session, ticks: int, act: Callable[[Session, int], None] = lambda _session, _tick: None) -> None:
-    """Both at once, with the same orders; nothing of it may differ in any tick."""
+    """Run both sessions side by side with the same commands; nothing may differ in any tick."""
     other = saved_and_loaded(session)
     assert other.state_hash() == session.state_hash()
     for tick in range(ticks):

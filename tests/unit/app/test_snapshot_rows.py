@@ -1,4 +1,4 @@
-"""A snapshot's arrays are read-only and of one moment, and what has not changed is the same object."""
+"""A snapshot's arrays are read-only and of one moment; parts that have not changed are the same objects."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_snapshots_are_immutable_and_their_rows_agree(with_goal: bool) -> None:
 
 
 def test_a_snapshot_is_of_its_moment() -> None:
-    """What the engine does later does not show in it, and looking does not show in the engine."""
+    """What the engine does later does not change the snapshot, and reading the snapshot does not change the engine."""
     session = a_session(100)
     made = snapshots(session)
     snapshot = build(made)

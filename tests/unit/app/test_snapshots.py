@@ -1,4 +1,4 @@
-"""What a snapshot says of the engine, and that building it changes nothing."""
+"""What a snapshot says about the engine, and that building it changes nothing."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_occupancy_is_the_engine_s_of_that_moment(session: Session) -> None:
     np.testing.assert_array_equal(layer.cells, brain.occupancy.probability)
     drawn = brain.map_grid.draw(brain.experience_map.poses)
     for _ in range(30):
-        session.tick()  # draws what was, not what is
+        session.tick()  # draws the past moment, not the present one
     picture = layer.draw_map()
     np.testing.assert_array_equal(picture.probability, drawn.probability)
     assert (picture.origin_xy_m, picture.cell_m) == (drawn.origin_xy_m, drawn.cell_m)

@@ -1,4 +1,4 @@
-"""`state_hash` covers everything: each leaf of each part is changed by itself, and the hash is another one each time."""
+"""`state_hash` covers everything: each value of each part is changed by itself, and the hash differs each time."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PARTS = ("config", "simulator", "pilot", "brain", "evaluation")
 
 @pytest.fixture(scope="module")
 def session() -> Session:
-    """One in which everything is there: doors, people, a goal and its route, a bar, a kidnap, a laser."""
+    """A session that contains everything: doors, people, a goal and its route, a bar, a kidnap, a laser."""
     made = Session(load_world("living"), 5)
     made.set_parameters({"robot.laser_beams": 11})
     for tick in range(700):
@@ -35,7 +35,7 @@ def session() -> Session:
 
 
 def leaves(name: str, value: Any, put: Put, seen: set[int]) -> Iterator[tuple[str, Any, Put]]:
-    """Path, value and how to put another in its place; of long lists the first two and the last."""
+    """Path and value of each leaf, and how to replace it; of long lists, the first two and the last."""
     if isinstance(value, tuple):
         for k, part in enumerate(value[:6]):
             yield from leaves(f"{name}[{k}]", part, lambda new, k=k: put((*value[:k], new, *value[k + 1 :])), seen)
@@ -59,7 +59,7 @@ def leaves(name: str, value: Any, put: Put, seen: set[int]) -> Iterator[tuple[st
 
 
 def another(value: Any) -> Any:
-    """Of the same kind, and not the same."""
+    """Another value of the same kind."""
     if value is None:
         return 1.5
     if isinstance(value, bool | np.bool_):

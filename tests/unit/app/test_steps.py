@@ -1,4 +1,4 @@
-"""Long steps give way: commands come between two ticks, and a pause ends the rest."""
+"""Long steps give way: commands are taken between two ticks, and a pause cancels the rest."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Answer = Future[m.Accepted | m.Refused]
 
 
 def at_tick(engine: EngineThread, tick: int, command: m.Command) -> list[Answer]:
-    """Have a command come while this tick is computed; its answer."""
+    """Have a command arrive while this tick is computed; returns its answer."""
     answers: list[Answer] = []
     plain = engine.session.tick
 

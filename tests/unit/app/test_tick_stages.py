@@ -1,4 +1,4 @@
-"""A tick stage by stage: what is told of it is what the engine did, and telling it changes nothing."""
+"""A tick stage by stage: the record is what the engine did, and recording changes nothing."""
 
 from __future__ import annotations
 

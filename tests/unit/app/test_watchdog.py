@@ -1,4 +1,4 @@
-"""A tick that hangs is told of while it hangs; compiling, suspending and a busy machine are no hanging."""
+"""A tick that hangs is reported while it hangs. Compiling, suspending and a busy machine do not count as hanging."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_between_two_ticks_nothing_hangs() -> None:
 
 
 def test_who_was_suspended_with_the_tick_counts_only_a_nap() -> None:
-    """However late the watchdog wakes, one nap has passed for it: the whole program may have stood still."""
+    """However late the watchdog wakes, it counts one nap, since the whole program may have stood still."""
     naps = []
     dog, _ = watching(0.02)
     dog._note = naps.append  # type: ignore[method-assign]
@@ -102,7 +102,7 @@ def test_compiling_is_no_hanging() -> None:
 
 
 def test_what_holds_the_interpreter_is_noticed_by_its_processor_time() -> None:
-    dog, told = watching(0.05)  # not started: it gets no chance to run
+    dog, told = watching(0.05)  # not started, so it cannot run
     dog.begin()
     began = time.thread_time()
     while time.thread_time() - began < 0.1:
@@ -112,7 +112,7 @@ def test_what_holds_the_interpreter_is_noticed_by_its_processor_time() -> None:
 
 
 def test_a_session_whose_tick_hangs_is_shown_as_such_and_goes_on(start: Callable[..., EngineThread]) -> None:
-    """On a machine with other work a tick can take long: that is no reason to stand still afterwards."""
+    """On a busy machine a tick can take long. The session must go on afterwards."""
     engine = start(stall_s=0.3)
     accept(engine, step())
     plain, go_on = engine.session.tick, threading.Event()

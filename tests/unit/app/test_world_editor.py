@@ -27,7 +27,7 @@ def placed(kind: str, item: dict[str, Any], name: str, x: float, y: float) -> di
 
 @st.composite
 def some_edits(draw: st.DrawFn) -> list[Any]:
-    """Orders, good and bad ones, with undo and redo between them."""
+    """Edits, good and bad, with undo and redo between them."""
     place = st.floats(-1.0, SIDE + 1.0, allow_nan=False)
     step = st.builds(
         lambda do, kind, number, name, x, y: (
@@ -48,7 +48,7 @@ def some_edits(draw: st.DrawFn) -> list[Any]:
 def test_undo_goes_back_to_the_first_world_and_redo_to_the_last(edits: list[Any], refuses: list[bool]) -> None:
     first = office()
     editor, taken = WorldEditor(first), Taken()
-    worlds = [first]  # what undo must find, a second way: by keeping all of them in a plain list
+    worlds = [first]  # the expected results of undo: all worlds in a plain list
     at = 0
     for edit, taken.refuses in zip(edits, refuses, strict=False):
         before, edition = editor.world, editor.edition
@@ -192,7 +192,7 @@ def test_saving_gives_the_world_its_name() -> None:
     assert taken.world is editor.world is named
     editor.undo(taken)
     assert not editor.edition.saved
-    editor.named(was, named, taken)  # it was edited again while it was written
+    editor.named(was, named, taken)  # it was edited again while it was being written
     assert not editor.edition.saved
 
 
@@ -222,7 +222,7 @@ def test_what_is_in_no_file_counts_as_unsaved() -> None:
     editor.begin(replace(other, name="room"))
     assert not editor.edition.saved
     editor.filed("room")
-    assert not editor.edition.saved  # what came back is another one
+    assert not editor.edition.saved  # what came back is another world
     editor.named(editor.world, editor.world, taken)
     assert editor.edition.saved
 
@@ -240,7 +240,7 @@ def test_undo_reaches_a_long_way_back_but_not_for_ever() -> None:
 
 
 def test_a_line_of_the_script_is_added_and_fires_in_its_tick_alone() -> None:
-    """Drawn at 1 s, one line is of the past and one to come: the first waits for a restart."""
+    """Of two lines drawn at 1 s, one lies in the past and one in the future. The first waits for a restart."""
     session = Session(office(), 3)
     for _ in range(10):
         session.tick()

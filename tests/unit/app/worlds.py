@@ -24,10 +24,10 @@ def room(*inner: tuple[float, float, float, float], side: float = 4.0, start: tu
 
 
 class HandMadeMap:
-    """As much of an experience map as the pilot reads: nodes at places, links with times, and a robot that knows where
-    it is. Map frame = office frame."""
+    """The part of an experience map that the pilot reads: nodes at places, links with times, and a robot that knows
+    where it is. Map frame = office frame."""
 
-    patience = 10**9  # failures of a link until it is deleted
+    patience = 10**9  # failures of a link before it is deleted
 
     def __init__(self, places: list[tuple[float, float]], links: list[tuple[int, int]], speed: float = 0.3) -> None:
         self.poses = np.array([(x, y, 0.0) for x, y in places])
@@ -36,7 +36,7 @@ class HandMadeMap:
         self.link_times = np.array(lengths) / speed
         self.robot = Pose2(*places[0], 0.0)
         self.params = ExperienceMapParams()
-        self.pace = 0.0  # links take what `link_times` says, however long they are
+        self.pace = 0.0  # links take as long as `link_times` says, whatever their length
         self.trials: list[tuple[int, int, bool]] = []
 
     def tried(self, i: int, j: int, reached: bool) -> bool:

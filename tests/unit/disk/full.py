@@ -1,4 +1,4 @@
-"""A disk that is full after so many bytes, without being root: the largest file that this process may write."""
+"""A disk that is full after a number of bytes, simulated without root by the largest file that this process may write."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def full_after(count: int) -> Iterator[None]:
-    """Python ignores SIGXFSZ, so that a write beyond it is an OSError. Print nothing meanwhile."""
+    """Files of at most `count` bytes. Python ignores SIGXFSZ, so a longer write is an OSError. Print nothing meanwhile."""
     before, most = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (count, most))
     try:

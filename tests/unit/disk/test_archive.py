@@ -1,4 +1,4 @@
-"""The file around a brain: what it claims is asked before anything is unpacked, and every odd zip file gets a sentence."""
+"""The file around a brain: its claims are checked before anything is unpacked, and every odd zip file gets a sentence."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def claiming(words: bytes) -> bytes:
 
 
 def flagged(data: bytes, field: int, value: int) -> bytes:
-    """With another number in the headers of the first entry, both its own and the directory's."""
+    """The file with another number in both headers of the first entry, its own and the directory's."""
     out = bytearray(data)
     struct.pack_into("<H", out, field, value)
     struct.pack_into("<H", out, data.find(b"PK\x01\x02") + field + 2, value)
@@ -88,7 +88,7 @@ def test_a_damaged_stream_is_told() -> None:
 
 
 def test_a_bomb_is_not_unpacked() -> None:
-    """Its entries together claim more than there may be; not one of them is opened."""
+    """Its entries together claim more than is allowed, and none of them is opened."""
     data = archive(**{f"a{k}": b"not even an array" for k in range(3)})
     at = data.find(b"PK\x01\x02")
     while at >= 0:

@@ -1,4 +1,4 @@
-"""What goes in comes out; what has no kind is refused by a sentence that says how it gets one."""
+"""What goes in comes out again. What has no kind is refused in a sentence that says how to give it one."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ TREES = st.recursive(
 @given(TREES)
 def test_plain_values_come_back_as_they_were(value: Any) -> None:
     for back in (there_and_back(value), copy_state(value)):
-        assert repr(back) == repr(value)  # in which nan is nan
+        assert repr(back) == repr(value)  # as text, nan equals nan
     assert encode(there_and_back(value)).digest() == encode(value).digest()
 
 

@@ -1,4 +1,4 @@
-"""A copy is the same brain, shares nothing that can change, and goes on by itself."""
+"""A copy is the same brain, shares nothing that can change, and goes on independently."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.unit.ratslam_core.test_brain_file import drive, driven
 
 
 def held(value: object, found: dict[int, object] | None = None) -> dict[int, object]:
-    """Every array, table, list and object that is reached from here."""
+    """Every array, table, list and object that can be reached from a value."""
     found = {} if found is None else found
     if id(value) in found or isinstance(value, int | float | str | np.generic | type(None)):
         return found
@@ -74,7 +74,7 @@ def test_snapshots_of_a_copy_and_of_the_brain_are_the_same() -> None:
 
 
 def test_the_copy_s_arrays_are_not_copied_again() -> None:
-    """Of a large brain there is no room for three."""
+    """There is no room for three copies of a large brain."""
     _, brain = driven(20)
     copy = copy_state(brain)
     assert any(array is copy.view_links._cells for array in encode(copy).arrays)

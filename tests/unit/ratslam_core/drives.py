@@ -18,7 +18,7 @@ COLUMN_RAD = math.radians(50) / 12
 
 
 class Robot:
-    """Drives exactly as told; its packet is where it is, its views are numbers."""
+    """Drives exactly as told. Its packet is at its true place, and its views are numbers."""
 
     def __init__(self, params: ExperienceMapParams | None = None, start: Pose2 | None = None) -> None:
         self.map = ExperienceMap(SHAPE, CELL_M, params)
@@ -33,19 +33,19 @@ class Robot:
         self, view: int, *, new: bool = False, difference: float = 0.0, facing: float = 0.0, packet: Packet | None = None,
         odometry: Odometry | None = None,
     ) -> bool:  # fmt: skip
-        """Look at a view without moving, unless told how."""
+        """See a view, without moving unless told how."""
         seen = Recognition(view, new, view, difference, facing)
         return self.map.step(packet or self.packet(), seen, odometry or Odometry(0.0, 0.0, 0.1), self.behaviour)
 
     def go(self, forwards: float, turn: float, view: int, *, steps: int = 10, **look: object) -> bool:
-        """Drive an arc in so many steps of 0.1 s; only at its end there is something to see."""
+        """Drive an arc in steps of 0.1 s; there is something to see only at its end."""
         odometry = Odometry(forwards / steps / 0.1, turn / steps / 0.1, 0.1)
         before = self.map.cell_state(self.map.active)[3] if self.map.active >= 0 else view
         for step in range(steps):
             middle = turn / steps / 2
             length = forwards / steps
             self.pose = self.pose.compose(Pose2(length * math.cos(middle), length * math.sin(middle), turn / steps))
-            if step < steps - 1:  # what it came from fills its view until it is there
+            if step < steps - 1:  # until it arrives, it sees the view that it came from
                 at = self.map.cell_state(self.map.active)
                 still = Packet(at[0], at[1], at[2] * 2 * math.pi / 36, 1.0)
                 self.map.step(still, Recognition(before, False, before, 1e6, 0.0), odometry, self.behaviour)
@@ -78,7 +78,7 @@ class Circle:
 
     @property
     def truth(self) -> Pose2:
-        """In the frame of the start."""
+        """The true pose in the frame of the start."""
         a = self.angle
         return Pose2(RADIUS_M * math.sin(a), RADIUS_M * (1 - math.cos(a)), math.remainder(a, 2 * math.pi))
 

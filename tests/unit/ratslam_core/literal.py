@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 def interpret(module: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Replace the module's compiled functions by the Python they were compiled from, so that coverage sees them."""
+    """Replace the module's compiled functions by the Python from which they were compiled, so that coverage sees it."""
     for name, function in vars(module).copy().items():
         if hasattr(function, "py_func"):
             quiet = np.errstate(all="ignore")  # as compiled code is
@@ -23,7 +23,7 @@ def interpret(module: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def fill(pose_cells: PoseCells, dense: Array) -> None:
-    """Put this activity, shape (n_theta, n_y, n_x), into a network at rest."""
+    """Put this activity, shape (n_theta, n_y, n_x), into a network that stands still."""
     flats = np.flatnonzero(dense)
     theta, y, x = (int(v) for v in np.unravel_index(flats[0], dense.shape))
     pose_cells.place(x, y, theta)
@@ -37,9 +37,9 @@ def gaussian(sigma: float, radius: int) -> list[float]:
 
 
 def shift(P: Array, along: float, yaw: float) -> Array:
-    """A5-A9: every cell's activity goes into a cube of 2 x 2 x 2 cells, by the heading of its own layer.
+    """A5-A9: every cell's activity is divided over a cube of 2 x 2 x 2 cells, shifted along the heading of its own layer.
 
-    [ours] That is the heading in the middle of the movement, and the way is the chord of an arc.
+    [ours] The heading is that in the middle of the movement, and the movement is the chord of an arc.
     """
     n_theta, n_y, n_x = P.shape
     result = np.zeros_like(P)
@@ -78,7 +78,7 @@ def inhibit(P: Array, phi: float) -> Array:
 
 
 def centres(P: Array, places: list[Array], reach: int) -> list[Array]:
-    """Centre of the activity that is nearest to each place (theta, y, x), at most `reach` away along each axis, from there."""
+    """For each place (theta, y, x), the centre of the activity nearest to it and within `reach` along each axis, as an offset."""
     size = np.array(P.shape)
     sums, masses = np.zeros((len(places), 3)), np.zeros(len(places))
     for cell in np.argwhere(P):

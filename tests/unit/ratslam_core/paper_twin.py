@@ -1,4 +1,4 @@
-"""RatSLAM as the papers print it, slow and in the open: dense arrays, lists and dictionaries, nothing that is ours.
+"""RatSLAM as the papers print it, slow and literal: dense arrays, lists and dictionaries, and nothing that is ours.
 
 Equations: A = ACRA 2004, B = ACRA 2005, D = ACRA 2006. Nothing of ratslam_core is used but its parameters.
 """
@@ -49,7 +49,7 @@ class PaperTwin:
         self.since_s = 0.0
 
     def step(self, image: NDArray[np.uint8], speed: float, yaw_rate: float, dt: float, behaviour: int) -> int:
-        """Returns the view; image: (8, 12)."""
+        """One step; returns the active view. image: (8, 12)."""
         view = self._recognise(image.astype(float))
         self.beta[view] = (1 - self.p.local_view.decay) * self.beta[
             view
@@ -72,7 +72,7 @@ class PaperTwin:
         return len(self.views) - 1
 
     def _difference(self, new: Array, known: Array) -> float:
-        """The least mean absolute difference over shifts of columns."""
+        """The least mean absolute difference over all shifts by columns."""
         most, width = self.p.local_view.shift, new.shape[1]
         pairs = [
             (new[:, max(s, 0) : width + min(s, 0)], known[:, max(-s, 0) : width + min(-s, 0)])
@@ -83,7 +83,7 @@ class PaperTwin:
     # ------------------------------------------------------------ pose cells, A 4
 
     def _shifted(self, along: float, turn: float) -> Array:
-        """A5-9: each layer along its own heading, in parts to the 2 x 2 x 2 cells where it comes to lie."""
+        """A5-9: each layer moves along its own heading and is divided over the 2 x 2 x 2 cells where it comes to lie."""
         n_theta = len(self.P)
         unit = 2 * math.pi / n_theta
         result = np.zeros_like(self.P)
@@ -112,8 +112,8 @@ class PaperTwin:
     def winner(self) -> tuple[float, float, float, float]:
         """x', y', theta' and mass of the heaviest packet, read off its centre.
 
-        The strongest free cell and all free cells within `window` are one packet, again and again; what lies beside a stronger
-        cell of another packet is a flank of it.
+        Repeatedly, the strongest free cell and all free cells within `window` of it form a packet. If that cell has a
+        stronger neighbour in another packet, it is a flank of that packet.
         """
         size, owner, peaks = np.array(self.P.shape), np.full(self.P.shape, -1), []
         cells = [tuple(cell) for cell in np.argwhere(self.P > 0)]
@@ -210,7 +210,7 @@ class PaperTwin:
     # ------------------------------------------------------------ map correction, B 12-14 and D 3.3
 
     def _correct(self) -> None:
-        """Link by link, each moves one end by alpha of what it asks; bearings by the headings of before the sweep."""
+        """Link by link: each moves one end by alpha times its residual. Bearings use the headings from before the sweep."""
         alpha = self.p.experience_map.correction
         for _ in range(self.p.experience_map.sweeps):
             facing = [pose[2] for pose in self.poses]

@@ -153,7 +153,7 @@ def test_what_does_not_fit_is_named(file: Path, tmp_path: Path, change: Any, mes
 
 
 def at(tree: Any, path: str) -> Any:
-    """Where an attribute is written, and its name there."""
+    """The place in the tree where an attribute is written, and its name there."""
     *way, last = path.split(".")
     node = tree["state"]
     for name in way:
@@ -167,7 +167,7 @@ def array_of(tree: Any, arrays: list[np.ndarray], path: str) -> np.ndarray:
 
 
 def put(path: str, place: Any, value: Any) -> Any:
-    """A change of one number of one array, or of all of it."""
+    """A change of one number of an array, or of the whole array."""
 
     def change(tree: Any, arrays: list[np.ndarray]) -> None:
         array_of(tree, arrays, path)[place] = value
@@ -250,7 +250,7 @@ MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "exper
     ],
 )
 def test_no_brain_breaks_a_law_of_its_parts(file: Path, tmp_path: Path, change: Any, message: str) -> None:
-    """Compiled code looks at no index: each of these ended the process, or never ended, or was believed."""
+    """Compiled code checks no index. Each of these crashed the process, ran for ever, or was accepted."""
     with pytest.raises(ValueError, match=f"no brain that can be taken back: .*{message}"):
         load_brain(rewritten(file, tmp_path / "b.npz", change))
 
@@ -275,7 +275,7 @@ def test_saving_replaces_only_what_is_complete(file: Path, tmp_path: Path) -> No
 
 
 def test_a_pipe_is_written_to_and_stays(tmp_path: Path) -> None:
-    """As a device: nothing takes its place."""
+    """A pipe is not replaced by a file, and neither is a device."""
     pipe, brain, read = tmp_path / "pipe", RatSlam(), list[bytes]()
     os.mkfifo(pipe)
     reader = threading.Thread(target=lambda: read.append(pipe.read_bytes()), daemon=True)

@@ -96,7 +96,7 @@ def test_links_of_a_square_are_what_odometry_says() -> None:
 
 
 def test_where_the_robot_enters_a_zone_is_taken_off_its_link() -> None:
-    """It need not drive through the middle of the zone: its packet tells how far beside it is."""
+    """The robot need not drive through the middle of the zone: its packet tells how far beside the middle it is."""
     robot = Robot(EXACT, start=Pose2(0.0, 0.0, 0.4))
     robot.see(0, new=True)
     middle = robot.pose
@@ -108,7 +108,7 @@ def test_where_the_robot_enters_a_zone_is_taken_off_its_link() -> None:
     robot.see(0, odometry=odometry, facing=0.05)
     assert robot.map.active == 0
     assert (robot.map.local_pose.x, robot.map.local_pose.y) == pytest.approx((0.3, -0.15), abs=1e-6)
-    assert robot.map.local_pose.heading_rad == pytest.approx(0.05)  # the image tells better than the packet
+    assert robot.map.local_pose.heading_rad == pytest.approx(0.05)  # the image tells the heading better than the packet
     came = Pose2(math.hypot(moved.x, moved.y), 0.0, 0.0)
     expected = came.compose(Pose2(0.3, -0.15, 0.05).inverse())
     assert robot.map.links[-1].tolist() == [1, 0]
@@ -147,7 +147,7 @@ def test_repeats_of_a_transition_are_averaged(passages: list[tuple[float, float]
 
 
 def test_a_passage_counts_by_how_well_it_is_known() -> None:
-    """1 / (1 + variance / variance of a step), both ends and the way together."""
+    """The weight is 1 / (1 + variance / variance of a step), with the variances of both ends and of the way."""
     params = ExperienceMapParams(anchor_sigma=0.05, odometry_sigma=0.01, odometry_drift=0.03, sweeps=0, solve_every=0)
     robot = Robot(params)
     robot.see(0, new=True)
@@ -168,7 +168,7 @@ def test_a_passage_counts_by_how_well_it_is_known() -> None:
 
 
 def test_the_best_look_decides_the_transition() -> None:
-    """A zone is entered at its rim; the image matches best where the experience was made: measured there."""
+    """A zone is entered at its rim, but the image matches best where the experience was made, so it is measured there."""
     params = ExperienceMapParams(anchor_sigma=0.05, odometry_drift=0.0, sweeps=0, solve_every=0)
     robot = Robot(params)
     robot.see(0, new=True)
@@ -198,7 +198,7 @@ def test_the_best_look_decides_the_transition() -> None:
 
 
 def test_odometry_past_known_places_keeps_the_chain_rigid() -> None:
-    """Two new experiences with a known one between them: the spine between the new ones is no way to travel."""
+    """Two new experiences with a known one between them. The odometry edge between the new ones is no link."""
     robot = Robot(ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0))
     robot.see(0, new=True)
     robot.go(1.0, 0.2, 1, new=True)
@@ -215,7 +215,7 @@ def test_odometry_past_known_places_keeps_the_chain_rigid() -> None:
 
 
 def test_a_kidnap_makes_no_way() -> None:
-    """What led from the place before a kidnap to the one after it is not a transition, now or later."""
+    """From the place before a kidnap to the one after it there is no transition, neither now nor later."""
     robot = Robot(replace(EXACT, odometry_drift=0.03))
     robot.see(0, new=True)
     robot.go(1.0, 0.0, 1, new=True)
@@ -233,7 +233,7 @@ def test_a_kidnap_makes_no_way() -> None:
     assert robot.map.active == 0
     assert robot.map.links.tolist() == ways
     assert robot.map.link_count == len(ways)
-    assert robot.map.transitions.weight[: robot.map.transitions.count].min() < 1e-6  # and it pulls at nothing
+    assert robot.map.transitions.weight[: robot.map.transitions.count].min() < 1e-6  # and it has next to no weight
     assert robot.map.local_pose.x == pytest.approx(0.0)
 
 
@@ -293,7 +293,7 @@ def test_maps_of_thousands_of_experiences_keep_everything() -> None:
 
 
 def lap(robot: Robot, reads: float, bias: float = 0.0) -> None:
-    """A square of 16 views, driven exactly, while the wheels report `reads` times the way and a biased yaw rate."""
+    """A square of 16 views, driven exactly, while the wheels report `reads` times the distance and a biased yaw rate."""
     for side in range(4):
         for part in range(4):
             view = (4 * side + part + 1) % 16
@@ -343,7 +343,7 @@ def test_a_closed_loop_straightens_the_map_and_finds_the_bias() -> None:
 def test_a_correction_that_was_hard_is_followed_by_a_long_rest(
     a_step: float, rested: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A loop that closes in every step; corrections are due in every step and again after what the last one cost."""
+    """A loop that closes in every step. Corrections are due in every step, but rest after one in proportion to its cost."""
     robot = loop(ExperienceMapParams(solve_every=1), 1.0, 0.0, 1)
     robot.map.optimiser.params = SolverParams(work_a_step=a_step)
     solve, solved = relaxation.solve, []
@@ -385,7 +385,7 @@ def test_the_exact_solution_is_asked_for_only_after_closures() -> None:
 
 @pytest.mark.parametrize(("view", "closes"), [(-1, False), (5, True)])
 def test_seeing_nothing_closes_no_loop(view: int, closes: bool) -> None:
-    """Sixteen metres on, the torus uses the same pose cells again; only a scene may take that for the same place."""
+    """After sixteen metres the torus uses the same pose cells again. Only a scene may then close a loop."""
     robot = Robot(EXACT)
     robot.see(7, new=True)
     assert robot.see(view, new=True)
@@ -397,14 +397,14 @@ def test_seeing_nothing_closes_no_loop(view: int, closes: bool) -> None:
 
 
 def test_no_link_is_quicker_than_the_robot() -> None:
-    """From the edge of one zone into the next is only a step; from place to place it takes what the way takes."""
+    """From the edge of one zone into the next is only a step, but a link takes as long as its length in the map."""
     robot = Robot(EXACT)
     robot.see(0, new=True)
     robot.go(1.0, 0.0, 1, new=True)  # a metre in a second
     slow = robot.map.link_times.copy()
     assert slow == pytest.approx([1.1], abs=0.11)
-    robot.see(0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)), difference=5.0)  # a step, says the clock
+    robot.see(0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)), difference=5.0)  # only a step by the clock
     assert robot.map.transitions.time_s[1] == pytest.approx(0.1)
     assert robot.map.link_times[1] == pytest.approx(np.hypot(*(robot.map.poses[1, :2] - robot.map.poses[0, :2])))
-    robot.map.poses[1, :2] *= 2  # the map stretches, and the time with it
+    robot.map.poses[1, :2] *= 2  # when the map stretches, so does the time
     assert robot.map.link_times[1] == pytest.approx(2.0)

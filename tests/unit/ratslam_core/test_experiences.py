@@ -20,7 +20,7 @@ STILL = Odometry(0.0, 0.0, 0.1)
 
 
 def literal_energy(known: Experiences, i: int, packet: Packet, view: int, p: ExperienceMapParams) -> float:
-    """D1-D4 and B4-B9 with every wrapping tried."""
+    """D1-D4 and B4-B9, trying every way round the torus."""
     n_theta, n_y, n_x = known.shape
     x, y, theta = known.at[i]
     layer = packet.heading_rad * n_theta / (2 * math.pi)
@@ -63,7 +63,7 @@ def test_energy_is_that_of_the_papers(shape, p: ExperienceMapParams, made, now) 
 @given(st.sampled_from(SHAPES), params, st.lists(states, max_size=40), states)
 @pytest.mark.slow
 def test_the_choice_is_that_of_a_loop_over_all(shape, p: ExperienceMapParams, made, now) -> None:
-    """The oldest of those with the most energy, by view or by pose cells, however the buckets lie."""
+    """The oldest of those with the most energy, found by view or by pose cells, wherever the buckets are."""
     known = Experiences(shape)
     for x, y, heading, view in made:
         known.add(Packet(x, y, heading, 1.0), view, Pose2(x / 4, y / 4, heading))

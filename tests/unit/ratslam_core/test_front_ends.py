@@ -21,7 +21,7 @@ P = LocalViewParams()
 
 
 def office(seed: int, light: float = 1.0, turned: int = 0) -> Image:
-    """A lively scene of coloured panels, (48, 64, 3); `turned` pixels to the left."""
+    """A varied scene of coloured panels, (48, 64, 3), shifted by `turned` pixels to the left."""
     rng = np.random.default_rng(seed)
     scene = np.full((48, 100, 3), 120.0)
     for _ in range(40):
@@ -31,7 +31,7 @@ def office(seed: int, light: float = 1.0, turned: int = 0) -> Image:
 
 
 def grating(across_deg: float, phase: float, wavelength: float = 6.0) -> Image:
-    """Stripes, (36, 48): 100 grey and 15 to either side; `across_deg` is the way across them."""
+    """Stripes, (36, 48): 100 grey and 15 to either side; `across_deg` is the direction across them."""
     y, x = np.mgrid[0:36, 0:48]
     a = math.radians(across_deg)
     waves = np.cos(2 * math.pi / wavelength * (x * math.cos(a) + y * math.sin(a)) + phase)
@@ -206,7 +206,7 @@ def test_the_histogram_is_that_of_the_loops() -> None:
 
 
 def test_grey_has_no_hue() -> None:
-    """A grey pixel that leans to red or to green by noise is the same grey; a red one is not a green one."""
+    """A grey pixel that noise makes slightly red or green counts as the same grey; a red pixel is not a green one."""
 
     def apart(saturation: float) -> float:
         red, green = (
@@ -298,7 +298,7 @@ def test_a_single_known_view_cannot_be_taken_for_another() -> None:
 
 
 def test_false_positives_draw_from_a_generator_of_their_own() -> None:
-    """Another share leaves the run's own generator as it is; the digest knows of the draws."""
+    """Another share does not change the run's own generator; the digest covers the draws."""
     brains = []
     for share in (0.0, 0.5):
         params = RatSlamParams(local_view=LocalViewParams(front_end="scene numbers", false_positives=share))

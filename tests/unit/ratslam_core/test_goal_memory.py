@@ -35,7 +35,7 @@ def packet_cells(x: float, y: float, shape: tuple[int, int, int] = SHAPE) -> tup
 
 
 def drive(memory: GoalMemory, corners: list[Place], speed: float, start_s: float = 0.0) -> float:
-    """A packet goes from corner to corner, in cells, at this speed in m/s; returns when it arrives."""
+    """A packet moves from corner to corner (cells) at this speed in m/s; returns the time when it arrives."""
     time_s = start_s
     for a, b in pairwise(corners):
         steps = max(1, round(math.dist(a, b) * CELL_M / speed / DT))
@@ -55,7 +55,7 @@ def two_ways(params: GoalMemoryParams) -> GoalMemory:
 
 
 def follow(memory: GoalMemory, T: NDArray, x: float, y: float) -> list[Place]:
-    """Half a cell at a time where the memory points, until it points nowhere."""
+    """Move half a cell at a time where the memory points, until it gives no direction."""
     way = [(x, y)]
     while len(way) < 1000:
         heading = memory.direction(T, Packet(x, y, 0.0, 1.0))
@@ -160,7 +160,7 @@ def test_a_small_memory_by_hand(interpreted: bool, monkeypatch: pytest.MonkeyPat
 
 
 def test_the_faster_way_wins_over_the_shorter_one() -> None:
-    """It does because linked packets are a stride apart. Linked in every iteration, as printed, the shorter way seems faster."""
+    """Because linked packets are a stride apart. Linked in every iteration, as printed, the shorter way would seem faster."""
     memory = two_ways(GoalMemoryParams())
     T = memory.times_to(40, 30)
     assert max(y for _, y in follow(memory, T, 10, 30)) > 42
@@ -178,7 +178,7 @@ def test_times_grow_with_the_time_that_a_way_took() -> None:
         memory = GoalMemory(None, SHAPE, CELL_M)
         drive(memory, SHORT_AND_SLOW, speed)
         times.append(memory.times_to(36, 30)[30, 12] / (24 * CELL_M / speed))
-    # A link from the rear of a packet to the front of the next is longer than the stride: times are too short, all alike.
+    # Links from the rear of a packet to the front of the next are longer than the stride: all times are too short.
     assert all(0.33 < part < 0.8 for part in times), times
     assert max(times) < 2 * min(times)  # over a fourfold range of speeds
 
@@ -196,7 +196,7 @@ def test_small_changes_of_the_parameters_keep_the_route(name: str, factor: float
 
 @pytest.mark.parametrize("interpreted", [False, True])
 def test_it_does_not_point_through_a_wall(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Down one corridor and back up the next, 1.5 m away: the goal's corridor is in reach but its cells are not linked."""
+    """Down one corridor and back up the next, 1.5 m away. The goal's corridor is in reach, but its cells are not linked."""
     memory = GoalMemory(GoalMemoryParams(reach=4), SHAPE, CELL_M)
     drive(memory, [(10, 30), (40, 30), (40, 36), (10, 36)], 0.4)
     T = memory.times_to(12, 36)
@@ -211,7 +211,7 @@ def test_it_does_not_point_through_a_wall(interpreted: bool, monkeypatch: pytest
 
 
 def test_a_leap_of_the_packet_is_linked_but_is_no_direction() -> None:
-    """C V.E: places that are the same but lie apart in the pose cells. There is a time, but no way to drive."""
+    """C V.E: the same place in two parts of the pose cells. There is a time between them, but no direction to drive."""
     memory = GoalMemory(None, SHAPE, CELL_M)
     memory.learn(*packet_cells(10, 10), 1.0)
     memory.learn(*packet_cells(40, 40), 1.1)
@@ -232,14 +232,14 @@ def test_a_weaker_packet_takes_part_but_does_not_say_where_the_robot_is(
         rival, weaker = packet_cells(63 - 7 * k, 40)
         both = np.concatenate([0.6 * activity, 0.4 * weaker]).astype(np.float32)
         memory.learn(np.concatenate([cells, rival]), both, 1.0 + k)
-        assert (len(memory) > 0) == (k == 2)  # a stride after two cells, however far the rival went
+        assert (len(memory) > 0) == (k == 2)  # a stride is reached after two cells, however far the rival packet moved
     link = 2 + 0.25 * (1 - 0.4 / 0.6) + 0.1 * math.hypot(13, 30)
     assert memory.times_to(12, 10)[40, 63] == pytest.approx(link, rel=1e-3)
 
 
 @pytest.mark.parametrize("by", [(40, 0), (0, 30), (45, 29)])
 def test_it_wraps_around(by: tuple[int, int]) -> None:
-    """The same drive elsewhere on the torus gives the same times there."""
+    """The same drive elsewhere on the torus gives the same times."""
     corners: list[Place] = [(20, 34), (40, 34), (40, 40)]
     here, there = GoalMemory(None, SHAPE, CELL_M), GoalMemory(None, SHAPE, CELL_M)
     drive(here, corners, 0.5)
@@ -331,7 +331,7 @@ def test_wrong_input_is_named() -> None:
 
 
 def test_wrong_cells_leave_no_trace(monkeypatch: pytest.MonkeyPatch) -> None:
-    """After a refused call the next one is right, compiled and interpreted."""
+    """After a call that was refused, the next one is right, compiled and interpreted."""
     for interpreted in (False, True):
         if interpreted:
             literal.interpret(goal_links, monkeypatch)

@@ -14,7 +14,7 @@ FOV = math.radians(50)
 
 
 def panorama(seed: int, columns: int = 60) -> NDArray[np.float64]:
-    """A smooth, lively scene much wider than one view, shape (8, columns)."""
+    """A smooth, varied scene much wider than one view, shape (8, columns)."""
     rng = np.random.default_rng(seed)
     coarse = rng.uniform(20, 235, (8, columns // 3 + 2))
     at = np.arange(columns) / 3
@@ -120,7 +120,7 @@ def test_a_bland_view_shows_nothing() -> None:
 
 @pytest.mark.parametrize("columns", [-2.0, -1.4, -1.0, -0.5, 0.0, 0.3, 1.0, 1.6, 2.0])
 def test_the_shift_of_the_image_tells_the_heading(columns: float) -> None:
-    """A robot that turns left sees everything move to the right in the image: it looks at columns further left."""
+    """When the robot turns left, everything in the image moves to the right: it looks at columns further left."""
     wrong = []
     for seed in range(20):
         scene = panorama(seed)
@@ -142,7 +142,7 @@ def test_without_shifts_nothing_is_known_of_the_heading() -> None:
 
 
 def test_a_scene_without_an_edge_tells_no_fraction_of_a_shift() -> None:
-    """All shifts fit a scene of stripes that lie along the rows equally well."""
+    """A scene of stripes along the rows fits equally well at all shifts."""
     stripes = np.repeat(np.linspace(0, 250, 8).astype(np.uint8)[:, None], 12, axis=1)
     local_view = LocalView()
     local_view.observe(stripes)

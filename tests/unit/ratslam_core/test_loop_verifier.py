@@ -1,4 +1,4 @@
-"""A jump through the map is believed at once or after sights that agree."""
+"""A jump in the map is believed at once, or only after several sights that agree."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_a_sight_that_fits_the_map_ends_the_doubt() -> None:
 
 
 def a_walk(needed: int) -> Robot:
-    """Sixteen metres along: the torus of 64 cells uses the cells of the start again."""
+    """A walk of sixteen metres, after which the torus of 64 cells uses the cells of the start again."""
     robot = Robot(replace(PLAIN, confirm_jumps=needed))
     robot.see(0, new=True)
     for view in range(1, 17):

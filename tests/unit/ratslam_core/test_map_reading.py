@@ -1,4 +1,4 @@
-"""What a map says when it is asked for what it does not have."""
+"""What a map answers when it is asked for something that it does not have."""
 
 from __future__ import annotations
 

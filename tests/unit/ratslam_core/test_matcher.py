@@ -14,7 +14,7 @@ from . import literal
 
 
 def literal_nearest(known: np.ndarray, new: np.ndarray, most: int) -> tuple[int, float, int]:
-    """Shift by shift, view by view, column by column; only what is less takes over."""
+    """Shift by shift, view by view, column by column; only a smaller difference replaces the best so far."""
     best = (-1, math.inf, 0)
     for shift in range(-most, most + 1):
         for view, old in enumerate(known):
@@ -32,7 +32,7 @@ def literal_nearest(known: np.ndarray, new: np.ndarray, most: int) -> tuple[int,
 @settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.integers(0, 5), st.integers(0, 40), st.sampled_from([1, 2, 255]))
 def test_the_nearest_view_is_that_of_the_loops_bit_for_bit(seed: int, most: int, count: int, highest: int) -> None:
-    """With few grey levels many views and shifts are equally near: then the first wins."""
+    """With few grey levels, many views and shifts are equally near; the first must win."""
     rng = np.random.default_rng(seed)
     known = rng.integers(0, highest + 1, (count, 96)).astype(np.uint8)
     new = rng.integers(0, highest + 1, 96).astype(np.uint8)
@@ -54,7 +54,7 @@ def test_the_nearest_of_many_blocks(interpreted: bool, monkeypatch: pytest.Monke
 
 
 def test_a_look_leaves_nothing_behind() -> None:
-    """A matcher that has tried many shifts finds with fewer what a new one finds."""
+    """After a search with many shifts, one with fewer shifts finds the same as a new matcher."""
     rng = np.random.default_rng(6)
     known = rng.integers(0, 256, (20, 96)).astype(np.uint8)
     used = Matcher()

@@ -18,7 +18,7 @@ NOTHING = np.full(8, 5.0, np.float32)
 
 
 def one_beam(range_m: float, heading: float = 0.0, params: OccupancyParams | None = None) -> NDArray[np.float32]:
-    """What one look straight ahead from the middle of cell (30, 30) says."""
+    """The picture after one scan straight ahead from the middle of cell (30, 30)."""
     grid = OccupancyGrid(params, SHAPE, CELL_M, [0.0])
     grid.update(Packet(30.0, 30.0, heading, 1.0), np.array([range_m], np.float32))
     return grid.probability
@@ -30,7 +30,7 @@ def test_free_before_the_echo_occupied_at_it_and_nothing_behind(quarter: int) ->
     dx, dy = [(1, 0), (0, 1), (-1, 0), (0, -1)][quarter]
     along = np.array([p[30 + dy * k, 30 + dx * k] for k in range(25)])
     assert (along[:9] < 0.5).all()  # up to 2 m, 2.5 m less the depth of the echo
-    assert (np.diff(along[:9]) > 0).all()  # the nearer the surer
+    assert (np.diff(along[:9]) > 0).all()  # the nearer, the more certain
     assert along[10] == along.max() > 0.75
     assert (along[11:] == 0.5).all()
     assert np.sort(p.ravel()) == pytest.approx(np.sort(one_beam(2.5).ravel()), abs=1e-5)
@@ -53,7 +53,7 @@ def test_the_beam_is_wide_and_surest_in_its_middle() -> None:
 
 @pytest.mark.parametrize("range_m", [0.5, 1.0, 1.7, 4.0])
 def test_a_beam_is_never_lost_between_cells(range_m: float) -> None:
-    """However it lies, it meets something, and frees as many cells as it is long."""
+    """In any direction the beam meets something, and frees as many cells as it is long."""
     rng = np.random.default_rng(0)
     for x, y, heading in rng.uniform((30, 30, -math.pi), (31, 31, math.pi), (100, 3)):
         grid = OccupancyGrid(None, SHAPE, CELL_M, [0.0])
@@ -138,7 +138,7 @@ def test_the_picture_bends_with_the_map() -> None:
 
 
 def test_the_metric_picture_is_the_same_beam() -> None:
-    """What the papers' grid shows, without the wrap and without touching the edge."""
+    """The same as in the papers' grid, but without wrapping and without reaching the edge."""
     grid, torus = MapGrid(None, SONARS), OccupancyGrid(None, SHAPE, CELL_M, SONARS)
     ranges = np.array([1.0, 1.5, 2.0, 2.5, 5.0, 3.0, 4.0, 0.5], np.float32)
     grid.add(0, Pose2(0.1, 0.2, 0.3), ranges)

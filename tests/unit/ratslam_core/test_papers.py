@@ -1,4 +1,4 @@
-"""With all that is ours off, whole runs are those of the papers' equations, tick by tick."""
+"""With all our additions off, whole runs equal those of the papers' equations, tick by tick."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ SMALL = {
     "pose_cells.n_x": 21,
     "pose_cells.n_y": 17,
     "pose_cells.n_theta": 13,
-}  # odd: nothing lies just as far both ways
+}  # odd, so that nothing is equally far both ways round
 
 
 def in_step(params: RatSlamParams, ticks: int, seed: int) -> tuple[RatSlam, PaperTwin]:
-    """Drive both round a circle and over it again, faster by and by; hold them against each other after every tick."""
+    """Drive both round a circle and over it again, faster and faster, and compare them after every tick."""
     circle, brain, twin = Circle(seed), RatSlam(params, np.random.default_rng(seed)), PaperTwin(params)
     for tick in range(ticks):
         faster = 2 + tick % 3
@@ -70,7 +70,7 @@ def test_links_are_deleted_as_in_the_twin() -> None:
 
 @pytest.mark.slow
 def test_a_biased_loop_is_corrected_as_in_the_twin() -> None:
-    """More sweeps, another rate: the map bends as printed."""
+    """With more sweeps and another rate, too, the map bends as the equations say."""
     in_step(
         with_values(preset("paper-2006"), {**SMALL, "experience_map.sweeps": 3, "experience_map.correction": 0.3}),
         150,
@@ -93,7 +93,7 @@ def test_in_2004_the_packet_is_where_the_robot_is() -> None:
     circle, brain = Circle(0), RatSlam(params)
     off = [circle.miss_m(circle.advance(brain, 1)[0]) for _ in range(100)]
     assert len(brain.experience_map) == 1
-    assert 0.001 < max(off) < 0.6  # the lattice holds a slow packet back, and nothing of ours gives it its way
+    assert 0.001 < max(off) < 0.6  # the lattice holds a slow packet back, and no addition gives the lost motion back
     brain.declare_kidnapped()
     assert not brain.lost
 
@@ -103,15 +103,15 @@ def test_in_2004_the_packet_is_where_the_robot_is() -> None:
 )
 @pytest.mark.slow
 def test_each_addition_alone_changes_the_run(name: str) -> None:
-    """A switch that does nothing would be a lie."""
+    """Each switch must have an effect."""
     fits = {"local_view.min_edges": "complex cells", "local_view.min_colour": "hue and saturation"}
     base = with_values(RatSlamParams(), {"local_view.front_end": fits.get(name, "template")})
     assert _told(base) != _told(with_values(base, {name: PRESETS["paper-2006"][name]}))
 
 
 def _told(params: RatSlamParams) -> list[object]:
-    """A day on which everything happens: laps that miss each other a little, a wall without a mark, another light, a kidnap, a
-    dash, a way that is barred and then is not."""
+    """A run in which everything happens: laps slightly beside each other, a bare wall, another light, a kidnap, a dash,
+    and a way that is barred and later free again."""
     circle, brain = Circle(2), RatSlam(params, np.random.default_rng(0), sonar_angles_rad=(0.0,))
     told: list[object] = []
     for tick in range(520):

@@ -32,7 +32,7 @@ def round_ring(a: float, b: float, ring: float) -> float:
 
 
 def literal_places(made: ExperienceMap, radius: float) -> tuple[list[int], list[int], list, list]:
-    """What `find_places` says, straight from its definition."""
+    """The result of `find_places`, straight from its definition."""
     poses, states, (n_theta, n_y, n_x) = made.poses, made.cell_states, made.shape
     zone_xy, zone_theta, n = made.params.zone_xy, made.params.zone_theta, len(made)
 
@@ -135,7 +135,7 @@ def test_a_corridor_with_two_paths_through_the_cells_has_two_representations() -
     """B figure 4, D and E: the same corridor, driven the same way, in two parts of the pose cells."""
     one = [(0.6 * k, 0.0, 0.0, 10 + 2.4 * k, 10.0, 0.0) for k in range(5)]
     other = [(0.6 * k, 0.1, 0.05, 10 + 2.4 * k, 40.0, 0.3) for k in range(5)]
-    back = [(0.6 * k, 0.1, math.pi, 10 + 2.4 * k, 10.0, math.pi) for k in range(5)]  # turned round: another thing
+    back = [(0.6 * k, 0.1, math.pi, 10 + 2.4 * k, 10.0, math.pi) for k in range(5)]  # facing the other way
     found = find_places(a_map(one + other + back), 0.5)
     assert len(found.first) == 5
     assert [m.experiences for m in found.multiple_representations] == [(k, 5 + k) for k in range(5)]

@@ -18,7 +18,7 @@ DEEP = 0.25  # metres in a cell
 
 
 def settled(x: int = 32, y: int = 32, theta: int = 0, params: PoseCellParams | None = None) -> PoseCells:
-    """A packet of the shape that the attractor gives it."""
+    """A packet in the shape that the attractor gives it."""
     pose_cells = PoseCells(params)
     pose_cells.place(x, y, theta)
     rest(pose_cells, 60)
@@ -31,7 +31,7 @@ def rest(pose_cells: PoseCells, steps: int) -> None:
 
 
 def drive(pose_cells: PoseCells, cells_a_step: float, layers_a_step: float, steps: int) -> NDArray[np.float64]:
-    """Drive and add up the way of the winner: x, y in cells, heading in layers."""
+    """Drive and add up the winner's movement: x, y in cells, heading in layers."""
     n_theta, n_y, n_x = pose_cells.shape
     turn = layers_a_step * 2 * math.pi / n_theta / DT
     size = np.array([n_x, n_y, n_theta])
@@ -76,7 +76,7 @@ def test_gain_of_turning_is_one(layers_a_step: float) -> None:
 @pytest.mark.parametrize("layers_a_step", [-0.7, 0.05, 0.3, 1.4])
 @pytest.mark.parametrize("cells_a_step", [0.02, 0.15, 1.0, 3.0])
 def test_an_arc_ends_where_it_should(cells_a_step: float, layers_a_step: float) -> None:
-    """Driving and turning at once, on the circle that both make; Euler's steps would end up to a cell beside it."""
+    """Driving and turning at once gives a circle. Euler steps would end up to a cell beside it."""
     pose_cells = turned_to(2.7)
     heading, turn = pose_cells.winner.heading_rad, layers_a_step * 2 * math.pi / 36
     steps = max(40, round(8 / cells_a_step))
@@ -95,7 +95,7 @@ def turned_to(layers: float) -> PoseCells:
 
 
 def test_every_packet_is_moved_not_only_the_winner() -> None:
-    """Two hypotheses with other headings, both slow: each goes its own way by its own carry."""
+    """Two hypotheses with different headings, both slow: each goes its own way with its own carry."""
     pose_cells = two_packets(20, 0.5, turned=9)
     rest(pose_cells, 5)
     starts = {p.id: p for p in pose_cells.packets}
@@ -108,7 +108,7 @@ def test_every_packet_is_moved_not_only_the_winner() -> None:
 
 
 def test_a_fast_packet_stays_one() -> None:
-    """Its layers drift apart; what lags behind is no packet of its own."""
+    """Its layers drift apart, but those that lag behind must not become a packet of their own."""
     pose_cells = turned_to(0.5)
     for _ in range(40):
         drive(pose_cells, 1.0, 0.0, 1)
@@ -116,7 +116,7 @@ def test_a_fast_packet_stays_one() -> None:
 
 
 def test_without_carry_a_slow_packet_is_pinned() -> None:
-    """What `carry` is for: the attractor swallows part of a small shift."""
+    """The reason for `carry`: the attractor swallows part of a small shift."""
     with_carry, without = (
         drive(settled(params=PoseCellParams(carry=carry)), 0.03, 0.0, 200)[0] for carry in (True, False)
     )
@@ -168,7 +168,7 @@ def test_a_packet_crosses_every_face_unchanged(face: str) -> None:
 
 
 def test_a_packet_turns_through_the_last_layer_unchanged() -> None:
-    """Layers are headings, so here the plane turns with them: 9 layers on are a quarter turn on."""
+    """Layers are headings, so the plane turns with them: 9 layers make a quarter turn."""
     size = PoseCellParams(n_x=24, n_y=24, n_theta=36)
     inside, across = settled(12, 12, 14, size), settled(12, 12, 32, size)
     for _ in range(20):
@@ -258,7 +258,7 @@ def test_a_packet_keeps_its_id_while_it_moves_wraps_and_turns() -> None:
 
 
 def test_ids_stay_when_packets_swap_rank() -> None:
-    """The lighter of two packets is fed while both drive on, so that they take turns in leading."""
+    """The lighter of two packets gets activity while both drive on, so that they take turns in leading."""
     pose_cells = two_packets(20, 0.55, turned=18)
     pose_cells.attract()
     both = set(ids(pose_cells))
@@ -279,7 +279,7 @@ def test_ids_stay_when_packets_swap_rank() -> None:
 
 @pytest.mark.parametrize("share", [0.4, 0.6])
 def test_a_merged_packet_keeps_the_heavier_one_s_id(share: float) -> None:
-    """What is seen says that the robot is between them."""
+    """The injection says that the robot is between the two."""
     pose_cells = two_packets(8, share)
     pose_cells.attract()
     left, right = sorted(pose_cells.packets, key=lambda p: p.x)
@@ -331,7 +331,7 @@ def test_what_was_injected_is_a_packet_at_once() -> None:
 
 
 def test_ids_beyond_those_reported() -> None:
-    """All packets are tracked: one that was too light to be reported comes up with the id that it always had."""
+    """All packets are tracked: one that was too light to be reported appears with the id that it has always had."""
     pose_cells = PoseCells(PoseCellParams(inhibit=0.0))
     dense = np.zeros(pose_cells.shape)
     dense[5, 10, 4::14] = [8, 7, 6, 5, 4]
@@ -351,7 +351,7 @@ def test_ids_beyond_those_reported() -> None:
 
 
 def test_golden_numbers_of_the_attractor() -> None:
-    """Stored answers of another implementation: one unit of activity in one cell, standing still (docs: peers)."""
+    """Stored results of another implementation: one unit of activity in one cell, standing still (docs: peers)."""
     params = PoseCellParams(
         n_x=21, n_y=21, n_theta=36, excite_sigma=1.0, excite_radius=3, inhibit=2e-5,
         local_inhibit=1.0, local_inhibit_sigma=2.0, local_inhibit_radius=2,
@@ -418,7 +418,7 @@ def test_interpreted_kernels_do_what_the_compiled_ones_do(
 
 
 def test_interpreted_kernels_far_from_everything(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Cells of one layer too far apart to be shifted together, a packet without activity near it, a cell that is none."""
+    """Cells of one layer too far apart to be shifted together, a packet without activity near it, an invalid cell."""
     runs = []
     for interpreted in (False, True):
         if interpreted:
@@ -584,7 +584,7 @@ def test_large_networks_take_less_than_six_bytes_a_cell(n: int) -> None:
 
 @pytest.mark.slow
 def test_standing_still_for_ever_does_not_drift() -> None:
-    """100,000 steps, or fewer when the whole state comes back bit for bit: from there on nothing new can happen."""
+    """100,000 steps, or fewer once the whole state recurs bit for bit, since nothing new can happen from then on."""
     pose_cells = settled(5, 60, 30)
     drive(pose_cells, 0.37, 0.21, 25)
     rest(pose_cells, 40)

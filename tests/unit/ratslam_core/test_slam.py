@@ -61,11 +61,11 @@ def test_a_kidnap_is_noticed_and_survived(seed: int) -> None:
     assert brain.relocalisations >= 1
     assert circle.miss_m(circle.advance(brain, 20)[-1]) < 0.3
     after = brain.experience_map.poses[: len(map_before)]
-    assert np.hypot(*(after - map_before)[:, :2].T).max() < 0.3  # the map is what it was
+    assert np.hypot(*(after - map_before)[:, :2].T).max() < 0.3  # the map is as before
 
 
 def test_a_changed_place_does_not_keep_the_robot_lost() -> None:
-    """Something was put up: every second sight is new for good, but the others are where they always were."""
+    """Something was put up: every second view is new from now on, but the others are where they always were."""
     circle, brain = start()
     circle.advance(brain, 2 * LAP)
     brain.declare_kidnapped()
@@ -99,7 +99,7 @@ def test_sights_that_contradict_each_other_find_nobody_again() -> None:
 
 @pytest.mark.parametrize("most", [256, 2])
 def test_nobody_is_lost_for_ever(most: int) -> None:
-    """Stood before a wall that was put up there, be it bland, or carried to where it has never been."""
+    """The robot stands before a new wall, perhaps a bland one, or was carried to where it has never been."""
     circle, brain = start()
     circle.advance(brain, 100)
     still, wall = Odometry(0.0, 0.0, 0.1), np.random.default_rng(1).integers(0, most, (8, 12), np.uint8)
@@ -110,7 +110,7 @@ def test_nobody_is_lost_for_ever(most: int) -> None:
         brain.step(wall, still)
         steps += 1
         assert steps <= 2000
-    assert steps > 600  # but for long
+    assert steps > 600  # but it takes long
 
 
 @pytest.mark.parametrize(
@@ -118,7 +118,7 @@ def test_nobody_is_lost_for_ever(most: int) -> None:
     [(0.7, 2.0, True), (0.7, 1.0, False), (1.2, 1.4, True), (1.2, 1.0, False), (0.4, 2.0, False)],
 )
 def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: bool) -> None:
-    """alike: how much the image changes, of what is needed without sonars. Sonars alone tell nothing."""
+    """alike: the change of the image, as a share of what is needed without sonars. Sonars alone are not enough."""
     near = np.full(8, 1.0)
     circle, brain = Circle(0), RatSlam(sonar_angles_rad=np.linspace(-1.5, 1.5, 8).tolist())
     still = Odometry(0.0, 0.0, 0.1)
@@ -133,7 +133,7 @@ def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: 
 
 
 def _unlikeness(circle: Circle) -> float:
-    """Of what is seen now from what is seen where the circle begins."""
+    """The difference between the current image and that at the beginning of the circle."""
     fresh = RatSlam()
     fresh.local_view.observe(Circle(0).image)
     fresh.local_view.observe(circle.image)
@@ -195,7 +195,7 @@ def test_vision_may_be_switched_off_and_on() -> None:
 
 
 def test_a_young_view_does_not_hold_the_packet_back() -> None:
-    """While a view rests, the pose cells move as if it were not there."""
+    """While a view is too young to inject, the pose cells move as if it were not there."""
     plain = ExperienceMapParams(calibrate=False)
     seeing, blind = (
         start(params=RatSlamParams(local_view=LocalViewParams(rest=r, enabled=e), experience_map=plain))
@@ -228,7 +228,7 @@ def test_new_parameters_reach_every_part_and_the_size_is_refused() -> None:
     assert brain.experience_map.params is new.experience_map
     with pytest.raises(ValueError, match="size of the pose cells is fixed at 64 x 64 x 36 until a reset"):
         brain.set_params(RatSlamParams(pose_cells=PoseCellParams(n_x=32)))
-    assert brain.params is new  # nothing of what was refused was taken
+    assert brain.params is new  # nothing was taken over from the refused ones
     circle.advance(brain, 5)
 
 
@@ -275,7 +275,7 @@ def test_sonars_draw_both_pictures() -> None:
     assert brain.occupancy.probability.max() > 0.55
     assert brain.occupancy.probability.min() < 0.4
     assert len(brain.map_grid) >= len(brain.experience_map)
-    assert brain.experience_map.poses.tobytes() == deaf.experience_map.poses.tobytes()  # nobody reads them
+    assert brain.experience_map.poses.tobytes() == deaf.experience_map.poses.tobytes()  # SLAM does not read the sonars
 
 
 @pytest.mark.parametrize(
@@ -349,7 +349,7 @@ def test_the_fixed_rate_is_fixed() -> None:
 
 @pytest.mark.slow
 def test_a_step_allocates_no_more_with_time() -> None:
-    """Known ground, lap after lap: what steps allocate goes again, and the tenth lap needs no more than the third."""
+    """Known ground, lap after lap: what steps allocate is freed again, and the tenth lap needs no more than the third."""
     circle, brain = start()
     circle.advance(brain, 3 * LAP)
     tracemalloc.start()

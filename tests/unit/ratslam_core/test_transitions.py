@@ -1,4 +1,4 @@
-"""Links: what is read of them, how they turn, what they remember, and when they go."""
+"""Links: how they are read, how they turn, what they remember, and when they are deleted."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def test_confidence_is_the_share_of_trials_that_arrived(tried: list[bool]) -> No
 @settings(max_examples=200)
 @given(outcomes, st.floats(0.01, 1.0))
 def test_with_recency_old_trials_fade(tried: list[bool], recency: float) -> None:
-    """Each trial counts `recency`, those before it what is left; while there are few, all count the same."""
+    """The newest trial has the weight `recency`, and those before it share the rest; few trials all count the same."""
     robot = two_places(replace(EXACT, link_confidence=0.0, link_recency=recency))
     expected, n = 1.0, 1
     for reached in tried:
@@ -196,7 +196,7 @@ def test_a_deleted_link_comes_back_when_driven_again() -> None:
 
 
 def test_what_was_deleted_is_measured_no_more() -> None:
-    """It may be the way by which the robot has just come, and sees better now where it is."""
+    """It may be the link by which the robot has just arrived, and which a better look would measure again."""
     robot = two_places(replace(EXACT, link_recency=0.3, anchor_sigma=0.05))
     robot.go(1.0, 0.0, 1, packet=robot.packet(Pose2(1.0, 0.0, 0.0)), difference=5.0)
     fail(robot, 0, 1)
@@ -210,7 +210,7 @@ def test_what_was_deleted_is_measured_no_more() -> None:
 @settings(max_examples=30)
 @given(st.lists(st.tuples(st.integers(0, 11), st.integers(0, 11)), max_size=20))
 def test_whatever_is_deleted_the_map_stays_in_one_piece(doubted: list[tuple[int, int]]) -> None:
-    """Odometry by which experiences were made still holds them together; only looks at known places go."""
+    """Odometry between successive experiences still holds them together; only looks at known places lose their weight."""
     params = ExperienceMapParams(link_recency=0.5, solve_every=1)
     robot = Robot(params)
     robot.see(0, new=True)
@@ -241,7 +241,7 @@ def test_whatever_is_deleted_the_map_stays_in_one_piece(doubted: list[tuple[int,
 
 
 def crossroads(trials_are: str) -> Robot:
-    """One place with eight ways from it, each driven in turn, five times, under one behaviour."""
+    """One place with eight links from it, each driven in turn, five times, under one behaviour."""
     robot = Robot(replace(EXACT, link_trials_are=trials_are))
     robot.see(0, new=True)
     for lap in range(5):
@@ -260,7 +260,7 @@ def test_exploring_deletes_nothing_of_what_was_not_tried() -> None:
 
 
 def test_counted_by_departures_no_way_of_a_crossroads_is_sure() -> None:
-    """D9 to the letter: one of eight ways that are driven in turn has 1/8, and goes."""
+    """D9 to the letter: each of eight links that are driven in turn has a confidence of 1/8, and is deleted."""
     robot = crossroads("departures")
     gone = robot.map.dropped_links
     assert len(gone) > 8

@@ -63,7 +63,7 @@ def test_one_link_injects_no_more_than_its_saturation() -> None:
 
 
 def test_injection_is_capped_in_sum() -> None:
-    """However strong its links, a view injects 0.14 in all, shared as its links say; a weak view injects what it has."""
+    """However strong its links, a view injects 0.14 in all, in proportion to its links; a weak view injects what it has."""
     links, pose_cells = ViewLinks(), PoseCells()
     for _ in range(30):
         pose_cells.attract()
@@ -125,7 +125,7 @@ def test_the_views_at_a_column_are_those_linked_there(interpreted: bool, monkeyp
 
 
 def test_the_arena_takes_hardly_more_room_than_the_links() -> None:
-    """Hours of views: blocks that moved leave no gaps for long, and what is spare is a part and not a doubling."""
+    """Over hours of views, blocks that moved leave no gaps for long, and the spare room is a fraction, not a doubling."""
     links, rng = ViewLinks(), np.random.default_rng(4)
     slot = np.zeros(147_456, np.int32)
     for turn in range(3):

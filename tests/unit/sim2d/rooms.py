@@ -1,4 +1,4 @@
-"""Small worlds whose distances are known, and world files to spoil."""
+"""Small worlds with known distances, and world files to spoil."""
 
 from __future__ import annotations
 

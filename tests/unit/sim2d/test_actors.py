@@ -38,7 +38,7 @@ DOOR = Door("lab", 3.0, 1.5, math.pi / 2, 1.0, swing_rad=-math.pi / 2, open=Fals
 
 
 def living(**things: Any) -> World:
-    """The 4 m room, divided at x = 3 but for a gap of 1 m; the robot stands before the gap and looks at it."""
+    """The 4 m room, divided at x = 3 except for a gap of 1 m. The robot stands before the gap and faces it."""
     return replace(room(*DIVIDED), **things)
 
 
@@ -230,7 +230,7 @@ def test_a_kidnap_by_chance_finds_what_room_boxes_and_people_leave() -> None:
 
 @pytest.mark.slow
 def test_an_edit_asks_what_is_there_now_not_what_was_there_at_first() -> None:
-    """A box that has gone covers nobody; one that has come covers whoever is there."""
+    """A box that has disappeared covers nobody; one that has appeared covers whoever is there."""
     box, script = Box("crate", 3.2, 2.0, 0.4, 0.4), (Event(0.5, "box_vanish", "crate"),)
     simulator = Simulator(replace(room(), boxes=(box,), script=script), EXACT)
     run(simulator, STAY, 10)
@@ -285,7 +285,7 @@ def brightness(simulator: Simulator) -> float:
 
 
 def test_an_edited_script_goes_on_from_now() -> None:
-    """Lines of the past are not made up for, one of this very moment is over, and what was done stays done."""
+    """Past lines are not carried out late, a line of this very moment counts as past, and what was done stays done."""
     shut, dark = Event(1.0, "close_door", "lab"), Event(1.0, "daylight", level=0.3)
     door, day = replace(DOOR, open=True), Daylight((0.0,), (0.8,))
     world = living(doors=(door,), script=(shut, dark), daylight=day)
@@ -298,7 +298,7 @@ def test_an_edited_script_goes_on_from_now() -> None:
     assert (simulator.actors.door_wanted[0], simulator.actors.daylight) == (False, 0.3)
     run(simulator, STAY, 1)  # 2.5 s
     assert simulator.actors.door_wanted[0]
-    simulator.set_world(replace(world, script=(shut,)))  # nobody has set the daylight any more
+    simulator.set_world(replace(world, script=(shut,)))  # no line sets the daylight any more
     run(simulator, STAY, 1)
     assert simulator.actors.door_wanted[0]
     assert simulator.actors.daylight == 0.8
@@ -466,7 +466,7 @@ def test_same_seed_same_office() -> None:
 
 @pytest.mark.slow
 def test_never_a_centimetre_into_anybody() -> None:
-    """Six minutes of wild driving in a crowd, through a door that works all the time."""
+    """Six minutes of wild driving in a crowd, through a door that keeps opening and shutting."""
     people = tuple(
         Person(
             f"p{i}",

@@ -91,7 +91,7 @@ def test_noise_and_light() -> None:
 
 
 def slow_image(world: World, x: float, y: float, heading: float, params: SimParams, sub: int = 4) -> np.ndarray:
-    """The same picture the long way: sub x sub rays a pixel in three dimensions, each against every wall."""
+    """The same picture the long way: sub x sub rays per pixel in three dimensions, each against every wall."""
     width, height = params.image_width, params.image_height
     focal = 0.5 * width / math.tan(0.5 * params.camera_fov_rad)
     strips = [(paint_strip(w, "left"), paint_strip(w, "right")) for w in world.walls]
@@ -130,8 +130,9 @@ POSES = [("office", 1.0, 1.0, 0.0), ("office", 5.2, 4.4, 3.0), ("office", 9.0, 7
 
 @pytest.mark.parametrize(("name", "x", "y", "heading"), POSES)
 def test_agrees_with_a_slow_ray_caster(name: str, x: float, y: float, heading: float) -> None:
-    """Whole image against an independent supersampled one. What differs: a column decides by its middle ray who hides
-    whom, so silhouettes may be half a column off; floor and ceiling fade by the row's middle."""
+    """The whole image against an independent, supersampled one. Two differences are allowed: a column's middle ray
+    decides which wall hides which, so silhouettes may be half a column off; and floor and ceiling fade by the middle of
+    a row."""
     params = SimParams(image_width=32, image_height=24)
     world = load_world(name)
     fast = still(world, x, y, heading, params).astype(float)
@@ -175,7 +176,8 @@ def test_no_wall_in_sight() -> None:
 
 
 def test_images_keep_still_where_the_robot_does_and_change_where_it_moves() -> None:
-    """12 x 8 grey means: what recognition will see. Same place: under 1 grey level; 0.3 m or 20 degrees on: over 8."""
+    """12 x 8 grey means, as recognition sees them. At the same place they differ by under 1 grey level; 0.3 m or 20
+    degrees away, by over 8."""
     world = load_world("office")
     cam = Camera(world, PARAMS)
     cam.new_noise(np.random.default_rng(3))

@@ -1,4 +1,4 @@
-"""An edit touches only what is new: afterwards everything is as if the edited world had been loaded from its file."""
+"""An edit touches only what is new. Afterwards everything is as if the edited world had been loaded from its file."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ EXACT = SimParams(
     odometry_noise=0.0, odometry_scale_error=0.0, gyro_bias=0.0, image_noise=0.0, sonar_noise_m=0.0, laser_noise_m=0.0,
     laser_beams=31,
 )  # fmt: skip
-STILL = OfficeParams(people=False)  # their chance is drawn from another generator after an edit
+STILL = OfficeParams(people=False)  # after an edit, they draw from another generator
 
 
 @st.composite
 def some_wall(draw: st.DrawFn, low: float = 0.05, high: float = SIDE - 0.05) -> Wall:
-    """Anywhere between, of any kind, with a picture on it now and then; some hang above the robot."""
+    """A wall anywhere within, of any kind, sometimes with a picture on it; some hang above the robot."""
     x1, y1, x2, y2 = (draw(st.floats(low, high)) for _ in range(4))
     kind = draw(st.sampled_from(["wall", "partition", "desk", "glass"]))
     bottom = draw(st.sampled_from([0.0, 0.0, 0.0, 0.8]))
@@ -56,7 +56,7 @@ def some_wall(draw: st.DrawFn, low: float = 0.05, high: float = SIDE - 0.05) -> 
 
 
 def changed(draw: st.DrawFn, world: World, wall: st.SearchStrategy[Wall]) -> World:
-    """One to three inner walls drawn, changed or taken away; all others are the same objects."""
+    """The world with one to three inner walls drawn, changed or removed; all others are the same objects."""
     walls, first = list(world.walls), sum(w.outer for w in world.walls)
     for _ in range(draw(st.integers(1, 3))):
         k = draw(st.integers(first, len(walls)))
@@ -106,7 +106,7 @@ def same(a: SensorFrame, b: SensorFrame) -> bool:
 
 
 def drive_both(edited: Simulator, anew: Simulator, seed: int, ticks: int) -> None:
-    """The same drives from the same places: the same frames and the same way, bit for bit."""
+    """The same drives from the same places must give the same frames and the same path, bit for bit."""
     rng, space = np.random.default_rng(seed), anew.free_space
     for tick in range(ticks):
         if tick % 25 == 0:
@@ -121,7 +121,7 @@ def drive_both(edited: Simulator, anew: Simulator, seed: int, ticks: int) -> Non
 
 
 def edit_all(simulator: Simulator, worlds: list[World]) -> None:
-    """As the editor does it; what is not sound is refused and leaves all as it is."""
+    """Edit as the editor does. A world that is not valid is refused, and everything stays as it is."""
     for world in worlds:
         try:
             check_world(world, RADIUS, simulator.world, simulator.free_in)
@@ -155,7 +155,7 @@ def test_all_senses_and_the_drive_after_edits(worlds: list[World], seed: int) ->
 @pytest.mark.parametrize("name", ["living", "suburb"])
 @pytest.mark.slow
 def test_edits_of_a_large_and_of_a_living_world(name: str) -> None:
-    """Texels of a large world grow with its walls, all of them; a living one has walls that move behind the others."""
+    """In a large world all texels grow with its walls; a living one has moving walls after the others."""
     world, rng = load_world(name), np.random.default_rng(3)
     edited = Simulator(world, EXACT, 1, STILL)
     x0, y0, x1, y1 = world.bounds
@@ -174,7 +174,7 @@ def test_edits_of_a_large_and_of_a_living_world(name: str) -> None:
     for _ in range(12):
         anew.step(Drive(0.1, 0.3))
     drive_both(edited, anew, 5, 100)
-    for other in (edited.world, world):  # another run in it, and in what it was: what is taken over changes nothing
+    for other in (edited.world, world):  # another run in it and in the one before: what is taken over changes nothing
         again, anew = Simulator(other, EXACT, 2, before=edited), Simulator(other, EXACT, 2)
         assert again.digest() == anew.digest()
         drive_both(again, anew, 7, 60)

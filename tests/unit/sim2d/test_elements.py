@@ -147,7 +147,7 @@ def test_the_line_is_the_items() -> None:
     text = '{"a": [1,\n {"b": "x]}\\"",\n  "c": [ ]},\n 3], "a b":\n {}\n}'
     at = {(): 1, ("a",): 1, ("a", 1): 2, ("a", 1, "c"): 3, ("a", 2): 4, ("a b",): 5}
     assert {path: line_of(text, path) for path in at} == at
-    assert line_of(text, ("a", 1, "missing")) == 2  # as deep as there is something
+    assert line_of(text, ("a", 1, "missing")) == 2  # as deep as the path exists
     assert line_of(text, ("a", 9)) == line_of(text, ("a", "b")) == 1
     assert line_of(text, (0,)) == 1
 

@@ -18,7 +18,7 @@ NONE = np.zeros((0, 4))
 
 @pytest.fixture(params=["compiled", "python"])
 def how(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    """Everything twice: compiled, and as the Python that coverage can see."""
+    """Everything is tested twice: compiled, and as Python that coverage can see."""
     if request.param == "python":
         for name in ("nearest_segment", "ray_length", "inside_ring", "_fill_ring", "free_cells"):
             monkeypatch.setattr(geometry, name, getattr(geometry, name).py_func)
@@ -96,7 +96,7 @@ def sonar(
 
 
 def test_a_cone_sees_its_nearest_wall() -> None:
-    """Towards a wall the middle ray is shortest; past an edge, whichever ray still hits it."""
+    """Towards a wall the middle ray is the shortest; past an edge, the nearest ray that still hits it counts."""
     post = np.array([[3.0, 0.15, 3.0, 0.3]])
     got, _ = sonar(post, 0.0, 0.0, np.array([0.0, math.radians(-30)]), 5.0, np.zeros(2))
     assert got == pytest.approx([3.0, 5.0], abs=0.03)

@@ -1,4 +1,4 @@
-"""Importers against plans whose walls are known, and against what strangers may send."""
+"""Importers tested with plans whose walls are known, and with files that strangers may send."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def test_walls_of_pictures_are_textured_by_seed() -> None:
 
 @st.composite
 def rectilinear(draw: st.DrawFn) -> NDArray[np.bool_]:
-    """Floor on a coarse grid, each of its fields 14 pixels wide, with a rim of wall."""
+    """Floor on a coarse grid with fields 14 pixels wide, surrounded by wall."""
     fields = draw(st.lists(st.lists(st.booleans(), min_size=6, max_size=6), min_size=5, max_size=5))
     fields[2] = [True] * 6
     return np.pad(np.kron(np.array(fields), np.ones((14, 14), bool)), 3)
@@ -174,7 +174,7 @@ def _inside(world: World, shape: tuple[int, int]) -> NDArray[np.bool_]:
 @settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.floats(0.3, 0.7))
 def test_simplified_walls_keep_the_tolerance(seed: int, share: float) -> None:
-    """Any mess of pixels: no wall strays into the floor by more than a pixel, no border from its wall by more than 1.5."""
+    """For any set of pixels, no wall is more than a pixel inside the floor, and no border more than 1.5 from its wall."""
     rng = np.random.default_rng(seed)
     mess = rng.random((18, 24)) < share
     for ring in trace(mess):
@@ -185,7 +185,7 @@ def test_simplified_walls_keep_the_tolerance(seed: int, share: float) -> None:
 
 
 def _farthest(ring: NDArray[np.int32], other: NDArray[np.int32]) -> float:
-    """Of points along the first ring from the second."""
+    """The largest distance of points along the first ring from the second."""
     a, b = other.astype(float), np.roll(other, -1, axis=0).astype(float)
     starts, ends = ring.astype(float), np.roll(ring, -1, axis=0).astype(float)
     points = np.concatenate([starts + t * (ends - starts) for t in np.linspace(0, 1, 9)])

@@ -1,4 +1,4 @@
-"""The folder of one's own worlds when the disk is full, and after a crash."""
+"""The folder of a person's own worlds when the disk is full, and after a crash."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The importers on floor plans: of a building of our own, and of real ones where they lie beside the repository."""
+"""The importers on floor plans: of a building of our own, and of real ones if they lie beside the repository."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_walls_are_where_the_picture_has_them(path: Path, scale_m: float | None)
 
     points = np.concatenate([np.linspace(w[:2], w[2:], int(np.hypot(*(w[2:] - w[:2])) * 4) + 2) for w in walls])
     rows, columns = np.nonzero(~np.pad(free, 1))
-    around = cKDTree(np.column_stack([columns, rows]) - 0.5)  # middles; the pad is one pixel
+    around = cKDTree(np.column_stack([columns, rows]) - 0.5)  # centres of pixels; the padding is one pixel
     _, near = around.query(points, k=6)
     off = np.maximum(np.abs(around.data[near] - points[:, None]) - 0.5, 0.0)  # from their edges
     assert np.hypot(off[..., 0], off[..., 1]).min(axis=1).max() <= 1.5

@@ -18,7 +18,7 @@ DRIVES = st.lists(st.tuples(st.floats(-0.6, 0.6), st.floats(-2.0, 2.0)), min_siz
 @settings(max_examples=30)
 @given(DRIVES, st.floats(0.3, 1.0))
 def test_on_free_floor_it_goes_where_physics_would_take_it(drives: list[tuple[float, float]], slowness: float) -> None:
-    """pymunk is one sub-step behind the wheels, and turns them as it goes: a few millimetres over three seconds."""
+    """pymunk is one sub-step behind the wheels and turns the robot as it goes: a few millimetres over three seconds."""
     params, poses = SimParams(), []
     for is_free in (False, True):
         robot = Robot((1.0, 2.0, 0.5))

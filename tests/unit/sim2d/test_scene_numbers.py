@@ -17,7 +17,7 @@ def number(x: float, y: float, heading_deg: float, cell_m: float = 0.5, sector_d
 
 
 def test_equal_in_one_square_and_sector_different_in_any_other() -> None:
-    """As many numbers as squares times sectors, 9 x 6 x 12, each from 0 on, each for one square and sector."""
+    """There are as many numbers as squares times sectors, 9 x 6 x 12, counted from 0, one for each square and sector."""
     meant: dict[int, tuple[int, int, int]] = {}
     rng = np.random.default_rng(0)
     for _ in range(20_000):

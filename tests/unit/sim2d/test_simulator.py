@@ -44,7 +44,7 @@ def test_the_first_frame() -> None:
 
 
 def test_the_frame_does_not_tell_the_truth() -> None:
-    """But for the number of the scene, which the papers' simulator gave; only its own front end is handed it."""
+    """Except for the number of the scene, which the papers' simulator gave; only the front end for it receives it."""
     names = {f.name for f in fields(SensorFrame)} - {"scene"}
     assert names == {
         "tick", "time_s", "image", "odometry_speed", "odometry_yaw_rate", "dt", "ranges_m", "bumped", "laser_m",

@@ -1,4 +1,4 @@
-"""The space of a tick: all that the robot can touch in it, and nothing that an earlier tick has left."""
+"""The space of a tick: everything that the robot can touch in it, and nothing left from an earlier tick."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ REACH_M = 2.5  # half a metre of robot, and two metres a second for a second: th
 
 @pytest.mark.parametrize("name", ["office", "living", "suburb"])
 def test_the_robot_meets_every_wall(name: str) -> None:
-    """Wherever it is, whatever is within its reach in the next tick stands in the space."""
+    """Wherever the robot is, everything within its reach in the next tick is in the space."""
     world, rng = load_world(name), np.random.default_rng(0)
     actors = Actors(world, np.random.default_rng(0), 0.1)
     surroundings, most = Surroundings(world, actors), 0
@@ -57,7 +57,7 @@ def test_boxes_stand_in_it_only_while_they_are_there() -> None:
 @pytest.mark.parametrize("turn", [0.0, 0.7, -1.2])
 @pytest.mark.slow
 def test_pressed_into_a_corner_a_copy_goes_on_bit_for_bit(turn: float) -> None:
-    """Two contacts at once, where a solver that remembers earlier ticks would part from one that does not."""
+    """Two contacts at once, where a solver that remembers earlier ticks would differ from one that does not."""
     world = load_world("office")
     simulator = Simulator(world, seed=4)
     simulator.teleport(0.4, 0.4, math.radians(225) + turn)

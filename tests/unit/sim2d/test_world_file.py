@@ -57,7 +57,7 @@ def test_a_made_world_is_what_its_maker_makes(make: Callable[[], World]) -> None
 
 
 def test_twin_corridors_look_alike() -> None:
-    """Each wall and picture of the lower corridor is there again, 4.8 m further up."""
+    """Each wall and picture of the lower corridor appears again, 4.8 m further up."""
     pair = [w for w in load_world("twins").walls if w.y1 != w.y2 or 0.0 < w.y1 < 8.6]
     looks = {(w.x1, w.x2, w.y1, w.y2, w.panels) for w in pair if w.panels and w.kind == "wall" and w.y1 == w.y2}
     lower = {look for look in looks if look[2] < 4}

@@ -1,4 +1,4 @@
-// Numbers by chance, the same in every run.
+// Random numbers, the same in every run.
 
 /** @param {number} seed @returns {() => number} from 0 to 1 */
 export function chance(seed) {

@@ -51,7 +51,7 @@ test("later is further right, brighter is higher", () => {
     [600, 2],
   ]);
   assert.ok(made.x(10) < made.x(20) && made.y(1) > made.y(1.5));
-  assert.equal(made.x(99_999), WIDTH - RIGHT); // what is past the end stays at it
+  assert.equal(made.x(99_999), WIDTH - RIGHT); // a moment past the end stays at the end
 });
 
 test("one that repeats begins its round again", () => {

@@ -1,11 +1,11 @@
-// A part of the panel as the server frames it: arrays come out as they went in.
+// A part of the panel, framed as the server does it: arrays come out as they went in.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { unframed } from "../../../web/static/model/frames.js";
 
 /**
- * As web/panel/packing.py does.
+ * Frames a message as web/panel/packing.py does.
  * @param {object} head
  * @param {[string, string, number[], ArrayBufferView][]} arrays
  * @returns {ArrayBuffer}

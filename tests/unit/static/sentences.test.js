@@ -1,4 +1,4 @@
-// Sentences out of what the server says.
+// Sentences made of what the server says.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,4 +1,4 @@
-// What has room on the timeline.
+// Which events have room on the timeline.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

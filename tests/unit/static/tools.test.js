@@ -1,4 +1,4 @@
-// What comes of the points that are clicked.
+// What the clicked points make.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

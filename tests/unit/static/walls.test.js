@@ -1,4 +1,4 @@
-// Walls that change because something else did.
+// Walls that change because something else has changed.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -18,12 +18,12 @@ from web.viewer import Viewer
 from web.viewer.pointer import Click, Drag
 from web.viewer.primitives import images
 
-FAR_BELOW = -40.0  # whatever is put there is not to be seen
+FAR_BELOW = -40.0  # what is put there cannot be seen
 
 
 @dataclass
 class Engine:
-    """Takes down commands; answers when told to."""
+    """Notes commands, and answers when told to."""
 
     commands: list[Command] = field(default_factory=list)
     answers: list[Future[Accepted | Refused]] = field(default_factory=list)
@@ -59,7 +59,7 @@ class Bench:
         return Counter(getattr(message, "name", "") or type(message).__name__ for message in self.sent[before:])
 
     def settle(self) -> None:
-        """Until what is drawn in another thread is there, and all that was due."""
+        """Run rounds until everything that is due, or being drawn in another thread, is there."""
         until(lambda: not self.show(None, 3.0) and not self.viewer.drawing, "all is drawn")
 
     def switch(self, name: Name, on: bool) -> None:
@@ -69,7 +69,7 @@ class Bench:
     # ------------------------------------------------------------ what a browser holds
 
     def nodes(self) -> dict[str, dict[str, Any]]:
-        """Every node that there is with its properties, as one who comes now is told of them."""
+        """All nodes with their properties, as a browser that connects now would receive them."""
         found: dict[str, dict[str, Any]] = {}
         for message in list(self.viewer.server._websock_server._broadcast_buffer.message_from_id.values()):
             name = getattr(message, "name", None)
@@ -84,25 +84,25 @@ class Bench:
         return self.nodes()[name]
 
     def visible(self, name: str) -> bool:
-        """Whether it and all that it hangs on are shown."""
+        """Whether a node and all its parents are shown."""
         nodes, parts = self.nodes(), name.strip("/").split("/")
         above = ["/" + "/".join(parts[: k + 1]) for k in range(len(parts))]
         return all(nodes[one]["visible"] for one in above if one in nodes)
 
     def drawn(self, name: str, places: str = "points") -> np.ndarray:
-        """Those places of a node that are not far below everything."""
+        """The places of a node, without those far below everything."""
         at = np.asarray(self.node(name)[places])
         return at[(at > FAR_BELOW).all(tuple(range(1, at.ndim)))]
 
     # ------------------------------------------------------------ what people do
 
     def click(self, at: tuple[float, float, float], shift: bool = False) -> None:
-        """From above, a little aslant, at a place of the scene; drawn one round later."""
+        """A click from above, slightly slanted, at a place of the scene; then one round."""
         aim, eye = np.array(at), np.array([2.0, -20.0, 25.0])
         self.viewer.click(Click(7, tuple(eye), tuple(aim - eye)), shift)
 
     def drag(self, at: tuple[float, float, float], phase: Any, turning: bool = False) -> None:
-        """The pointer over a place of the scene."""
+        """Drag with the pointer over a place of the scene."""
         aim, eye = np.array(at), np.array([0.0, -25.0, 30.0])
         self.viewer.drag(Drag(7, phase, turning, tuple(eye), tuple(eye + 0.9 * (aim - eye))))
         self.show(None, 0.05)

@@ -1,4 +1,4 @@
-"""Stand-ins for the engine, the stage and viser, to test the page's server without them."""
+"""Stand-ins for the engine, the viewer and viser, to test the page's server without them."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from web.viewer.viser_server import knows
 PORT = 8000
 ORIGIN = f"http://127.0.0.1:{PORT}"
 PAGE = "p" * 22
-OURS = MappingProxyType({"Host": f"127.0.0.1:{PORT}", "Origin": ORIGIN})  # of a websocket that may enter
+OURS = MappingProxyType({"Host": f"127.0.0.1:{PORT}", "Origin": ORIGIN})  # headers of a websocket that is allowed in
 
 
 class StubEngine:
-    """Takes down every command and gives the next answer at once (None: never; a function: what it says)."""
+    """Notes every command and gives the next answer at once (None: never; a function: its result)."""
 
     def __init__(self) -> None:
         self.commands: list[Command] = []
@@ -71,7 +71,7 @@ class StubViewer:
 
 
 class StubViewers:
-    """One stage for both themes unless another is given for the light one."""
+    """One viewer for both themes, unless another is given for the light one."""
 
     def __init__(self, dark: StubViewer | None = None, light: StubViewer | None = None) -> None:
         self.dark = dark or StubViewer()
@@ -91,7 +91,7 @@ class StubViewers:
 
 @dataclass
 class House:
-    """A whole server in the test client's hands."""
+    """A whole server behind the test client."""
 
     engine: StubEngine
     stage: StubViewer
@@ -122,9 +122,9 @@ def house(*, empty: bool = False, stage: StubViewer | None = None, light: StubVi
 
 @contextlib.contextmanager
 def viser_double(stage: StubViewer, greet: int = 1) -> Iterator[list[bytes]]:
-    """A loopback server like viser's: a websocket that asks for the secret and numbers its client at the `greet`th message.
+    """A loopback server like viser's: its websocket requires the secret and numbers its client at the `greet`th message.
 
-    Echoes what it gets; yields the list of what it got.
+    It echoes what it receives; yields the list of what it has received.
     """
     got: list[bytes] = []
     secret = stage.secret

@@ -1,4 +1,4 @@
-"""A brain goes down and comes up again; what is none is refused with a sentence."""
+"""A brain is downloaded and uploaded again; a file that is no brain is refused in a sentence."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_a_brain_that_is_packed_comes_out_the_same(brain: RatSlam) -> None:
 
 
 def changed(data: bytes) -> bytes:
-    """With one number of one array changed."""
+    """The file with one number of one array changed."""
     with np.load(io.BytesIO(data)) as file:
         arrays = dict(file)
     arrays["a0"] = arrays["a0"].copy()
@@ -138,7 +138,7 @@ def test_who_asks_while_a_brain_is_made_gets_the_same(brain, monkeypatch) -> Non
         asked = [asyncio.create_task(download.answer({})) for _ in range(3)]
         while not made:
             await asyncio.sleep(0.01)
-        monkeypatch.setattr(brain_download, "FRESH_S", -1.0)  # what is made is old by now
+        monkeypatch.setattr(brain_download, "FRESH_S", -1.0)  # so that the file is already too old
         with pytest.raises(NoAnswer, match="is being sent to somebody") as refused:
             await download.answer({})
         assert refused.value.status == 429
@@ -157,7 +157,7 @@ def test_who_asks_while_a_brain_is_made_gets_the_same(brain, monkeypatch) -> Non
 
 
 async def _nothing(*_: object) -> None:
-    """Sends and receives."""
+    """Stands in for sending and receiving."""
 
 
 @pytest.mark.parametrize("site", ["cross-site", "same-site"])

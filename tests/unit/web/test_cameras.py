@@ -1,4 +1,4 @@
-"""Every browser's camera: framed, flown, framed anew, and sent on when viser's client sets it back."""
+"""Every browser's camera: framed, flown, framed anew, and sent on when viser's client resets it."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_cameras_are_framed_flown_and_framed_anew() -> None:
     turned = cameras.turned(1)
     assert turned is not None
     assert np.allclose(turned.position, screen.camera.position)
-    cameras.take_off(1, "pose", None, turned)  # as on the stage of the other theme
+    cameras.take_off(1, "pose", None, turned)  # as in the viewer of the other theme
     assert cameras.turned(1) is None  # on its way
     cameras.fly_on(11.1)
     assert np.allclose(screen.camera.position, turned.position)
@@ -77,7 +77,7 @@ def test_cameras_are_framed_flown_and_framed_anew() -> None:
     cameras.fly_on(12.0)
     assert np.allclose(screen.camera.position, camera_for("pose", 1.0).position)
 
-    screen.camera.image_height = 0  # as of a browser that hides the stage
+    screen.camera.image_height = 0  # as in a browser that hides the viewer
     asyncio.run(screen.camera.moved(screen.camera))
     posted[1]()
     cameras.fly_on(13.0)

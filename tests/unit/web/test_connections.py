@@ -1,4 +1,4 @@
-"""Browsers that come and go leave nothing behind, and one that takes nothing keeps nobody waiting."""
+"""Browsers that come and go leave nothing behind, and one that reads nothing keeps nobody waiting."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def served(stages: ViewersLike) -> Iterator[Dashboard]:
 
 
 def left_behind(made: Dashboard) -> dict[str, int]:
-    """What the process holds of connections: threads but asyncio's own pool, tasks of the server's loop, open files."""
+    """What the process holds for connections: threads except asyncio's own pool, tasks of the server's loop, open files."""
     assert made._server is not None
     loop = made._server.servers[0].get_loop()
     return {
@@ -70,7 +70,7 @@ async def enter(url: str, origin: str, **options: Any) -> ClientConnection:
 
 
 async def visit(made: Dashboard, number: int) -> None:
-    """A page and its stage; every other one is cut off instead of saying goodbye."""
+    """A page and its viewer; every other one is cut off instead of closing its connection."""
     where, page = ours(made), f"page-{number:020d}"
     stream = await enter(f"{where.replace('http', 'ws')}/api/stream?page={page}", where)
     await stream.send('{"type": "theme", "name": "light"}')
@@ -102,7 +102,7 @@ def test_a_thousand_connections_leave_no_thread_task_or_file_behind() -> None:
 
 
 def settled(look: Callable[[], dict[str, int]]) -> dict[str, int]:
-    """What is seen when nothing that only starts is under way any more: tasks of a server that has just begun."""
+    """What is seen once start-up work is over, such as the tasks of a server that has just begun."""
     seen: list[dict[str, int]] = []
 
     def still() -> bool:
@@ -115,8 +115,8 @@ def settled(look: Callable[[], dict[str, int]]) -> dict[str, int]:
 
 @pytest.mark.slow
 def test_a_browser_that_takes_nothing_of_the_stage_keeps_nobody_waiting(monkeypatch) -> None:
-    """Far more is drawn than fits between the stage and the one that stalls."""
-    monkeypatch.setattr(proxy, "SEND_TIMEOUT_S", 1e6)  # it is never let go
+    """Far more is drawn than fits into the buffers between the viewer and the browser that stalls."""
+    monkeypatch.setattr(proxy, "SEND_TIMEOUT_S", 1e6)  # so that it is never disconnected
     stages = Viewers(Latest(), StubEngine().submit)
     with served(stages) as made, contextlib.closing(narrow_line(made)) as line:
         stage, where = stages.of("dark"), ours(made)

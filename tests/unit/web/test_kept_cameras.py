@@ -1,4 +1,4 @@
-"""A camera that somebody has turned by hand stays where it is when the page goes to the stage of the other theme."""
+"""A camera that somebody has turned by hand stays where it is when the page goes to the viewer of the other theme."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The brain of an earlier program is offered until somebody answers; what cannot be woken up is said, and offered on."""
+"""The brain of an earlier program is offered until somebody answers. One that cannot be woken up is still offered."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def brain() -> RatSlam:
 
 
 class Page:
-    """A server that offers what `read` gives, and whoever looks at it."""
+    """A server that offers what `read` gives, and a page on it."""
 
     def __init__(self, client: TestClient, engine: StubEngine) -> None:
         self.client, self.engine = client, engine

@@ -1,4 +1,4 @@
-"""What lives in the office: on its plate, as a browser is told of it, and in the panel's tab."""
+"""What moves in the office: on its plate, as a browser receives it, and in the panel's tab."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ def living(**changes: Any) -> LivingLayer:
 
 
 class Office(Bench):
-    """With somebody and something in it."""
+    """A bench whose office has people and things in it."""
 
     def live(self, layer: LivingLayer | None) -> int:
-        """How many messages a round sends."""
+        """Show a layer; returns how many messages the round sends."""
         return sum(self.show(replace(fake_snapshot(430), living=layer)).values())
 
     def shown(self) -> dict[str, int]:
-        """How many of each kind are to be seen."""
+        """How many things of each kind are visible."""
         counts = dict.fromkeys(("door", "box", "lamp"), 0)
         for name, node in self.nodes().items():
             kind = name.rpartition("/")[2].partition("_")[0]

@@ -1,4 +1,4 @@
-"""What is laid over the floors: the right place, the right colour, and nothing where nothing is known."""
+"""The layers over the floors: the right place, the right colour, and nothing where nothing is known."""
 
 from __future__ import annotations
 

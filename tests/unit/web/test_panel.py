@@ -1,4 +1,4 @@
-"""The side panel as data: what each tab is told, in which words, and that nobody is sent what he has or does not see."""
+"""The side panel as data: what each tab is sent, in which words, and that no page is sent what it has or does not show."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Told = dict[str, tuple[dict[str, Any], dict[str, np.ndarray]]]
 
 
 class Page:
-    """One page that has tabs open; time goes on by as much as a part waits at most."""
+    """One page with open tabs; by default, time advances by as much as any part may wait."""
 
     def __init__(self, panel: Panel, tabs: Collection[str] = TABS) -> None:
         self.panel, self.reader, self.now_s = panel, PanelReader(panel), 100.0
@@ -85,7 +85,7 @@ def test_what_has_not_changed_is_not_sent(page: Page) -> None:
     first = page.told(snapshot)
     assert set(first) == {part.name for part in module.PARTS}
     assert page.told(snapshot) == {}
-    assert page.told(replace(snapshot, tick=431)) == {}  # another snapshot with the same to tell
+    assert page.told(replace(snapshot, tick=431)) == {}  # another snapshot with the same content
     brighter = replace(snapshot.senses, camera=255 - snapshot.senses.camera)
     again = page.told(replace(snapshot, senses=brighter))
     assert set(again) == {"views"}

@@ -1,4 +1,4 @@
-"""What the plates show, as a browser is told of it: maps, packets, flags, what lies over the floors, what is inspected."""
+"""What the plates show, as a browser receives it: maps, packets, flags, layers over the floors, what is inspected."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def test_empty_plates_say_why(bench: Bench) -> None:
     bench.show(fake_snapshot(433), 5.0)
     assert not bench.visible("/map/empty")
     assert bench.visible("/pose_cells/snap_S")
-    assert bench.node("/pose_cells/subtitle")["_data"] != without  # it tells what S and F are
+    assert bench.node("/pose_cells/subtitle")["_data"] != without  # it says what S and F are
 
 
 def test_a_larger_world_is_scaled_and_low(bench: Bench) -> None:
@@ -145,7 +145,7 @@ def test_a_larger_world_is_scaled_and_low(bench: Bench) -> None:
     nodes = set(bench.nodes())
     bench.show(replace(s, world=world), 10)
     large = bench.node("/office/furniture_boxes")["batched_scales"]
-    assert large[:, 2].max() < small[:, 2].max()  # lower, so that walls hide nothing
+    assert large[:, 2].max() < small[:, 2].max()  # lower, so that walls hide less
     bare = replace(world, walls=walls[:0], wall_kind=(), wall_height_m=world.wall_height_m[:0], panels=world.panels[:0])
     bench.show(replace(s, world=bare), 10)
     bench.show(s, 10)

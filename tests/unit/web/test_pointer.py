@@ -33,7 +33,7 @@ def shared() -> Iterator[Bench]:
 
 @pytest.fixture
 def bench(shared: Bench) -> Bench:
-    """As if new: nobody drags anything, a fresh engine, one snapshot drawn."""
+    """The shared bench as if new: nobody drags anything, a fresh engine, one snapshot drawn."""
     shared.show(fake_snapshot(430), 10.0)
     shared.settle()
     shared.engine.commands.clear()
@@ -209,7 +209,7 @@ def test_with_shift_it_turns_on_the_spot(bench: Bench) -> None:
 
 
 def test_dropped_beside_the_office_it_stays(bench: Bench) -> None:
-    """The engine says whether there is room: the ring by the snapshot, the drop by its answer."""
+    """The engine says whether there is room: for the ring through the snapshot, for the drop by its answer."""
     bench.drag(in_office(30.0, 4.0), "start")
     no_room = np.array(bench.node("/office/room")["colors"])
     bench.drag(in_office(5.0, 0.8), "update")

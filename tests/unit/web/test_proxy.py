@@ -235,7 +235,7 @@ def test_each_page_is_shown_the_stage_of_its_theme():
             other.send_bytes(b"other")
             assert other.receive_bytes() == b"other"
             stream.send_text('{"type": "theme", "name": "light"}')
-            with pytest.raises(WebSocketDisconnect):  # viser's client comes again by itself
+            with pytest.raises(WebSocketDisconnect):  # viser's client reconnects by itself
                 socket.receive_bytes()
             other.send_bytes(b"still here")
             assert other.receive_bytes() == b"still here"

@@ -139,7 +139,7 @@ def test_get_cannot_command(server):
 
 
 def routes(server) -> dict[str, set[str]]:
-    """Every path of the API with the methods it takes, places in it filled in."""
+    """Every path of the API, with its parameters filled in, and the methods that it takes."""
     paths = server.client.get("/openapi.json").json()["paths"]
     return {
         path.replace("{number}", "0").replace("{name}", "mine"): {*map(str.upper, kinds)}

@@ -1,4 +1,4 @@
-"""The port: who may have it, what it says when it is taken, raw sockets against it, and a clean end."""
+"""The port: who may use it, what is said when it is taken, raw requests to it, and a clean end."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def complaints():
 
 
 def say(server: Dashboard, raw: bytes) -> bytes:
-    """What comes back to these bytes."""
+    """The answer to these bytes."""
     with socket.create_connection(("127.0.0.1", server._port), timeout=PATIENCE_S) as connection:
         connection.sendall(raw)
         parts = []
@@ -179,7 +179,7 @@ def test_a_websocket_that_is_refused_is_no_error(running, complaints, path, stat
 
 
 def own(running) -> bytes:
-    """The rest of a websocket's request that may enter."""
+    """The rest of the request of a websocket that is allowed in."""
     return OURS.replace(b"{host}", b"127.0.0.1:%d" % running._port) + b"\r\n"
 
 
@@ -235,7 +235,7 @@ print(*(f"{command.type} {command.speed}" for command in engine.commands), "ende
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
 @pytest.mark.slow
 def test_a_signal_stops_the_robot_closes_the_sockets_and_ends_with_code_0(name):
-    """With a page that drives, a stage that is looked at, one that nobody looks at, and a browser that takes nothing."""
+    """With a page that drives, a viewer that is watched, one that is not, and a browser that reads nothing."""
     from websockets.exceptions import ConnectionClosed
     from websockets.sync.client import connect
 
@@ -257,7 +257,7 @@ def test_a_signal_stops_the_robot_closes_the_sockets_and_ends_with_code_0(name):
             for socket in (talk, looks):
                 with pytest.raises(ConnectionClosed) as closed:
                     drain(socket)
-                assert closed.value.rcvd is not None  # a goodbye, not a line that was cut
+                assert closed.value.rcvd is not None  # the connection was closed, not cut
             out, err = program.communicate(timeout=PATIENCE_S)
         assert (program.returncode, out, err) == (0, "drive 0.4, drive 0.0, ended\n", "")
     finally:

@@ -1,4 +1,4 @@
-"""What the page shares with Python: written from the models, and noticed when it is older than they are."""
+"""What the page shares with Python is written from the models, and it is noticed when it is out of date."""
 
 from __future__ import annotations
 

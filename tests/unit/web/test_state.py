@@ -1,4 +1,4 @@
-"""A snapshot as JSON: the contract's fields word for word, finite numbers, and each text made once."""
+"""A snapshot as JSON: exactly the fields of the contract, finite numbers, and each text made once."""
 
 from __future__ import annotations
 

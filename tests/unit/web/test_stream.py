@@ -1,4 +1,4 @@
-"""The page's websocket: what it is told, what it may say, and that nobody slows the others."""
+"""The page's websocket: what it receives, what it may send, and that no page slows the others."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def test_refused_silent_and_broken_engines_are_told(server, monkeypatch):
 
 
 def test_other_commands_10_a_second(server, monkeypatch):
-    monkeypatch.setattr(security, "time", SimpleNamespace(monotonic=lambda: 7.0))  # all within no time
+    monkeypatch.setattr(security, "time", SimpleNamespace(monotonic=lambda: 7.0))  # all at the same moment
     with server.stream() as socket:
         for number in range(14):
             socket.send_text(orjson.dumps({"type": "pause", "id": number}).decode())
@@ -229,7 +229,7 @@ def test_a_page_s_id_is_checked(server, page):
 
 
 class StalledSocket:
-    """A browser that takes its greeting and then nothing more."""
+    """A browser that reads its greeting and then nothing more."""
 
     def __init__(self) -> None:
         self.sent = 0
@@ -254,7 +254,7 @@ class StalledSocket:
 
 
 class LiveSocket(StalledSocket):
-    """A browser that takes all."""
+    """A browser that reads everything."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -326,7 +326,7 @@ def test_a_client_s_background_failure_ends_nothing():
 
 
 def parts(socket, count: int) -> list[str]:
-    """The next so many parts of the panel that arrive, by name."""
+    """The names of the next `count` parts of the panel that arrive."""
     named = []
     while len(named) < count:
         message = socket.receive()

@@ -72,12 +72,12 @@ def test_views_have_names(bench: Bench) -> None:
 
 
 def as_new(snapshot: Snapshot) -> Snapshot:
-    """The same once more, in other objects: what a session publishes whose robot stands."""
+    """The same content in other objects, as a session publishes it while its robot stands."""
     return replace(copy.deepcopy(snapshot), world=snapshot.world)
 
 
 def test_nothing_but_the_scene_is_sent(bench: Bench) -> None:
-    """No element of viser's panel: that is the page's own."""
+    """No element of viser's own panel, since the page has its own."""
     bench.show(fake_snapshot(470), 10.0)
     bench.settle()
     told = bench.viewer.server._websock_server._broadcast_buffer.message_from_id.values()
@@ -159,7 +159,7 @@ def test_nodes_and_backlog_stay_the_same_over_two_hundred_snapshots(bench: Bench
 
 
 def count(bench: Bench) -> int:
-    """All nodes but those for the map's links, of which a larger map has more."""
+    """The number of nodes without those for the map's links, of which a larger map has more."""
     return sum("/map/links_" not in name for name in bench.nodes())
 
 

@@ -1,4 +1,4 @@
-"""The stage's geometry: frames invert, views stop at walls, pills keep apart, ribbons are sound, paints are exact."""
+"""The viewer's geometry: frames invert, views stop at walls, pills keep apart, ribbons are valid, paints are exact."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A viewer for each theme: built when it is asked for, equal in what people have switched on, idle when nobody looks."""
+"""A viewer for each theme: built when first needed, with the same switches on, idle when nobody looks."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def both() -> Iterator[Both]:
 
 
 def look(viewer: Viewer) -> ClientConnection:
-    """A browser at a viewer; it must be read from or closed."""
+    """A browser connected to a viewer; it must be read from or closed."""
     url, secret = f"ws://127.0.0.1:{viewer.port}/", {SECRET_HEADER: viewer.secret}
     browser = connect(url, subprotocols=[PROTOCOL], additional_headers=secret, max_size=None, max_queue=None)
     browser.send(camera())
@@ -47,7 +47,7 @@ def look(viewer: Viewer) -> ClientConnection:
 
 
 def told(viewer: Viewer, kind: type[Any], name: str = "") -> list[Any]:
-    """What whoever comes now is told of this kind, of one node or of all."""
+    """The messages of this kind, about one node or all, that a browser receives when it connects now."""
     kept = list(viewer.server._websock_server._broadcast_buffer.message_from_id.values())
     return [one for one in kept if isinstance(one, kind) and name in ("", getattr(one, "name", ""))]
 

@@ -35,7 +35,7 @@ def stage() -> Iterator[Viewer]:
 
 
 def say(port: int, *lines: str) -> bytes:
-    """What comes back to a request of these lines."""
+    """The answer to a request of these lines."""
     with socket.create_connection(("127.0.0.1", port), timeout=30) as connection:
         connection.sendall("\r\n".join((*lines, "", "")).encode("latin-1"))
         parts = []
@@ -105,7 +105,7 @@ def test_who_knows_the_secret_enters_and_each_server_has_its_own(stage: Viewer) 
 
 
 def test_a_viser_that_cannot_be_guarded_is_not_let_loose(monkeypatch) -> None:
-    """One that has taken hold of its server's maker before: the check never gets in."""
+    """A viser that imported the function that makes its server earlier, so that our check is never called."""
     made: list[ViserServer] = []
     init = ViserServer.__init__
 
@@ -159,7 +159,7 @@ def test_nothing_that_is_uploaded_through_the_proxy_is_kept(stage: Viewer) -> No
             browser.send_bytes(message("GuiUpdateMessage", uuid=box, updates={"value": True}))
             browser.send_bytes(camera(7.0))
             (client,) = stage.server.get_clients().values()
-            until(lambda: client.camera.position[2] == 7.0)  # they are taken in order: all of the above has been by now
+            until(lambda: client.camera.position[2] == 7.0)  # messages are handled in order: those above are done
             states = (
                 gui._current_file_upload_states,
                 *(c.gui._current_file_upload_states for c in stage.server.get_clients().values()),

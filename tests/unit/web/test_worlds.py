@@ -1,4 +1,4 @@
-"""The world as a file: read, downloaded, saved, opened from what is dropped; errors name file, value and what is right."""
+"""The world as a file: read, downloaded, saved, opened from dropped files. Errors name file, value and what is right."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ EDITION = OfficeEdition(7, "wall drawn", "", False)
 
 
 class Engine:
-    """Answers what the engine would, from one world."""
+    """Answers as the engine would, from one world."""
 
     def __init__(self) -> None:
         self.world: World = OFFICE
@@ -295,7 +295,7 @@ def test_worlds_and_vector_maps_are_opened(server: House) -> None:
 
 @pytest.mark.parametrize("most", [1_000_000, 10_000_000])
 def test_a_world_may_be_larger_than_any_other_json(server: House, most: int) -> None:
-    """Both sides of both limits, in bytes; what is there in too many is spaces."""
+    """Both sides of both limits, in bytes; the surplus consists of spaces."""
     is_world = most > 1_000_000
     text = world_to_json(OFFICE).encode() if is_world else b"[[0, 0, 5, 0], [5, 0, 5, 5], [5, 5, 0, 5], [0, 5, 0, 0]]"
     for size, expected in ((most, 200), (most + 1, 422)):
