@@ -69,11 +69,11 @@ def unpack(file: IO[bytes]) -> tuple[dict[str, Any], list[NDArray[Any]]]:
             raise ValueError(f"it must hold json and a0, a1 and so on, got {', '.join(list(entries)[:6]) or 'nothing'}")
         if entries["json"].file_size > MOST_JSON_BYTES:
             raise ValueError(
-                f"its JSON has {entries['json'].file_size >> 20} MiB, at most {MOST_JSON_BYTES >> 20} can be"
+                f"its JSON has {entries['json'].file_size >> 20} MiB, at most {MOST_JSON_BYTES >> 20} are allowed"
             )
         size = sum(entry.file_size for entry in entries.values())
         if size > MOST_BYTES:
-            raise ValueError(f"too large: {size >> 20} MiB unpacked, at most {MOST_BYTES >> 20} can be")
+            raise ValueError(f"too large: {size >> 20} MiB unpacked, at most {MOST_BYTES >> 20} are allowed")
         for name in names:
             _require_entry(archive, entries[name], name)
         text, *arrays = (_array(archive, entries[name]) for name in names)
@@ -95,7 +95,7 @@ def _require_directory(file: IO[bytes]) -> None:
         raise ValueError("the file is not a zip file; it has to be one that was saved")
     directory = struct.unpack("<I", tail[-10:-6])[0]
     if directory > MOST_DIRECTORY_BYTES:
-        raise ValueError(f"its directory has {directory} bytes; at most {MOST_DIRECTORY_BYTES} can be")
+        raise ValueError(f"its directory has {directory} bytes; at most {MOST_DIRECTORY_BYTES} are allowed")
 
 
 def _require_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, name: str) -> None:

@@ -1,8 +1,8 @@
 """Which experiences belong to one place, and where pose cells and places do not correspond. ACRA 2005 3.6, 3.7.
 
 Pose cells wrap and snap. One place may therefore have several states of the pose cells (multiple representations), and
-one state may stand for several places (a hash collision). The corrected map tells: it brings the experiences of the
-former together and keeps those of the latter apart. [ours] The method; the paper shows both by eye.
+one state may stand for several places (a hash collision). The corrected map shows which: it brings the
+experiences of the former together and keeps those of the latter apart. [ours] The method; the paper shows both by eye.
 test_places.py::test_places_are_those_of_a_loop_over_all.
 """
 

@@ -47,7 +47,7 @@ class Link:
     trials: int  # how often the robot was expected to arrive by it
     confidence: float  # c_ij: share of the trials in which the robot arrived
     weight: float  # in map correction, 1 for odometry over a step
-    believed: float  # the weight times how far the map agrees with it, 0 to 1
+    believed: float  # the weight times how far (0 to 1) the map agrees with it
 
 
 @kind("transitions/1")
@@ -126,7 +126,7 @@ class Transitions:
         return True
 
     def _drop(self, row: int) -> None:
-        """The row is no longer a way. A row of odometry goes on holding the map together; a look at a known place is dropped."""
+        """The row is no longer a way. A row of odometry goes on holding the map together; a look no longer counts."""
         i, j = int(self.ends[row, 0]), int(self.ends[row, 1])
         del self.row_of[i, j]
         self.travelled[row] = False

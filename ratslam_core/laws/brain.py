@@ -66,7 +66,7 @@ def _is_ours(part: object) -> bool:
 
 
 def _handed_in(brain: RatSlam) -> dict[str, Any]:
-    """The parts whose class is not ours. What must be true of such a part, its own method `check` says, if it has one."""
+    """The parts whose class is not ours. Such a part is checked by its own method `check`, if it has one."""
     parts: dict[str, Any] = {name: getattr(brain, name) for name in ("local_view", "pose_cells", "kidnap_detector")}
     parts |= {"experience_map": brain.experience_map, "optimiser": getattr(brain.experience_map, "optimiser", None)}
     handed = {name: part for name, part in parts.items() if part is not None and not _is_ours(part)}

@@ -49,7 +49,7 @@ ADDITIONS = (
         {"local_view.capped": False},
     ),
     Addition(
-        "waiting of new views",
+        "waiting time of new views",
         "a new view injects nothing for some seconds, and later only what it had learnt before the step",
         "otherwise it would hold the packet back where it has just been learnt",
         {"local_view.rest": 0.0, "local_view.learn_first": True},

@@ -63,7 +63,7 @@ def read_object(raw: bytes | str) -> dict[str, Any]:
     """The JSON object in `raw`. Raises Malformed when it is something else, or larger than any command can be."""
     opened = raw.count("[") + raw.count("{") if isinstance(raw, str) else raw.count(b"[") + raw.count(b"{")
     if opened > _MOST_PARTS:  # each takes thirty times as much memory as text
-        raise Malformed([wrong(None, None, f"this has {opened} brackets [ and {{; at most {_MOST_PARTS} can be")])
+        raise Malformed([wrong(None, None, f"this has {opened} brackets [ and {{; at most {_MOST_PARTS} are allowed")])
     try:
         document: dict[str, Any] | list[Any] | str | float | None = orjson.loads(raw)
     except orjson.JSONDecodeError as error:

@@ -99,7 +99,7 @@ def refusal_of(scope: Scope, hosts: frozenset[str]) -> Refusal | None:
         return None if origin else Refusal(403, f"a websocket needs the header Origin: http://{host[0]}")
     if scope["method"] in ("GET", "HEAD"):
         costly = scope["path"].startswith(COSTLY_PATHS) and _from_elsewhere(headers)
-        return Refusal(403, "another site may not have this computed") if costly else None
+        return Refusal(403, "this is too costly to be asked for by another site") if costly else None
     return _refusal_of_change(headers, scope["path"])
 
 

@@ -71,4 +71,4 @@ def _no_snaps(snapshot: Snapshot) -> str:
         return f"none of late: {snapshot.relocalisations} so far"
     if snapshot.revisit_consistency is None:
         return "none yet: nothing seen before has come into view again"
-    return "none yet: what it saw again was where it believed to be, so nothing had to jump"
+    return "none yet: what it saw again agreed with where it believed it was, so nothing had to jump"

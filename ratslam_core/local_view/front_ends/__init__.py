@@ -22,7 +22,7 @@ class FrontEnd(Protocol):
     rows: int  # bytes of each column
     shifts: bool  # features are columns of the image: turning the robot shifts them, and the shift tells its heading
     scale: float  # levels for a mean difference of one byte; in levels all front ends are about equally strict
-    vague: float  # the least difference in levels: even an equal view leaves the place uncertain by so much
+    vague: float  # least difference in levels, since even an equal view leaves the place uncertain
 
     def look(self, image: NDArray[np.uint8] | None, scene: int | None, /) -> Features:
         """The features of what is seen now; ValueError says what is wrong with it."""

@@ -92,7 +92,7 @@ def test_a_file_that_unpacks_to_too_much_is_refused_before_it_is_unpacked(monkey
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as file:
         file.writestr("json.npy", b"")
         file.writestr("a0.npy", bytes(2 << 20))
-    with pytest.raises(ValueError, match="too large: 2 MiB unpacked, at most 1 can be"):
+    with pytest.raises(ValueError, match="too large: 2 MiB unpacked, at most 1 are allowed"):
         unpacked(out.getvalue())
 
 

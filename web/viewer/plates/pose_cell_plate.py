@@ -32,7 +32,7 @@ DASHES = 48
 FLOOR_PX = 288
 PILL_M = 0.62
 BELIEVES = "where the network believes the robot is"
-SNAPPED = "where it believes to be - S to F: the last snap"
+SNAPPED = "where it believes it is - S to F: the last snap"
 LEAST_SHARE = 0.005  # a packet with less would show as 0 %
 WEAKEST = 0.02  # share of the strongest cell
 
