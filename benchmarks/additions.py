@@ -92,8 +92,9 @@ those of a literal twin written from the equations (`test_papers.py`).
 ## With and without
 
 Made by `python -m benchmarks.additions`: seeds {", ".join(map(str, args.seeds))} in each of {len(args.worlds)} worlds,
-{args.minutes:g} simulated minutes of exploring with a kidnap at half time, then {args.goals} places to visit. The map of a robot that does not
-find itself again is wrong by metres. What the rows tell, and what they do not, is in [findings](findings.md#what-each-addition-is-worth).
+{args.minutes:g} simulated minutes of exploring with a kidnap at half time, then {args.goals} places to visit.
+The map of a robot that does not find itself again is wrong by metres. What the rows tell, and what they do not, is in
+[findings](findings.md#what-each-addition-is-worth).
 
 {chr(10).join(table(runs, args.worlds))}
 """
