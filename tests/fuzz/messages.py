@@ -64,7 +64,7 @@ def _require_answer(status: int, content: bytes, body: bytes) -> None:
 
 def stream(rng: Random) -> str:
     """A batch of messages over one socket. Each that has an id or cannot be read must be answered."""
-    with client().websocket_connect(f"/api/stream?page={PAGE}", headers=OURS) as socket:
+    with client().websocket_connect(f"/api/stream?page={PAGE}", headers=dict(OURS)) as socket:
         waiting, unread = {"last"}, 0
         for k in range(BATCH):
             text = command(rng).decode("utf-8", "replace")
