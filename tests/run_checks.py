@@ -30,7 +30,12 @@ CHECKS = {
         "tests/unit/static/*.test.js",
     ],
 }
-PYTEST = ["pytest", "--numprocesses=2", "--dist=loadfile"]
+PYTEST = [
+    "pytest",
+    "--numprocesses=2",
+    "--dist=loadfile",
+    "--no-loadscope-reorder",
+]  # the browser first: it takes longest
 FAST = ["-m", "not slow", "tests/unit", "tests/property"]
 # Two processes share two cores. A library that spreads a small product over both cores waits longer than it computes.
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")

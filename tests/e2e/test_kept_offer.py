@@ -44,7 +44,10 @@ def offering(known: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 def test_the_offer_is_seen_and_taken(offering: Program, browser, known: Session) -> None:
     count = len(known.brain.experience_map)
     assert offering.state()["world"] == "office"
-    with open_page(browser, offering.url) as page, open_page(browser, offering.url, 390, 844, light=True) as phone:
+    with (
+        open_page(browser, offering.url, stage=False) as page,
+        open_page(browser, offering.url, 390, 844, light=True, stage=False) as phone,
+    ):
         for one in (page, phone):
             until(one, OFFERED)
             words = one.inner_text("#kept-words")
@@ -67,7 +70,7 @@ def test_the_offer_is_seen_and_taken(offering: Program, browser, known: Session)
 
 def test_a_broken_one_is_told_of_and_not_now_stays_gone(offering: Program, browser, tmp_path: Path) -> None:
     (tmp_path / "earlier.npz").write_bytes(b"PK")
-    with open_page(browser, offering.url, refused=True) as page:
+    with open_page(browser, offering.url, refused=True, stage=False) as page:
         until(page, OFFERED)
         page.click("#kept-wake")
         told(page, "This brain cannot be woken up: ")

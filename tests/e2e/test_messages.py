@@ -136,7 +136,7 @@ def test_what_the_stage_refuses_is_told_to_whoever_did_it(program, browser) -> N
         on_plate = fit.to_plate(np.array([[x, y]]))[0]
         return OFFICE_ORIGIN[0] + on_plate[0], OFFICE_ORIGIN[1] + on_plate[1], OFFICE_ORIGIN[2] + 0.15
 
-    with open_page(browser, program.url) as one, open_page(browser, program.url, 900, 700) as two:
+    with open_page(browser, program.url) as one, open_page(browser, program.url, 900, 700, stage=False) as two:
         show(one, "office")
         wall = world.walls[0]
         one.mouse.move(*on_screen(one, "office", in_office(robot["x"], robot["y"])))
