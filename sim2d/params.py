@@ -134,12 +134,15 @@ class SimParams:
         "opening angle of a sonar's cone; the nearest echo within it counts",
         live=True,
     )
+    sonar_rays: int = _number(5, 2, 61, "n_d", "1", "rays that each cone is searched with", live=True)
     sonar_noise_m: float = _number(
         0.02, 0.0, 0.5, "sigma_d", "m", "standard deviation of the error of an echo", live=True
     )
     sonar_false_echo: float = _number(
         0.0, 0.0, 1.0, "p_e", "1", "share of readings that are false, at a random distance", live=True
     )
+
+    bumper_m: float = _number(0.005, 0.0, 0.1, "", "m", "travel of the contact ring around the robot", live=True)
 
     laser_beams: int = _number(
         0, 0, 1081, "n_l", "1", "beams of the laser, evenly spread over its field of view; 0 = no laser", "ACRA 2005",
@@ -164,6 +167,18 @@ class SimParams:
     )
     odometry_scale_error: float = _number(
         0.02, -0.5, 0.5, "k_v", "1", "reported distance over true distance, minus 1: a wrong wheel diameter", live=True
+    )
+    still_speed: float = _number(
+        1e-3, 0.0, 0.1, "", "m/s", "a robot slower than this, and than `still_yaw_rate`, gives no counts", live=True
+    )
+    still_yaw_rate: float = _number(
+        2e-3,
+        0.0,
+        0.1,
+        "",
+        "rad/s",
+        "a robot that turns more slowly than this, and is slower than `still_speed`, gives no counts",
+        live=True,
     )
     gyro_bias: float = _number(
         math.radians(0.2), -0.2, 0.2, "b_w", "rad/s", "added to the yaw rate while the wheels turn: 0.0035 = 0.2 deg/s",
@@ -201,6 +216,7 @@ class OfficeParams:
     reflections: bool = _switch(
         True, "glass reflects what is in front of it; off = it only shows its own colour", "ACRA 2004"
     )
+    door_s: float = _number(1.5, 0.1, 60.0, "", "s", "time that a door takes to open or shut", live=True)
     slow_zones: bool = _switch(True, "slow floors slow the robot down", "IROS 2005")
     boxes: bool = _switch(True, "boxes stand on the floor; off = all are taken away")
     script: bool = _switch(True, "the world's script is carried out")

@@ -44,6 +44,7 @@ def _switches(world: World) -> tuple[str, ...]:
         "lamps": bool(world.lamps),
         "daylight": world.daylight is not None,
         "reflections": any(wall.kind == "glass" for wall in world.walls),
+        "door_s": bool(world.doors),
         "slow_zones": bool(world.slow_zones),
         "boxes": bool(world.boxes),
         "script": bool(world.script),

@@ -19,7 +19,6 @@ from sim2d.world.elements import Box, Door, Event, Lamp
 from sim2d.world.robot_fit import Standing
 from sim2d.world.world import World
 
-DOOR_TAKES_S = 1.5  # from shut to open
 MOST_TIP_M = 0.1  # the tip of a door leaf moves no farther in a tick, so that it cannot jump over the robot
 CLEARANCE_M = 0.01  # least distance from the robot of a moving leaf and of a box that appears
 
@@ -202,7 +201,7 @@ class Actors:
             if gap == 0.0:
                 continue
             travel = door.width * (1.0 if door.slides else abs(door.swing_rad))
-            step = min(self._tick_s / DOOR_TAKES_S, MOST_TIP_M / max(travel, 1e-9))
+            step = min(self._tick_s / params.door_s, MOST_TIP_M / max(travel, 1e-9))
             opening = self.opening[i] + min(max(gap, -step), step)
             after = door.leaf(opening)
             if not self._in_the_way(self.segments[i], after, robot, radius):

@@ -8,9 +8,6 @@ import numpy as np
 
 from sim2d.params import SimParams
 
-STILL_SPEED = 1e-3  # m/s; below this and STILL_YAW_RATE the encoders give no counts
-STILL_YAW_RATE = 2e-3  # rad/s
-
 
 def wrap_angle(angle: float) -> float:
     """The same direction in (-pi, pi]."""
@@ -41,7 +38,7 @@ def report(speed: float, yaw_rate: float, params: SimParams, rng: np.random.Gene
     speed.
     """
     speed_error, yaw_error = rng.standard_normal(2).tolist()
-    if abs(speed) < STILL_SPEED and abs(yaw_rate) < STILL_YAW_RATE:
+    if abs(speed) < params.still_speed and abs(yaw_rate) < params.still_yaw_rate:
         return 0.0, 0.0
     return (
         speed * (1.0 + params.odometry_scale_error) * (1.0 + params.odometry_noise * speed_error),

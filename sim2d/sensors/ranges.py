@@ -12,7 +12,6 @@ from sim2d.geometry.wall_index import WallIndex, crossing, first_wall, nearest_w
 
 # From left to right, as on the front of a Pioneer.
 SONAR_ANGLES_RAD: tuple[float, ...] = tuple(math.radians(a) for a in (90, 50, 30, 10, -10, -30, -50, -90))
-RAYS = 5  # per cone
 
 _Array = NDArray[np.float64]
 
@@ -26,11 +25,12 @@ def sonar_ranges(
     heading: float,
     angles: _Array,
     cone: float,
+    rays: int,
     farthest: float,
     errors: _Array,
     touch: float,
 ) -> tuple[NDArray[np.float32], bool]:
-    """(n,): distance (m) from the robot's middle to the nearest echo on the five rays of each cone; `farthest` if there
+    """(n,): distance (m) from the robot's middle to the nearest echo on the rays of each cone; `farthest` if there
     is none.
 
     Also returns whether anything is nearer than `touch` metres to the middle, in any direction.
@@ -40,8 +40,8 @@ def sonar_ranges(
     out = np.empty(angles.size, np.float32)
     for i in range(angles.size):
         shortest = farthest
-        for k in range(RAYS):
-            angle = heading + angles[i] + cone * (k / (RAYS - 1) - 0.5)
+        for k in range(rays):
+            angle = heading + angles[i] + cone * (k / (rays - 1) - 0.5)
             shortest = _range(index, near, x, y, angle, shortest)
         if shortest < farthest:
             shortest = min(max(shortest + errors[i], 0.0), farthest)

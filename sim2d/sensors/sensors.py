@@ -17,8 +17,6 @@ from sim2d.sensors.ranges import SONAR_ANGLES_RAD, is_clear, laser_ranges, sonar
 from sim2d.sensors.scene_numbers import scene_number
 from sim2d.world.world import World
 
-BUMPER_M = 0.005  # travel of the contact ring around the robot
-
 _OWNERS = ("image", "sonar", "odometry", "pose", "noise bank", "actors", "echo", "laser")
 
 Pose = tuple[float, float, float]
@@ -120,7 +118,7 @@ class Sensors:
         gain, noise = params.light * params.exposure_gain, params.image_noise * params.exposure_gain
         image = self._camera.image(*pose, gain, noise, self._image_rng, reflections)
         ranges, bumped = self._sonar(pose, params)
-        bumped = bumped or self._actors.walkers.touch(*pose[:2], params.robot_radius_m + BUMPER_M)
+        bumped = bumped or self._actors.walkers.touch(*pose[:2], params.robot_radius_m + params.bumper_m)
         scan = np.zeros(0, np.float32)
         if params.laser_beams:
             errors = self._laser_rng.standard_normal(params.laser_beams) * params.laser_noise_m
@@ -133,8 +131,8 @@ class Sensors:
         n, radius = len(self._angles), params.robot_radius_m
         errors = self._sonar_rng.standard_normal(n) * params.sonar_noise_m
         ranges, bumped = sonar_ranges(
-            self._obstacles, self._actors.there, *pose, self._angles, params.sonar_cone_rad, params.sonar_range_m, errors,
-            radius + BUMPER_M,
+            self._obstacles, self._actors.there, *pose, self._angles, params.sonar_cone_rad, params.sonar_rays,
+            params.sonar_range_m, errors, radius + params.bumper_m,
         )  # fmt: skip
         if params.sonar_false_echo > 0:
             chance = self._echo_rng.random((2, n))

@@ -21,6 +21,7 @@ from sim2d import (
     SimParams,
     Simulator,
     SlowZone,
+    Start,
     Wall,
     World,
 )
@@ -490,3 +491,26 @@ def test_never_a_centimetre_into_anybody() -> None:
         assert simulator.fit.covering(x, y) is None
         away = np.hypot(*(simulator.actors.walkers.xy[simulator.actors.walkers.present] - (x, y)).T)
         assert away.min(initial=9.0) > 0.44 - 0.01
+
+
+@pytest.mark.parametrize("seconds", [0.1, 2.0, 8.0])
+def test_a_door_takes_as_long_as_it_is_said_to(seconds: float) -> None:
+    """And not less than its tip may move in a tick: 0.1 m."""
+    simulator = Simulator(living(doors=(DOOR,)), EXACT, office=OfficeParams(door_s=seconds))
+    simulator.actors.set_door("lab", True)
+    ticks = 0
+    while simulator.actors.opening[0] < 1.0:
+        simulator.step(STAY)
+        ticks += 1
+    assert ticks == pytest.approx(max(10 * seconds, DOOR.width * math.pi / 2 / 0.1), abs=1)
+
+
+def test_a_bumper_and_the_rays_of_a_cone_are_as_many_and_as_long_as_they_are_said_to_be() -> None:
+    """A robot 0.03 m from a wall; and a thin post between two of five rays, which sixty-one do not miss."""
+    near = replace(room(), starts=(Start("home", 0.25, 2.0, math.pi),))
+    touches = {reach: Simulator(near, replace(EXACT, bumper_m=reach)).step(STAY).bumped for reach in (0.005, 0.05)}
+    assert touches == {0.005: False, 0.05: True}
+    post = room(Wall(3.0, 2.05, 3.0, 2.06, "wall", 2.6, GREY))
+    post = replace(post, starts=(Start("home", 1.0, 2.0, math.radians(-10)),))
+    echoes = [float(Simulator(post, replace(EXACT, sonar_rays=n)).step(STAY).ranges_m[3]) for n in (5, 61)]
+    assert echoes == pytest.approx([3.0, 2.0], abs=0.03)

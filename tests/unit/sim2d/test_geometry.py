@@ -92,7 +92,7 @@ def sonar(
     things: np.ndarray = NONE, touch: float = 0.1,
 ) -> tuple[np.ndarray, bool]:  # fmt: skip
     cone = math.radians(15)
-    return ranges.sonar_ranges(build_index(walls), things, x, y, 0.0, angles, cone, farthest, errors, touch)
+    return ranges.sonar_ranges(build_index(walls), things, x, y, 0.0, angles, cone, 5, farthest, errors, touch)
 
 
 def test_a_cone_sees_its_nearest_wall() -> None:
