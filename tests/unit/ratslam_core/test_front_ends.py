@@ -348,3 +348,13 @@ def test_with_the_gate_open_nothing_is_bland(kind: str) -> None:
     open_gate, gated = view_of(kind, **off), view_of(kind)
     assert open_gate.observe(grey).view == 0
     assert gated.observe(grey).view == -1
+
+
+@pytest.mark.parametrize("scene", [0, 7, 1234567, 2**63 - 1])
+def test_a_scene_number_is_drawn_whole(scene: int) -> None:
+    """All around the digits there is paper."""
+    end = named_front_end(LocalViewParams(front_end="scene numbers"))
+    picture = end.picture(end.look(None, scene))
+    assert picture.max() > 200
+    for edge in (picture[0], picture[-1], picture[:, 0], picture[:, -1]):
+        assert (edge == picture[0, 0]).all()

@@ -92,3 +92,12 @@ def test_the_plain_twin_is_where_it_was_seen_last_and_where_the_wheels_brought_i
     assert belief.local == look
     belief.move(Pose2(0.2, 0.0, 0.1), 0.1)
     assert belief.local == look.compose(Pose2(0.2, 0.0, 0.1))
+
+
+def test_a_look_at_the_very_limit_is_still_weighed() -> None:
+    """Farther or more turned than the limits is a snap; as far and as turned is not."""
+    params = PoseFilterParams(snap_m=1.0, snap_rad=0.5)
+    for look in (Pose2(1.0, 0.0, 0.0), Pose2(0.0, 0.0, 0.5)):
+        estimate = PoseFilter(params)
+        assert estimate.see(look, 1.0)
+        assert estimate.local != look
