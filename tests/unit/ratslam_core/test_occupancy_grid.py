@@ -178,6 +178,26 @@ def test_a_robot_that_stands_keeps_one_scan() -> None:
     assert len(grid) == 3
 
 
+@pytest.mark.parametrize(
+    ("way", "kept"),
+    [
+        ((0.09, 0.0, 0.0), 1),
+        ((0.11, 0.0, 0.0), 2),
+        ((0.08, -0.08, 0.0), 2),
+        ((0.0, 0.0, 0.3), 1),
+        ((0.0, 0.0, -0.5), 2),
+    ],
+)
+def test_a_scan_near_the_newest_takes_its_place(way: tuple[float, float, float], kept: int) -> None:
+    """As near as `same_place_m` and turned by no more than `same_facing`, wherever the robot is and however it faces."""
+    for x, y, heading in ((0.0, 0.0, 0.0), (1.0, -2.0, 1.0), (-0.5, 0.3, 3.1)):
+        grid = MapGrid(OccupancyParams(same_place_m=0.1, same_facing=0.4), [0.0])
+        grid.add(0, Pose2(x, y, heading), np.array([1.0]))
+        there = Pose2(x + way[0], y + way[1], math.remainder(heading + way[2], math.tau))
+        grid.add(0, there, np.array([1.0]))
+        assert len(grid) == kept
+
+
 def test_it_grows_with_the_experiences() -> None:
     grid = MapGrid(None, [0.0])
     before = grid.memory_bytes
