@@ -45,7 +45,7 @@ class KidnapDetector:
 
         It is no longer lost once `found_again` sights of experiences from before the kidnap, taking into account the
         odometry between them, agree on where it is. New experiences in between count neither way: perhaps only a wall
-        was drawn. It is no longer lost either after `settled` steps (two minutes) without a contradiction: it is
+        was drawn. It is no longer lost either after `settled` steps (two minutes at 10 Hz) without a contradiction: it is
         elsewhere and knows its way there.
 
         agrees: whether the look agrees with where the robot believed itself to be; known: the experience that was

@@ -51,7 +51,7 @@ class ExperienceMapParams:
     )
     anchor_sigma: float = param(
         0.05,
-        unit="m per grey level",
+        unit="m per level",
         low=0.0,
         high=1.0,
         meaning="error of a match per level of its difference; worse matches weigh less in map correction, 0 = all alike",

@@ -9,9 +9,9 @@ from sim2d import Panel, SimParams, Wall, World, load_world
 from sim2d.camera import camera, column_hits, painting
 from sim2d.camera.atlas import Atlas
 from sim2d.camera.camera import Camera
-from sim2d.geometry.segments import ray_length
 from sim2d.world.texture import paint_strip
 
+from .literal import ray_length
 from .rooms import GREY, room
 
 PARAMS = SimParams()

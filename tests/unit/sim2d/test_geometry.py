@@ -7,9 +7,10 @@ import pytest
 
 from sim2d.geometry import segments as geometry
 from sim2d.geometry import wall_index
-from sim2d.geometry.segments import free_cells, inside_ring, nearest_segment, ray_length
+from sim2d.geometry.segments import free_cells, inside_ring, nearest_segment
 from sim2d.geometry.wall_index import build_index
 from sim2d.sensors import ranges
+from tests.unit.sim2d.literal import ray_length
 
 SQUARE = np.array([[0, 0, 4, 0], [4, 0, 4, 4], [4, 4, 0, 4], [0, 4, 0, 0]], float)
 RING = SQUARE[:, :2]
@@ -20,7 +21,7 @@ NONE = np.zeros((0, 4))
 def how(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
     """Everything is tested twice: compiled, and as Python that coverage can see."""
     if request.param == "python":
-        for name in ("nearest_segment", "ray_length", "inside_ring", "_fill_ring", "free_cells"):
+        for name in ("nearest_segment", "inside_ring", "_fill_ring", "free_cells"):
             monkeypatch.setattr(geometry, name, getattr(geometry, name).py_func)
             if name in globals():
                 monkeypatch.setitem(globals(), name, getattr(geometry, name))
