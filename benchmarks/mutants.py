@@ -145,28 +145,33 @@ class Bench:
 
     @staticmethod
     def _first(file: str) -> list[str]:
-        """Tests named after the file come first, since they kill most mutants."""
-        name = Path(file).stem
-        named = sorted(
-            str(path.relative_to(ROOT)) for room in SUITE for path in (ROOT / room).glob(f"test_*{name}*.py")
-        )
-        return [*named, *SUITE]
+        """All test files, those first that are likely to kill: named after the file, then after its module or its folder."""
+        name, module = Path(file).stem, file.removesuffix(".py").replace("/", ".")
+        folder, texts = module.rpartition(".")[0], {}
+        for room in SUITE:
+            texts |= {path: path.read_text(encoding="utf-8") for path in sorted((ROOT / room).rglob("test_*.py"))}
+
+        def distance(path: Path) -> int:
+            return 0 if name in path.stem else 1 if module in texts[path] else 2 if folder in texts[path] else 3
+
+        return [str(path.relative_to(ROOT)) for path in sorted(texts, key=distance)]
 
     @staticmethod
     def _forget_kernels(tree: Path, changed: str) -> None:
-        """Delete the compiled code of the file and of all that imports it, directly or not: callers contain it."""
+        """Delete the compiled code of the file and of all that contains it: compiled code calls only compiled code."""
         files = {
             str(path.relative_to(tree)): path.read_text(encoding="utf-8")
             for path in (tree / "ratslam_core").rglob("*.py")
         }
+        compiled = {name: text for name, text in files.items() if "@njit" in text}
         reached, before = {changed}, set[str]()
         while reached != before:
             before = set(reached)
             modules = [name.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for name in before]
-            reached |= {name for name, text in files.items() if any(_imports(text, module) for module in modules)}
+            reached |= {name for name, text in compiled.items() if any(_imports(text, module) for module in modules)}
         for name in reached:
-            for compiled in (tree / name).parent.glob(f"__pycache__/{Path(name).stem}.*.nb*"):
-                compiled.unlink()
+            for cached in (tree / name).parent.glob(f"__pycache__/{Path(name).stem}.*.nb*"):
+                cached.unlink()
 
     @staticmethod
     def _test(tree: Path, arguments: list[str], check: bool = False) -> bool:
@@ -176,8 +181,7 @@ class Bench:
             "pytest",
             "-p",
             "no:cacheprovider",
-            *arguments,
-            *(() if len(arguments) > 1 else SUITE),
+            *(arguments if len(arguments) > 1 else (*arguments, *SUITE)),
         ]
         environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1", **ONE_THREAD}
         try:
