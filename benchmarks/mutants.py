@@ -147,7 +147,8 @@ class Bench:
     def _first(file: str) -> list[str]:
         """All test files, those first that are likely to kill: named after the file, then after its module or its folder."""
         name, module = Path(file).stem, file.removesuffix(".py").replace("/", ".")
-        folder, texts = module.rpartition(".")[0], {}
+        folder = module.rpartition(".")[0]
+        texts: dict[Path, str] = {}
         for room in SUITE:
             texts |= {path: path.read_text(encoding="utf-8") for path in sorted((ROOT / room).rglob("test_*.py"))}
 
