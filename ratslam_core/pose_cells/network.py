@@ -143,7 +143,7 @@ class PoseCells:
         [ours] Each packet's movement is divided by the mean of exp(i theta) over its headings, because their spread
         would shorten it (`divide_spread`). What the attractor pulled the packet back in the last step is added
         (`carry`). The heading is that in the middle of the movement, so that where it ends does not depend on the tick
-        rate (`arc`). test_pose_cells.py::test_gain_is_one_at_any_speed, ::test_an_arc_ends_where_it_should,
+        rate (`arc`). test_path_integration.py::test_gain_is_one_at_any_speed, ::test_an_arc_ends_where_it_should,
         test_papers.py::test_a_run_is_that_of_the_literal_twin.
         """
         along = require_finite("distance_m", distance_m) / self.params.cell_m
