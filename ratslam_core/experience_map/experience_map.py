@@ -104,7 +104,7 @@ class ExperienceMap(MapReading):
     def declare_kidnapped(self) -> None:
         """[ours] The robot was carried, not driven: the way here is no transition, and odometry starts afresh.
 
-        test_experience_map.py::test_a_kidnap_makes_no_way.
+        test_experience_map_transitions.py::test_a_kidnap_makes_no_way.
         """
         self._kidnapped, self._sigma = True, self.params.carried_sigma
         self.pose_filter.forget(self.params.carried_sigma)
@@ -172,7 +172,7 @@ class ExperienceMap(MapReading):
     def _see_better(self, seen: Recognition) -> None:
         """[ours] The robot is nearer than before to where the active experience was made: measure the transition again.
 
-        test_experience_map.py::test_the_best_look_decides_the_transition.
+        test_experience_map_transitions.py::test_the_best_look_decides_the_transition.
         """
         arrival = self._arrival
         assert arrival is not None

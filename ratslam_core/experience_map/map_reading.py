@@ -117,7 +117,7 @@ class MapReading:
 
         [ours] Never less than its length in the map takes at the robot's average pace. From the edge of one zone into
         the next it is only a step, and a route over many such links would promise to arrive in half the time.
-        test_experience_map.py::test_no_link_is_quicker_than_the_robot.
+        test_experience_map_transitions.py::test_no_link_is_quicker_than_the_robot.
         """
         return self.transitions.seconds(self.poses, self.pace)[self._travelled]
 

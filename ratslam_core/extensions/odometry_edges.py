@@ -2,8 +2,8 @@
 
 These edges serve map correction only; no route takes them. Without them a stretch over known experiences, each known to
 some decimetres only, interrupts the rigid chain of odometry, and the map shrinks.
-test_experience_map.py::test_odometry_past_known_places_keeps_the_chain_rigid. `NoOdometryEdges` is the plain twin: in
-the papers only transitions tie experiences.
+test_experience_map_transitions.py::test_odometry_past_known_places_keeps_the_chain_rigid. `NoOdometryEdges` is the plain
+twin: in the papers only transitions tie experiences.
 """
 
 from __future__ import annotations

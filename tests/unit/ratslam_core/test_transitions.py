@@ -13,9 +13,8 @@ from hypothesis import strategies as st
 from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2, Recognition
 from ratslam_core.experience_map.transitions import Transitions
 
-from .drives import Robot
+from .drives import EXACT, Robot
 
-EXACT = ExperienceMapParams(anchor_sigma=0.0, odometry_drift=0.0, sweeps=0, solve_every=0)  # each passage counts 1
 HOME = Pose2(0.0, 0.0, 0.0)
 
 

@@ -1,0 +1,104 @@
+"""How the experience map is corrected: a closed loop, the bias that it tells, and when a solution is asked for."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from ratslam_core import ExperienceMapParams, Odometry, Pose2, Recognition, SolverParams
+from ratslam_core.experience_map import relaxation
+
+from .drives import Robot
+
+
+def lap(robot: Robot, reads: float, bias: float = 0.0) -> None:
+    """A square of 16 views, driven exactly, while the wheels report `reads` times the distance and a biased yaw rate."""
+    for side in range(4):
+        for part in range(4):
+            view = (4 * side + part + 1) % 16
+            turn = math.pi / 2 if part == 3 else 0.0
+            steps = 5
+            for step in range(steps):
+                middle = turn / steps / 2
+                robot.pose = robot.pose.compose(
+                    Pose2(0.75 / steps * math.cos(middle), 0.75 / steps * math.sin(middle), turn / steps)
+                )
+                odometry = Odometry(reads * 0.75 / steps / 0.1, turn / steps / 0.1 + bias, 0.1)
+                now = view if step == steps - 1 else (view - 1) % 16
+                known = any(robot.map.cell_state(i)[3] == now for i in range(len(robot.map)))
+                packet = robot.packet(PLACES[now]) if known else robot.packet()
+                if now not in PLACES:
+                    PLACES[now] = robot.pose
+                robot.map.step(packet, Recognition(now, not known, now, 0.1), odometry)
+            robot.map.correct()
+
+
+PLACES: dict[int, Pose2] = {}
+
+
+def loop(params: ExperienceMapParams, reads: float, bias: float, laps: int) -> Robot:
+    PLACES.clear()
+    PLACES[0] = Pose2(0.0, 0.0, 0.0)
+    robot = Robot(params)
+    robot.see(0, new=True)
+    for _ in range(laps):
+        lap(robot, reads, bias)
+    return robot
+
+
+def test_a_closed_loop_straightens_the_map_and_finds_the_bias() -> None:
+    bias = math.radians(1.0)
+    learnt = loop(ExperienceMapParams(solve_every=5), 1.0, bias, 6)
+    assert learnt.map.yaw_bias == pytest.approx(bias, rel=0.15)
+    assert len(learnt.map) == 16
+    true = [PLACES[learnt.map.cell_state(i)[3]] for i in range(16)]
+    for i in range(16):
+        d_map = np.hypot(*(learnt.map.poses[i, :2] - learnt.map.poses[(i + 8) % 16, :2]))
+        d_true = math.hypot(true[i].x - true[(i + 8) % 16].x, true[i].y - true[(i + 8) % 16].y)
+        assert d_map == pytest.approx(d_true, rel=0.1)
+
+
+@pytest.mark.parametrize(("a_step", "rested"), [(1e5, False), (2e2, True)])
+def test_a_correction_that_was_hard_is_followed_by_a_long_rest(
+    a_step: float, rested: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A loop that closes in every step. Corrections are due in every step, but rest after one in proportion to its cost."""
+    robot = loop(ExperienceMapParams(solve_every=1), 1.0, 0.0, 1)
+    robot.map.optimiser.params = SolverParams(work_a_step=a_step)
+    solve, solved = relaxation.solve, []
+    monkeypatch.setattr(relaxation, "solve", lambda *given: solved.append(solve(*given)) or solved[-1])
+    for _ in range(60):
+        robot.map.closures += 1
+        robot.map.steps += 1
+        robot.map.correct()
+    rests = max(1, math.ceil(solved[0].work / a_step))
+    assert (rests > 4) is rested
+    assert len(solved) == pytest.approx(60 / rests, abs=1)
+
+
+def test_without_calibration_no_bias_is_learnt() -> None:
+    robot = loop(ExperienceMapParams(solve_every=5, calibrate=False), 1.0, 0.02, 3)
+    assert robot.map.yaw_bias == 0.0
+    assert robot.map.closures > 0
+
+
+def test_the_exact_solution_is_asked_for_only_after_closures() -> None:
+    robot = Robot(ExperienceMapParams(solve_every=1, sweeps=0))
+    robot.see(0, new=True)
+    robot.go(1.0, 0.5, 1, new=True)
+    robot.map.poses[1, 0] += 0.5  # bent by hand
+    bent = robot.map.poses.copy()
+    robot.map.correct()
+    assert np.array_equal(robot.map.poses, bent)
+    robot.see(0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)))
+    robot.map.correct()
+    assert not np.array_equal(robot.map.poses, bent)
+    never = Robot(ExperienceMapParams(solve_every=0, sweeps=0))
+    never.see(0, new=True)
+    never.go(1.0, 0.5, 1, new=True)
+    never.see(0, packet=never.packet(Pose2(0.0, 0.0, 0.0)))
+    before = never.map.poses.copy()
+    never.map.correct()
+    assert np.array_equal(never.map.poses, before)
