@@ -64,7 +64,7 @@ def histogram(
     saturations; a saturation of `full` or more falls into the last bin.
 
     [ours] A pixel of a saturation below `certain` is spread over all hues, the more evenly the greyer it is, so that
-    noise does not make it jump from one hue to another. test_front_ends.py::test_grey_has_no_hue.
+    noise does not make it jump from one hue to another. test_hue_saturation.py::test_grey_has_no_hue.
     """
     level = np.minimum(saturation / full, 1.0) * (SATURATIONS - 1)
     low = np.minimum(level.astype(np.int64), SATURATIONS - 2)
