@@ -1,49 +1,20 @@
+"""Times to a goal and directions to it, by what the goal memory has learnt, and what it refuses."""
+
 from __future__ import annotations
 
 import math
 from dataclasses import fields, replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ratslam_core import GoalMemory, GoalMemoryParams, Packet, PoseCells, goal_links, goal_memory
+from ratslam_core import GoalMemory, GoalMemoryParams, Packet, PoseCells, goal_links
 
 from . import literal
+from .goal_drives import CELL_M, DT, SHAPE, SHORT_AND_SLOW, Place, drive, packet_cells
 
-SHAPE = (4, 64, 64)
-CELL_M = 0.25
-DT = 0.1
-Place = tuple[float, float]
-SHORT_AND_SLOW: list[Place] = [(10, 30), (40, 30)]
 LONG_AND_FAST: list[Place] = [(40, 30), (40, 44), (10, 44), (10, 30)]
-
-
-def packet_cells(x: float, y: float, shape: tuple[int, int, int] = SHAPE) -> tuple[NDArray, NDArray]:
-    """A Gaussian packet over two layers, as wide as those of the pose cells."""
-    rows, values = [], []
-    for dy in range(-4, 5):
-        for dx in range(-4, 5):
-            at_x, at_y = round(x) + dx, round(y) + dy
-            value = math.exp(-((at_x - x) ** 2 + (at_y - y) ** 2) / (2 * 1.8**2))
-            for theta, part in ((1, 0.7), (2, 0.3)):
-                cx, cy = at_x % shape[2], at_y % shape[1]
-                rows.append((cx, cy, theta, (theta * shape[1] + cy) * shape[2] + cx))
-                values.append(part * value)
-    return np.array(rows, np.int32), (np.array(values) / sum(values)).astype(np.float32)
-
-
-def drive(memory: GoalMemory, corners: list[Place], speed: float, start_s: float = 0.0) -> float:
-    """A packet moves from corner to corner (cells) at this speed in m/s; returns the time when it arrives."""
-    time_s = start_s
-    for a, b in pairwise(corners):
-        steps = max(1, round(math.dist(a, b) * CELL_M / speed / DT))
-        for k in range(steps):
-            time_s += DT
-            part = k / steps
-            memory.learn(*packet_cells(a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])), time_s)
-    return time_s
 
 
 def two_ways(params: GoalMemoryParams) -> GoalMemory:
@@ -116,49 +87,6 @@ def test_there_are_no_local_minima(explored: tuple[GoalMemory, PoseCells]) -> No
         assert math.hypot((end_x - goal_x + 32) % 64 - 32, (end_y - goal_y + 32) % 64 - 32) <= 1
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_a_small_memory_by_hand(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """C1-C5 with numbers: two cells in one iteration, two in the next, and then again."""
-    if interpreted:
-        literal.interpret(goal_links, monkeypatch)
-    monkeypatch.setattr(goal_memory, "ROOM", 2)
-    memory = GoalMemory(GoalMemoryParams(stride_m=0.0, share=0.3, rate=0.5), (2, 5, 8), CELL_M)
-    # (0, 0) holds 0.5 + 0.1 over two headings, (1, 0) holds 0.4, (5, 4) is below the share
-    cells = np.array([(0, 0, 0, 0), (1, 0, 0, 1), (0, 0, 1, 40), (5, 4, 0, 37)], np.int32)
-    memory.learn(cells, np.array([0.5, 0.4, 0.1, 0.1], np.float32), 10.0)
-    assert len(memory) == 0
-    # (7, 4) is diagonally across the corner from (0, 0), (0, 0) stays active
-    cells = np.array([(7, 4, 1, 79), (0, 0, 0, 0)], np.int32)
-    memory.learn(cells, np.array([0.8, 0.4], np.float32), 12.0)
-
-    def tau(elapsed: float, G_i: float, G_j: float, most: float, apart: float) -> float:
-        return 1.0 * elapsed + 0.25 * (1 - G_i * G_j / most**2) + 0.1 * apart
-
-    expected = {
-        (0, 39): tau(2, 0.6, 0.8, 0.8, math.sqrt(2)),
-        (1, 39): tau(2, 0.4, 0.8, 0.8, math.sqrt(5)),
-        (0, 1): tau(2, 0.4, 0.4, 0.8, 1),
-    }
-    pairs, times = memory.links
-    got = dict(zip(map(tuple, pairs.tolist()), times.tolist(), strict=True))
-    assert got == pytest.approx(expected)
-    memory.learn(cells[1:], np.array([0.9], np.float32), 12.5)
-    pairs, times = memory.links
-    got = dict(zip(map(tuple, pairs.tolist()), times.tolist(), strict=True))
-    expected[0, 39] = 0.5 * expected[0, 39] + 0.5 * tau(0.5, 0.8, 0.9, 0.9, math.sqrt(2))
-    assert got == pytest.approx(expected)
-    T = memory.times_to(0, 0)
-    assert T.shape == (5, 8)
-    assert (T[0, 0], T[4, 7], T[0, 1]) == pytest.approx((0, expected[0, 39], expected[0, 1]))
-    assert np.isinf(T).sum() == 37
-    assert memory.direction(T, Packet(6.2, 3.4, 0.0, 1.0)) == pytest.approx(math.atan2(1.6, 1.8))  # nothing known here
-    assert memory.direction(T, Packet(7.0, 4.0, 0.0, 1.0)) == pytest.approx(math.pi / 4)
-    assert memory.direction(T, Packet(7.3, 4.4, 0.0, 1.0)) is None  # arrived, across the corner
-    assert memory.direction(T, Packet(4.0, 2.0, 0.0, 1.0)) is not None
-    assert memory.direction(np.full((5, 8), np.inf), Packet(4.0, 2.0, 0.0, 1.0)) is None
-    assert memory.memory_bytes >= 12 * 3 + 4 * 40
-
-
 def test_the_faster_way_wins_over_the_shorter_one() -> None:
     """Because linked packets are a stride apart. Linked in every iteration, as printed, the shorter way would seem faster."""
     memory = two_ways(GoalMemoryParams())
@@ -210,33 +138,6 @@ def test_it_does_not_point_through_a_wall(interpreted: bool, monkeypatch: pytest
     assert max(x for x, _ in way) > 35
 
 
-def test_a_leap_of_the_packet_is_linked_but_is_no_direction() -> None:
-    """C V.E: the same place in two parts of the pose cells. There is a time between them, but no direction to drive."""
-    memory = GoalMemory(None, SHAPE, CELL_M)
-    memory.learn(*packet_cells(10, 10), 1.0)
-    memory.learn(*packet_cells(40, 40), 1.1)
-    T = memory.times_to(40, 40)
-    assert T[10, 10] == pytest.approx(0.1 + 0.1 * math.hypot(30, 30), rel=1e-5)
-    assert memory.direction(T, Packet(10.0, 10.0, 0.0, 1.0)) is None
-
-
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_a_weaker_packet_takes_part_but_does_not_say_where_the_robot_is(
-    interpreted: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    if interpreted:
-        literal.interpret(goal_links, monkeypatch)
-    memory = GoalMemory(None, SHAPE, CELL_M)
-    for k, x in enumerate((10.0, 11.0, 12.0)):
-        cells, activity = packet_cells(x, 10)
-        rival, weaker = packet_cells(63 - 7 * k, 40)
-        both = np.concatenate([0.6 * activity, 0.4 * weaker]).astype(np.float32)
-        memory.learn(np.concatenate([cells, rival]), both, 1.0 + k)
-        assert (len(memory) > 0) == (k == 2)  # a stride is reached after two cells, however far the rival packet moved
-    link = 2 + 0.25 * (1 - 0.4 / 0.6) + 0.1 * math.hypot(13, 30)
-    assert memory.times_to(12, 10)[40, 63] == pytest.approx(link, rel=1e-3)
-
-
 @pytest.mark.parametrize("by", [(40, 0), (0, 30), (45, 29)])
 def test_it_wraps_around(by: tuple[int, int]) -> None:
     """The same drive elsewhere on the torus gives the same times."""
@@ -250,37 +151,6 @@ def test_it_wraps_around(by: tuple[int, int]) -> None:
     heading = here.direction(T, Packet(30.0, 34.0, 0.0, 1.0))
     moved = Packet((30.0 + by[0]) % 64, (34.0 + by[1]) % 64, 0.0, 1.0)
     assert there.direction(there.times_to(*goal), moved) == pytest.approx(heading)
-
-
-def test_a_robot_that_stands_learns_nothing_until_it_moves() -> None:
-    memory = GoalMemory(None, SHAPE, CELL_M)
-    for k in range(50):
-        memory.learn(*packet_cells(10, 10), 0.1 * (k + 1))
-    assert len(memory) == 0
-    memory.learn(*packet_cells(12, 10), 5.1)
-    back = math.exp(-(2**2) / 1.8**2)  # the same link the other way: both ends active, but weakly
-    expected = 5.0 + 0.2 + 0.2 * 0.25 * (1 - back)
-    assert memory.times_to(12, 10)[10, 10] == pytest.approx(expected, rel=1e-3)
-
-
-def test_what_is_learnt_later_changes_the_times() -> None:
-    memory = GoalMemory(None, SHAPE, CELL_M)
-    time_s = drive(memory, SHORT_AND_SLOW, 0.1)
-    before = memory.times_to(38, 30)[30, 12]
-    for _ in range(5):
-        time_s = drive(memory, [*SHORT_AND_SLOW, SHORT_AND_SLOW[0]], 0.5, time_s)
-    assert memory.times_to(38, 30)[30, 12] < 0.6 * before
-
-
-def test_links_grow_with_the_places_seen_and_not_with_time() -> None:
-    memory = GoalMemory(None, SHAPE, CELL_M)
-    corners: list[Place] = [(10, 10), (50, 10), (50, 50), (10, 50), (10, 10)]
-    time_s = drive(memory, corners, 0.5)
-    first, room = len(memory), memory.memory_bytes
-    for _ in range(3):
-        time_s = drive(memory, corners, 0.5, time_s)
-    assert len(memory) < 1.5 * first
-    assert memory.memory_bytes <= 2 * room < 2_000_000
 
 
 def test_wrong_input_is_named() -> None:
@@ -328,20 +198,3 @@ def test_wrong_input_is_named() -> None:
         memory.direction(memory.times_to(10, 10), Packet(1.0, math.nan, 0.0, 1.0))
     with pytest.raises(ValueError, match="rate must be between"):
         GoalMemoryParams(rate=0.0)
-
-
-def test_wrong_cells_leave_no_trace(monkeypatch: pytest.MonkeyPatch) -> None:
-    """After a call that was refused, the next one is right, compiled and interpreted."""
-    for interpreted in (False, True):
-        if interpreted:
-            literal.interpret(goal_links, monkeypatch)
-        memory, fresh = GoalMemory(None, SHAPE, CELL_M), GoalMemory(None, SHAPE, CELL_M)
-        cells, activity = packet_cells(10, 10)
-        cells[20, 0] = 99
-        with pytest.raises(ValueError, match="must lie in"):
-            memory.learn(cells, activity, 1.0)
-        for each in (memory, fresh):
-            each.learn(*packet_cells(20, 20), 2.0)
-            each.learn(*packet_cells(23, 20), 3.0)
-        assert np.array_equal(memory.links[0], fresh.links[0])
-        assert np.array_equal(memory.links[1], fresh.links[1])
