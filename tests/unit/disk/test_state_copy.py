@@ -10,7 +10,7 @@ import pytest
 from disk import copy_state, encode
 from disk.kinds import attributes
 from ratslam_core import restore_snapshot, take_snapshot
-from tests.unit.ratslam_core.test_brain_file import drive, driven
+from tests.unit.ratslam_core.drives import drive, driven
 
 
 def held(value: object, found: dict[int, object] | None = None) -> dict[int, object]:

@@ -7,7 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from ratslam_core import Estimate, ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, RatSlam, Recognition
+from ratslam_core import (
+    Estimate,
+    ExperienceMap,
+    ExperienceMapParams,
+    GoalMemoryParams,
+    LocalViewParams,
+    Odometry,
+    Packet,
+    Pose2,
+    PoseCellParams,
+    RatSlam,
+    RatSlamParams,
+    Recognition,
+)
 
 SHAPE = (36, 64, 64)
 CELL_M = 0.25
@@ -15,6 +28,7 @@ RADIUS_M = 1.5
 STEP_RAD = 0.02  # along the circle in a tick: 0.03 m
 LAP = round(2 * math.pi / STEP_RAD)
 COLUMN_RAD = math.radians(50) / 12
+SONARS = (-0.5, 0.0, 0.5)
 EXACT = ExperienceMapParams(anchor_sigma=0.0, odometry_drift=0.0, sweeps=0, solve_every=0)  # each passage counts 1
 
 
@@ -93,3 +107,21 @@ class Circle:
 
     def miss_m(self, estimate: Estimate) -> float:
         return math.hypot(estimate.pose_map_robot.x - self.truth.x, estimate.pose_map_robot.y - self.truth.y)
+
+
+def drive(circle: Circle, brain: RatSlam, ticks: int) -> None:
+    """Along the circle with three sonars."""
+    for _ in range(ticks):
+        circle.advance(
+            brain, 1, ranges_m=np.array([1.0, 2.0, 5.0], np.float32) + np.float32(0.1 * np.sin(circle.angle))
+        )
+
+
+def driven(ticks: int = 420) -> tuple[Circle, RatSlam]:
+    """A brain with sonars and parameters of its own, after so many ticks of the circle."""
+    params = RatSlamParams(
+        PoseCellParams(n_x=32, n_y=24), LocalViewParams(adaptive=True), goal_memory=GoalMemoryParams(rate=0.3)
+    )
+    circle, brain = Circle(3), RatSlam(params, np.random.default_rng(5), sonar_angles_rad=SONARS)
+    drive(circle, brain, ticks)
+    return circle, brain
