@@ -28,7 +28,7 @@ class Relaxation:
         self.params = params
 
     def correct(self, map_: ExperienceMap) -> None:
-        """One step of map correction. test_relaxation.py::test_a_sweep_never_raises_the_residual."""
+        """One step of map correction. test_relaxation_sweep.py::test_a_sweep_never_raises_the_residual."""
         t, p, poses = map_.transitions, map_.params, map_.poses
         ends, moves = t.ends[: t.count], t.move[: t.count]
         for _ in range(p.sweeps):
@@ -247,7 +247,7 @@ def trust(
     weights: sigma^2 / variance; chain: rows of odometry, the others are looks. The pull of a look stops growing with
     its error (Huber). Odometry cannot be far off, so its pull even falls (Cauchy). Many looks that agree thus tear the
     one link along which the robot was carried, and a single look does not.
-    test_relaxation.py::test_many_looks_tear_the_link_of_a_kidnap.
+    test_relaxation_trust.py::test_many_looks_tear_the_link_of_a_kidnap.
     """
     ex, ey, turn = disagreement(poses, links, moves).T
     chi: NDArray[np.float64] = np.sqrt(weights * (ex**2 + ey**2 + (turn / p.rad_per_m) ** 2)) / sigma

@@ -2,7 +2,7 @@
 
 Sweeps alone lag behind a growing map. A larger map is solved less often, so that a step costs the same on average.
 Links that the map contradicts weigh less (`robust`). A disagreement that no map can explain, but a bias of the yaw rate
-can, is learnt as that bias (`calibrate`). test_relaxation.py::test_sweeps_and_solution_agree,
+can, is learnt as that bias (`calibrate`). test_relaxation_sweep.py::test_sweeps_and_solution_agree,
 test_experience_map_correction.py::test_a_correction_that_was_hard_is_followed_by_a_long_rest. `relaxation.Relaxation` is the
 plain twin: sweeps and nothing else.
 """

@@ -1,0 +1,69 @@
+"""How far map correction trusts links that contradict each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ratslam_core import SolverParams
+from ratslam_core.experience_map import relaxation
+from ratslam_core.experience_map.relaxation import solve
+from tests.unit.ratslam_core import literal
+
+from .pose_graphs import EXAMPLES
+
+
+def carried_chain(looks: int) -> tuple[np.ndarray, np.ndarray]:
+    """A straight chain whose middle link hides that the robot was carried 5 m, and looks across it.
+
+    Returns poses and trust after settling.
+    """
+    true_x = np.where(np.arange(40) < 20, 0.05 * np.arange(40), 0.05 * np.arange(40) - 5.0)
+    chain = [(k, k + 1) for k in range(39)]
+    across = [(39 - k, k) for k in range(looks)]
+    links = np.array(chain + across)
+    moves = np.zeros((len(links), 3))
+    moves[:39, 0] = 0.05  # what the wheels reported, also where the robot was carried
+    moves[39:, 0] = [true_x[j] - true_x[i] for i, j in across]
+    weights = np.array([1.0] * 39 + [0.02] * looks)
+    is_chain = np.arange(len(links)) < 39
+    poses = np.zeros((40, 3))
+    poses[:, 0] = 0.05 * np.arange(40)
+    trust = np.ones(len(links))
+    for _ in range(60):
+        trust = relaxation.trust(poses, links, moves, weights, is_chain, 0.01, SolverParams())
+        solve(poses, links, moves, weights * trust)
+    return poses[:, 0] - true_x, trust
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_many_looks_tear_the_link_of_a_kidnap(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if interpreted:
+        literal.interpret(relaxation, monkeypatch)
+    off, trust = carried_chain(looks=20)
+    torn = np.flatnonzero(trust[:39] < 0.5)
+    assert len(torn) >= 1
+    assert np.abs(off[30:]).max() < 0.3  # beyond the torn link the map is right
+    assert trust[39:].min() > 0.5
+
+
+def test_a_single_look_tears_nothing() -> None:
+    off, trust = carried_chain(looks=1)
+    assert trust[:39].min() > 0.5
+    assert trust[39] < 0.5
+    assert off[39] > 4.0
+
+
+@EXAMPLES
+@given(st.floats(0.001, 10), st.floats(0.001, 10), st.floats(-3, 3), st.booleans())
+def test_trust_falls_with_contradiction(near: float, far: float, turn: float, chain: bool) -> None:
+    near, far = sorted((near, far))
+    links, weights = np.array([[0, 1]]), np.array([0.5])
+    poses = np.zeros((2, 3))
+    trusts = [
+        relaxation.trust(poses, links, np.array([[d, 0.0, turn]]), weights, np.array([chain]), 0.01, SolverParams())[0]
+        for d in (near, far)
+    ]
+    assert 0 < trusts[1] <= trusts[0] <= 1
