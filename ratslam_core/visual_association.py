@@ -33,7 +33,7 @@ class VisualAssociation:
 
         [ours] What is injected was learnt before this step, and a view younger than `rest` injects nothing. Otherwise
         it would hold the packet back where it has just been learnt. The plain twin is `learn_first`, with `rest` 0.
-        test_slam.py::test_a_young_view_does_not_hold_the_packet_back.
+        test_visual_association.py::test_a_young_view_does_not_hold_the_packet_back.
         """
         self._time_s += dt
         if seen.recruited:
@@ -61,7 +61,8 @@ class VisualAssociation:
         [ours] Adaptive, which ACRA 2004 section 6.3 names as future work: twice the rate x strength of vision (1 for a
         view equal to the known one, 0 at the threshold) x confidence (the winning packet's share of all activity, 0
         while lost). A view that is hardly recognised, or seen while hypotheses compete, is hardly learnt; a clear one
-        at a certain place is learnt twice as fast. test_slam.py::test_the_adaptive_rate_follows_vision_and_confidence.
+        at a certain place is learnt twice as fast.
+        test_visual_association.py::test_the_adaptive_rate_follows_vision_and_confidence.
         """
         p = self.params
         return 2 * p.learning_rate * strength * confidence if p.adaptive else p.learning_rate

@@ -1,7 +1,8 @@
 """[ours] Notices that the robot was carried away, and when it knows again where it is.
 
 Image and sonars jump although the wheels did not. A robot that did not notice would learn the way it was carried as a
-link, which bends the map. test_slam.py::{test_a_kidnap_is_noticed_and_survived, test_sonars_help_to_notice_a_kidnap}.
+link, which bends the map. test_kidnap_detector.py::{test_a_kidnap_is_noticed_and_survived,
+test_sonars_help_to_notice_a_kidnap}.
 `NeverKidnapped` is the plain twin: the papers' robots relocalised by their pose cells alone.
 """
 
@@ -49,7 +50,7 @@ class KidnapDetector:
         elsewhere and knows its way there.
 
         agrees: whether the look agrees with where the robot believed itself to be; known: the experience that was
-        recognised, -1 for none. test_slam.py::{test_a_changed_place_does_not_keep_the_robot_lost,
+        recognised, -1 for none. test_kidnap_detector.py::{test_a_changed_place_does_not_keep_the_robot_lost,
         test_nobody_is_lost_for_ever}.
         """
         if not self.kidnapped:

@@ -2,7 +2,7 @@
 
 The image alone misses one kidnap in five, since walls look alike, and sometimes raises a false alarm when something is
 near. With the sonars, one in forty is missed, and false alarms are half as frequent. test_scan_change.py,
-test_slam.py::test_sonars_help_to_notice_a_kidnap.
+test_kidnap_detector.py::test_sonars_help_to_notice_a_kidnap.
 """
 
 from __future__ import annotations

@@ -109,6 +109,16 @@ class Circle:
         return math.hypot(estimate.pose_map_robot.x - self.truth.x, estimate.pose_map_robot.y - self.truth.y)
 
 
+def start(seed: int = 0, params: RatSlamParams | None = None) -> tuple[Circle, RatSlam]:
+    """A brain that stands still at the beginning of the circle and has seen its first image."""
+    circle, brain = Circle(seed), RatSlam(params)
+    first = brain.step(circle.image, Odometry(0.0, 0.0, 0.1))
+    seen = 0 if brain.params.local_view.enabled else -1
+    assert (first.experience, first.created, first.recognition.view) == (0, True, seen)
+    assert first.pose_map_robot == Pose2(0.0, 0.0, 0.0)
+    return circle, brain
+
+
 def drive(circle: Circle, brain: RatSlam, ticks: int) -> None:
     """Along the circle with three sonars."""
     for _ in range(ticks):

@@ -1,3 +1,5 @@
+"""A whole brain on laps of a circle: it knows places again, is the same each time, and takes parameters and sonars."""
+
 from __future__ import annotations
 
 import tracemalloc
@@ -6,26 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ratslam_core import (
-    ExperienceMapParams,
-    LocalViewParams,
-    Odometry,
-    Pose2,
-    PoseCellParams,
-    PoseCells,
-    RatSlam,
-    RatSlamParams,
-)
-from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, Circle
-
-
-def start(seed: int = 0, params: RatSlamParams | None = None) -> tuple[Circle, RatSlam]:
-    circle, brain = Circle(seed), RatSlam(params)
-    first = brain.step(circle.image, Odometry(0.0, 0.0, 0.1))
-    seen = 0 if brain.params.local_view.enabled else -1
-    assert (first.experience, first.created, first.recognition.view) == (0, True, seen)
-    assert first.pose_map_robot == Pose2(0.0, 0.0, 0.0)
-    return circle, brain
+from ratslam_core import LocalViewParams, Odometry, PoseCellParams, RatSlam, RatSlamParams
+from tests.unit.ratslam_core.drives import LAP, SONARS, Circle, start
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -43,123 +27,6 @@ def test_a_second_lap_finds_the_places_of_the_first(seed: int) -> None:
     assert brain.experience_map.robot.heading_rad == pytest.approx(circle.truth.heading_rad, abs=0.3)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_a_kidnap_is_noticed_and_survived(seed: int) -> None:
-    circle, brain = start(seed)
-    circle.advance(brain, 2 * LAP)
-    assert not brain.lost
-    map_before = brain.experience_map.poses.copy()
-    circle.angle += 2.6  # carried along a third of the circle and more; the wheels do not notice
-    first = circle.advance(brain, 1)[0]
-    assert brain.lost
-    assert circle.miss_m(first) > 1.0
-    lost_for = 0
-    while brain.lost and lost_for < LAP:
-        circle.advance(brain, 1)
-        lost_for += 1
-    assert not brain.lost
-    assert brain.relocalisations >= 1
-    assert circle.miss_m(circle.advance(brain, 20)[-1]) < 0.3
-    after = brain.experience_map.poses[: len(map_before)]
-    assert np.hypot(*(after - map_before)[:, :2].T).max() < 0.3  # the map is as before
-
-
-def test_a_changed_place_does_not_keep_the_robot_lost() -> None:
-    """Something was put up: every second view is new from now on, but the others are where they always were."""
-    circle, brain = start()
-    circle.advance(brain, 2 * LAP)
-    brain.declare_kidnapped()
-    rng = np.random.default_rng(1)
-    row = 0
-    for tick in range(LAP):
-        circle.angle += STEP_RAD
-        changed = tick % 8 >= 4
-        image = rng.integers(0, 256, (8, 12), np.uint8) if changed else circle.image
-        before = len(brain.experience_map)
-        brain.local_view._last = None  # only the first change is a surprise
-        estimate = brain.step(image, Odometry(RADIUS_M * STEP_RAD / 0.1, STEP_RAD / 0.1, 0.1))
-        known = estimate.experience < before and not changed
-        row = row + 1 if known else 0
-        assert row < 8  # never so many in a row
-        if not brain.lost:
-            break
-    assert not brain.lost
-    assert circle.miss_m(estimate) < 0.3
-
-
-def test_sights_that_contradict_each_other_find_nobody_again() -> None:
-    circle, brain = start()
-    circle.advance(brain, 2 * LAP)
-    brain.declare_kidnapped()
-    for agrees in [True] * 7 + ([False] + [True] * 6) * 3 + [False] + [True] * 7:
-        assert brain.lost
-        brain.kidnap_detector.settle(agrees, 0)
-    assert not brain.lost
-
-
-@pytest.mark.parametrize("most", [256, 2])
-def test_nobody_is_lost_for_ever(most: int) -> None:
-    """The robot stands before a new wall, perhaps a bland one, or was carried to where it has never been."""
-    circle, brain = start()
-    circle.advance(brain, 100)
-    still, wall = Odometry(0.0, 0.0, 0.1), np.random.default_rng(1).integers(0, most, (8, 12), np.uint8)
-    brain.step(wall, still)
-    assert brain.lost
-    steps = 0
-    while brain.lost:
-        brain.step(wall, still)
-        steps += 1
-        assert steps <= 2000
-    assert steps > 600  # but it takes long
-
-
-@pytest.mark.parametrize(
-    ("alike", "others_m", "noticed"),
-    [(0.7, 2.0, True), (0.7, 1.0, False), (1.2, 1.4, True), (1.2, 1.0, False), (0.4, 2.0, False)],
-)
-def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: bool) -> None:
-    """alike: the change of the image, as a share of what is needed without sonars. Sonars alone are not enough."""
-    near = np.full(8, 1.0)
-    circle, brain = Circle(0), RatSlam(sonar_angles_rad=np.linspace(-1.5, 1.5, 8).tolist())
-    still = Odometry(0.0, 0.0, 0.1)
-    brain.step(circle.image, still, ranges_m=near)
-    circle.angle += 2.6
-    params = brain.params.local_view
-    changed = replace(params, surprise=params.surprise * _unlikeness(circle) / alike)
-    brain.set_params(replace(brain.params, local_view=changed))
-    brain.step(circle.image, still, ranges_m=np.array([1.0, 1.0, 1.0, *[others_m] * 5]))
-    assert brain.local_view.image_change == pytest.approx(alike)
-    assert brain.lost is noticed
-
-
-def _unlikeness(circle: Circle) -> float:
-    """The difference between the current image and that at the beginning of the circle."""
-    fresh = RatSlam()
-    fresh.local_view.observe(Circle(0).image)
-    fresh.local_view.observe(circle.image)
-    return fresh.local_view.image_change
-
-
-def test_driving_on_is_no_kidnap() -> None:
-    circle, brain = start()
-    for _ in range(LAP):
-        circle.advance(brain, 1)
-        assert not brain.lost
-
-
-def test_views_that_show_nothing_neither_find_nor_lose() -> None:
-    circle, brain = start()
-    circle.advance(brain, LAP)
-    circle.angle += 2.6
-    circle.advance(brain, 1)
-    assert brain.lost
-    agreed = brain.kidnap_detector._agreed
-    brain.step(np.full((8, 12), 100, np.uint8), Odometry(0.0, 0.0, 0.1))
-    assert brain.lost
-    assert brain.experience_map.cell_state(brain.experience_map.active)[3] == -1
-    assert brain.kidnap_detector._agreed == 0 <= agreed
-
-
 def test_equal_inputs_give_equal_runs() -> None:
     runs = []
     for _ in range(2):
@@ -169,41 +36,6 @@ def test_equal_inputs_give_equal_runs() -> None:
     assert runs[0][0] == runs[1][0]
     assert np.array_equal(runs[0][1], runs[1][1])
     assert np.array_equal(runs[0][2], runs[1][2])
-
-
-def test_without_vision_there_is_path_integration_only() -> None:
-    params = RatSlamParams(local_view=LocalViewParams(enabled=False))
-    params = replace(params, experience_map=replace(params.experience_map, calibrate=False))
-    circle, brain = start(params=params)
-    alone = PoseCells()
-    alone.step(speed=0.0, yaw_rate=0.0, dt=0.1)
-    for estimate in circle.advance(brain, LAP + 50):
-        packet = alone.step(speed=RADIUS_M * STEP_RAD / 0.1, yaw_rate=STEP_RAD / 0.1, dt=0.1)
-        assert estimate.packet == packet
-        assert not estimate.relocalised
-    assert len(brain.local_view) == 0
-
-
-def test_vision_may_be_switched_off_and_on() -> None:
-    circle, brain = start()
-    circle.advance(brain, 60)
-    brain.set_params(replace(brain.params, local_view=replace(brain.params.local_view, enabled=False)))
-    circle.advance(brain, 60)
-    brain.set_params(replace(brain.params, local_view=replace(brain.params.local_view, enabled=True)))
-    circle.advance(brain, 2 * LAP)
-    assert circle.miss_m(circle.advance(brain, 1)[0]) < 0.6
-
-
-def test_a_young_view_does_not_hold_the_packet_back() -> None:
-    """While a view is too young to inject, the pose cells move as if it were not there."""
-    plain = ExperienceMapParams(calibrate=False)
-    seeing, blind = (
-        start(params=RatSlamParams(local_view=LocalViewParams(rest=r, enabled=e), experience_map=plain))
-        for r, e in [(1e6, True), (0, False)]
-    )
-    for _ in range(80):
-        a, b = seeing[0].advance(seeing[1], 1)[0], blind[0].advance(blind[1], 1)[0]
-        assert a.packet == b.packet
 
 
 def test_the_learnt_bias_is_taken_off_while_the_wheels_turn() -> None:
@@ -260,7 +92,6 @@ def test_what_is_not_an_image_changes_nothing() -> None:
     assert len(brain.experience_map) == 1
 
 
-SONARS = (-0.5, 0.0, 0.5)
 ECHOES = np.array([1.0, 2.0, 3.0], np.float32)
 
 
@@ -321,30 +152,6 @@ def test_a_leap_of_the_packet_is_no_way() -> None:
     y, x = np.divmod(pairs, 64)
     apart = np.hypot((x[:, 0] - x[:, 1] + 32) % 64 - 32, (y[:, 0] - y[:, 1] + 32) % 64 - 32)
     assert apart.max() < 7  # half a metre and the width of two packets; the leap was 10 cells
-
-
-def test_the_adaptive_rate_follows_vision_and_confidence() -> None:
-    params = RatSlamParams(local_view=LocalViewParams(adaptive=True))
-    circle, brain = start(params=params)
-    eta = params.local_view.learning_rate
-    rates = []
-    for _ in range(LAP + 60):
-        circle.advance(brain, 1)
-        rates.append(brain.association.learning_rate)
-    assert 0 <= min(rates) < max(rates) <= 2 * eta
-    one = circle.advance(brain, 1)[0]
-    strength = 1 - one.recognition.difference / params.local_view.match_threshold
-    assert brain.association.learning_rate == pytest.approx(2 * eta * strength * brain.pose_cells.winner.mass, rel=0.05)
-    circle.angle += 2.6
-    circle.advance(brain, 1)
-    assert brain.lost
-    assert brain.association.learning_rate == 0.0
-
-
-def test_the_fixed_rate_is_fixed() -> None:
-    circle, brain = start()
-    circle.advance(brain, LAP)
-    assert brain.association.learning_rate == brain.params.local_view.learning_rate
 
 
 @pytest.mark.slow

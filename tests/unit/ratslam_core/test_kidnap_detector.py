@@ -1,0 +1,128 @@
+"""A kidnap is noticed and survived, and what is none is not taken for one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ratslam_core import Odometry, RatSlam
+from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, Circle, start
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_kidnap_is_noticed_and_survived(seed: int) -> None:
+    circle, brain = start(seed)
+    circle.advance(brain, 2 * LAP)
+    assert not brain.lost
+    map_before = brain.experience_map.poses.copy()
+    circle.angle += 2.6  # carried along a third of the circle and more; the wheels do not notice
+    first = circle.advance(brain, 1)[0]
+    assert brain.lost
+    assert circle.miss_m(first) > 1.0
+    lost_for = 0
+    while brain.lost and lost_for < LAP:
+        circle.advance(brain, 1)
+        lost_for += 1
+    assert not brain.lost
+    assert brain.relocalisations >= 1
+    assert circle.miss_m(circle.advance(brain, 20)[-1]) < 0.3
+    after = brain.experience_map.poses[: len(map_before)]
+    assert np.hypot(*(after - map_before)[:, :2].T).max() < 0.3  # the map is as before
+
+
+def test_a_changed_place_does_not_keep_the_robot_lost() -> None:
+    """Something was put up: every second view is new from now on, but the others are where they always were."""
+    circle, brain = start()
+    circle.advance(brain, 2 * LAP)
+    brain.declare_kidnapped()
+    rng = np.random.default_rng(1)
+    row = 0
+    for tick in range(LAP):
+        circle.angle += STEP_RAD
+        changed = tick % 8 >= 4
+        image = rng.integers(0, 256, (8, 12), np.uint8) if changed else circle.image
+        before = len(brain.experience_map)
+        brain.local_view._last = None  # only the first change is a surprise
+        estimate = brain.step(image, Odometry(RADIUS_M * STEP_RAD / 0.1, STEP_RAD / 0.1, 0.1))
+        known = estimate.experience < before and not changed
+        row = row + 1 if known else 0
+        assert row < 8  # never so many in a row
+        if not brain.lost:
+            break
+    assert not brain.lost
+    assert circle.miss_m(estimate) < 0.3
+
+
+def test_sights_that_contradict_each_other_find_nobody_again() -> None:
+    circle, brain = start()
+    circle.advance(brain, 2 * LAP)
+    brain.declare_kidnapped()
+    for agrees in [True] * 7 + ([False] + [True] * 6) * 3 + [False] + [True] * 7:
+        assert brain.lost
+        brain.kidnap_detector.settle(agrees, 0)
+    assert not brain.lost
+
+
+@pytest.mark.parametrize("most", [256, 2])
+def test_nobody_is_lost_for_ever(most: int) -> None:
+    """The robot stands before a new wall, perhaps a bland one, or was carried to where it has never been."""
+    circle, brain = start()
+    circle.advance(brain, 100)
+    still, wall = Odometry(0.0, 0.0, 0.1), np.random.default_rng(1).integers(0, most, (8, 12), np.uint8)
+    brain.step(wall, still)
+    assert brain.lost
+    steps = 0
+    while brain.lost:
+        brain.step(wall, still)
+        steps += 1
+        assert steps <= 2000
+    assert steps > 600  # but it takes long
+
+
+@pytest.mark.parametrize(
+    ("alike", "others_m", "noticed"),
+    [(0.7, 2.0, True), (0.7, 1.0, False), (1.2, 1.4, True), (1.2, 1.0, False), (0.4, 2.0, False)],
+)
+def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: bool) -> None:
+    """alike: the change of the image, as a share of what is needed without sonars. Sonars alone are not enough."""
+    near = np.full(8, 1.0)
+    circle, brain = Circle(0), RatSlam(sonar_angles_rad=np.linspace(-1.5, 1.5, 8).tolist())
+    still = Odometry(0.0, 0.0, 0.1)
+    brain.step(circle.image, still, ranges_m=near)
+    circle.angle += 2.6
+    params = brain.params.local_view
+    changed = replace(params, surprise=params.surprise * _unlikeness(circle) / alike)
+    brain.set_params(replace(brain.params, local_view=changed))
+    brain.step(circle.image, still, ranges_m=np.array([1.0, 1.0, 1.0, *[others_m] * 5]))
+    assert brain.local_view.image_change == pytest.approx(alike)
+    assert brain.lost is noticed
+
+
+def _unlikeness(circle: Circle) -> float:
+    """The difference between the current image and that at the beginning of the circle."""
+    fresh = RatSlam()
+    fresh.local_view.observe(Circle(0).image)
+    fresh.local_view.observe(circle.image)
+    return fresh.local_view.image_change
+
+
+def test_driving_on_is_no_kidnap() -> None:
+    circle, brain = start()
+    for _ in range(LAP):
+        circle.advance(brain, 1)
+        assert not brain.lost
+
+
+def test_views_that_show_nothing_neither_find_nor_lose() -> None:
+    circle, brain = start()
+    circle.advance(brain, LAP)
+    circle.angle += 2.6
+    circle.advance(brain, 1)
+    assert brain.lost
+    agreed = brain.kidnap_detector._agreed
+    brain.step(np.full((8, 12), 100, np.uint8), Odometry(0.0, 0.0, 0.1))
+    assert brain.lost
+    assert brain.experience_map.cell_state(brain.experience_map.active)[3] == -1
+    assert brain.kidnap_detector._agreed == 0 <= agreed
