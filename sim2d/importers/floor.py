@@ -28,7 +28,7 @@ def choose_floor(name: str, free: NDArray[np.bool_], scale_m: float, radius_m: f
     """The largest connected part of `free` (row 0 at the bottom) on which a robot of this radius can drive.
 
     [ours] A part that covers most of the picture's rim is taken for the paper around the plan, unless it is more than
-    ten times as large as every other part: test_importers.py::test_the_paper_around_a_plan_is_not_its_floor.
+    ten times as large as every other part: test_picture_maps.py::test_the_paper_around_a_plan_is_not_its_floor.
     """
     clear = cv2.distanceTransform(np.pad(free, 1).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
     clear_m = (clear - 1.5) * scale_m  # to the pixel's edge, less one pixel, since simplified walls may stray by that
