@@ -1,0 +1,57 @@
+"""The tab Memory: packets, goal, snaps and the checks of the attractor."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.fake_snapshots import fake_snapshot
+from tests.unit.web.panel_page import Page, words_of
+from web.messages import Event, Goal, Snapshot
+from web.panel.panel import Panel
+from web.switches import Switches
+
+
+@pytest.fixture
+def page() -> Page:
+    return Page(Panel(Switches()))
+
+
+def memory(page: Page, snapshot: Snapshot) -> str:
+    return words_of(page.told(snapshot)["memory"][0]["tables"])
+
+
+def test_the_memory_says_why_there_is_nothing(page: Page) -> None:
+    snapshot = fake_snapshot(430)
+    bare = replace(snapshot, events=(), goal=None, relocalisations=0, revisit_consistency=None)
+    bare = replace(bare, pose_cells=replace(bare.pose_cells, packets=()))
+    words = memory(page, bare)
+    assert "no activity yet" in words
+    assert "none: click on the map and the robot goes there" in words
+    assert "none yet: nothing seen before has come into view again" in words
+    assert "nothing had to jump" in memory(page, replace(bare, revisit_consistency=0.5))
+    assert "none of late: 7 so far" in memory(page, replace(bare, relocalisations=7))
+
+
+def test_the_memory_tells_packets_goal_and_snaps_with_their_units(page: Page) -> None:
+    snapshot = replace(
+        fake_snapshot(430), goal=Goal(7, 1.0, 2.0, "tracking", 12.4, 3.21, np.zeros((0, 2)), np.zeros(0))
+    )
+    packet = snapshot.pose_cells.packets[0]
+    snapshot = replace(snapshot, events=(Event(1, 65.0, "snap", "snapped 5.6 m"), Event(2, 70.0, "goal", "goal set")))
+    words = memory(page, snapshot)
+    assert f"x′ {packet.x * snapshot.pose_cells.cell_m:.1f} m" in words
+    assert "'12 s'" in words
+    assert "'3.2 m'" in words
+    assert "('1:05', 'snapped 5.6 m')".replace("(", "[").replace(")", "]") in words
+    assert "goal set" not in words
+
+
+@pytest.mark.parametrize(
+    ("total", "least", "verdict"), [(1.0, 0.1, "holds"), (0.9, 0.1, "not normalised yet"), (1.0, -0.1, "broken")]
+)
+def test_the_attractor_is_checked(page: Page, total: float, least: float, verdict: str) -> None:
+    snapshot = fake_snapshot(430)
+    assert verdict in memory(page, replace(snapshot, pose_cells=replace(snapshot.pose_cells, total=total, least=least)))
