@@ -1,4 +1,4 @@
-"""A panel's message as the page reads it."""
+"""Messages as the page reads them: text, and a panel's with arrays."""
 
 from __future__ import annotations
 
@@ -28,3 +28,11 @@ def read_frame(raw: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
 
 def read_message(message: str | bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     return read_frame(message) if isinstance(message, bytes) else (orjson.loads(message), {})
+
+
+def until(socket: Any, kind: str, **fields: Any) -> dict[str, Any]:
+    """The next message of this kind with these fields."""
+    while True:
+        message = orjson.loads(socket.receive().get("text") or '{"type": "a part with arrays"}')
+        if message["type"] == kind and all(message[name] == value for name, value in fields.items()):
+            return message
