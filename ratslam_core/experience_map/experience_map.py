@@ -59,7 +59,8 @@ class ExperienceMap(MapReading):
         a packet whose place or heading is not finite.
         """
         require_behaviour(behaviour)
-        require_finite("packet", packet.x + packet.y + packet.heading_rad)
+        for name in ("x", "y", "heading_rad"):
+            require_finite(f"packet.{name}", getattr(packet, name))
         self.steps, self.agrees = self.steps + 1, True
         if self.active < 0:
             self._create(packet, seen.view, IDENTITY)

@@ -208,7 +208,7 @@ class PoseCells:
     def cells_apart(self, x1: float, y1: float, x2: float, y2: float) -> float:
         """Distance in the x', y' plane, around the torus, in cells."""
         n_y, n_x = self.shape[1:]
-        return math.hypot((x1 - x2 + n_x / 2) % n_x - n_x / 2, (y1 - y2 + n_y / 2) % n_y - n_y / 2)
+        return math.hypot(math.remainder(x1 - x2, n_x), math.remainder(y1 - y2, n_y))
 
     # ------------------------------------------------------------ inside
 

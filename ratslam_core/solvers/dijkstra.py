@@ -12,18 +12,18 @@ near: poses, reach (m, 0 = no shortcuts), pace (s/m), and the grid of `buckets`.
 from __future__ import annotations
 
 import math
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-Whole: TypeAlias = int | np.integer[Any]
+from ratslam_core.solvers.heap import Heap, Whole, pop, push, twice
+
 Links: TypeAlias = tuple[
     NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float64]
 ]
 Near: TypeAlias = tuple[NDArray[np.float64], float, float, NDArray[np.int32], NDArray[np.int32]]
-Heap: TypeAlias = tuple[NDArray[np.float64], NDArray[np.uint32]]  # seconds, and the node of each
 LEAST_S = 1e-3  # no link takes less, so that no way leads round in circles
 
 
@@ -66,7 +66,7 @@ def mend(goal: int, times: NDArray[np.float64], parent: NDArray[np.int32], links
     size, heap = 0, (np.empty(n), np.empty(n, np.uint32))
     for node in range(n):
         if times[node] < np.inf and _offers(node, times, links, near):
-            _push(size, heap, times[node], node)
+            push(size, heap, times[node], node)
             size += 1
     _settle(size, heap, times, parent, links, near)
 
@@ -164,17 +164,17 @@ def _settle(
     while size > 0:
         now, node = heap[0][0], np.uint64(heap[1][0])
         size -= 1
-        _pop(size, heap)
+        pop(size, heap)
         if now > times[node]:
             continue
         begin = np.uint64(start[node])
         while size + used[node] > len(heap[0]):
-            heap = _twice(heap)
+            heap = twice(heap)
         for at in range(begin, begin + np.uint64(used[node])):
             other, time = np.uint64(others[at]), now + seconds[np.uint64(halves[at] >> np.uint32(1))]
             if time < times[other]:
                 times[other], parent[other] = time, node
-                _push(size, heap, time, other)
+                push(size, heap, time, other)
                 size += 1
         if reach > 0:
             for k in range(9):
@@ -184,45 +184,7 @@ def _settle(
                     if time < times[near_by]:
                         times[near_by], parent[near_by] = time, node
                         if size == len(heap[0]):
-                            heap = _twice(heap)
-                        _push(size, heap, time, near_by)
+                            heap = twice(heap)
+                        push(size, heap, time, near_by)
                         size += 1
                     near_by = following[near_by]
-
-
-@njit(cache=True, nogil=True)
-def _twice(heap: Heap) -> Heap:
-    """The heap with twice the room."""
-    return np.concatenate((heap[0], heap[0])), np.concatenate((heap[1], heap[1]))
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _push(size: Whole, heap: Heap, time: float, node: Whole) -> None:
-    key, name = heap
-    one, at = np.uint64(1), np.uint64(size)
-    while at:
-        above = (at - one) >> one
-        if key[above] <= time:
-            break
-        key[at], name[at] = key[above], name[above]
-        at = above
-    key[at], name[at] = time, node
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _pop(size: Whole, heap: Heap) -> None:
-    """Remove the first entry; `size` entries are left."""
-    key, name = heap
-    one, at, end = np.uint64(1), np.uint64(0), np.uint64(size)
-    last, node = key[end], name[end]
-    while True:
-        below = (at << one) + one
-        if below >= end:
-            break
-        if below + one < end and key[below + one] < key[below]:
-            below += one
-        if last <= key[below]:
-            break
-        key[at], name[at] = key[below], name[below]
-        at = below
-    key[at], name[at] = last, node

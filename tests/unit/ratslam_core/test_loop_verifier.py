@@ -28,6 +28,27 @@ def test_what_fits_the_map_needs_no_confirmation(dx: float, dy: float, turn: flo
     assert LoopVerifier(P).believes(HERE, far(dx, dy, turn), needed)
 
 
+@pytest.mark.parametrize(
+    ("at", "believed"),
+    [
+        (Pose2(P.snap_m, 0.0, 0.0), True),
+        (Pose2(0.0, -P.snap_m, 0.0), True),
+        (Pose2(0.0, 0.0, P.snap_rad), True),
+        (Pose2(math.nextafter(P.snap_m, 9.0), 0.0, 0.0), False),
+        (Pose2(0.0, 0.0, math.nextafter(P.snap_rad, 9.0)), False),
+    ],
+)
+def test_what_is_just_as_far_as_the_limit_is_no_jump(at: Pose2, believed: bool) -> None:
+    assert LoopVerifier(P).believes(Pose2(0.0, 0.0, 0.0), at, 2) is believed
+
+
+@pytest.mark.parametrize("step", [(P.agrees_m, 0.0), (0.0, P.agrees_rad)])
+def test_sights_that_are_just_as_far_apart_as_the_limit_agree(step: tuple[float, float]) -> None:
+    verifier, origin = LoopVerifier(replace(P, snap_m=1.0)), Pose2(0.0, 0.0, 0.0)
+    assert not verifier.believes(origin, Pose2(0.0, 2.0, 0.0), 2)
+    assert verifier.believes(origin, Pose2(step[0], 2.0, step[1]), 2)
+
+
 @given(st.integers(1, 20), st.sampled_from([(3.0, 0.0, 0.0), (0.0, -1.1, 0.0), (0.0, 0.0, 0.9), (0.0, 0.0, math.pi)]))
 def test_a_jump_is_believed_at_the_sight_that_was_asked_for(needed: int, jump: tuple[float, float, float]) -> None:
     verifier = LoopVerifier(P)
