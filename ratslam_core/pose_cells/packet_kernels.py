@@ -96,9 +96,8 @@ def packet_rows(
         out[r, COS] = sums[c, COS] / mass
         out[r, SIN] = sums[c, SIN] / mass
         sums[c, MASS] = -1.0
-    if found > 1:
-        for i in range(n):
-            owner[i] = rank[owner[i]]
+    for i in range(n):
+        owner[i] = rank[owner[i]]
     return found
 
 
@@ -215,12 +214,12 @@ def weigh(
     wx, wy, wt = min(reach, (n_x - 1) // 2), min(reach, (n_y - 1) // 2), min(reach, (n_theta - 1) // 2)
     sums = np.zeros((packets, 4))
     own = _half_way_to_the_next(rows, packets, shape)
-    mine = -1
+    before = 0
     for i in range(n):
-        before, mine, least = mine, -1, np.inf
+        mine, least = -1, np.inf
         x = y = t = 0.0
         for k in range(packets):
-            p = k if before < 0 else (before + k) % packets  # the nearest is most often that of the cell before
+            p = (before + k) % packets  # the nearest is most often that of the cell before
             dx = offset(cells[i, X], rows[p, X], n_x)
             dy = offset(cells[i, Y], rows[p, Y], n_y)
             dt = offset(cells[i, THETA], rows[p, THETA], n_theta)
@@ -231,6 +230,7 @@ def weigh(
                 if apart < own[p]:
                     break
         if mine >= 0:
+            before = mine
             v = values[i]
             sums[mine, X] += v * x
             sums[mine, Y] += v * y

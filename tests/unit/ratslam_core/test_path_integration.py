@@ -10,6 +10,7 @@ import pytest
 
 from ratslam_core import PoseCellParams, PoseCells
 
+from . import literal
 from .packets import drive, rest, settled, two_packets, where
 
 
@@ -65,6 +66,21 @@ def test_every_packet_is_moved_not_only_the_winner() -> None:
         start = starts[packet.id]
         way = packet.x - start.x, packet.y - start.y
         assert way == pytest.approx((2 * math.cos(start.heading_rad), 2 * math.sin(start.heading_rad)), abs=0.02)
+
+
+def test_much_activity_is_moved_whole_however_much_room_it_takes() -> None:
+    """Between two cells each active cell becomes eight, more than there is room for at first."""
+    pose_cells = PoseCells(PoseCellParams(n_x=60, n_y=60))
+    field = np.zeros(pose_cells.shape, np.float32)
+    field[::2, ::3, ::3] = np.random.default_rng(3).uniform(0.5, 1.0, field[::2, ::3, ::3].shape)
+    literal.fill(pose_cells, field)
+    pose_cells.settle()
+    before = pose_cells.activity.astype(np.float64)
+    assert np.count_nonzero(before) > 5_000
+    pose_cells.integrate(0.0, math.radians(5.0))  # half a layer
+    after = pose_cells.activity
+    assert np.count_nonzero(after) == 2 * np.count_nonzero(before)
+    np.testing.assert_allclose(after, 0.5 * (before + np.roll(before, 1, 0)), atol=1e-9)
 
 
 def test_a_fast_packet_stays_one() -> None:
