@@ -133,9 +133,7 @@ class Session:
 
     def set_parameters(self, values: Mapping[str, Value]) -> list[str]:
         """Change several parameters, all or none. Returns the names of those that wait for the next reset."""
-        config = self.config
-        for name, value in values.items():
-            config = config.with_value(name, value)
+        config = self.config.with_values(values)
         changes: dict[str, dict[str, Value]] = {"robot": {}}  # robot first: only it can refuse (no room)
         waiting: list[str] = []
         for (dotted, item, old), (_, _, new) in zip(self.config.items(), config.items(), strict=True):

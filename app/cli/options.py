@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TypeAlias
 
-from app.config import Config, from_toml, parse_value
+from app.config import Config, Value, from_toml, parse_value
 from app.config.presets import PRESETS, preset
 from ratslam_core import RatSlam, load_brain
 from sim2d import DEFAULT_WORLD, World
@@ -45,12 +45,13 @@ def config_of(args: argparse.Namespace, config: Config) -> Config:
             raise ValueError(f"--config {args.config}: {error.strerror or error}") from None
         except ValueError as error:
             raise ValueError(f"--config {args.config}: {error}") from None
+    values: dict[str, Value] = {}
     for pair in args.set:
         name, equals, value = pair.partition("=")
         if not equals:
             raise ValueError(f"--set takes NAME=VALUE, got {pair!r}")
-        config = config.with_value(name, parse_value(value))
-    return config
+        values[name] = parse_value(value)
+    return config.with_values(values)
 
 
 def session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None]:

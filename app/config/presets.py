@@ -45,9 +45,7 @@ PRESETS: dict[str, dict[str, Value]] = {**ENGINES, **ROBOTS}
 
 def preset(name: str, base: Config) -> Config:
     """`base` with the values of a preset. ValueError lists the presets if none has this name."""
-    for parameter, value in values_of(name).items():
-        base = base.with_value(parameter, value)
-    return base
+    return base.with_values(values_of(name))
 
 
 def values_of(name: str) -> dict[str, Value]:

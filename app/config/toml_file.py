@@ -46,19 +46,17 @@ def from_toml(text: str, base: Config | None = None) -> Config:
         tree = _toml(text)
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"not valid TOML: {error}") from None
-    config = base or Config()
+    config, values = base or Config(), dict[str, Value]()
     sections = [item.name for item in fields(config)]
-    for section, table in sorted(
-        tree.items(), key=lambda item: item[0] != "robot"
-    ):  # robot first: its field of view is copied to local_view, whose own value must be able to override it
+    for section, table in tree.items():
         if section not in sections or not isinstance(table, dict):
             raise ValueError(f"unknown section {section!r}; expected one of: {', '.join(sections)}")
         keys = [item.name for item in fields(getattr(config, section))]
         for key, value in cast(dict[str, Any], table).items():
             if key not in keys:
                 raise ValueError(f"unknown parameter '{section}.{key}'; expected one of: {', '.join(keys)}")
-            config = config.with_value(f"{section}.{key}", value)
-    return config
+            values[f"{section}.{key}"] = value
+    return config.with_values(values)
 
 
 def parse_value(text: str) -> Value:

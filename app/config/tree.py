@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import Field, dataclass, fields, replace
 from typing import Any
 
@@ -75,23 +75,40 @@ class Config:
                     yield f"{section.name}.{item.name}", item, getattr(params, item.name)
 
     def with_value(self, name: str, value: Value) -> Config:
-        """A copy with one parameter changed. ValueError names an unknown parameter, or the range of a known one.
+        """A copy with one parameter changed; the rest as in `with_values`."""
+        return self.with_values({name: value})
 
-        Setting `robot.camera_fov_rad` also sets `local_view.field_of_view`, so that the brain knows its camera.
+    def with_values(self, values: Mapping[str, Value]) -> Config:
+        """A copy with these parameters changed, all at once, so that two that limit each other need no order.
+
+        Setting `robot.camera_fov_rad` also sets `local_view.field_of_view`, unless that is given, too, so that the
+        brain knows its camera. ValueError names an unknown parameter, or the range of a known one.
         """
         known = {dotted: old for dotted, _, old in self.items()}
-        if name not in known:
-            close = difflib.get_close_matches(name, known, n=3) or sorted(known)
-            raise ValueError(f"unknown parameter {name!r}; expected one of: {', '.join(close)}")
-        section, key = name.split(".")
-        try:
-            if isinstance(known[name], float) and type(value) is int:
-                value = float(value)
-            changed = replace(self, **{section: replace(getattr(self, section), **{key: value})})
-        except OverflowError:
-            raise ValueError(f"{name} must be within its range; the number given is far too large") from None
-        except ValueError as error:
-            raise ValueError(f"{section}.{error}") from None
-        if name == "robot.camera_fov_rad":
-            changed = changed.with_value("local_view.field_of_view", value)
+        changes: dict[str, dict[str, Value]] = {"robot": {}}  # first: it is to be named if the field of view is wrong
+        for name, value in values.items():
+            if name not in known:
+                close = difflib.get_close_matches(name, known, n=3) or sorted(known)
+                raise ValueError(f"unknown parameter {name!r}; expected one of: {', '.join(close)}")
+            section, key = name.split(".")
+            changes.setdefault(section, {})[key] = _fitting(name, known[name], value)
+        if "camera_fov_rad" in changes["robot"]:
+            changes.setdefault("local_view", {}).setdefault("field_of_view", changes["robot"]["camera_fov_rad"])
+        changed = self
+        for section, change in changes.items():
+            try:
+                changed = replace(changed, **{section: replace(getattr(changed, section), **change)})
+            except ValueError as error:
+                raise ValueError(f"{section}.{error}") from None
         return changed
+
+
+def _fitting(name: str, old: Value, value: Value) -> Value:
+    """A whole number as a float if the parameter is one. ValueError if it is larger than any float."""
+    if type(value) is not int:
+        return value
+    try:
+        number = float(value)
+    except OverflowError:
+        raise ValueError(f"{name} must be within its range; the number given is far too large") from None
+    return number if isinstance(old, float) else value

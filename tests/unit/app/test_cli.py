@@ -26,6 +26,12 @@ def test_config_is_taken_back(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert capsys.readouterr().out == text
 
 
+def test_settings_of_one_command_line_are_taken_together(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["config", "--set", "robot.physics_rate_hz=77", "robot.sensor_rate_hz=7"]) == 0
+    assert "physics_rate_hz = 77\n" in capsys.readouterr().out
+    assert cli.main(["config", "--set", "robot.physics_rate_hz=77"]) == 2
+
+
 def test_worlds_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["worlds"]) == 0
     lines = capsys.readouterr().out.splitlines()

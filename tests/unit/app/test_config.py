@@ -87,6 +87,18 @@ def test_left_out_parameters_keep_their_value() -> None:
     assert from_toml("") == Config()
 
 
+def test_parameters_that_limit_each_other_are_set_together_in_any_order() -> None:
+    """77 is no multiple of 10, nor 240 of 7: one after the other, neither would be taken."""
+    rates = {"robot.physics_rate_hz": 77, "robot.sensor_rate_hz": 7}
+    config = Config().with_values(rates)
+    assert config == Config().with_values(dict(reversed(rates.items())))
+    assert from_toml(to_toml(config)) == config
+    with pytest.raises(ValueError, match=r"robot\.physics_rate_hz must be a multiple of sensor_rate_hz \(10\), got 77"):
+        Config().with_value("robot.physics_rate_hz", 77)
+    with pytest.raises(ValueError, match=r"robot\.camera_fov_rad must be from"):
+        Config().with_values({"local_view.rest": 0.0, "robot.camera_fov_rad": 9.0})
+
+
 def test_a_whole_number_for_a_float() -> None:
     value = Config().with_value("local_view.match_threshold", 8).local_view.match_threshold
     assert (value, type(value)) == (8.0, float)
