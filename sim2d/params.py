@@ -47,7 +47,7 @@ def _about(
     }
 
 
-@kind("parameters of robot/1")
+@kind("parameters of robot/2")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimParams:
     """Robot, camera, sonar, laser and odometry of one simulation. A value out of its range raises ValueError."""
@@ -75,6 +75,15 @@ class SimParams:
     max_yaw_acceleration: float = _number(
         6.0, 0.1, 60.0, "alpha_max", "rad/s^2", "the motors' limit on change of yaw rate", live=True
     )
+    mass_kg: float = _number(8.0, 1.0, 100.0, "m", "kg", "mass of the robot, the same all over its disc", live=True)
+    grip_n: float = _number(80.0, 1.0, 1000.0, "F_g", "N", "the wheels slip rather than pass on more force", live=True)
+    turn_grip_nm: float = _number(
+        20.0, 0.1, 200.0, "tau_g", "N m", "the wheels slip rather than pass on more torque in a turn", live=True
+    )
+    friction: float = _number(
+        0.3, 0.0, 1.0, "mu", "1", "friction of the robot's rim and of all that it touches; their product is Coulomb's",
+        live=True,
+    )  # fmt: skip
 
     camera_fov_rad: float = _number(
         math.radians(50),

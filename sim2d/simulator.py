@@ -122,7 +122,8 @@ class Simulator:
         self._tick += 1
         self.actors.step(self._time_s, here, params.robot_radius_m, params.max_speed * params.tick_s, self.office)
         reach = self._robot.reach(params) + FREE_M
-        space = None if self._sensors.is_clear(*here, reach) else self._surroundings.space(*here, reach)
+        clear = self._sensors.is_clear(*here, reach)
+        space = None if clear else self._surroundings.space(*here, reach, params.friction)
         self._robot.drive(drive.speed, drive.yaw_rate, params, self._slowness(*here), space)
         self._motion = true_motion(before, self._robot.pose, params.tick_s)
         self._frame = self._sense(*self._sensors.odometry(*self._motion, params))

@@ -2,7 +2,7 @@
 
 A kinematic body, the wheels, moves as commanded. A pivot and a gear with bounded force drag the disc along. At a wall
 the force is not enough, and the disc stops there; setting the disc's velocity instead would press it 10 cm into the
-wall. On free floor the disc goes where the wheels roll, and pymunk is not needed.
+wall. On free floor the disc goes where the wheels roll, and pymunk is not needed, as long as the wheels grip.
 """
 
 from __future__ import annotations
@@ -17,10 +17,6 @@ from pymunk.constraints import GearJoint, PivotJoint
 from disk import kind
 from sim2d.params import SimParams
 
-_MASS_KG = 8.0
-_GRIP_N = 80.0  # beyond this force the wheels slip: 10 m/s^2, far more than the motors ask for
-_GRIP_NM = 20.0
-_FRICTION = 0.3
 Pose = tuple[float, float, float]
 _STEPS_PER_COMMAND = 4  # the motor controller runs at a quarter of the physics rate: setting velocities is slow
 
@@ -49,6 +45,8 @@ class Robot:
         dt = 1.0 / params.physics_rate_hz
         period = _STEPS_PER_COMMAND * dt
         motors = speed, yaw_rate, params.max_acceleration * period, params.max_yaw_acceleration * period
+        if space is None and not _grips(params):
+            space = pymunk.Space()
         if space is not None:
             self._push(space, motors, params, dt)
             return
@@ -59,8 +57,8 @@ class Robot:
     def _push(
         self, space: pymunk.Space, motors: tuple[float, float, float, float], params: SimParams, dt: float
     ) -> None:
-        """Drive near obstacles: the wheels drag the disc along, and pymunk lets it collide."""
-        body, wheels = self._put_into(space, params.robot_radius_m)
+        """Drive near obstacles or on wheels that may slip: they drag the disc along, and pymunk lets it collide."""
+        body, wheels = self._put_into(space, params)
         period, v, w = _STEPS_PER_COMMAND * dt, self.speed, self.yaw_rate
         for first in range(0, params.substeps, _STEPS_PER_COMMAND):
             v, w = _commanded(v, w, *motors)
@@ -72,16 +70,17 @@ class Robot:
         self.pose, self.speed, self.yaw_rate = (x, y, body.angle), v, w
         self.velocity, self.spin = (vx, vy), body.angular_velocity
 
-    def _put_into(self, space: pymunk.Space, radius: float) -> tuple[pymunk.Body, pymunk.Body]:
+    def _put_into(self, space: pymunk.Space, params: SimParams) -> tuple[pymunk.Body, pymunk.Body]:
         """Put the disc into the space, and the wheels that drag it. Nothing stops the wheels."""
-        body = pymunk.Body(_MASS_KG, pymunk.moment_for_circle(_MASS_KG, 0.0, radius))
+        radius, mass = params.robot_radius_m, params.mass_kg
+        body = pymunk.Body(mass, pymunk.moment_for_circle(mass, 0.0, radius))
         disc = pymunk.Circle(body, radius)
-        disc.friction = _FRICTION
+        disc.friction = params.friction
         wheels = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
         pivot = PivotJoint(wheels, body, (0.0, 0.0), (0.0, 0.0))
         gear = GearJoint(wheels, body, 0.0, 1.0)
         pivot.max_bias = gear.max_bias = 0.0  # the joints pass on velocities only, never positions
-        pivot.max_force, gear.max_force = _GRIP_N, _GRIP_NM
+        pivot.max_force, gear.max_force = params.grip_n, params.turn_grip_nm
         space.add(body, disc, wheels, pivot, gear)
         body.position, body.angle = self.pose[:2], self.pose[2]
         body.velocity, body.angular_velocity = self.velocity, self.spin
@@ -89,7 +88,16 @@ class Robot:
 
     def reach(self, params: SimParams) -> float:
         """How far (m) from its middle at the start of a tick any part of the disc may come within the tick."""
-        return params.robot_radius_m + max(params.max_speed, abs(self.speed)) * params.tick_s
+        slides = math.hypot(*self.velocity)  # on wheels that slip, faster than they roll
+        fastest = max(params.max_speed, abs(self.speed), slides)
+        return params.robot_radius_m + fastest * params.tick_s
+
+
+def _grips(params: SimParams) -> bool:
+    """Whether the wheels pass on all that the motors can ask for, on the straight and in a curve."""
+    force = params.mass_kg * math.hypot(params.max_acceleration, params.max_speed * params.max_yaw_rate)
+    torque = pymunk.moment_for_circle(params.mass_kg, 0.0, params.robot_radius_m) * params.max_yaw_acceleration
+    return force <= params.grip_n and torque <= params.turn_grip_nm
 
 
 @njit(cache=True, nogil=True)

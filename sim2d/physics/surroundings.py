@@ -8,7 +8,6 @@ import pymunk
 from sim2d.actors.actors import Actors
 from sim2d.world.world import World
 
-_FRICTION = 0.3
 _MARGIN_M = 0.1  # more than the solver can push the robot beyond its reach
 
 
@@ -25,8 +24,8 @@ class Surroundings:
         self._walls = world.segments()[list(world.obstacles)].reshape(-1, 2, 2)
         self._actors = actors
 
-    def space(self, x: float, y: float, reach: float) -> pymunk.Space:
-        """A space with everything within `reach` metres of (x, y), and little more."""
+    def space(self, x: float, y: float, reach: float, friction: float) -> pymunk.Space:
+        """A space with everything within `reach` metres of (x, y), and little more. All of it has this friction."""
         space = pymunk.Space()
         space.collision_slop = 0.001  # overlap (m) that the solver tolerates; pymunk's default is meant for pixels
         low, high = np.subtract((x, y), reach + _MARGIN_M), np.add((x, y), reach + _MARGIN_M)
@@ -42,6 +41,6 @@ class Surroundings:
             if max(abs(px - x), abs(py - y)) < radius + reach + _MARGIN_M:
                 shapes.append(pymunk.Circle(ground, radius, (px, py)))
         for shape in shapes:
-            shape.friction = _FRICTION
+            shape.friction = friction
         space.add(*shapes)
         return space

@@ -212,6 +212,28 @@ def test_live_parameters() -> None:
     assert simulator.params.light == 0.5
 
 
+def test_walls_become_rough_while_it_runs() -> None:
+    """At 45 degrees to a wall: smooth, it slides along; as rough as can be, it stays where it is."""
+    simulator = Simulator(room(), replace(EXACT, friction=0.0))
+    simulator.teleport(4.0 - 0.22, 1.0, math.pi / 4)
+    for friction, speed in ((0.0, 0.3 / math.sqrt(2)), (1.0, 0.0), (0.0, 0.3 / math.sqrt(2))):
+        simulator.set_params(replace(EXACT, friction=friction))
+        for _ in range(10):
+            before = simulator.truth.y
+            simulator.step(Drive(0.3, 0.0))
+        assert simulator.truth.y - before == pytest.approx(0.1 * speed, abs=2e-4)
+
+
+def test_a_slippery_floor_is_slippery_near_and_far_from_walls() -> None:
+    """Far from walls the robot needs no pymunk, near to them it does: both speed up by 4 N on 8 kg."""
+    for x, y in ((10.0, 10.0), (10.0, 0.24)):
+        simulator = Simulator(room(side=20), EXACT)
+        simulator.teleport(x, y, 0.0)
+        simulator.set_params(replace(EXACT, grip_n=4.0))
+        speeds = [simulator.step(Drive(0.5, 0.0)).odometry_speed for _ in range(9)]
+        assert np.diff(speeds) == pytest.approx(np.full(8, 0.05), abs=1e-6)
+
+
 def test_rates_change_while_it_runs_and_time_goes_on() -> None:
     people = (Person("Ada", ((0.5, 0.5), (3.5, 0.5)), (0.0, 0.0), speed=0.8),)
     simulator = Simulator(replace(room(), people=people), EXACT)

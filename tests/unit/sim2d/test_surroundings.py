@@ -27,7 +27,7 @@ def test_the_robot_meets_every_wall(name: str) -> None:
     solid = [*world.segments()[list(world.obstacles)], *actors.segments[: actors.first_box]]
     for _ in range(200):
         place = rng.uniform((x0, y0), (x1, y1))
-        space = surroundings.space(*place.tolist(), REACH_M)
+        space = surroundings.space(*place.tolist(), REACH_M, 0.3)
         segments = [shape for shape in space.shapes if isinstance(shape, pymunk.Segment)]
         standing = {(*shape.a, *shape.b) for shape in segments}
         assert len(standing) == len(segments)
@@ -47,7 +47,7 @@ def test_boxes_stand_in_it_only_while_they_are_there() -> None:
     surroundings = Surroundings(world, actors)
 
     def boxes() -> int:
-        return sum(isinstance(shape, pymunk.Poly) for shape in surroundings.space(7.0, 3.3, 1.0).shapes)
+        return sum(isinstance(shape, pymunk.Poly) for shape in surroundings.space(7.0, 3.3, 1.0, 0.3).shapes)
 
     assert boxes() == sum(box.present for box in world.boxes)
     actors.box_present[:] = False
