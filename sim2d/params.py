@@ -111,6 +111,15 @@ class SimParams:
         1.0, 0.1, 8.0, "g", "1", "gain of the camera, applied to image and noise alike", live=True
     )
     light: float = _number(1.0, 0.1, 2.0, "L", "1", "overall brightness of the image; 1 = as painted", live=True)
+    fade_m: float = _number(
+        14.0,
+        0.5,
+        1000.0,
+        "d_f",
+        "m",
+        "what is this deep in the image is half as bright: 1 / (1 + depth / fade)",
+        live=True,
+    )
 
     scene_cell_m: float = _number(
         0.5,

@@ -177,7 +177,7 @@ class Simulator:
             self.actors.set_tick(params.tick_s)
         if params.robot_radius_m != before.robot_radius_m:
             self.free_space = self.free_in(self.world)
-        lens = ("camera_fov_rad", "image_width", "image_height", "camera_height_m")
+        lens = ("camera_fov_rad", "image_width", "image_height", "camera_height_m", "fade_m")
         if any(getattr(params, name) != getattr(before, name) for name in lens):
             self._sensors.set_lens(params)
 

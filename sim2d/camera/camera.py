@@ -11,7 +11,7 @@ from sim2d.camera.column_hits import MAX_HITS, column_hits
 from sim2d.camera.element_walls import element_walls
 from sim2d.camera.lights import Lights
 from sim2d.camera.mirror import mirrored
-from sim2d.camera.painting import FADE_M, Strips, expose, paint_columns
+from sim2d.camera.painting import Strips, expose, paint_columns
 from sim2d.camera.sight import MOST_FLAT_RAD, lens_rays, round_hits, seen_walls
 from sim2d.geometry.wall_index import WallIndex, build_index
 from sim2d.params import SimParams
@@ -65,19 +65,19 @@ class Camera:
         self._chosen = np.zeros(len(walls), np.int64)
         self._numbers = np.arange(self._walls_end if self._walls_end <= FEW_WALLS else 0)
         if hasattr(self, "_width"):
-            self._background = _background(world, self._height, self._focal, self._eye)
+            self._background = _background(world, self._height, self._focal, self._eye, self._fade)
 
     def follow(self, actors: Actors) -> None:
         """From now on draw these actors, of the same world."""
         self._actors = actors
 
     def set_lens(self, params: SimParams) -> None:
-        """Set another field of view, resolution or height of the camera."""
+        """Set another field of view, resolution, height or fading of the camera."""
         self._width, self._height = params.image_width, params.image_height
         self._flat = params.camera_fov_rad <= MOST_FLAT_RAD
         self._rays, self._focal = lens_rays(self._width, params.camera_fov_rad)
-        self._eye = params.camera_height_m
-        self._background = _background(self._world, self._height, self._focal, self._eye)
+        self._eye, self._fade = params.camera_height_m, params.fade_m
+        self._background = _background(self._world, self._height, self._focal, self._eye, self._fade)
         self._counts = np.zeros(self._width, np.int64)
         self._walls = np.zeros((self._width, MAX_HITS), np.int64)
         self._hits = np.zeros((self._width, MAX_HITS, 3))
@@ -116,8 +116,8 @@ class Camera:
         else:
             self._atlas.paint_seen(self._counts, self._walls)
         paint_columns(
-            self._strips, self._eye, self._focal, self._background, self._glow, self._counts, self._walls, self._hits,
-            self._panes, self._mirror_strips, self._mirror_hits, self._canvas,
+            self._strips, self._eye, self._focal, self._fade, self._background, self._glow, self._counts, self._walls,
+            self._hits, self._panes, self._mirror_strips, self._mirror_hits, self._canvas,
         )  # fmt: skip
         out = np.empty((self._height, self._width, 3), np.uint8)
         expose(self._canvas, light, noise, self._noise, int(rng.integers(_NOISE_BANK)), out)
@@ -171,11 +171,11 @@ def _shades(segments: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack([1.0 + 0.09 * towards, 1.0 - 0.09 * towards], axis=1).ravel()
 
 
-def _background(world: World, height: int, focal: float, eye: float) -> NDArray[np.float32]:
+def _background(world: World, height: int, focal: float, eye: float, fade: float) -> NDArray[np.float32]:
     """(3 height,): the colours of floor and ceiling, row by row, darker with distance."""
     ceiling = world.highest - eye
     down = np.arange(height) + 0.5 - 0.5 * height
     flat = np.where(np.abs(down) < 0.25, 0.25, down)
     depth = np.where(flat > 0, eye, -ceiling) * focal / flat
     colour = np.where(flat[:, None] > 0, world.floor_colour, world.ceiling_colour)
-    return (colour / (1.0 + depth / FADE_M)[:, None]).astype(np.float32).ravel()
+    return (colour / (1.0 + depth / fade)[:, None]).astype(np.float32).ravel()

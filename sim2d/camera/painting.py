@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from sim2d.camera.atlas import LEVELS, MIDDLE
 from sim2d.camera.column_hits import MAX_HITS
 
-FADE_M = 14.0  # brightness falls as 1 / (1 + depth / FADE_M): far corners are darker
 _MAX_ROWS = 1024
 ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)  # an unsigned index needs no check for negative values
 
@@ -35,6 +34,7 @@ def paint_columns(
     strips: Strips,
     eye: float,
     focal: float,
+    fade: float,
     background: NDArray[np.float32],
     glow: NDArray[np.float64],
     counts: NDArray[np.int64],
@@ -47,8 +47,9 @@ def paint_columns(
 ) -> None:
     """Fill canvas (w, 3 h) from the hits of `column_hits`, far to near. A pixel that a wall covers in part is blended.
 
-    A column holds red, green and blue of each pixel, from the top down. glow: (w, k + 1) brightness of each hit, then
-    of floor and ceiling. panes, mirror_strips, mirror_hits: from `mirror.mirrored`.
+    A column holds red, green and blue of each pixel, from the top down. fade: depth (m) at which brightness has fallen to
+    a half. glow: (w, k + 1) brightness of each hit, then of floor and ceiling. panes, mirror_strips, mirror_hits: from
+    `mirror.mirrored`.
     """
     texels, first, columns, rows = strips.texels, strips.first, strips.columns, strips.rows
     bottoms, tops, shades, reflection = strips.bottoms, strips.tops, strips.shades, strips.reflection
@@ -88,7 +89,7 @@ def paint_columns(
                 n_rows = int(rows[strip]) >> level
                 low = max(0, math.floor((begin - top) * per_row - 0.5))
                 high = min(n_rows, math.ceil((end - top) * per_row + 0.5) + 1)
-                shade = shades[strip] / (1.0 + 1.0 / (inverse * FADE_M)) * glow[c, k]
+                shade = shades[strip] / (1.0 + 1.0 / (inverse * fade)) * glow[c, k]
                 start = first[strip, level] + 3 * low
                 count = 3 * (high - low)
                 _mean_along(texels, start, 3 * n_rows, int(columns[strip]), u0, u1, count, shade, stretch)

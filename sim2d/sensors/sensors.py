@@ -91,7 +91,7 @@ class Sensors:
         self._camera.set_world(world, actors, self._walls)
 
     def set_lens(self, params: SimParams) -> None:
-        """Set another field of view, resolution or height of the camera."""
+        """Set another field of view, resolution, height or fading of the camera."""
         self._camera.set_lens(params)
 
     def _index(self) -> None:

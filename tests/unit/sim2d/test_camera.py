@@ -90,6 +90,21 @@ def test_noise_and_light() -> None:
     assert cam.image(1.0, 2.0, 0.0, 2.0, 50.0, RNG).max() == 255
 
 
+def test_what_is_as_deep_as_the_fade_is_half_as_bright() -> None:
+    """And in general 1 / (1 + depth / fade): a wall 1 and 3 m ahead, and the floor that the lowest row shows."""
+    focal = 32 / math.tan(math.radians(25))
+    floor = PARAMS.camera_height_m * focal / 23.5
+    for row, depth, x in ((24, 3.0, 1.0), (24, 1.0, 3.0), (47, floor, 1.0)):
+        seen = {
+            fade: still(room(), x, 2.0, 0.0, SimParams(fade_m=fade))[row, 32].astype(float)
+            for fade in (depth, 1.5, 14.0, 1000.0)
+        }
+        painted = seen[1000.0] * (1 + depth / 1000.0)
+        assert seen[depth] == pytest.approx(painted / 2, abs=1.0)
+        for fade, colour in seen.items():
+            assert colour == pytest.approx(painted / (1 + depth / fade), abs=1.0)
+
+
 def slow_image(world: World, x: float, y: float, heading: float, params: SimParams, sub: int = 4) -> np.ndarray:
     """The same picture the long way: sub x sub rays per pixel in three dimensions, each against every wall."""
     width, height = params.image_width, params.image_height
@@ -117,10 +132,10 @@ def slow_image(world: World, x: float, y: float, heading: float, params: SimPara
                     strip = ahead if on_left else back
                     i, j = int(u * len(strip)), int((wall.height - z) / (wall.height - wall.bottom) * strip.shape[1])
                     tone = (0.85 * ex - 0.5 * ey) / wall.length * (0.09 if on_left else -0.09) + 1.0
-                    best, colour = depth, strip[i, min(j, strip.shape[1] - 1)] * tone / (1 + depth / 14.0)
+                    best, colour = depth, strip[i, min(j, strip.shape[1] - 1)] * tone / (1 + depth / params.fade_m)
             if colour is None:
                 depth = (params.camera_height_m if up < 0 else params.camera_height_m - ceiling) / -up
-                colour = np.array(world.floor_colour if up < 0 else world.ceiling_colour) / (1 + depth / 14.0)
+                colour = np.array(world.floor_colour if up < 0 else world.ceiling_colour) / (1 + depth / params.fade_m)
             out[r // sub, c // sub] += colour / sub**2
     return out
 
@@ -128,12 +143,12 @@ def slow_image(world: World, x: float, y: float, heading: float, params: SimPara
 POSES = [("office", 1.0, 1.0, 0.0), ("office", 5.2, 4.4, 3.0), ("office", 9.0, 7.0, -2.6), ("loop", 5.3, 0.8, 1.9)]
 
 
-@pytest.mark.parametrize(("name", "x", "y", "heading"), POSES)
-def test_agrees_with_a_slow_ray_caster(name: str, x: float, y: float, heading: float) -> None:
+@pytest.mark.parametrize(("name", "x", "y", "heading", "fade"), [*((*at, 14.0) for at in POSES), (*POSES[2], 3.0)])
+def test_agrees_with_a_slow_ray_caster(name: str, x: float, y: float, heading: float, fade: float) -> None:
     """The whole image against an independent, supersampled one. Two differences are allowed: a column's middle ray
     decides which wall hides which, so silhouettes may be half a column off; and floor and ceiling fade by the middle of
     a row."""
-    params = SimParams(image_width=32, image_height=24)
+    params = SimParams(image_width=32, image_height=24, fade_m=fade)
     world = load_world(name)
     fast = still(world, x, y, heading, params).astype(float)
     slow = slow_image(world, x, y, heading, params)

@@ -84,5 +84,6 @@ def test_a_panorama_sees_all_around() -> None:
 def test_lens_and_resolution_change_while_it_runs() -> None:
     simulator = Simulator(room(), EXACT)
     wide = replace(EXACT, camera_fov_rad=1.5, image_width=96, image_height=40, camera_height_m=0.8, exposure_gain=0.5)
-    simulator.set_params(wide)
-    assert np.array_equal(run(simulator, STAY, 1).image, Simulator(room(), wide).observe().image)
+    for params in (wide, replace(wide, fade_m=3.0)):
+        simulator.set_params(params)
+        assert np.array_equal(run(simulator, STAY, 1).image, Simulator(room(), params).observe().image)
