@@ -222,10 +222,10 @@ class SimParams:
         return self.physics_rate_hz // self.sensor_rate_hz
 
 
-@kind("parameters of office/1")
+@kind("parameters of office/2")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OfficeParams:
-    """Which parts of the office are active."""
+    """Which parts of the office are active, and how its doors and people move."""
 
     people: bool = _switch(True, "people walk about; off = nobody is there", "ACRA 2004")
     doors: bool = _switch(True, "doors with a period open and shut by themselves", "ACRA 2004")
@@ -235,6 +235,19 @@ class OfficeParams:
         True, "glass reflects what is in front of it; off = it only shows its own colour", "ACRA 2004"
     )
     door_s: float = _number(1.5, 0.1, 60.0, "", "s", "time that a door takes to open or shut", live=True)
+    door_tip_m: float = _number(  # at most as far as the smallest robot is wide
+        0.1,
+        0.01,
+        0.1,
+        "",
+        "m",
+        "a leaf's tip moves no farther in a tick, so that it cannot jump over the robot",
+        live=True,
+    )
+    patience_least_s: float = _number(
+        3.0, 0.0, 600.0, "", "s", "how long a person stands at an obstacle before turning back, at least ...", live=True
+    )
+    patience_most_s: float = _number(8.0, 0.0, 600.0, "", "s", "... and at most; each time is random", live=True)
     slow_zones: bool = _switch(True, "slow floors slow the robot down", "IROS 2005")
     boxes: bool = _switch(True, "boxes stand on the floor; off = all are taken away")
     script: bool = _switch(True, "the world's script is carried out")
@@ -242,6 +255,9 @@ class OfficeParams:
 
     def __post_init__(self) -> None:
         _check(self)
+        if self.patience_least_s > self.patience_most_s:
+            least, most = self.patience_least_s, self.patience_most_s
+            raise ValueError(f"patience_least_s must be at most patience_most_s ({most:g}), got {least:g}")
 
 
 def _check(params: Any) -> None:

@@ -63,7 +63,7 @@ class Simulator:
     ) -> None:  # fmt: skip
         """before: another simulator; what it has computed from the same walls is taken over, and nothing else."""
         self.params, self.office = params or SimParams(), office or OfficeParams()
-        self.actors = Actors(world, np.random.default_rng(0), self.params.tick_s)
+        self.actors = Actors(world, np.random.default_rng(0), self.params.tick_s, self.office)
         self._sensors = Sensors(world, self.params, self.actors, None if before is None else before._sensors)
         self._begin_in(world, None if before is None else before._measured)
         self.actors.begin(self.office)
@@ -95,7 +95,7 @@ class Simulator:
         self.world = self._first_world
         self.free_space = self.free_in(self.world)
         actors_rng = np.random.default_rng(self.office.seed or chance["actors"])
-        self.actors = Actors(self.world, actors_rng, self.params.tick_s)
+        self.actors = Actors(self.world, actors_rng, self.params.tick_s, self.office)
         self._sensors.set_world(self.world, self.actors)
         start = self.world.starts[0]
         self._robot = Robot((start.x, start.y, start.heading_rad))
@@ -223,7 +223,8 @@ class Simulator:
         make way.
         """
         pose_rng = copy.deepcopy(self._pose_rng)  # a refused edit must not advance the generator
-        actors = Actors(world, np.random.default_rng(pose_rng.integers(2**63)), self.params.tick_s)
+        actors_rng = np.random.default_rng(pose_rng.integers(2**63))
+        actors = Actors(world, actors_rng, self.params.tick_s, self.office)
         actors.adopt(self.actors)
         actors.begin(self.office)
         free_space = self.free_in(world)

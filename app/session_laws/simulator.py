@@ -85,7 +85,7 @@ def _walkers(walkers: Walkers, world: World) -> None:
         within(f"people: {name[1:]}", values, -LONGEST_S, LONGEST_S)
     array("people: present", walkers.present, np.bool_, (n,))
     within("people: numbers drawn", array("people: numbers drawn", walkers._drawn, np.int64, (n,)), 0, 2**53)
-    bank = Walkers(world.people[:1], np.random.default_rng(0), 0.1)._chance.shape[1]
+    bank = Walkers(world.people[:1], np.random.default_rng(0), 0.1, 0.0)._chance.shape[1]
     within("people: chance", array("people: chance", walkers._chance, np.float64, (n, bank)), 0.0, 1.0)
 
 

@@ -19,7 +19,6 @@ from sim2d.world.elements import Box, Door, Event, Lamp
 from sim2d.world.robot_fit import Standing
 from sim2d.world.world import World
 
-MOST_TIP_M = 0.1  # the tip of a door leaf moves no farther in a tick, so that it cannot jump over the robot
 CLEARANCE_M = 0.01  # least distance from the robot of a moving leaf and of a box that appears
 
 _Named = Door | Box | Lamp
@@ -35,7 +34,10 @@ class Actors:
 
     CACHES = ("world", "_script", "_anything", "first_box", "first_person", "segments", "present", "there")
 
-    def __init__(self, world: World, rng: np.random.Generator, tick_s: float) -> None:
+    def __init__(
+        self, world: World, rng: np.random.Generator, tick_s: float, params: OfficeParams | None = None
+    ) -> None:
+        """params: what people are like at first; None: as they are by default."""
         self._tick_s = tick_s
         self.opening = np.array([float(door.open) for door in world.doors])  # 0 = shut, 1 = open
         self._wanted = self.opening.copy()
@@ -46,7 +48,7 @@ class Actors:
         self._level: float | None = None
         self.daylight = 1.0 if world.daylight is None else world.daylight.at(0.0)
         self._people_on = self._lamps_on = True
-        self.walkers = Walkers(world.people, rng, tick_s)
+        self.walkers = Walkers(world.people, rng, tick_s, (params or OfficeParams()).patience_least_s)
         self._next = 0  # line of the script
         self._time_s = -1.0  # of the last step
         self.settle(world)
@@ -98,9 +100,9 @@ class Actors:
         self._step_boxes(robot, radius, params.boxes)
         self._step_doors(time_s, robot, radius, params)
         walking = params.people and self._people_on
-        self.walkers.step(
-            robot, radius + comes, walking, self.segments[: self.first_person], self.present[: self.first_person]
-        )
+        solid, present = self.segments[: self.first_person], self.present[: self.first_person]
+        patience_s = params.patience_least_s, params.patience_most_s
+        self.walkers.step(robot, radius + comes, walking, solid, present, patience_s)
         self._show()
 
     def make_way(self, robot: tuple[float, float], radius: float) -> None:
@@ -201,7 +203,7 @@ class Actors:
             if gap == 0.0:
                 continue
             travel = door.width * (1.0 if door.slides else abs(door.swing_rad))
-            step = min(self._tick_s / params.door_s, MOST_TIP_M / max(travel, 1e-9))
+            step = min(self._tick_s / params.door_s, params.door_tip_m / max(travel, 1e-9))
             opening = self.opening[i] + min(max(gap, -step), step)
             after = door.leaf(opening)
             if not self._in_the_way(self.segments[i], after, robot, radius):

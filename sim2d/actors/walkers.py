@@ -14,7 +14,6 @@ from sim2d.geometry.wall_index import squared_distance
 from sim2d.world.elements import Person
 
 PERSON_SIDES = 8
-PATIENCE_S = (3.0, 8.0)  # how long a person stands in front of an obstacle before turning back, least and most
 COMES_BACK_M = 0.01  # margin beyond the robot's reach at which a person comes back
 _BANK = 64
 
@@ -27,7 +26,8 @@ class Walkers:
 
     CACHES = ("_people", "radius", "_speed", "_loop", "_first", "_path", "_wait_s", "_ring")
 
-    def __init__(self, people: tuple[Person, ...], rng: np.random.Generator, tick_s: float) -> None:
+    def __init__(self, people: tuple[Person, ...], rng: np.random.Generator, tick_s: float, patience_s: float) -> None:
+        """patience_s: how long each stands before an obstacle the first time."""
         n = len(people)
         self.tick_s = tick_s
         self.settle(people)
@@ -38,7 +38,7 @@ class Walkers:
         self._towards = np.zeros(n, np.int64)  # index of the path's point that each walks to; people begin at the first
         self._way = np.ones(n, np.int64)
         self._waits = np.zeros(n)
-        self._patience = np.full(n, PATIENCE_S[0])
+        self._patience = np.full(n, patience_s)
         self.present = np.ones(n, bool)
 
     def settle(self, people: tuple[Person, ...]) -> None:
@@ -54,14 +54,18 @@ class Walkers:
         self._ring = np.column_stack([np.cos(turn), np.sin(turn)])
 
     def step(
-        self, robot: tuple[float, float], reach: float, walking: bool, obstacles: _Array, present: NDArray[np.bool_]
-    ) -> None:
-        """One tick. reach: the robot's radius plus its way in a tick. obstacles: (m, 4) leaves and box sides."""
+        self, robot: tuple[float, float], reach: float, walking: bool, obstacles: _Array, present: NDArray[np.bool_],
+        patience_s: tuple[float, float],
+    ) -> None:  # fmt: skip
+        """One tick. reach: the robot's radius plus its way in a tick. obstacles: (m, 4) leaves and box sides.
+
+        patience_s: least and most time that a person stands before an obstacle before turning back.
+        """
         if len(self._people):
             _walk(
                 self.xy, self.heading, self._towards, self._way, self._waits, self._patience, self.present, self._drawn,
                 self._chance, self.radius, self._speed, self._loop, self._first, self._path, self._wait_s,
-                robot[0], robot[1], reach, walking, obstacles, present, self.tick_s,
+                robot[0], robot[1], reach, walking, obstacles, present, *patience_s, self.tick_s,
             )  # fmt: skip
 
     def make_way(self, robot: tuple[float, float], radius: float) -> None:
@@ -133,6 +137,8 @@ def _walk(
     walking: bool,
     obstacles: _Array,
     standing: NDArray[np.bool_],
+    least_s: float,
+    most_s: float,
     dt: float,
 ) -> None:
     for i in range(xy.shape[0]):
@@ -161,14 +167,14 @@ def _walk(
         if not blocked:
             blocked = _blocked(obstacles, standing, xy[i, 0], xy[i, 1], x, y, radius[i])
         if blocked:
-            patience[i] -= dt
+            patience[i] = min(patience[i], most_s) - dt
             if patience[i] <= 0.0:
                 way[i] = -way[i]
                 towards[i] = (towards[i] + way[i]) % n
-                patience[i] = _draw(chance, drawn, i, PATIENCE_S[0], PATIENCE_S[1])
+                patience[i] = _draw(chance, drawn, i, least_s, most_s)
             continue
         xy[i, 0], xy[i, 1] = x, y
-        patience[i] = max(patience[i], PATIENCE_S[0])
+        patience[i] = max(patience[i], least_s)
         if step == left:
             waits[i] = wait_s[goal] * _draw(chance, drawn, i, 0.5, 1.5)
             if not loop[i] and n > 1 and not 0 <= towards[i] + way[i] < n:

@@ -21,6 +21,8 @@ def values(name: str) -> st.SearchStrategy:
         return st.sampled_from([1, 5, 10, 20, 60])
     if name == "robot.image_width":
         low = 12
+    if name.startswith("office.patience"):  # in any order, the least stays below the most
+        low, high = (0.0, 5.0) if "least" in name else (5.0, 600.0)
     if isinstance(default, bool):
         return st.booleans()
     if isinstance(default, str):
@@ -90,9 +92,13 @@ def test_left_out_parameters_keep_their_value() -> None:
 def test_parameters_that_limit_each_other_are_set_together_in_any_order() -> None:
     """77 is no multiple of 10, nor 240 of 7: one after the other, neither would be taken."""
     rates = {"robot.physics_rate_hz": 77, "robot.sensor_rate_hz": 7}
-    config = Config().with_values(rates)
-    assert config == Config().with_values(dict(reversed(rates.items())))
-    assert from_toml(to_toml(config)) == config
+    patience = {"office.patience_least_s": 20.0, "office.patience_most_s": 30.0}
+    for pair in (rates, patience):
+        config = Config().with_values(pair)
+        assert config == Config().with_values(dict(reversed(pair.items())))
+        assert from_toml(to_toml(config)) == config
+    with pytest.raises(ValueError, match=r"office\.patience_least_s must be at most patience_most_s \(8\), got 20"):
+        Config().with_value("office.patience_least_s", 20.0)
     with pytest.raises(ValueError, match=r"robot\.physics_rate_hz must be a multiple of sensor_rate_hz \(10\), got 77"):
         Config().with_value("robot.physics_rate_hz", 77)
     with pytest.raises(ValueError, match=r"robot\.camera_fov_rad must be from"):

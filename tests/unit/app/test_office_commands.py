@@ -191,9 +191,10 @@ def test_a_switch_is_shown_for_what_the_world_has(engine: Engine, session: Sessi
     def switches() -> tuple[str, ...]:
         return made.build(running=True, speed=1.0, real_time_factor=1.0, fault=None).switches
 
-    assert switches() == ("people", "lamps", "door_s", "seed")
+    numbers = ("door_s", "door_tip_m", "patience_least_s", "patience_most_s")
+    assert switches() == ("people", "lamps", *numbers, "seed")
     tell(engine, type="put_box", name="crate", x=3.2, y=1.0)
-    assert switches() == ("people", "lamps", "door_s", "boxes", "seed")
+    assert switches() == ("people", "lamps", *numbers, "boxes", "seed")
     world = session.simulator.world
     zone = SlowZone("carpet", ((0.5, 0.5), (1.0, 0.5), (1.0, 1.0)), 0.5)
     rest = {"daylight": Daylight((0.0,), (1.0,)), "script": (Event(900.0, "people_off"),), "slow_zones": (zone,)}

@@ -93,13 +93,29 @@ def test_the_robot_does_not_start_in_a_shut_door() -> None:
     assert Simulator(living(doors=(replace(door, open=True),)), EXACT).truth.x == 2.0
 
 
+@pytest.mark.parametrize("tip", [0.1, 0.03])
 @pytest.mark.parametrize("seconds", [0.1, 2.0, 8.0])
-def test_a_door_takes_as_long_as_it_is_said_to(seconds: float) -> None:
-    """And not less than its tip may move in a tick: 0.1 m."""
-    simulator = Simulator(living(doors=(DOOR,)), EXACT, office=OfficeParams(door_s=seconds))
+def test_a_door_takes_as_long_as_it_is_said_to(seconds: float, tip: float) -> None:
+    """And not less than its tip may move in a tick."""
+    simulator = Simulator(living(doors=(DOOR,)), EXACT, office=OfficeParams(door_s=seconds, door_tip_m=tip))
     simulator.actors.set_door("lab", True)
-    ticks = 0
+    ticks, farthest, before = 0, 0.0, DOOR.leaf(0.0)
     while simulator.actors.opening[0] < 1.0:
         simulator.step(STAY)
         ticks += 1
-    assert ticks == pytest.approx(max(10 * seconds, DOOR.width * math.pi / 2 / 0.1), abs=1)
+        leaf = simulator.actors.segments[0].copy()
+        farthest, before = max(farthest, math.dist(leaf[2:], before[2:])), leaf
+    assert farthest <= tip
+    assert ticks == pytest.approx(max(10 * seconds, DOOR.width * math.pi / 2 / tip), abs=1)
+
+
+def test_a_door_slows_down_while_it_moves() -> None:
+    simulator = Simulator(living(doors=(DOOR,)), EXACT)
+    simulator.set_door("lab", True)
+    steps = []
+    for tip in (0.1, 0.02):
+        simulator.office = OfficeParams(door_tip_m=tip)
+        before = simulator.actors.opening[0]
+        run(simulator, STAY, 4)
+        steps.append((simulator.actors.opening[0] - before) * DOOR.width * math.pi / 2 / 4)
+    assert steps == pytest.approx([0.1, 0.02])

@@ -43,3 +43,11 @@ def test_whole_numbers_stay_whole() -> None:
 def test_rates_must_divide() -> None:
     with pytest.raises(ValueError, match=r"physics_rate_hz must be a multiple of sensor_rate_hz \(7\), got 240"):
         replace(SimParams(), sensor_rate_hz=7)
+
+
+def test_the_least_patience_is_at_most_the_most() -> None:
+    with pytest.raises(ValueError, match=r"patience_least_s must be at most patience_most_s \(8\), got 9"):
+        OfficeParams(patience_least_s=9.0)
+    with pytest.raises(ValueError, match=r"patience_least_s must be at most patience_most_s \(2\.5\), got 3"):
+        OfficeParams(patience_most_s=2.5)
+    assert OfficeParams(patience_least_s=8.0).patience_most_s == 8.0
