@@ -96,6 +96,16 @@ def test_wheels_that_slip_in_a_curve_leave_it_on_the_outside() -> None:
         assert (slides > 0.02) == aside
 
 
+def before_a_wall(friction: float) -> pymunk.Space:
+    """A wall along x = 0."""
+    space = pymunk.Space()
+    space.collision_slop = 0.001
+    wall = pymunk.Segment(space.static_body, (0.0, -9.0), (0.0, 9.0), 0.0)
+    wall.friction = friction
+    space.add(wall)
+    return space
+
+
 @pytest.mark.parametrize("friction", [0.0, 0.3, 0.7, 1.0])
 @pytest.mark.parametrize("degrees", [15, 30, 45, 60])
 def test_along_a_wall_friction_holds_it_back_as_coulomb_says(friction: float, degrees: int) -> None:
@@ -103,15 +113,26 @@ def test_along_a_wall_friction_holds_it_back_as_coulomb_says(friction: float, de
     params, angle = SimParams(friction=friction), math.radians(degrees)
     robot = Robot((-RADIUS_M, 0.0, angle))
     for _ in range(20):
-        before, space = robot.pose[1], pymunk.Space()
-        space.collision_slop = 0.001
-        wall = pymunk.Segment(space.static_body, (0.0, -9.0), (0.0, 9.0), 0.0)
-        wall.friction = friction
-        space.add(wall)
-        robot.drive(0.3, 0.0, params, 1.0, space)
+        before = robot.pose[1]
+        robot.drive(0.3, 0.0, params, 1.0, before_a_wall(friction))
     slides = 0.3 * (math.sin(angle) - friction * friction * math.cos(angle))
     assert (robot.pose[1] - before) / params.tick_s == pytest.approx(max(slides, 0.0), abs=0.002)
     assert robot.pose[0] == pytest.approx(-RADIUS_M, abs=0.002)
+
+
+@pytest.mark.parametrize("friction", [0.0, 1.0])
+@pytest.mark.parametrize("turn_grip", [0.1, 200.0])
+@pytest.mark.parametrize("grip", [1.0, 1000.0])
+@pytest.mark.parametrize("mass", [1.0, 100.0])
+def test_no_mass_grip_or_friction_takes_it_into_a_wall(
+    mass: float, grip: float, turn_grip: float, friction: float
+) -> None:
+    params = SimParams(mass_kg=mass, grip_n=grip, turn_grip_nm=turn_grip, friction=friction)
+    for speed, angle in ((0.5, 0.0), (0.5, 1.2), (0.03, 0.8)):
+        robot = Robot((-0.3, 0.0, angle))
+        for _ in range(60):
+            robot.drive(speed, 0.1, params, 1.0, before_a_wall(friction))
+            assert robot.pose[0] < 0.005 - RADIUS_M
 
 
 def test_a_robot_that_slides_on_comes_no_farther_than_it_says() -> None:
