@@ -215,13 +215,16 @@ def test_nothing_known_is_one_unknown_cell() -> None:
     assert picture.probability.tolist() == [[0.5]]
 
 
-def test_a_map_too_large_is_drawn_with_larger_cells() -> None:
-    grid = MapGrid(None, [0.0])
-    for e in range(2):
-        grid.add(e, Pose2(0.0, 0.0, 0.0), np.array([2.0]))
-    picture = grid.draw(np.array([[0.0, 0.0, 0.0], [700.0, 0.0, 0.0]]))
-    assert picture.cell_m == 1.0
-    assert max(picture.probability.shape) <= occupancy_grid.MOST_CELLS
+@pytest.mark.parametrize(("apart_m", "cell_m"), [(240.0, 0.25), (255.0, 0.5), (500.0, 0.5), (511.0, 1.0), (700.0, 1.0)])
+def test_a_map_too_large_is_drawn_with_larger_cells(apart_m: float, cell_m: float) -> None:
+    """What the sonars reach beyond the outermost experiences counts, too."""
+    for poses in ([[0.0, 0.0, 0.0], [apart_m, 0.0, 0.0]], [[0.0, 0.0, 0.0], [0.0, apart_m, 0.0]]):
+        grid = MapGrid(None, [0.0])
+        for e in range(2):
+            grid.add(e, Pose2(0.0, 0.0, 0.0), np.array([2.0]))
+        picture = grid.draw(np.array(poses))
+        assert picture.cell_m == cell_m
+        assert max(picture.probability.shape) <= occupancy_grid.MOST_CELLS
 
 
 def test_interpreted_it_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
