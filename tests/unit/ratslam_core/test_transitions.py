@@ -85,7 +85,7 @@ def test_a_behaviour_that_is_none_changes_nothing(behaviour: object) -> None:
 
 def test_a_packet_that_is_nowhere_changes_nothing() -> None:
     robot = two_places()
-    with pytest.raises(ValueError, match="packet must be a finite number"):
+    with pytest.raises(ValueError, match=r"packet\.x must be a finite number"):
         robot.see(0, packet=Packet(math.nan, 0.0, 0.0, 1.0))
     assert (len(robot.map), robot.map.active) == (2, 0)
 
