@@ -122,3 +122,39 @@ def test_links_of_no_weight_hold_nothing() -> None:
 
 def test_one_node_alone() -> None:
     assert taken_apart(1, np.zeros((0, 2), np.int64), np.zeros(0)).solve(np.array([5.0])).tolist() == [0.0]
+
+
+def test_a_rest_as_large_as_allowed_is_solved() -> None:
+    pairs, weights = net(3, 160, 600)
+    rest = len(taken_apart(160, pairs, weights).rest)
+    assert eliminate(160, pairs, weights, largest=rest) is not None
+    assert eliminate(160, pairs, weights, largest=rest - 1) is None
+
+
+def test_the_rest_costs_its_cube() -> None:
+    """A hundredth of it, since a dense matrix is quicker; a node that is eliminated costs the square of its neighbours."""
+    made = taken_apart(160, *net(3, 160, 600))
+    one_by_one = sum(int(made.used[v]) ** 2 for v in made.order)
+    assert len(made.rest) ** 3 > 100 * one_by_one / 2
+    assert made.work == one_by_one + len(made.rest) ** 3 // 100
+
+
+@EXAMPLES
+@given(st.integers(0, 2**32 - 1), st.integers(2, 30), st.integers(0, 60))
+def test_a_link_of_no_weight_is_none(seed: int, nodes: int, links: int) -> None:
+    pairs, weights = net(seed, nodes, links)
+    rng = np.random.default_rng(seed + 1)
+    more = rng.integers(0, nodes, (20, 2))
+    one = taken_apart(nodes, pairs, weights)
+    other = taken_apart(nodes, np.concatenate([pairs, more]), np.concatenate([weights, np.zeros(20)]))
+    assert np.array_equal(one.order, other.order)
+    assert np.array_equal(one.used, other.used)
+    assert one.work == other.work
+    asked = rng.normal(size=nodes)
+    assert np.array_equal(one.solve(asked), other.solve(asked))
+
+
+@pytest.mark.parametrize("matrix", [[[0.0]], [[4.0, 2.0], [2.0, 1.0]], [[np.nan]], [[-1.0]]])
+def test_a_pivot_that_is_not_positive_has_no_factor(matrix: list[list[float]]) -> None:
+    assert cholesky.factor(np.array(matrix)) is False
+    assert cholesky.factor(np.array([[4.0]])) is True

@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from ratslam_core import SolverParams
 from ratslam_core.experience_map.relaxation import solve
+from ratslam_core.solvers.laplacian import eliminate
 
 from .pose_graphs import EXAMPLES, Graph, disturb, graphs, true_moves, turned, wrap
 
@@ -82,3 +84,20 @@ def test_a_map_without_links_is_left_alone() -> None:
     poses = np.array([[1.0, 2.0, 3.0]])
     assert solve(poses, np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros(0), np.zeros(0)) == (0.0, 0.0)
     assert poses.tolist() == [[1, 2, 3]]
+
+
+@EXAMPLES
+@given(graphs(), st.floats(0.0, 1000.0))
+def test_each_experience_costs_something(graph: Graph, of_each: float) -> None:
+    def work(of_each: float) -> float:
+        params = SolverParams(work_an_experience=of_each)
+        return solve(graph.poses.copy(), graph.links, graph.moves, graph.weights, params=params).work
+
+    assert work(0.0) == graph_work(graph)
+    assert work(of_each) == pytest.approx(work(0.0) + of_each * len(graph.poses))
+
+
+def graph_work(graph: Graph) -> int:
+    net = eliminate(len(graph.poses), graph.links, graph.weights)
+    assert net is not None
+    return net.work

@@ -67,3 +67,22 @@ def test_trust_falls_with_contradiction(near: float, far: float, turn: float, ch
         for d in (near, far)
     ]
     assert 0 < trusts[1] <= trusts[0] <= 1
+
+
+@EXAMPLES
+@given(st.floats(0.01, 8.0), st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(0.1, 1.0))
+def test_how_far_a_link_gives(times: float, bearing: float, share: float, weight: float) -> None:
+    """A link that is off by `times` what its kind bears: a look then pulls as if it were off by just that much, and
+    odometry is halved where it gives. Angles count as distances, and a weight of a quarter halves the error."""
+    p, sigma = SolverParams(), 0.01
+    links, poses = np.array([[0, 1]]), np.zeros((2, 3))
+    for chain, gives, expected in (
+        (False, p.look_gives, 1 / max(times, 1.0)),
+        (True, p.odometry_gives, 1 / (1 + times**2)),
+    ):
+        off = times * gives * sigma / np.sqrt(weight)
+        metres, turn = off * np.cos(share), p.rad_per_m * off * np.sin(share)
+        assert abs(turn) < np.pi
+        move = np.array([[metres * np.cos(bearing), metres * np.sin(bearing), turn]])
+        found = relaxation.trust(poses, links, move, np.array([weight]), np.array([chain]), sigma, p)
+        assert found[0] == pytest.approx(expected, rel=1e-9)

@@ -176,3 +176,38 @@ def test_an_experience_that_is_none_has_no_place() -> None:
     for experience in (-1, 1):
         with pytest.raises(ValueError, match=f"experience must be from 0 to 0, got {experience}"):
             found.together_with(experience)
+
+
+FACING = math.pi / 2  # 9 layers of 36
+
+
+@pytest.mark.parametrize(
+    ("zones", "second", "beyond", "found"),
+    [
+        ({}, {"x": 0.5}, {"x": 0.51}, (1, 0, 0)),
+        ({}, {"y": -0.5}, {"y": -0.51}, (1, 0, 0)),
+        ({}, {"cell_x": 26.0}, {"cell_x": 26.1}, (1, 0, 0)),  # the width of a place, 4 cells, and a zone of 2
+        ({}, {"cell_y": 26.0}, {"cell_y": 26.1}, (1, 0, 0)),
+        ({"zone_theta": 4.5}, {"heading": FACING}, {"heading": FACING + 0.1}, (1, 0, 0)),
+        ({"zone_theta": 9.0}, {"facing": FACING, "cell_x": 40.0}, {"facing": FACING + 0.1, "cell_x": 40.0}, (1, 1, 0)),
+        ({}, {"x": 9.0, "cell_x": 22.0}, {"x": 9.0, "cell_x": 22.1}, (2, 0, 1)),
+        ({}, {"x": 9.0, "cell_y": 18.0}, {"x": 9.0, "cell_y": 17.9}, (2, 0, 1)),
+        ({"zone_theta": 9.0}, {"x": 9.0, "heading": FACING}, {"x": 9.0, "heading": FACING + 0.1}, (2, 0, 1)),
+        ({}, {"y": 2.0}, {"y": 2.1}, (2, 0, 0)),  # the widths of a place, 1 m, and of a zone, 1 m
+    ],
+)
+def test_what_is_just_as_far_as_a_limit_is_within_it(zones, second, beyond, found) -> None:
+    """Places, states, facings and distances in the map; a little beyond, the answer is another."""
+
+    def counts(changed: dict[str, float]) -> tuple[int, int, int]:
+        first = {"x": 0.0, "y": 0.0, "facing": 0.0, "cell_x": 20.0, "cell_y": 20.0, "heading": 0.0}
+        made = find_places(a_map([tuple(first.values()), tuple((first | changed).values())], **zones), 0.5)
+        return len(made.first), len(made.multiple_representations), len(made.hash_collisions)
+
+    assert counts(second) == found
+    assert counts(beyond) != found
+
+
+def test_the_same_state_facing_just_within_the_limit_is_one() -> None:
+    rows = [(0.0, 0.0, facing, 20.0, 20.0, 0.0) for facing in (0.0, FACING)]
+    assert find_places(a_map(rows, zone_theta=9.0), 0.5).multiple_representations == ()
