@@ -242,6 +242,13 @@ def test_a_shortcut_saves_the_way_round(shortcut_m: float, saves: bool) -> None:
     assert (len(route.experiences) == 2) is saves
 
 
+@pytest.mark.parametrize(("apart_m", "time_s"), [(0.5, math.inf), (0.4375, 0.875), (0.0, LEAST_S)])
+def test_a_shortcut_is_closer_than_its_limit(apart_m: float, time_s: float) -> None:
+    for places in ([(-0.25, 0.25, 0.0), (apart_m - 0.25, 0.25, 0.0)], [(3.0, apart_m - 1.0, 0.0), (3.0, -1.0, 0.0)]):
+        map_ = Links(np.array(places), pace=2.0, params=ExperienceMapParams(shortcut_m=0.5))
+        assert ways_of(map_).times_to(0).tolist() == [0.0, time_s]
+
+
 @pytest.mark.parametrize("interpreted", [False, True])
 def test_a_crowd_within_reach_of_each_other(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Only shortcuts, between all pairs: more of them are in the heap than it had room for at first."""

@@ -128,3 +128,32 @@ def test_thousands_of_experiences_keep_their_chains() -> None:
         p = ExperienceMapParams(match_view=match_view)
         for k in (0, 1, 1023, 1024, 2999):
             assert known.most_energetic(Packet(k % 64, k // 64, 0.0, 1.0), k % 7, p, Pose2(0.0, 0.0, 0.0)) == k
+
+
+@pytest.mark.parametrize("beside", [Packet(22.0, 20.0, 0.0, 1.0), Packet(20.0, 18.0, 0.0, 1.0)])
+def test_the_edge_of_a_zone_belongs_to_it(beside: Packet) -> None:
+    made = a_map(zone_xy=2.0, zone_theta=9.0)
+    assert made.energy(0, beside, 0) == 1.0
+    assert made.energy(0, Packet(20.0, 20.0, math.pi / 2, 1.0), 0) == 1.0  # nine layers
+    assert made.energy(0, Packet(20.0, 20.0, math.pi / 2 + 1e-6, 1.0), 0) == 0.0
+
+
+@pytest.mark.parametrize(("apart_m", "found"), [(2.0, 0), (2.001, -1)])
+def test_nothing_to_see_is_known_again_as_near_as_the_limit(apart_m: float, found: int) -> None:
+    known, here = Experiences((36, 64, 64)), Packet(20.0, 20.0, 0.0, 1.0)
+    known.add(here, -1, Pose2(3.0, 1.0, 0.0))
+    p = ExperienceMapParams(blind_m=2.0)
+    assert known.most_energetic(here, -1, p, Pose2(3.0 + apart_m, 1.0, 0.0)) == found
+    assert known.most_energetic(here, -1, p, Pose2(3.0, 1.0 - apart_m, 0.0)) == found
+
+
+@pytest.mark.parametrize("energy", ["2005", "2006"])
+@pytest.mark.parametrize("match_view", [True, False])
+def test_energy_has_to_be_above_the_threshold(match_view: bool, energy: str) -> None:
+    """One and a half at one cell from the middle; of equals the oldest is taken."""
+    known, beside = Experiences((36, 64, 64)), Packet(21.0, 20.0, 0.0, 1.0)
+    for _ in range(3):
+        known.add(Packet(20.0, 20.0, 0.0, 1.0), 0, Pose2(0.0, 0.0, 0.0))
+    for threshold, found in ((1.5, -1), (1.4375, 0)):
+        p = ExperienceMapParams(match_view=match_view, energy=energy, threshold=threshold, zone_xy=2.0)  # type: ignore[arg-type]
+        assert known.most_energetic(beside, 0, p, Pose2(0.0, 0.0, 0.0)) == found

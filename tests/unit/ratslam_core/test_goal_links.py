@@ -129,3 +129,89 @@ def test_wrong_cells_leave_no_trace(monkeypatch: pytest.MonkeyPatch) -> None:
             each.learn(*packet_cells(23, 20), 3.0)
         assert np.array_equal(memory.links[0], fresh.links[0])
         assert np.array_equal(memory.links[1], fresh.links[1])
+
+
+def single(x: int, y: int, *more: tuple[int, int, float], value: float = 0.5) -> tuple[np.ndarray, np.ndarray]:
+    """One active cell, and others: x, y, activity."""
+    rows = [(x, y, value), *more]
+    cells = np.array([(at_x, at_y, 0, at_y * SHAPE[2] + at_x) for at_x, at_y, _ in rows], np.int32)
+    return cells, np.array([activity for *_, activity in rows], np.float32)
+
+
+def test_a_cell_just_at_the_share_is_not_above_it() -> None:
+    for activity, links in ((0.25, 1), (0.2501, 2)):
+        memory = GoalMemory(GoalMemoryParams(share=0.5), SHAPE, CELL_M)
+        memory.learn(*single(10, 10, (11, 10, activity)), 1.0)
+        memory.learn(*single(20, 10), 2.0)
+        assert len(memory) == links
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_the_centre_is_that_of_what_is_near_the_strongest(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As far as `near` cells along each axis, round the torus, and no farther."""
+    if interpreted:
+        literal.interpret(goal_links, monkeypatch)
+    values = np.array([0.5, 0.25])
+    for x, y in ((10, 10), (1, 62)):
+        for dx, dy in ((3, 0), (-3, 0), (0, 3), (0, -3), (3, -3), (4, 0), (0, -4), (-4, 1), (1, 4)):
+            flats = np.array([y * 64 + x, (y + dy) % 64 * 64 + (x + dx) % 64])
+            part = 1 / 3 if max(abs(dx), abs(dy)) <= 3 else 0.0
+            expected = (x + part * dx) % 64, (y + part * dy) % 64
+            assert goal_links.centre(flats, values, SHAPE, 3) == pytest.approx(expected)
+
+
+def test_a_stride_is_reached_just_as_it_is_reached() -> None:
+    for x, links in ((11, 0), (12, 1)):  # half a metre is two cells
+        memory = GoalMemory(None, SHAPE, CELL_M)
+        memory.learn(*single(10, 10), 1.0)
+        memory.learn(*single(x, 10), 2.0)
+        assert len(memory) == links
+
+
+def test_a_link_takes_twelve_bytes_and_is_never_more_than_half_of_the_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(goal_memory, "ROOM", 4)
+    memory = GoalMemory(None, SHAPE, CELL_M)
+    plane = 4 * SHAPE[1] * SHAPE[2]
+    assert memory.memory_bytes == 12 * 4 + plane
+    for k in range(20):
+        memory.learn(*single(3 * k, 10), 1.0 + k)
+        assert len(memory) == k
+        room = (memory.memory_bytes - plane) / 12
+        assert max(4, 2 * k) <= room <= max(4, 4 * k)
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_a_cell_is_in_reach_up_to_the_limit(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where nothing has been learnt yet, any known cell within the reach will do, on all sides and round the torus."""
+    if interpreted:
+        literal.interpret(goal_links, monkeypatch)
+    none = np.full(8, goal_links.FREE)
+    for dx, dy, found in (
+        *((3, 0, True), (-3, 0, True), (0, 3, True), (0, -3, True), (2, 2, True), (-2, 2, True)),
+        *((3, 1, False), (-1, 3, False), (4, 0, False), (0, -4, False), (3, 3, False)),
+    ):
+        T = np.full((64, 64), np.inf)
+        there = (1 + dy) % 64, (62 + dx) % 64
+        T[there] = 7.0
+        assert goal_links.lowest(T, 62, 1, 3, none) == (there[0] * 64 + there[1] if found else -1)
+
+
+def test_it_looks_as_far_as_it_may() -> None:
+    memory = GoalMemory(GoalMemoryParams(reach=2, wider=3), SHAPE, CELL_M)
+    for away, heading in ((2, 0.0), (4, 0.0), (6, 0.0), (7, None)):
+        T = np.full((64, 64), np.inf)
+        T[30, 10 + away] = 0.0
+        assert memory.direction(T, Packet(10.0, 30.0, 0.0, 1.0)) == heading
+
+
+def test_it_has_arrived_just_at_the_limit() -> None:
+    memory = GoalMemory(GoalMemoryParams(arrived=1.5), SHAPE, CELL_M)
+    T = np.full((64, 64), np.inf)
+    T[30, 10] = 0.0
+    assert memory.direction(T, Packet(11.5, 30.0, 0.0, 1.0)) is None
+    assert memory.direction(T, Packet(11.6, 30.0, 0.0, 1.0)) == pytest.approx(math.pi)
+
+
+def test_the_largest_plane_and_the_smallest_are_planes() -> None:
+    for shape in ((1, 1024, 1024), (1, 1, 1)):
+        assert len(GoalMemory(None, shape, CELL_M)) == 0
