@@ -59,7 +59,7 @@ class PoseFilter:
             self.local, self.sigma_m = look, sigma_m
             return False
         own = max(self.sigma_m, self.params.least_sigma_m)
-        gain = own**2 / (own**2 + sigma_m**2) if sigma_m > 0 else 1.0
+        gain = own**2 / (own**2 + sigma_m**2)
         heading = wrap_angle(self.local.heading_rad + gain * turn)
         self.local = Pose2(self.local.x + gain * dx, self.local.y + gain * dy, heading)
         self.sigma_m = own * math.sqrt(1 - gain)
