@@ -28,8 +28,9 @@ class Lists:
 @pytest.mark.slow
 def test_links_come_and_go_as_in_lists(data: st.DataObject) -> None:
     """Nodes, links, removals, and rows used again, in any order; links from a node to itself and parallel ones, too."""
-    adjacency, lists = Adjacency(), Lists()
+    adjacency, lists, changes = Adjacency(), Lists(), 0
     for _ in range(data.draw(st.integers(1, 80))):
+        changes += 1
         what = data.draw(st.sampled_from(["node", "link", "link", "link", "remove"]))
         n = len(lists.halves)
         if what == "node" or n == 0:
@@ -48,7 +49,10 @@ def test_links_come_and_go_as_in_lists(data: st.DataObject) -> None:
             adjacency.remove_link(i, j, row)
             lists.halves[i].remove((2 * row, j))
             lists.halves[j].remove((2 * row + 1, i))
+        else:
+            changes -= 1  # there was nothing to remove
     lists.check(adjacency)
+    assert adjacency.changes == changes
 
 
 def test_thousands_of_links_grow_the_arena() -> None:

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ratslam_core import Odometry, RatSlam
+from ratslam_core import KidnapParams, LocalViewParams, Odometry, RatSlam
+from ratslam_core.extensions.kidnap_detector import KidnapDetector
 from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, Circle, start
 
 
@@ -126,3 +127,34 @@ def test_views_that_show_nothing_neither_find_nor_lose() -> None:
     assert brain.lost
     assert brain.experience_map.cell_state(brain.experience_map.active)[3] == -1
     assert brain.kidnap_detector._agreed == 0 <= agreed
+
+
+# ---------------------------------------------------------------- limits
+
+
+def test_a_change_is_a_jump_only_above_its_limits() -> None:
+    """Image and sonars together change by more than 1, and the image alone by more than its least share."""
+    params, views = (
+        KidnapParams(least_image=0.5, sonar_still_m=0.25, sonar_most_m=4.0),
+        LocalViewParams(range_surprise=1.0),
+    )
+    for image, change_m, noticed in (
+        (1.0, None, False), (1.001, None, True), (0.75, 0.5, False), (0.751, 0.5, True), (0.5, 2.0, False), (0.501, 2.0, True),
+    ):  # fmt: skip
+        detector = KidnapDetector(params, views)
+        if change_m is None:
+            assert detector.observe(image, None) is noticed
+        else:
+            detector.observe(0.0, np.full(4, 0.5))
+            assert detector.observe(image, np.full(4, 0.5 + change_m)) is noticed
+
+
+@pytest.mark.parametrize(("known", "steps"), [(-1, 5), (0, 3), (6, 3), (7, 5)])
+def test_it_is_found_again_just_when_it_was_seen_often_enough(known: int, steps: int) -> None:
+    """After three sights of experiences from before the kidnap, of which there were seven, or five steps."""
+    detector = KidnapDetector(KidnapParams(found_again=3, settled=5), LocalViewParams())
+    detector.declare(7)
+    for _ in range(steps):
+        assert detector.kidnapped
+        detector.settle(True, known)
+    assert not detector.kidnapped

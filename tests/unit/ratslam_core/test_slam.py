@@ -142,6 +142,31 @@ def test_goal_memory_learns_the_way_round() -> None:
     assert len(brain.goal_memory) == before  # waiting is no way
 
 
+def test_the_goal_memory_learns_whenever_the_wheels_turn() -> None:
+    """Straight ahead, too; and the time in which the robot turns on the spot is part of the way."""
+    still, ahead, left, right = (Odometry(*way, 0.1) for way in ((0.0, 0.0), (0.5, 0.0), (0.0, 1.0), (0.0, -1.0)))
+    image = np.random.default_rng(0).integers(0, 256, (8, 12), np.uint8)
+    longest = []
+    for pause in ([still] * 20, [left] * 10 + [right] * 10):
+        brain = RatSlam()
+        for odometry in [ahead] * 12 + pause + [ahead] * 12:
+            brain.step(image, odometry)
+        assert len(brain.goal_memory) > 0
+        longest.append(float(brain.goal_memory.links[1].max()))
+    assert longest[1] - longest[0] == pytest.approx(2.0, abs=0.3)
+
+
+@pytest.mark.parametrize(("beyond", "relocalised"), [(0.0, False), (1e-6, True)])
+def test_a_packet_relocalises_when_it_jumps_farther_than_the_limit(
+    beyond: float, relocalised: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    circle, brain = start()
+    jump = brain.params.pose_cells.snap_cells + beyond
+    monkeypatch.setattr(brain.pose_cells, "cells_apart", lambda *_: jump)
+    assert circle.advance(brain, 1)[0].relocalised is relocalised
+    assert brain.relocalisations == relocalised
+
+
 def test_a_leap_of_the_packet_is_no_way() -> None:
     circle, brain = start()
     circle.advance(brain, 2 * LAP)
