@@ -158,3 +158,25 @@ def test_a_link_of_no_weight_is_none(seed: int, nodes: int, links: int) -> None:
 def test_a_pivot_that_is_not_positive_has_no_factor(matrix: list[list[float]]) -> None:
     assert cholesky.factor(np.array(matrix)) is False
     assert cholesky.factor(np.array([[4.0]])) is True
+
+
+def full(nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    pairs = np.array([(i, j) for j in range(nodes) for i in range(j)], np.int64).reshape(-1, 2)
+    return pairs, np.ones(len(pairs))
+
+
+@EXAMPLES
+@given(st.integers(0, 2**32 - 1), st.integers(1, 40), st.integers(0, 120), st.booleans())
+def test_the_rest_begins_as_soon_as_it_is_dense(seed: int, nodes: int, links: int, entangled: bool) -> None:
+    """When each of its nodes is linked to an eighth of it or more, unless it has no more than eight nodes."""
+    made = taken_apart(nodes, *(full(nodes) if entangled else net(seed, nodes, links)))
+    for step, v in enumerate(made.order):
+        left = nodes - 1 - step
+        assert left <= 8 or 8 * made.used[v] < left
+    rest = len(made.rest)
+    assert rest == 0 or (rest > 8 and 8 * made.used[made.rest].min() >= rest)
+
+
+@pytest.mark.parametrize("nodes", [8, 9, 10, 40])
+def test_a_net_of_all_links_is_dense_from_nine_nodes_on(nodes: int) -> None:
+    assert len(taken_apart(nodes, *full(nodes)).rest) == (nodes - 1 if nodes - 1 > 8 else 0)

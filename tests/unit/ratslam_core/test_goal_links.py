@@ -215,3 +215,12 @@ def test_it_has_arrived_just_at_the_limit() -> None:
 def test_the_largest_plane_and_the_smallest_are_planes() -> None:
     for shape in ((1, 1024, 1024), (1, 1, 1)):
         assert len(GoalMemory(None, shape, CELL_M)) == 0
+
+
+def test_there_is_room_for_all_links_between_two_packets(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(goal_memory, "ROOM", 2)
+    memory = GoalMemory(GoalMemoryParams(share=0.0), SHAPE, CELL_M)
+    memory.learn(*packet_cells(10, 10), 1.0)
+    memory.learn(*packet_cells(30, 10), 2.0)
+    assert len(memory) == 81 * 81
+    assert memory.memory_bytes - 4 * SHAPE[1] * SHAPE[2] >= 24 * len(memory)
