@@ -89,3 +89,13 @@ def test_only_a_link_that_is_there_can_be_removed(bad: tuple[int, int, int]) -> 
         adjacency.remove_link(*bad)
     assert adjacency.at(0)[0].tolist() == [0]
     assert adjacency.at(1)[0].tolist() == [1]
+
+
+@pytest.mark.parametrize("nodes", [1024, 1025, 1026, 2049])
+def test_the_last_node_has_room_in_the_arena(nodes: int) -> None:
+    adjacency = Adjacency()
+    for _ in range(nodes):
+        adjacency.add_node()
+    for row in range(4):
+        adjacency.add_link(row, nodes - 1, row)
+    assert adjacency.at(nodes - 1)[1].tolist() == [0, 1, 2, 3]

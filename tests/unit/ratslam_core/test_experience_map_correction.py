@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -58,6 +59,18 @@ def test_a_closed_loop_straightens_the_map_and_finds_the_bias() -> None:
         d_map = np.hypot(*(learnt.map.poses[i, :2] - learnt.map.poses[(i + 8) % 16, :2]))
         d_true = math.hypot(true[i].x - true[(i + 8) % 16].x, true[i].y - true[(i + 8) % 16].y)
         assert d_map == pytest.approx(d_true, rel=0.1)
+
+
+def test_the_bias_is_taken_off_the_links_that_told_it() -> None:
+    """One lap of a loop: once its bias is known, the turns along its links add up to a full turn."""
+    bias = math.radians(1.0)
+    params = ExperienceMapParams(solve_every=1, sweeps=0, robust=False, anchor_sigma=0.0, odometry_drift=0.0)
+    for calibrate in (False, True):
+        robot = loop(replace(params, calibrate=calibrate), 1.0, bias, 1)
+        assert robot.map.links.tolist() == [[i, (i + 1) % 16] for i in range(16)]
+        too_far = math.remainder(float(robot.map.moves[:, 2].sum()), 2 * math.pi)
+        assert too_far == pytest.approx(0.0 if calibrate else 8.0 * bias, abs=1e-6)
+        assert robot.map.yaw_bias == pytest.approx(bias if calibrate else 0.0, abs=1e-6)
 
 
 @pytest.mark.parametrize(("a_step", "rested"), [(1e5, False), (2e2, True)])

@@ -87,6 +87,8 @@ def test_repeats_of_a_transition_are_averaged(passages: list[tuple[float, float]
         [np.mean([e.x for e in ends]), np.mean([e.y for e in ends]), np.mean(turns)], abs=1e-6
     )
     assert robot.map.transitions.time_s[row] == pytest.approx(np.mean(durations), abs=1e-6)
+    turning = [(3 + number) * 0.1 for number in range(len(passages))]
+    assert robot.map.transitions.turning_s[row] == pytest.approx(np.mean(turning), abs=1e-6)
 
 
 def test_a_passage_counts_by_how_well_it_is_known() -> None:
@@ -218,3 +220,19 @@ def test_no_link_is_quicker_than_the_robot() -> None:
     assert robot.map.link_times[1] == pytest.approx(np.hypot(*(robot.map.poses[1, :2] - robot.map.poses[0, :2])))
     robot.map.poses[1, :2] *= 2  # when the map stretches, so does the time
     assert robot.map.link_times[1] == pytest.approx(2.0)
+
+
+def test_what_is_deleted_elsewhere_does_not_keep_a_better_look_from_measuring() -> None:
+    robot = Robot(replace(EXACT, link_recency=0.3, anchor_sigma=0.05))
+    robot.see(0, new=True)
+    here = robot.packet()
+    for view in (1, 2, 1):
+        robot.pose = Pose2(0.0, 0.0, 0.0)
+        robot.see(0, packet=here)
+        robot.go(1.0, 0.0, view, difference=5.0, packet=replace(here, x=here.x + 10))
+    row = robot.map.transitions.row_of[0, 1]
+    before = robot.map.transitions.weight[row]
+    while (0, 2) in robot.map.transitions.row_of:
+        robot.map.tried(0, 2, False)
+    robot.see(1, difference=1.0, odometry=Odometry(0.3, 0.0, 0.1), packet=replace(here, x=here.x + 10))
+    assert robot.map.transitions.weight[row] > before

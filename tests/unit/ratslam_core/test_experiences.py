@@ -112,6 +112,15 @@ def test_in_2005_the_right_place_with_a_wrong_heading_still_counts() -> None:
         assert a_map(energy=energy).step(turned, Recognition(0, False, 0, 0.0), STILL) is created
 
 
+def test_in_2005_the_right_heading_at_a_wrong_place_still_counts() -> None:
+    known, elsewhere = Experiences((36, 64, 64)), Packet(50.0, 40.0, 0.0, 1.0)
+    known.add(Packet(20.0, 20.0, 0.0, 1.0), 0, Pose2(0.0, 0.0, 0.0))
+    for match_view in (True, False):
+        for threshold, found in ((0.9, 0), (1.0, -1)):
+            p = ExperienceMapParams(energy="2005", match_view=match_view, threshold=threshold)
+            assert known.most_energetic(elsewhere, 0, p, Pose2(0.0, 0.0, 0.0)) == found
+
+
 def test_without_the_scene_the_same_cells_are_the_same_place() -> None:
     for match_view, created in ((True, True), (False, False)):
         made = a_map(match_view=match_view)
