@@ -63,14 +63,11 @@ def packet_rows(
     rank = np.empty(clusters, np.int64)
     found = 0
     for c in range(clusters):
-        rank[c] = found
-        for other in range(c):
-            if peaks[other] == peaks[c]:
-                rank[c] = rank[other]
-                break
-        if rank[c] == found:
-            peaks[found] = peaks[c]
-            found += 1
+        r = 0
+        while r < found and peaks[r] != peaks[c]:
+            r += 1
+        peaks[r], rank[c] = peaks[c], r  # the first `found` of peaks are all different
+        found = max(found, r + 1)
     sums = np.zeros((found, 6))
     for i in range(n):
         owner[i] = c = rank[owner[i]]
