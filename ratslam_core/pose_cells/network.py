@@ -183,8 +183,8 @@ class PoseCells:
         inhibit = np.float32(p.inhibit)
         kept = self._cells[:n].copy(), self._values[:n].copy()
         self._weigh(1.0)
-        self._convolve(self._excite, inhibit if p.local_inhibit == 0 else np.float32(0))
-        if p.local_inhibit > 0:
+        self._convolve(self._excite, np.float32(0) if p.local_inhibit else inhibit)
+        if p.local_inhibit:
             self._inhibit_locally()
         self._n = attractor.inhibit_and_normalise(self._cells, self._values, self._n, self._slot, inhibit)
         gone = self._n == 0

@@ -7,6 +7,8 @@ import pytest
 
 from ratslam_core import PoseCellParams, PoseCells
 from ratslam_core.pose_cells import activity_kernels as kernels
+from ratslam_core.pose_cells import attractor_kernels
+from ratslam_core.pose_cells.network import ROOM
 
 from . import literal
 from .packets import drive, rest, settled
@@ -97,3 +99,76 @@ def test_large_networks_take_less_than_six_bytes_a_cell(n: int) -> None:
     pose_cells = PoseCells(PoseCellParams(n_x=n, n_y=n))
     drive(pose_cells, 0.7, 0.3, 30)
     assert 4 * n * n * 36 <= pose_cells.memory_bytes <= 6 * n * n * 36
+
+
+def test_room_for_active_cells_doubles_when_it_is_full_and_not_before() -> None:
+    pose_cells = PoseCells()
+
+    def fill_up_to(cells: int) -> int:
+        """By how many bytes the memory grows."""
+        before, n = pose_cells.memory_bytes, len(pose_cells.active[1])
+        free = np.flatnonzero(pose_cells.slot == 0)[: cells - n].astype(np.int32)
+        pose_cells.inject(free, np.full(len(free), 1e-5, np.float32))
+        assert len(pose_cells.active[1]) == cells
+        return pose_cells.memory_bytes - before
+
+    assert fill_up_to(ROOM) == 0
+    first = fill_up_to(ROOM + 1)
+    assert fill_up_to(2 * ROOM) == 0
+    assert fill_up_to(2 * ROOM + 1) == 2 * first > 0
+    assert fill_up_to(9 * ROOM) > 4 * first
+
+
+def test_one_packet_needs_hardly_more_room_than_there_is_at_first() -> None:
+    pose_cells = PoseCells()
+    before = pose_cells.memory_bytes
+    drive(pose_cells, 0.7, 0.3, 30)
+    assert pose_cells.memory_bytes < 1.5 * before
+
+
+def test_a_shift_has_room_for_eight_times_as_many_cells() -> None:
+    """Single cells far from each other, each of which becomes a cube of 2 x 2 x 2."""
+    pose_cells = PoseCells(PoseCellParams(n_x=64, n_y=64, n_theta=36))
+    dense = np.zeros(pose_cells.shape)
+    dense[::4, ::4, ::4] = 1 / (9 * 16 * 16)
+    literal.fill(pose_cells, dense)
+    pose_cells.integrate(0.1, 0.02)
+    assert len(pose_cells.active[1]) == 8 * np.count_nonzero(dense) == len(pose_cells.active[0])
+    assert pose_cells.activity.sum(dtype=np.float64) == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(("excite", "inhibit"), [(1, 3), (3, 1), (2, 2)])
+def test_a_cluster_as_large_as_the_window_has_room(excite: int, inhibit: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Interpreted, since compiled code would write beyond the end."""
+    literal.interpret(attractor_kernels, monkeypatch)
+    params = PoseCellParams(
+        n_x=12, n_y=12, n_theta=12, window=2, excite_radius=excite, local_inhibit_radius=inhibit,
+        inhibit=0.0, local_inhibit=0.2, excite_sigma=0.8, local_inhibit_sigma=1.5,
+    )  # fmt: skip
+    pose_cells = PoseCells(params)
+    dense = np.zeros(pose_cells.shape)
+    dense[4:9, 4:9, 4:9] = 1.0
+    dense[6, 6, 6] = 2.0
+    dense /= dense.sum()
+    literal.fill(pose_cells, dense)
+    pose_cells.attract()
+    excited = literal.convolve(dense, literal.gaussian(0.8, excite))
+    left = excited - 0.2 * literal.convolve(excited, literal.gaussian(1.5, inhibit))
+    assert np.abs(pose_cells.activity - literal.inhibit(left, 0.0)).max() < 2e-6
+
+
+def test_there_is_an_iteration_for_each_cell_driven() -> None:
+    pose_cells = PoseCells(PoseCellParams(iterations=4))
+    assert pose_cells.iterations_due == 1
+    for driven, due in [(0.5, 1), (0.5, 1), (0.01, 2), (-0.99, 2), (1.0, 3), (1.0, 4), (7.0, 4)]:
+        pose_cells.integrate(driven * pose_cells.params.cell_m, 0.0)
+        assert pose_cells.iterations_due == due
+    pose_cells.attract()
+    assert pose_cells.iterations_due == 1
+
+
+def test_distances_are_around_the_torus() -> None:
+    pose_cells = PoseCells(PoseCellParams(n_x=30, n_y=20))
+    assert pose_cells.cells_apart(29, 1, 2, 17) == 5.0
+    assert pose_cells.cells_apart(5, 3, 5, 13) == 10.0
+    assert pose_cells.cells_apart(5, 3, 20, 3) == 15.0
