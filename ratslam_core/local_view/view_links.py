@@ -91,8 +91,6 @@ class ViewLinks:
         if active > len(self._seen):
             self._seen = np.zeros(2 * active, np.bool_)
         start, used, room = self._blocks[view].tolist()
-        if used + active <= room:
-            return
         needed = used + active - _count_active(self._cells[start : start + used], slot)
         if needed <= room:
             return

@@ -139,3 +139,41 @@ def test_the_arena_takes_hardly_more_room_than_the_links() -> None:
             if view % 40 == 39 and (turn or view > 200):
                 used = sum(len(links.of(k)[0]) for k in range(400 * (turn + 1)))
                 assert links.room <= 2 * used
+
+
+def active_cells(flats: np.ndarray, value: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Cells, activities and slot as `learn` takes them."""
+    slot = np.zeros(147_456, np.int32)
+    slot[flats] = np.arange(len(flats)) + 1
+    cells = np.zeros((len(flats), 4), np.int32)
+    cells[:, 3] = flats
+    return cells, np.full(len(flats), value, np.float32), slot
+
+
+def test_links_are_kept_when_the_arena_is_full() -> None:
+    """Every view gets new links again and again, so that all blocks move, and the arena several times."""
+    links, rooms = ViewLinks(LocalViewParams(learning_rate=1.0, decay=0.0)), set()
+    for turn in range(4):
+        for view in range(60):
+            flats = 1000 * view + 600 * turn + np.arange(600)
+            links.learn(view, *active_cells(flats, 1.0 + view + 0.1 * turn))
+            rooms.add(links.room)
+    assert len(rooms) > 2
+    for view in range(60):
+        at = 1000 * view + np.arange(2400)
+        expected = np.zeros(147_456)
+        expected[at] = 1.0 + view + 0.1 * (np.arange(2400) // 600)
+        assert np.abs(dense(links, view, 147_456) - expected).max() < 1e-5
+
+
+def test_the_arena_grows_when_it_is_full_and_not_before() -> None:
+    links = ViewLinks()
+    room = links.room
+    for _ in range(2):  # the second time the links are there already
+        links.learn(0, *active_cells(np.arange(room), 1.0))
+        assert links.room == room
+    links.learn(0, *active_cells(np.arange(room + 1), 1.0))
+    assert 2 * room < links.room < 4 * room
+    assert links.of(0)[0].tolist() == list(range(room + 1))
+    links.learn(1, *active_cells(np.arange(5), 1.0))
+    assert links.of(1)[0].tolist() == list(range(5))
