@@ -1,0 +1,125 @@
+"""How the recogniser counts what a front end says, with a front end whose features are the image itself."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ratslam_core import LocalView, LocalViewParams, Recognition
+
+FOV = math.radians(50)
+Bytes = NDArray[np.uint8]
+
+
+class AsItIs:
+    """Two levels for each byte, at least 3 levels, recognised up to 11, surprising above 4."""
+
+    columns, rows = 12, 1
+    shifts, scale, vague = True, 2.0, 3.0
+
+    def __init__(self, limit: float = 11.0, jump: float = 4.0) -> None:
+        self._limit, self._surprise = limit, jump
+
+    def look(self, image: Bytes | None, _scene: int | None = None, /) -> Bytes:
+        assert image is not None
+        return image
+
+    def bland(self, features: Bytes, _params: LocalViewParams, /) -> bool:
+        return not features.any()
+
+    def threshold(self, _params: LocalViewParams, /) -> float:
+        return self._limit
+
+    def surprise(self, _params: LocalViewParams, /) -> float:
+        return self._surprise
+
+    def picture(self, features: Bytes, /) -> Bytes:
+        return features
+
+    def words(self, _features: Bytes, /) -> str:
+        return ""
+
+
+def even(level: float) -> Bytes:
+    return np.full(12, level, np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("level", "difference", "strength"),
+    [(100, 3, 1.0), (101, 3, 1.0), (102, 4, 7 / 8), (97, 6, 5 / 8), (105.5, 10, 1 / 8)],
+)
+def test_strength_falls_from_the_vague_to_the_threshold(level: float, difference: float, strength: float) -> None:
+    local_view = LocalView(front_end=AsItIs())
+    assert local_view.strength(local_view.observe(even(100))) == 1.0
+    seen = local_view.observe(even(level))
+    assert (seen.view, seen.recruited, seen.difference) == (0, False, difference)
+    assert local_view.difference_to(0) == difference
+    assert local_view.strength(seen) == pytest.approx(strength)
+
+
+def test_a_view_at_the_threshold_is_recognised_and_hardly_sure() -> None:
+    one = even(100)
+    one[:6] = 111  # a mean difference of 5.5
+    local_view = LocalView(LocalViewParams(shift=0), front_end=AsItIs())
+    local_view.observe(even(100))
+    seen = local_view.observe(one)
+    assert (seen.view, seen.difference) == (0, 11.0)
+    assert local_view.strength(seen) == 0.0
+    one[0] += 1
+    seen = local_view.observe(one)
+    assert (seen.view, seen.recruited, local_view.strength(seen)) == (1, True, 1.0)
+
+
+def test_a_front_end_that_only_knows_same_or_other_is_always_sure() -> None:
+    local_view = LocalView(front_end=AsItIs(limit=3.0))
+    local_view.observe(even(100))
+    seen = local_view.observe(even(100))
+    assert (seen.difference, local_view.strength(seen)) == (3.0, 1.0)
+
+
+@pytest.mark.parametrize("columns", [-2.4, -2.0, -1.3, -0.4, 0.0, 0.3, 1.0, 1.2, 2.3])
+def test_a_ramp_tells_the_fraction_of_a_shift_exactly(columns: float) -> None:
+    local_view = LocalView(LocalViewParams(shift=2), front_end=AsItIs(limit=99.0))
+    ramp = 50 + 10 * np.arange(12)
+    local_view.observe(ramp.astype(np.uint8))
+    seen = local_view.observe(np.rint(ramp - 10 * columns).astype(np.uint8))
+    assert seen.facing_rad == pytest.approx(columns * FOV / 12, abs=1e-9)
+
+
+@pytest.mark.parametrize("turn", [0, 1, 2, 3, -2, -3])
+def test_a_jump_is_what_is_left_after_the_best_turn(turn: int) -> None:
+    scene = np.random.default_rng(1).integers(60, 200, 40).astype(np.uint8)
+    local_view = LocalView(LocalViewParams(turn_shift=2), front_end=AsItIs())
+    local_view.observe(scene[20:32])
+    assert local_view.image_change == 0.0
+    local_view.observe(scene[20 + turn : 32 + turn] + np.uint8(3))
+    if abs(turn) <= 2:
+        assert local_view.image_change == pytest.approx(2 * 3 / 4)
+    else:
+        assert local_view.image_change > 4
+
+
+@pytest.mark.parametrize(("jump", "enabled"), [(math.inf, True), (4.0, False)])
+def test_without_a_limit_or_without_vision_no_jump_is_told(jump: float, enabled: bool) -> None:
+    local_view = LocalView(LocalViewParams(enabled=enabled), front_end=AsItIs(jump=jump))
+    for level in (100, 10):
+        assert local_view.observe(even(level)).recruited is enabled
+        assert local_view.image_change == 0.0
+
+
+def test_what_is_bland_still_has_a_nearest_view() -> None:
+    local_view = LocalView(front_end=AsItIs())
+    local_view.observe(even(40))
+    assert local_view.observe(even(0)) == Recognition(-1, False, 0, 80.0)
+
+
+def test_false_positives_come_from_the_generator_handed_in_or_the_same_one_always() -> None:
+    def seen(rng: np.random.Generator | None) -> list[int]:
+        local_view = LocalView(LocalViewParams(false_positives=0.5), rng, AsItIs())
+        return [local_view.observe(even(20 * (1 + k % 8))).view for k in range(60)]
+
+    assert seen(None) == seen(None)
+    assert seen(np.random.default_rng(1)) == seen(np.random.default_rng(1)) != seen(np.random.default_rng(2))
