@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from ratslam_core import LocalViewParams
 from ratslam_core.local_view.front_ends.complex_cells import REACH, ComplexCells, gabor_pair
 
 from .scenes import Image, P
@@ -56,3 +57,58 @@ def test_gabor_pairs_are_blind_to_brightness() -> None:
         assert abs(even.sum()) < 1e-6 > abs(odd.sum())
         assert (even**2).sum() == pytest.approx((odd**2).sum(), rel=1e-5)
     assert ComplexCells(P).look(np.full((36, 48), 200, np.uint8)).max() == 0
+
+
+@pytest.mark.parametrize("k", range(4))
+def test_a_gabor_filter_is_a_wave_under_a_bell(k: int) -> None:
+    """A wave of 6 pixels across the edge under a Gaussian of 2.4 pixels; the even one is freed of its mean in the same shape."""
+    bell, wave = np.zeros((11, 11)), np.zeros((11, 11), complex)
+    for y in range(-5, 6):
+        for x in range(-5, 6):
+            across = x * math.cos(math.pi * k / 4) + y * math.sin(math.pi * k / 4)
+            bell[y + 5, x + 5] = math.exp(-0.5 * (x * x + y * y) / 2.4**2)
+            angle = 2 * math.pi * across / 6
+            wave[y + 5, x + 5] = bell[y + 5, x + 5] * complex(math.cos(angle), math.sin(angle))
+    even, odd = gabor_pair(math.pi * k / 4)
+    assert even.shape == odd.shape == (11, 11)
+    assert even.dtype == odd.dtype == np.float32
+    expected = wave.real - bell * wave.real.sum() / bell.sum()
+    for got, form in ((even, expected), (odd, wave.imag)):
+        assert got == pytest.approx(form / math.sqrt((form**2).sum() * bell.sum()), abs=1e-6)
+
+
+@pytest.mark.parametrize(("k", "along"), [(0, (1, 0)), (1, (1, -1)), (2, (0, 1)), (3, (1, 1))])
+def test_the_picture_has_a_bar_along_the_edges_of_each_place(k: int, along: tuple[int, int]) -> None:
+    """Orientation 0 is across to the right, so its edge goes up and down. Bars end before the corners of their place."""
+    features = np.zeros((12, 2, 4), np.uint8)
+    features[7, 1, k] = 200
+    picture = ComplexCells(P).picture(features.ravel())
+    assert picture.shape == (18, 108)
+    place = picture[9:18, 63:72].copy()
+    assert place.sum(dtype=int) == picture.sum(dtype=int)
+    reach = 4 if k % 2 == 0 else 2
+    for step in range(-4, 5):
+        y, x = 4 + step * along[0], 4 + step * along[1]
+        assert place[y, x] == (200 if abs(step) <= reach else 0)
+    assert np.array_equal(place, place[::-1, ::-1])
+    away = np.abs(np.arange(-4, 5)[:, None] * along[1] - np.arange(-4, 5)[None, :] * along[0]) / math.hypot(*along)
+    assert (place[away > 1.2] == 0).all()
+    beside = place[4 + along[1], 4 - along[0]]  # 1 away from the middle of the bar, or 1.4
+    assert beside == pytest.approx(40 if k % 2 == 0 else 0, abs=1)
+
+
+def test_the_brightest_of_several_edges_shows() -> None:
+    features = np.zeros((12, 2, 4), np.uint8)
+    features[0, 0] = 100, 0, 255, 0
+    place = ComplexCells(P).picture(features.ravel())[:9, :9]
+    assert place[4].tolist() == [255] * 9
+    assert place[[0, 1, 7, 8], 4].tolist() == [100] * 4
+
+
+def test_bland_is_less_than_the_limit_on_average() -> None:
+    end, limit = ComplexCells(P), P.min_edges
+    features = np.full(96, math.ceil(limit), np.uint8)
+    at = LocalViewParams(min_edges=float(math.ceil(limit)))
+    assert not end.bland(features, at)
+    features[0] -= 1
+    assert end.bland(features, at)

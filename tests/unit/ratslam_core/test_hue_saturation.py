@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ratslam_core import LocalViewParams
 from ratslam_core.local_view.front_ends.hue_saturation import HueSaturation, histogram
 
 from .scenes import P, view_of
@@ -66,3 +67,48 @@ def test_hues_need_colour() -> None:
         ValueError, match=r"image must be in colour, shape \(h, w, 3\), for hue and saturation, got \(48, 64\)"
     ):
         view_of("hue and saturation").observe(np.zeros((48, 64), np.uint8))
+
+
+@pytest.mark.parametrize(("hue", "saturation"), [(0, 7), (1, 5), (4, 3), (11, 1), (6, 0)])
+def test_a_bin_is_shown_in_its_own_colour(hue: int, saturation: int) -> None:
+    """Hue to the right, saturation downwards; the share of the bin is the brightness."""
+    features = np.zeros((12, 8), np.uint8)
+    features[hue, saturation] = 80  # is shown as 200
+    features[(hue + 3) % 12, 2] = 255  # is as bright as can be
+    end = HueSaturation(P)
+    picture = end.picture(features.ravel())
+    assert picture.shape == (8, 12, 3)
+    expected = np.array(colorsys.hsv_to_rgb(hue / 12, saturation / 7, 200 / 255)) * 255
+    assert np.abs(picture[saturation, hue] - expected).max() <= 3
+    assert picture[2, (hue + 3) % 12].max() == 255
+    assert np.count_nonzero(picture.max(axis=2)) == 2
+
+
+@pytest.mark.parametrize(
+    ("hue", "saturation", "words"),
+    [(0, 7, "mostly hue 0° at saturation 7 of 7"), (4, 2, "mostly hue 120° at saturation 2 of 7")],
+)
+def test_words_name_the_largest_bin(hue: int, saturation: int, words: str) -> None:
+    features = np.ones((12, 8), np.uint8)
+    features[hue, saturation] = 9
+    assert HueSaturation(P).words(features.ravel()) == words
+
+
+def test_features_are_shares_of_the_full_bin() -> None:
+    """An image that is half red and half green: two bins with half of the pixels each."""
+    image = np.zeros((24, 32, 3), np.uint8)
+    image[:12, :, 0] = image[12:, :, 1] = 200
+    features = HueSaturation(LocalViewParams(full_bin=0.8)).look(image).reshape(12, 8)
+    assert features[[0, 4], 7].tolist() == [159, 159]  # 255 x 0.5 / 0.8
+    assert np.count_nonzero(features) == 2
+    assert HueSaturation(LocalViewParams(full_bin=0.4)).look(image).max() == 255
+
+
+@pytest.mark.parametrize(("level", "bland"), [(51, False), (50, True)])
+def test_bland_is_less_colour_than_the_limit(level: int, bland: bool) -> None:
+    """Saturation 0 is no colour, however much there is of it."""
+    features = np.zeros((12, 8), np.uint8)
+    features[:, 0] = 200
+    features[3, 1] = level
+    params = LocalViewParams(full_bin=0.5, min_colour=0.1)
+    assert HueSaturation(params).bland(features.ravel(), params) is bland
