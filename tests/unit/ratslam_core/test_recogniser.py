@@ -123,3 +123,11 @@ def test_false_positives_come_from_the_generator_handed_in_or_the_same_one_alway
 
     assert seen(None) == seen(None)
     assert seen(np.random.default_rng(1)) == seen(np.random.default_rng(1)) != seen(np.random.default_rng(2))
+
+
+def test_without_false_positives_nothing_is_drawn() -> None:
+    rng = np.random.default_rng(1)
+    local_view = LocalView(LocalViewParams(false_positives=0.0), rng, AsItIs())
+    for k in range(9):
+        local_view.observe(even(20 * (1 + k % 3)))
+    assert rng.bit_generator.state == np.random.default_rng(1).bit_generator.state

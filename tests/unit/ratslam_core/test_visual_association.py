@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from ratslam_core import ExperienceMapParams, LocalViewParams, PoseCells, RatSlamParams
+from ratslam_core import ExperienceMapParams, LocalViewParams, PoseCells, RatSlamParams, Recognition
+from ratslam_core.visual_association import VisualAssociation
+from tests.unit.ratslam_core import literal
 from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, start
 
 
@@ -67,3 +70,69 @@ def test_the_fixed_rate_is_fixed() -> None:
     circle, brain = start()
     circle.advance(brain, LAP)
     assert brain.association.learning_rate == brain.params.local_view.learning_rate
+
+
+def seen(view: int, recruited: bool = False) -> Recognition:
+    return Recognition(view, recruited, view, 1.0)
+
+
+def injected(association: VisualAssociation, what: Recognition, pose_cells: PoseCells, dt: float = 0.5) -> float:
+    """How much activity a step adds. The pose cells then rest."""
+    association.step(what, 1.0, dt, pose_cells, False)
+    more = float(pose_cells.active[1].sum(dtype=np.float64)) - 1.0
+    pose_cells.settle()
+    return more
+
+
+def test_a_view_injects_from_the_moment_it_is_as_old_as_rest() -> None:
+    """Each has its own age. While it is young it learns nothing either."""
+    association, pose_cells = VisualAssociation(LocalViewParams(rest=2.0, learning_rate=0.01)), PoseCells()
+    views = [
+        (0, True),
+        (0, False),
+        (1, True),
+        (0, False),
+        (0, False),
+        (1, False),
+        (1, False),
+    ]  # at 0.5, 1.0 ... seconds
+    amounts = [injected(association, seen(*one), pose_cells) for one in views]
+    assert amounts == pytest.approx([0, 0, 0, 0, 0.01, 0, 0.01], abs=1e-6)
+    assert association.links.of(0)[1].sum() == pytest.approx(
+        0.02, rel=1e-3
+    )  # when it was recruited, and when it injected
+
+
+def test_nothing_seen_changes_nothing() -> None:
+    association, pose_cells = VisualAssociation(LocalViewParams(rest=0.0)), PoseCells()
+    injected(association, seen(0, True), pose_cells)
+    before = association.links.of(0)[1].tolist()
+    assert injected(association, seen(-1), pose_cells) == pytest.approx(0, abs=1e-6)
+    assert association.links.of(0)[1].tolist() == before
+
+
+@pytest.mark.parametrize("learn_first", [False, True])
+def test_what_is_injected_was_learnt_before_unless_learning_comes_first(learn_first: bool) -> None:
+    params = LocalViewParams(rest=0.0, learning_rate=0.01, decay=0.0, saturation=1.0, learn_first=learn_first)
+    association, pose_cells = VisualAssociation(params), PoseCells()
+    injected(association, seen(0, True), pose_cells)
+    for _ in range(3):
+        known = float(association.links.of(0)[1].sum())
+        amount = injected(association, seen(0), pose_cells)
+        assert amount == pytest.approx(known + 0.01 * learn_first, abs=1e-6)
+        assert association.links.of(0)[1].sum() == pytest.approx(known + 0.01, abs=1e-6)
+
+
+@pytest.mark.parametrize(("strength", "lost", "rate"), [(1.0, False, 0.6), (0.25, False, 0.15), (1.0, True, 0.0)])
+def test_the_adaptive_rate_is_twice_the_rate_times_strength_times_confidence(
+    strength: float, lost: bool, rate: float
+) -> None:
+    pose_cells = PoseCells()
+    two = np.zeros(pose_cells.shape)
+    two[3, 10, 10], two[20, 40, 40] = 0.6, 0.4
+    literal.fill(pose_cells, two)
+    pose_cells.settle()
+    association = VisualAssociation(LocalViewParams(adaptive=True, learning_rate=0.5))
+    association.step(seen(0, True), strength, 0.1, pose_cells, lost)
+    assert association.learning_rate == pytest.approx(rate)
+    assert association.links.of(0)[1].sum() == pytest.approx(rate)
