@@ -43,7 +43,7 @@ class ViewLinks:
 
         column: the place, a flat index modulo `columns`. For inspection only: it goes through all links.
         """
-        strength = np.zeros(max(views, 1), np.float32)
+        strength = np.zeros(views, np.float32)
         _sum_at(self._blocks, min(views, len(self._blocks)), self._cells, self._strength, column, columns, strength)
         linked = np.flatnonzero(strength).astype(np.int32)
         return linked, strength[linked]

@@ -13,17 +13,19 @@ from ratslam_core.local_view.matcher import Matcher
 from . import literal
 
 
-def literal_nearest(known: np.ndarray, new: np.ndarray, most: int) -> tuple[int, float, int]:
+def literal_nearest(
+    known: np.ndarray, new: np.ndarray, most: int, columns: int = 12, rows: int = 8
+) -> tuple[int, float, int]:
     """Shift by shift, view by view, column by column; only a smaller difference replaces the best so far."""
     best = (-1, math.inf, 0)
     for shift in range(-most, most + 1):
         for view, old in enumerate(known):
             total = 0
-            for column in range(12):
-                if 0 <= column + shift < 12:
-                    for row in range(8):
-                        total += abs(int(new[8 * (column + shift) + row]) - int(old[8 * column + row]))
-            mean = total / (8 * (12 - abs(shift)))
+            for column in range(columns):
+                if 0 <= column + shift < columns:
+                    for row in range(rows):
+                        total += abs(int(new[rows * (column + shift) + row]) - int(old[rows * column + row]))
+            mean = total / (rows * (columns - abs(shift)))
             if mean < best[1]:
                 best = (view, mean, shift)
     return best
@@ -37,6 +39,15 @@ def test_the_nearest_view_is_that_of_the_loops_bit_for_bit(seed: int, most: int,
     known = rng.integers(0, highest + 1, (count, 96)).astype(np.uint8)
     new = rng.integers(0, highest + 1, 96).astype(np.uint8)
     assert Matcher().nearest(known, new, most) == literal_nearest(known, new, most)
+
+
+@settings(max_examples=40)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 20), st.integers(1, 9), st.integers(0, 20))
+def test_views_of_any_size_are_compared_by_all_their_columns(seed: int, columns: int, rows: int, most: int) -> None:
+    rng, most = np.random.default_rng(seed), min(most, columns - 1)
+    known = rng.integers(0, 256, (9, columns * rows)).astype(np.uint8)
+    new = rng.integers(0, 256, columns * rows).astype(np.uint8)
+    assert Matcher(columns, rows).nearest(known, new, most) == literal_nearest(known, new, most, columns, rows)
 
 
 @pytest.mark.parametrize("interpreted", [False, True])

@@ -43,7 +43,7 @@ def test_learning_is_hebbian(decay: float, interpreted: bool, monkeypatch: pytes
 
 def test_a_view_never_seen_is_linked_to_nothing() -> None:
     links = ViewLinks()
-    for view in (0, 7, 5000):
+    for view in (0, 7, 1023, 1024, 5000):
         cells, values = links.recall(view)
         assert len(cells) == len(values) == 0
         assert len(links.recall(view, lost=True)[0]) == 0
