@@ -207,3 +207,17 @@ def test_subtraction_touches_only_what_is_active(seed: int, gain: float) -> None
     expected = np.where(mine.dense() > 0, mine.dense() - np.float32(gain) * other.dense(), 0)
     attractor.subtract(mine.values, mine.slot, other.cells, other.values, other.n, np.float32(gain))
     assert mine.dense() == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize(("between", "packets"), [(0.4, 1), (0.3, 2)])
+def test_a_neighbour_that_is_just_as_strong_makes_no_flank(between: float, packets: int) -> None:
+    """The cell between two peaks belongs to the first one's cluster, which the second joins if that cell is stronger."""
+    shape = (8, 8, 8)
+    cells = active(np.array([0, 1, 2]), np.array([0.5, between, 0.3]), shape)
+    found, _, (owner, peaks, _) = clusters_of(cells, 1, 0)
+    assert found == 2
+    rows, headings = np.zeros((2, ROW)), np.ones((8, 2))
+    join_flanks(cells.cells, cells.values, cells.slot, shape, owner, peaks, found)
+    got = packet_rows(cells.cells, cells.values, 3, shape, owner, peaks, found, headings, rows)
+    assert got == packets
+    assert rows[:packets, MASS].sum() == pytest.approx(0.8 + between)
