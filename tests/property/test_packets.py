@@ -73,14 +73,19 @@ def test_a_packet_goes_where_its_mean_heading_leads(
 
 
 @EXAMPLES
-@given(seeds, packets, st.integers(1, 20), st.sampled_from([1.0, -1.0]))
-def test_a_cell_counts_for_the_nearest_packet_within_reach(seed: int, n: int, reach: int, sign: float) -> None:
+@given(seeds, packets, st.integers(1, 20), st.sampled_from([1.0, -1.0]), st.booleans())
+def test_a_cell_counts_for_the_nearest_packet_within_reach(
+    seed: int, n: int, reach: int, sign: float, crowded: bool
+) -> None:
     """A cell just as far away as the reach counts, too."""
     rng = np.random.default_rng(seed)
     cells = np.zeros((200, 4), np.int32)
     cells[:, :3] = rng.integers(0, SIZES, (200, 3))
     values = rng.uniform(0, 1, 200).astype(np.float32)
     before = rows_of(seed, n)
+    if crowded:
+        cells[:, :3] = rng.integers(-3, 4, (200, 3)) % SIZES
+        before[:, :3] = rng.normal(0, 1, (n, 3)) % SIZES
     if n == 1:  # of several, two may be equally near then
         before[:, :3] = np.floor(before[:, :3])
     rows = before.copy()
