@@ -52,3 +52,16 @@ def test_a_scene_number_is_drawn_whole(scene: int) -> None:
     assert picture.max() > 200
     for edge in (picture[0], picture[-1], picture[:, 0], picture[:, -1]):
         assert (edge == picture[0, 0]).all()
+
+
+@pytest.mark.parametrize("scene", [0, 42, 1234567, 2**63 - 1])
+def test_the_digits_stand_in_the_middle_of_a_card(scene: int) -> None:
+    """Two thirds as high as it is wide, or as high as the digits need."""
+    end = named_front_end(LocalViewParams(front_end="scene numbers"))
+    picture = end.picture(end.look(None, scene))
+    high, wide = picture.shape
+    assert high == pytest.approx(max(36, 2 * wide / 3), abs=4)
+    rows, columns = (np.flatnonzero((picture != picture[0, 0]).any(axis=1 - axis)) for axis in (0, 1))
+    assert rows[0] == pytest.approx(high - 1 - rows[-1], abs=6)
+    for margin in (columns[0], wide - 1 - columns[-1]):
+        assert 3 <= margin <= 7
