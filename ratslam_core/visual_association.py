@@ -31,8 +31,9 @@ class VisualAssociation:
 
         strength: how sure the recognition is, 0 to 1; lost: the robot knows that it was carried away.
 
-        [ours] What is injected was learnt before this step, and a view younger than `rest` injects nothing. Otherwise
-        it would hold the packet back where it has just been learnt. The plain twin is `learn_first`, with `rest` 0.
+        [ours] What is injected was learnt before this step, and a view younger than `rest` neither injects nor learns on.
+        Otherwise it would hold the packet back where it has just been learnt. The plain twin is `learn_first`, with
+        `rest` 0.
         test_visual_association.py::test_a_young_view_does_not_hold_the_packet_back.
         """
         self._time_s += dt
@@ -42,13 +43,14 @@ class VisualAssociation:
             return
         self.learning_rate = self._rate(strength, 0.0 if lost else min(1.0, pose_cells.winner.mass))
         young = self._time_s - self._learnt_s[seen.view] < self.params.rest
-        if self.params.learn_first or seen.recruited:
+        learns_first = self.params.learn_first or seen.recruited
+        if learns_first:
             self._learn(seen.view, pose_cells)
         if young:
             return
         cells, injection = self.links.recall(seen.view, lost)
         cells = cells.copy()
-        if not self.params.learn_first:
+        if not learns_first:
             self._learn(seen.view, pose_cells)
         pose_cells.inject(cells, injection)
 

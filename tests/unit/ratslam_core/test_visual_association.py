@@ -87,20 +87,12 @@ def injected(association: VisualAssociation, what: Recognition, pose_cells: Pose
 def test_a_view_injects_from_the_moment_it_is_as_old_as_rest() -> None:
     """Each has its own age. While it is young it learns nothing either."""
     association, pose_cells = VisualAssociation(LocalViewParams(rest=2.0, learning_rate=0.01)), PoseCells()
-    views = [
-        (0, True),
-        (0, False),
-        (1, True),
-        (0, False),
-        (0, False),
-        (1, False),
-        (1, False),
-    ]  # at 0.5, 1.0 ... seconds
+    # at 0.5, 1.0 ... seconds
+    views = [(0, True), (0, False), (1, True), (0, False), (0, False), (1, False), (1, False)]
     amounts = [injected(association, seen(*one), pose_cells) for one in views]
     assert amounts == pytest.approx([0, 0, 0, 0, 0.01, 0, 0.01], abs=1e-6)
-    assert association.links.of(0)[1].sum() == pytest.approx(
-        0.02, rel=1e-3
-    )  # when it was recruited, and when it injected
+    learnt = association.links.of(0)[1].sum()
+    assert learnt == pytest.approx(0.02, rel=1e-3)  # when it was recruited, and when it injected
 
 
 def test_nothing_seen_changes_nothing() -> None:
@@ -116,6 +108,7 @@ def test_what_is_injected_was_learnt_before_unless_learning_comes_first(learn_fi
     params = LocalViewParams(rest=0.0, learning_rate=0.01, decay=0.0, saturation=1.0, learn_first=learn_first)
     association, pose_cells = VisualAssociation(params), PoseCells()
     injected(association, seen(0, True), pose_cells)
+    assert association.links.of(0)[1].sum() == pytest.approx(0.01, abs=1e-6)  # once
     for _ in range(3):
         known = float(association.links.of(0)[1].sum())
         amount = injected(association, seen(0), pose_cells)
