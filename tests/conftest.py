@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, settings
 SLOW = [HealthCheck.too_slow, HealthCheck.large_base_example]
 settings.register_profile("suite", deadline=None, derandomize=True, print_blob=True, suppress_health_check=SLOW)
 settings.register_profile("hunt", settings.get_profile("suite"), derandomize=False)  # --hypothesis-profile=hunt: others
+settings.register_profile("everyday", settings.get_profile("suite"), max_examples=40)  # of 100
 settings.load_profile("suite")
 
 

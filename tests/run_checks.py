@@ -1,7 +1,7 @@
 """Every check: style, types, imports, then the tests; two at a time. `make test` calls this.
 
---fast leaves out what takes long: tests in a browser, tests of the whole program, tests marked as slow. All other
-arguments go to pytest. `make coverage` shows what the Python tests cover.
+--fast leaves out what takes long: tests in a browser, tests of the whole program, tests marked as slow. It also tries
+fewer examples of each law. All other arguments go to pytest. `make coverage` shows what the Python tests cover.
 """
 
 from __future__ import annotations
@@ -38,36 +38,41 @@ PYTEST = [
     "--dist=loadfile",
     "--no-loadscope-reorder",
 ]  # the browser first: it takes longest
-FAST = ["-m", "not slow", "tests/unit", "tests/property"]
+FAST = ["-m", "not slow", "--hypothesis-profile=everyday", "tests/unit", "tests/property"]
 # Two processes share two cores. A library that spreads a small product over both cores waits longer than it computes.
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 def main(arguments: list[str]) -> int:
-    """All checks run even when one fails; pytest comes last, so that its closing line is the last."""
+    """All checks run even when one fails. The tests begin while the types, which take longest, are still being checked;
+    they end last, so that their closing line is the last."""
     fast = "--fast" in arguments
     tests = [*PYTEST, *(FAST if fast else ["--durations=15"]), *(word for word in arguments if word != "--fast")]
     with ThreadPoolExecutor(2) as pool:
-        failed = [name for name, passed in zip(CHECKS, pool.map(_check, CHECKS), strict=True) if not passed]
-    print("\n=== tests (pytest)", flush=True)
-    if _run(tests).returncode:
-        failed.append("tests (pytest)")
+        passed = [pool.submit(_check, name, command) for name, command in CHECKS.items()]
+        passed.append(pool.submit(_test, tests))
+    failed = [name for name, check in zip([*CHECKS, "tests (pytest)"], passed, strict=True) if not check.result()]
     if failed:
         print(f"failed: {', '.join(failed)}", file=sys.stderr)
     return 1 if failed else 0
 
 
-def _check(name: str) -> bool:
+def _check(name: str, command: list[str]) -> bool:
     """One static check; what it says is printed in one piece when it is done."""
     began = time.monotonic()
-    done = _run(CHECKS[name], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    done = _run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     said = f"{done.stdout}    FAILED" if done.returncode else "    fine"
-    print(f"=== {name}\n{said}, {time.monotonic() - began:.0f} s", flush=True)
+    print(f"\n=== {name}\n{said}, {time.monotonic() - began:.0f} s", flush=True)
     return done.returncode == 0
 
 
+def _test(command: list[str]) -> bool:
+    print("\n=== tests (pytest)", flush=True)
+    return _run(command).returncode == 0
+
+
 def _run(command: list[str], **options: Any) -> subprocess.CompletedProcess[Any]:
-    environment = {**os.environ, **ONE_THREAD}
+    environment = {**os.environ, **ONE_THREAD, "PYTHONDONTWRITEBYTECODE": ""}  # or all asserts are rewritten each time
     return subprocess.run([BIN / command[0], *command[1:]], cwd=ROOT, env=environment, check=False, **options)
 
 

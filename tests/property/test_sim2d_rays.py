@@ -41,6 +41,7 @@ def literal_crossings(walls: np.ndarray, x: float, y: float, dx: float, dy: floa
     return sorted(found)
 
 
+@pytest.mark.slow
 @given(clear_segments, heading, st.data())
 @settings(max_examples=80)
 def test_columns_meet_the_walls_that_rays_meet(walls: np.ndarray, angle: float, data: st.DataObject) -> None:

@@ -44,6 +44,7 @@ def test_stepping_is_the_same_as_the_session_alone(start: Callable[..., EngineTh
     assert engine.session.state_hash() == alone.state_hash()
 
 
+@pytest.mark.slow
 def test_running_pauses_and_resumes_at_any_speed(start: Callable[..., EngineThread]) -> None:
     engine = start(running=True)
     wait_for(engine, lambda now: now.tick >= 30)
@@ -147,6 +148,7 @@ def test_an_order_that_breaks_is_answered_with_its_error(
     assert accept(engine, step()).tick == 1  # the engine lives on
 
 
+@pytest.mark.slow
 def test_snapshots_of_a_run_only_go_forwards(start: Callable[..., EngineThread]) -> None:
     engine = start(running=True)
     seen = []

@@ -37,6 +37,7 @@ def test_the_history_changes_nothing() -> None:
     assert watched.state_hash() == a_session(120).state_hash()
 
 
+@pytest.mark.slow
 def test_trail_path_and_series_grow() -> None:
     session = a_session()
     history = observed(session, 101)

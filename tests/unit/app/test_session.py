@@ -95,6 +95,7 @@ def test_the_true_pose_stays_out_of_a_brain_that_sees_images(monkeypatch: pytest
         assert told == [session.frame.scene if front_end == "scene numbers" else None]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", ["kidnap", "goal", "mode", "parameter"])
 def test_equal_orders_keep_runs_equal(order: str) -> None:
     runs = []

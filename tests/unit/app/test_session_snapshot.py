@@ -47,6 +47,7 @@ def goes_on(session: Session, ticks: int, act: Callable[[Session, int], None] = 
         assert other.state_hash() == session.state_hash(), f"parted after {tick + 1} ticks"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("world", ["office", "living", "twins"])
 def test_it_goes_on_bit_for_bit(world: str) -> None:
     goes_on(driven(world), 40)

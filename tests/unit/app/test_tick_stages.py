@@ -113,6 +113,7 @@ def test_each_stage_shows_pose_cells_and_map_as_they_were() -> None:
     assert parts["correction"] == {}  # the end of the tick
 
 
+@pytest.mark.slow
 def test_what_is_new_recognised_or_silent_is_said() -> None:
     words: dict[str, set[str]] = {name: set() for name in TITLES}
     session = explored(3)

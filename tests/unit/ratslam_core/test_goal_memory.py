@@ -111,6 +111,7 @@ def test_times_grow_with_the_time_that_a_way_took() -> None:
     assert max(times) < 2 * min(times)  # over a fourfold range of speeds
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [item.name for item in fields(GoalMemoryParams) if isinstance(item.default, float)])
 @pytest.mark.parametrize("factor", [0.8, 1.2])
 def test_small_changes_of_the_parameters_keep_the_route(name: str, factor: float) -> None:

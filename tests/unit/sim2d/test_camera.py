@@ -143,6 +143,7 @@ def slow_image(world: World, x: float, y: float, heading: float, params: SimPara
 POSES = [("office", 1.0, 1.0, 0.0), ("office", 5.2, 4.4, 3.0), ("office", 9.0, 7.0, -2.6), ("loop", 5.3, 0.8, 1.9)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "x", "y", "heading", "fade"), [*((*at, 14.0) for at in POSES), (*POSES[2], 3.0)])
 def test_agrees_with_a_slow_ray_caster(name: str, x: float, y: float, heading: float, fade: float) -> None:
     """The whole image against an independent, supersampled one. Two differences are allowed: a column's middle ray

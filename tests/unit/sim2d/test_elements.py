@@ -135,6 +135,7 @@ BAD: dict[str, tuple[Spoil, str]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("spoil", "sentence"), BAD.values(), ids=BAD.keys())
 def test_bad_things_say_what_is_wrong(spoil: Spoil, sentence: str) -> None:
     data = living_file()

@@ -57,6 +57,7 @@ def test_it_loads_with_places_to_start_from(path: Path, scale_m: float | None) -
     assert all(20 < free.shortest_m((home.x, home.y), (s.x, s.y)) < 200 for s in world.starts[1:])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("path", "scale_m"), PICTURES, ids=name_of)
 def test_walls_are_where_the_picture_has_them(path: Path, scale_m: float | None) -> None:
     """Both ways: every wall within 1.5 pixels of a pixel that is no floor, every border of the floor within 1.5 of a wall."""

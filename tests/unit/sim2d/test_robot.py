@@ -120,6 +120,7 @@ def test_along_a_wall_friction_holds_it_back_as_coulomb_says(friction: float, de
     assert robot.pose[0] == pytest.approx(-RADIUS_M, abs=0.002)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.0, 1.0])
 @pytest.mark.parametrize("turn_grip", [0.1, 200.0])
 @pytest.mark.parametrize("grip", [1.0, 1000.0])

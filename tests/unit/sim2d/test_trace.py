@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -50,6 +51,7 @@ def _inside(world: World, shape: tuple[int, int]) -> NDArray[np.bool_]:
     return crossings % 2 == 1
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.floats(0.3, 0.7))
 def test_simplified_walls_keep_the_tolerance(seed: int, share: float) -> None:

@@ -24,6 +24,7 @@ def page() -> Page:
     return Page(Panel(Switches()))
 
 
+@pytest.mark.slow
 @given(
     st.dictionaries(
         st.text("abc", min_size=1, max_size=3),
