@@ -70,8 +70,8 @@ class ExperienceMap(MapReading):
         before = self._departure()
         if best < 0:
             self._create(packet, seen.view, self.robot)
-            self._learn_link(before, behaviour)
-            self._edges.made(self.active, before.experience, self.transitions, self._weight_of_way)
+            driven = self._learn_link(before, behaviour)
+            self._edges.made(self.active, driven, self.transitions, self._weight_of_way)
             return True
         if best != before.experience:
             look = self._look(best, packet, seen)
@@ -160,7 +160,8 @@ class ExperienceMap(MapReading):
         self.pose_filter.local = IDENTITY
 
     def _enter(self, experience: int, look: Pose2, sigma: float) -> None:
-        """Make an experience active."""
+        """Make a known experience active."""
+        self._edges.look()
         self.pose_filter.local = self.pose(experience).inverse().compose(self.robot)
         self._offset, self._travel, self._sigma, self._kidnapped = look, IDENTITY, sigma, False
         self.active = experience
@@ -185,8 +186,9 @@ class ExperienceMap(MapReading):
         self.agrees = self.pose_filter.see(self._offset, self._sigma)
         self._measure(arrival)
 
-    def _learn_link(self, before: _Departure, behaviour: int) -> None:
-        """Learn move and time of the transition to the active experience; repeats are averaged. ACRA 2006 eqs. 5-6."""
+    def _learn_link(self, before: _Departure, behaviour: int) -> int:
+        """Learn move and time of the transition to the active experience, and return its row. Repeats are averaged.
+        ACRA 2006 eqs. 5-6."""
         i, j, t, leg = before.experience, self.active, self.transitions, self._leg
         self._leg = PreintegratedOdometry()
         row = None if before.kidnapped else t.row_of.get((i, j))
@@ -196,10 +198,13 @@ class ExperienceMap(MapReading):
         t.take_time(row, leg.time_s, leg.turning_s)
         sigma = math.hypot(before.sigma, self.params.odometry_drift * leg.way_m)
         arrival = _Arrival(row, t.move[row].copy(), float(t.weight[row]), before.came, sigma)
-        self._arrival = arrival if self.params.best_look else None
-        self._measure(arrival)
+        backbone = self.params.odometry_edges and bool(t.chain[row]) and t.passages[row] > 1
+        self._arrival = arrival if self.params.best_look and not backbone else None
+        if not backbone:
+            self._measure(arrival)
         if not before.kidnapped:
             self._count(row, behaviour)
+        return row
 
     def _count(self, row: int, behaviour: int) -> None:
         """Count a trial of the link just driven; by "departures", also of the others from there. ACRA 2006 3.4, eq. 9."""

@@ -70,7 +70,7 @@ def test_a_view_that_shows_nothing_tells_no_heading() -> None:
 @settings(max_examples=100)
 @given(st.lists(st.tuples(st.floats(0.3, 1.5), st.floats(-1.5, 1.5)), min_size=2, max_size=6))
 def test_repeats_of_a_transition_are_averaged(passages: list[tuple[float, float]]) -> None:
-    robot = Robot(EXACT)
+    robot = Robot(replace(EXACT, odometry_edges=False))
     robot.see(0, new=True)
     here = robot.packet()
     ends, durations = [], []
@@ -94,7 +94,7 @@ def test_repeats_of_a_transition_are_averaged(passages: list[tuple[float, float]
 def test_a_passage_counts_by_how_well_it_is_known() -> None:
     """The weight is 1 / (1 + variance / variance of a step), with the variances of both ends and of the way."""
     params = ExperienceMapParams(anchor_sigma=0.05, odometry_sigma=0.01, odometry_drift=0.03, sweeps=0, solve_every=0)
-    robot = Robot(params)
+    robot = Robot(replace(params, odometry_edges=False))
     robot.see(0, new=True)
     here = robot.packet()
     expected_sum = weights = 0.0
@@ -114,7 +114,7 @@ def test_a_passage_counts_by_how_well_it_is_known() -> None:
 
 def test_the_best_look_decides_the_transition() -> None:
     """A zone is entered at its rim, but the image matches best where the experience was made, so it is measured there."""
-    params = ExperienceMapParams(anchor_sigma=0.05, odometry_drift=0.0, sweeps=0, solve_every=0)
+    params = ExperienceMapParams(anchor_sigma=0.05, odometry_drift=0.0, sweeps=0, solve_every=0, odometry_edges=False)
     robot = Robot(params)
     robot.see(0, new=True)
     goal = Pose2(2.0, 0.0, 0.0)
@@ -157,6 +157,29 @@ def test_odometry_past_known_places_keeps_the_chain_rigid() -> None:
     spine = first_new.inverse().compose(robot.pose)
     assert robot.map.transitions.move[3] == pytest.approx([spine.x, spine.y, spine.heading_rad], abs=1e-9)
     assert robot.map.transitions.weight[3] == pytest.approx(1e-4 / (1e-4 + (0.03 * 0.8) ** 2))
+
+
+def test_no_look_is_averaged_into_the_backbone() -> None:
+    """The way to a place that was made straight after another is odometry, and stays so. Later passages count for its
+    time alone, and a way that begins with a look ties nothing rigidly."""
+    robot = Robot(ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0))
+    robot.see(0, new=True)
+    start = robot.packet()
+    robot.go(1.0, 0.2, 1, new=True)
+    t = robot.map.transitions
+    backbone, weight = t.move[0].copy(), float(t.weight[0])
+    robot.see(0, difference=5.0, packet=start)
+    robot.pose = Pose2(0.0, 0.0, 0.0)
+    robot.go(1.4, 0.0, 1, packet=robot.packet(Pose2(1.0, 0.0, 0.2)), difference=5.0)
+    assert t.row_of[0, 1] == 0
+    assert t.passages[0] == 2
+    assert t.move[0].tolist() == backbone.tolist()
+    assert t.weight[0] == weight
+    robot.go(0.5, 0.0, 2, new=True)  # from a look at 1, which was made last
+    ends = t.ends[: t.count].tolist()
+    assert ends == [[0, 1], [1, 0], [1, 2], [1, 2]]
+    assert t.chain[: t.count].tolist() == [True, False, False, True]
+    assert t.move[3] == pytest.approx([1.9, 0.0, 0.0], abs=1e-9)  # all that was driven since 1 was made
 
 
 def test_a_kidnap_makes_no_way() -> None:
@@ -223,7 +246,7 @@ def test_no_link_is_quicker_than_the_robot() -> None:
 
 
 def test_what_is_deleted_elsewhere_does_not_keep_a_better_look_from_measuring() -> None:
-    robot = Robot(replace(EXACT, link_recency=0.3, anchor_sigma=0.05))
+    robot = Robot(replace(EXACT, link_recency=0.3, anchor_sigma=0.05, odometry_edges=False))
     robot.see(0, new=True)
     here = robot.packet()
     for view in (1, 2, 1):
