@@ -86,8 +86,8 @@ ADDITIONS = (
     ),
     Addition(
         "odometry edges",
-        "odometry ties experiences made one after the other, even when known ones lie between",
-        "known places interrupt the rigid chain of odometry, and the map shrinks",
+        "odometry alone ties experiences made one after the other, even when known ones lie between",
+        "looks, averaged into the rigid chain of odometry or interrupting it, bend and shrink the map",
         {"experience_map.odometry_edges": False},
     ),
     Addition(
