@@ -15,13 +15,14 @@ import json
 import os
 import random
 import re
+import resource
 import shutil
 import subprocess
 import sys
 import tempfile
 import threading
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,7 @@ ROOMS = ("app", "benchmarks", "disk", "docs", "ratslam_core", "sim2d", "tests", 
 SUITE = ("tests/unit/ratslam_core", "tests/property")
 NOT_MUTATED = ("laws", "params")  # guards of files, and declarations
 MOST_S = 400.0  # of a mutant's tests; those of the unchanged tree take a quarter of it
+MOST_BYTES = 6 << 30  # of their memory: a loop that never ends may also grow
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}  # two trees are tested at once
 OTHER: dict[type[ast.AST], tuple[type[ast.AST], ...]] = {
     ast.Add: (ast.Sub,), ast.Sub: (ast.Add,), ast.Mult: (ast.Div,), ast.Div: (ast.Mult,), ast.FloorDiv: (ast.Mult,),
@@ -186,12 +188,19 @@ class Bench:
         ]
         environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1", **ONE_THREAD}
         try:
-            done = subprocess.run(command, cwd=tree, env=environment, capture_output=True, timeout=MOST_S, check=False)
+            done = subprocess.run(
+                command, cwd=tree, env=environment, capture_output=True, timeout=MOST_S, check=False,
+                preexec_fn=_limit_memory,
+            )  # fmt: skip
         except subprocess.TimeoutExpired:
             return False
         if check and done.returncode:
             raise RuntimeError(f"the unchanged tree fails its tests:\n{done.stdout.decode()[-3000:]}")
         return done.returncode == 0
+
+
+def _limit_memory() -> None:
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
 
 
 def _imports(text: str, module: str) -> bool:
@@ -212,11 +221,11 @@ def main() -> None:
     chosen = random.Random(args.seed).sample(every, min(args.count, len(every)))
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(args.jobs) as pool:
         bench = Bench(Path(folder))
-        lived = tqdm(pool.map(bench.survives, chosen), total=len(chosen), unit="mutant", mininterval=30)
+        tried = {pool.submit(bench.survives, mutant): mutant for mutant in chosen}
         survivors: list[Mutant] = []
-        for m, alive in zip(chosen, lived, strict=True):
-            if alive:
-                survivors.append(m)
+        for one in tqdm(as_completed(tried), total=len(chosen), unit="mutant", mininterval=30):
+            if one.result():
+                survivors.append(m := tried[one])
                 tqdm.write(f"{m.file}:{m.line}: {m.before!r} -> {m.after!r}", file=sys.stdout)
     killed = len(chosen) - len(survivors)
     print(f"{killed} of {len(chosen)} killed ({killed / len(chosen):.1%}), of {len(every)} there are")
