@@ -90,6 +90,10 @@ class ExperienceMapPart(Protocol):
         """The robot was carried, not driven."""
         ...
 
+    def declare_found(self) -> None:
+        """It knows again where it is."""
+        ...
+
     def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int, /) -> bool:
         """Find or make the active experience; True when it is new."""
         ...

@@ -102,7 +102,7 @@ class RatSlam:
         self.relocalisations += relocalised
         created = self.experience_map.step(packet, seen, odometry, behaviour)
         known = NOTHING if created or seen.view == NOTHING else self.experience_map.active
-        self.kidnap_detector.settle(self.experience_map.agrees, known)
+        self._settle(known)
         watch("experience")
         self.experience_map.correct()
         watch("correction")
@@ -125,6 +125,12 @@ class RatSlam:
         self.kidnap_detector.declare(len(self.experience_map))
         if self.lost:
             self.experience_map.declare_kidnapped()
+
+    def _settle(self, known: int) -> None:
+        lost = self.lost
+        self.kidnap_detector.settle(self.experience_map.agrees, known)
+        if lost and not self.lost:
+            self.experience_map.declare_found()
 
     def digest(self) -> bytes:
         """SHA-256 of everything that decides what the engine will do: equal for equal histories."""

@@ -32,3 +32,6 @@ class CellsOnly(ExperienceMap):
 
     def declare_kidnapped(self) -> None:
         """Nothing is done: only the pose cells can relocalise the robot."""
+
+    def declare_found(self) -> None:
+        """Nothing was done."""

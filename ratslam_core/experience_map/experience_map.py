@@ -13,19 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.experience_map.map_reading import MapReading
+from ratslam_core.experience_map.looks import Looks
 from ratslam_core.experience_map.preintegrated import PreintegratedOdometry, moved_by
 from ratslam_core.experience_map.transitions import require_behaviour
 from ratslam_core.extensions.exact_solver import ExactSolver
-from ratslam_core.extensions.loop_verifier import LoopVerifier
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges
 from ratslam_core.params import ExperienceMapParams, PoseFilterParams, SolverParams
 from ratslam_core.parts import Optimiser
-from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite, wrap_angle
+from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite
 
 
 @kind("experience map/2")
-class ExperienceMap(MapReading):
+class ExperienceMap(Looks):
     """Experiences and links. `step` finds or makes the active experience and learns the transition to it."""
 
     def __init__(
@@ -49,7 +48,6 @@ class ExperienceMap(MapReading):
         self._kidnapped = False  # since the active experience was entered: the way from there is no transition
         self._leg = PreintegratedOdometry()  # since the last link was learnt
         self._arrival: _Arrival | None = None
-        self._verifier = LoopVerifier(filter_params or PoseFilterParams())
         self._edges = OdometryEdges() if self.params.odometry_edges else NoOdometryEdges()
 
     def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0) -> bool:
@@ -66,18 +64,15 @@ class ExperienceMap(MapReading):
             self._create(packet, seen.view, IDENTITY)
             return True
         self._move(odometry)
-        best = self._most_energetic(packet, seen.view)
-        before = self._departure()
+        before, best = self._departure(), self._seen_experience(packet, seen)
         if best < 0:
             self._create(packet, seen.view, self.robot)
             driven = self._learn_link(before, behaviour)
             self._edges.made(self.active, driven, self.transitions, self._weight_of_way)
             return True
         if best != before.experience:
-            look = self._look(best, packet, seen)
-            if self._confirmed(best, look):
-                self._enter(best, look, self._deviation(seen))
-                self._learn_link(before, behaviour)
+            self._enter(best, self._look(best, packet, seen), self._deviation(seen))
+            self._learn_link(before, behaviour)
         elif self._arrival is not None and self._deviation(seen) < self._sigma:
             self._see_better(seen)
         return False
@@ -89,7 +84,7 @@ class ExperienceMap(MapReading):
     def set_params(self, params: ExperienceMapParams, filter_params: PoseFilterParams, solver: SolverParams) -> None:
         """Take new live parameters while running."""
         self.params, self.optimiser.params = params, solver
-        self.pose_filter.params = self._verifier.params = filter_params
+        self.pose_filter.params = self.gate.params = filter_params
 
     def tried(self, i: int, j: int, reached: bool) -> bool:
         """Count one trial of the links between two experiences, in both directions. True when a link was deleted for it.
@@ -107,9 +102,16 @@ class ExperienceMap(MapReading):
 
         test_experience_map_transitions.py::test_a_kidnap_makes_no_way.
         """
-        self._kidnapped, self._sigma = True, self.params.carried_sigma
+        self._kidnapped, self._sigma, self.lost = True, self.params.carried_sigma, True
         self.pose_filter.forget(self.params.carried_sigma)
         self._edges.forget()
+        self.gate.dismiss()
+        if self.params.islands:
+            self.islands.begin(len(self))
+
+    def declare_found(self) -> None:
+        """[ours] The robot that was carried knows again where it is."""
+        self.lost = False
 
     def calibrated(self, odometry: Odometry) -> Odometry:
         """[ours] Odometry without the yaw bias that the map has learnt. Wheels that stand still have no bias."""
@@ -131,33 +133,13 @@ class ExperienceMap(MapReading):
     def _departure(self) -> _Departure:
         return _Departure(self.active, self._offset.compose(self._travel), self._sigma, self._kidnapped)
 
-    def _most_energetic(self, packet: Packet, view: int) -> int:
-        robot = self.robot if view < 0 else IDENTITY  # the place in the map counts only when nothing is seen
-        return self._experiences.most_energetic(packet, view, self.params, robot)
-
-    def _look(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
-        """The look: the robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
-        if not self.params.zone_offset:
-            return IDENTITY
-        dx, dy, dtheta = self._experiences.cells_from(experience, packet)
-        facing = self.cell_states[experience, 2] * 2 * math.pi / self.shape[0]
-        c, s = math.cos(facing), math.sin(facing)
-        dx, dy = dx * self.cell_m, dy * self.cell_m
-        turn = seen.facing_rad if seen.view >= 0 else None
-        if turn is None:  # only the pose cells tell the heading
-            turn = dtheta * 2 * math.pi / self.shape[0]
-        return Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(turn))
-
-    def _confirmed(self, experience: int, look: Pose2) -> bool:
-        """Whether to believe a look. A robot that knows that it was carried away believes every look at once."""
-        needed = 0 if self.pose_filter.lost else self.params.confirm_jumps
-        return self._verifier.believes(self.robot, self.pose(experience).compose(look), needed)
-
     def _create(self, packet: Packet, view: int, pose: Pose2) -> None:
-        self.active = self._experiences.add(packet, view, pose)
+        self.active = self._experiences.add(packet, view, pose, self.islands.current)
+        self._experiences.doubtful[self.active] = self.gate.sights > 0
         self.transitions.graph.add_node()
+        landed = self._kidnapped and self.params.islands  # on an island of its own the robot knows where it is
+        self.pose_filter.make(sure=landed)
         self._offset, self._travel, self._sigma, self._kidnapped = IDENTITY, IDENTITY, 0.0, False
-        self.pose_filter.local = IDENTITY
 
     def _enter(self, experience: int, look: Pose2, sigma: float) -> None:
         """Make a known experience active."""
@@ -166,10 +148,6 @@ class ExperienceMap(MapReading):
         self._offset, self._travel, self._sigma, self._kidnapped = look, IDENTITY, sigma, False
         self.active = experience
         self.agrees = self.pose_filter.see(look, sigma)
-
-    def _deviation(self, seen: Recognition) -> float:
-        """How far (m) the robot may be from where the view was taken: the more the view differs, the farther."""
-        return self.params.anchor_sigma * seen.difference if seen.view >= 0 else self.params.blind_sigma
 
     def _see_better(self, seen: Recognition) -> None:
         """[ours] The robot is nearer than before to where the active experience was made: measure the transition again.

@@ -11,8 +11,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from disk import kind
 from ratslam_core.experience_map import relaxation
+from ratslam_core.extensions.graduated_trust import contradiction, kept
 from ratslam_core.params import SolverParams
 
 if TYPE_CHECKING:
@@ -39,10 +43,24 @@ class ExactSolver:
             self._solve(map_)
 
     def _solve(self, map_: ExperienceMap) -> None:
+        t, p = map_.transitions, map_.params
+        work = self._settle(map_, 1.0)
+        rows, looks = slice(t.count), np.flatnonzero(~t.chain[: t.count] & (t.weight[: t.count] > 0.0))
+        given = map_.poses, t.ends[rows], t.move[rows], t.weight[rows]
+        if p.robust and self.params.closures == "graduated":
+            off = contradiction(*given, looks, p.odometry_sigma, self.params)
+            if off.max(initial=0.0) > self.params.closure_trial / self.params.closure_bar:
+                share, more = kept(*given, t.chain[rows], p.odometry_sigma, self.params)
+                work += more + self._settle(map_, share)
+        self._solved_at, self._closures_at_solve = map_.steps, map_.closures
+        self._rest_after_solve = work / self.params.work_a_step
+
+    def _settle(self, map_: ExperienceMap, share: NDArray[np.float64] | float) -> float:
+        """One exact correction, with what the map contradicts believed less; returns its work. share: of each row's weight."""
         t, p, poses = map_.transitions, map_.params, map_.poses
         rows = slice(t.count)
         ends, moves, turning = t.ends[rows], t.move[rows], t.turning_s[rows] if p.calibrate else None
-        t.believed[rows] = t.weight[rows]
+        t.believed[rows] = t.weight[rows] * share
         if p.robust:
             t.believed[rows] *= relaxation.trust(
                 poses, ends, moves, t.weight[rows], t.chain[rows], p.odometry_sigma, self.params
@@ -51,5 +69,4 @@ class ExactSolver:
         if turning is not None:
             map_.yaw_bias += more
             moves[:, 2] -= more * turning
-        self._solved_at, self._closures_at_solve = map_.steps, map_.closures
-        self._rest_after_solve = work / self.params.work_a_step
+        return work

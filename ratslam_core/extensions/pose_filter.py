@@ -20,10 +20,14 @@ class PoseEstimate(Protocol):
 
     params: PoseFilterParams
     local: Pose2
-    lost: bool  # it was carried away and has seen nothing known since
+    sigma_m: float  # how far off it may be
 
     def forget(self, sigma_m: float, /) -> None:
         """The robot was carried away."""
+        ...
+
+    def make(self, *, sure: bool) -> None:
+        """An experience was made where the robot is. sure: it is the first of its map, so that this is certain."""
         ...
 
     def move(self, moved: Pose2, drift_m: float, /) -> None:
@@ -35,24 +39,28 @@ class PoseEstimate(Protocol):
         ...
 
 
-@kind("pose filter/2")
+@kind("pose filter/3")
 class PoseFilter:
     """The pose and how far off it may be (m)."""
 
     def __init__(self, params: PoseFilterParams) -> None:
         self.params = params
-        self.local, self.lost = IDENTITY, False
+        self.local = IDENTITY
         self.sigma_m = 0.0
 
     def forget(self, sigma_m: float) -> None:
-        self.sigma_m, self.lost = sigma_m, True
+        self.sigma_m = sigma_m
+
+    def make(self, *, sure: bool) -> None:
+        self.local = IDENTITY
+        if sure:
+            self.sigma_m = 0.0
 
     def move(self, moved: Pose2, drift_m: float) -> None:
         self.local = self.local.compose(moved)
         self.sigma_m += drift_m
 
     def see(self, look: Pose2, sigma_m: float) -> bool:
-        self.lost = False
         dx, dy = look.x - self.local.x, look.y - self.local.y
         turn = wrap_angle(look.heading_rad - self.local.heading_rad)
         if math.hypot(dx, dy) > self.params.snap_m or abs(turn) > self.params.snap_rad:
@@ -66,22 +74,27 @@ class PoseFilter:
         return True
 
 
-@kind("latest look/1")
+@kind("latest look/2")
 class LatestLook:
     """As in the papers: the robot is where the last look put it, moved on by the odometry since."""
 
+    sigma_m = math.inf  # it does not know
+
     def __init__(self, params: PoseFilterParams) -> None:
         self.params = params
-        self.local, self.lost = IDENTITY, False
+        self.local = IDENTITY
 
     def forget(self, _sigma_m: float) -> None:
-        self.lost = True
+        """It does not know how far off it may be."""
+
+    def make(self, *, sure: bool) -> None:  # noqa: ARG002
+        self.local = IDENTITY
 
     def move(self, moved: Pose2, _drift_m: float) -> None:
         self.local = self.local.compose(moved)
 
     def see(self, look: Pose2, _sigma_m: float) -> bool:
-        self.local, self.lost = look, False
+        self.local = look
         return True
 
 

@@ -25,6 +25,7 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     true(map_._temporal_map._map is map_, "the temporal map must be of the same experiences")
     law.experiences(map_._experiences, views)
     n = len(map_)
+    within("an island", map_._experiences.island[:n], 0, map_.islands.begun)
     law.transitions(map_.transitions, n)
     whole("the active experience", map_.active, 0 if n else -1, n - 1)
     pose("the robot's place", map_.pose_filter.local)
@@ -35,7 +36,7 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     for name in ("_driven_m", "_driving_s", "_sigma"):
         number(name[1:], getattr(map_, name), 0.0, LONGEST)
     number("yaw bias", map_.yaw_bias, -FASTEST, FASTEST)
-    for name in ("closures", "steps"):
+    for name in ("closures", "steps", "corrected"):
         whole(name, getattr(map_, name))
     _leg(map_._leg)
     if isinstance(map_._edges, OdometryEdges):
@@ -45,10 +46,15 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
         _solver(map_.optimiser)
     if map_._arrival is not None:
         _arrival(map_._arrival, map_.transitions.count)
-    c = map_._verifier
-    whole("sights", c.sights)
-    for part in (c._dx, c._dy, c._turn):
-        number("what they agree on", part, -2 * FAR_M, 2 * FAR_M)
+    gate = map_.gate
+    for name in ("sights", "known"):
+        whole(name, getattr(gate, name))
+    whole("the latest island", map_.islands.begun)
+    whole("the island", map_.islands.current, 0, map_.islands.begun)
+    whole("the first experience of the latest island", map_.islands.landed, 0, n)
+    whole("joined islands", map_.islands.joined, 0, map_.islands.begun)
+    pose("the robot at the latest sight", gate._robot)
+    pose("where it was put", gate._other)
 
 
 def _solver(solver: ExactSolver) -> None:

@@ -85,6 +85,12 @@ ADDITIONS = (
         {"experience_map.robust": False},
     ),
     Addition(
+        "graduated closures",
+        "closures that no map can bring together with the others are given up, by graduated non-convexity",
+        "reweighting asks only how well the map fits a closure as it is, so that many false ones bend it for good",
+        {"solver.closures": "reweighted"},
+    ),
+    Addition(
         "odometry edges",
         "odometry alone ties experiences made one after the other, even when known ones lie between",
         "looks, averaged into the rigid chain of odometry or interrupting it, bend and shrink the map",
@@ -109,10 +115,28 @@ ADDITIONS = (
         {"pose_filter.enabled": False},
     ),
     Addition(
+        "gate",
+        "a look that would move the robot farther than it can be off is held back until many agree",
+        "look-alikes weld places together that are metres apart",
+        {"pose_filter.gate": False},
+    ),
+    Addition(
+        "islands",
+        "a robot that was carried away begins a map of its own, which many looks that agree join to the other",
+        "a single look that is believed while lost ties places together that are far apart",
+        {"experience_map.islands": False},
+    ),
+    Addition(
         "kidnap detector",
         "a jump of image and sonars that driving cannot explain counts as a kidnap",
         "otherwise the way the robot was carried becomes a link and bends the map",
         {"kidnap.enabled": False},
+    ),
+    Addition(
+        "usual change of the image",
+        "an image must change by twice as much as is usual before it counts as a jump",
+        "where images change as much all the time, each false alarm would begin an island",
+        {"kidnap.usual_times": 0.0},
     ),
     Addition(
         "pace floor",

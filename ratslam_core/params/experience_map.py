@@ -87,6 +87,19 @@ class ExperienceMapParams:
     carried_sigma: float = param(
         100.0, unit="m", low=1.0, high=1e4, meaning="how far off the robot may be after it was carried", source="ours"
     )
+    islands: bool = param(
+        True,
+        meaning="a robot that was carried away maps an island, which is joined when looks agree; off = it believes each look",
+        source="ours",
+    )
+    join_sights: int = param(
+        15,
+        unit="sights",
+        low=1,
+        high=10_000,
+        meaning="sights that must agree on where an island lies, or on where a robot is that knows itself lost",
+        source="ours",
+    )
     zone_offset: bool = param(
         True,
         meaning="the robot enters an experience's zone beside its centre; off = at its centre",
@@ -106,14 +119,6 @@ class ExperienceMapParams:
     pace_floor: bool = param(
         True,
         meaning="a link takes at least as long as its length in the map at the robot's average pace",
-        source="ours",
-    )
-    confirm_jumps: int = param(
-        0,
-        unit="sights",
-        low=0,
-        high=50,
-        meaning="sights that must agree on a match farther off than `snap_m` or `snap_rad`; 0 = believed at once",
         source="ours",
     )
     link_confidence: float = param(

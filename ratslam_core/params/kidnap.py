@@ -23,6 +23,21 @@ class KidnapParams:
         meaning="the image must change by this share of its threshold, however much the sonars change",
         source="ours",
     )
+    usual_times: float = param(
+        2.0,
+        low=0.0,
+        high=100.0,
+        meaning="the image must change by this many times its usual change; 0 = what is usual does not matter",
+        source="ours",
+    )
+    usual_rate: float = param(
+        0.02,
+        unit="1/step",
+        low=0.0,
+        high=1.0,
+        meaning="weight of the newest change in the mean that counts as usual",
+        source="ours",
+    )
     sonar_reach_m: float = param(
         3.0,
         unit="m",

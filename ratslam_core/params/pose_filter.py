@@ -38,6 +38,27 @@ class PoseFilterParams:
         meaning="the error of the estimate is never taken as smaller, so that it can follow the map",
         source="ours",
     )
+    gate: bool = param(
+        True,
+        meaning="hold back a look that would move the robot farther than it can be off; off = every look is believed at once",
+        source="ours",
+    )
+    gate_sigma: float = param(
+        5.0,
+        unit="σ",
+        low=0.0,
+        high=1000.0,
+        meaning="a look may move the robot by this many times its uncertainty, and by `snap_m` in any case",
+        source="ours",
+    )
+    gate_sights: int = param(
+        300,
+        unit="sights",
+        low=1,
+        high=100_000,
+        meaning="sights held back that must agree on where the robot is before it believes them",
+        source="ours",
+    )
     agrees_m: float = param(
         0.5,
         unit="m",

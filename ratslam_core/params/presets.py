@@ -11,10 +11,9 @@ from dataclasses import replace
 from ratslam_core.params import RatSlamParams
 from ratslam_core.params.additions import ADDITIONS, Value
 
-# Also off in the papers, and off by default: the adaptive learning rate, confirmation of jumps, shortcuts.
+# Also off in the papers, and off by default: the adaptive learning rate, shortcuts.
 _ALSO_OFF: dict[str, Value] = {
     "local_view.adaptive": False,
-    "experience_map.confirm_jumps": 0,
     "experience_map.shortcut_m": 0.0,
 }
 _PLAIN: dict[str, Value] = {name: value for addition in ADDITIONS for name, value in addition.off.items()} | _ALSO_OFF

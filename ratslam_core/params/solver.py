@@ -59,5 +59,29 @@ class SolverParams:
         1.0, unit="σ", low=0.1, high=100.0, meaning="disagreement from which on a look pulls no harder", source="ours"
     )
 
+    closures: str = param(
+        "graduated",
+        choices=("graduated", "reweighted"),
+        meaning="closures that contradict the others are given up (graduated non-convexity), or weigh less the farther off",
+        source="ours",
+    )
+    closure_sigma: float = param(
+        0.15, unit="m", low=0.0, high=5.0, meaning="least error that a closure is taken to have", source="ours"
+    )
+    closure_bar: float = param(
+        9.0, unit="σ²", low=0.1, high=1e4, meaning="a closure that is farther off is given up", source="ours"
+    )
+    closure_trial: float = param(
+        36.0,
+        unit="σ²",
+        low=0.1,
+        high=1e4,
+        meaning="all closures are put on trial when the map leaves one of them farther off than this",
+        source="ours",
+    )
+    closure_growth: float = param(
+        1.4, low=1.01, high=10.0, meaning="how much more strictly each round judges than the one before", source="ours"
+    )
+
     def __post_init__(self) -> None:
         check_ranges(self)

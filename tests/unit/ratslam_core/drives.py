@@ -17,6 +17,7 @@ from ratslam_core import (
     Packet,
     Pose2,
     PoseCellParams,
+    PoseFilterParams,
     RatSlam,
     RatSlamParams,
     Recognition,
@@ -29,14 +30,20 @@ STEP_RAD = 0.02  # along the circle in a tick: 0.03 m
 LAP = round(2 * math.pi / STEP_RAD)
 COLUMN_RAD = math.radians(50) / 12
 SONARS = (-0.5, 0.0, 0.5)
-EXACT = ExperienceMapParams(anchor_sigma=0.0, odometry_drift=0.0, sweeps=0, solve_every=0)  # each passage counts 1
+# each passage counts 1, and who is carried stays on the map
+EXACT = ExperienceMapParams(anchor_sigma=0.0, odometry_drift=0.0, sweeps=0, solve_every=0, islands=False)
 
 
 class Robot:
-    """Drives exactly as told. Its packet is at its true place, and its views are numbers."""
+    """Drives exactly as told. Its packet is at its true place, its views are numbers, and it believes every look."""
 
-    def __init__(self, params: ExperienceMapParams | None = None, start: Pose2 | None = None) -> None:
-        self.map = ExperienceMap(SHAPE, CELL_M, params)
+    def __init__(
+        self,
+        params: ExperienceMapParams | None = None,
+        start: Pose2 | None = None,
+        filter_params: PoseFilterParams | None = None,
+    ) -> None:
+        self.map = ExperienceMap(SHAPE, CELL_M, params, filter_params or PoseFilterParams(gate=False))
         self.pose = start or Pose2(0.0, 0.0, 0.0)
         self.behaviour = 0
 

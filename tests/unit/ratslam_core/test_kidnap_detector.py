@@ -95,7 +95,7 @@ def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: 
     circle.angle += 2.6
     params = brain.params.local_view
     changed = replace(params, surprise=params.surprise * _unlikeness(circle) / alike)
-    brain.set_params(replace(brain.params, local_view=changed))
+    brain.set_params(replace(brain.params, local_view=changed, kidnap=KidnapParams(usual_times=0.0)))
     brain.step(circle.image, still, ranges_m=np.array([1.0, 1.0, 1.0, *[others_m] * 5]))
     assert brain.local_view.image_change == pytest.approx(alike)
     assert brain.lost is noticed
@@ -107,6 +107,18 @@ def _unlikeness(circle: Circle) -> float:
     fresh.local_view.observe(Circle(0).image)
     fresh.local_view.observe(circle.image)
     return fresh.local_view.image_change
+
+
+def test_where_images_always_jump_a_jump_tells_nothing() -> None:
+    """An image must change by twice as much as is usual. What is usual is learnt, and forgotten."""
+    detector = KidnapDetector(KidnapParams(usual_times=2.0, usual_rate=0.05), LocalViewParams())
+    for _ in range(100):
+        assert not detector.observe(1.2, None)
+    assert not detector.observe(1.9, None)
+    assert detector.observe(3.0, None)
+    for _ in range(100):
+        detector.observe(0.2, None)
+    assert detector.observe(1.2, None)
 
 
 def test_driving_on_is_no_kidnap() -> None:
@@ -135,7 +147,7 @@ def test_views_that_show_nothing_neither_find_nor_lose() -> None:
 def test_a_change_is_a_jump_only_above_its_limits() -> None:
     """Image and sonars together change by more than 1, and the image alone by more than its least share."""
     params, views = (
-        KidnapParams(least_image=0.5, sonar_still_m=0.25, sonar_most_m=4.0),
+        KidnapParams(least_image=0.5, usual_times=0.0, sonar_still_m=0.25, sonar_most_m=4.0),
         LocalViewParams(range_surprise=1.0),
     )
     for image, change_m, noticed in (

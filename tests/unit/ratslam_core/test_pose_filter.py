@@ -75,13 +75,19 @@ def test_headings_are_weighed_the_shorter_way_round() -> None:
     assert abs(belief.local.heading_rad) == pytest.approx(math.pi)
 
 
-def test_who_was_carried_is_lost_until_it_sees_something_known() -> None:
-    for belief in (PoseFilter(P), LatestLook(P)):
-        belief.forget(100.0)
-        belief.move(Pose2(1.0, 0.0, 0.0), 0.1)
-        assert belief.lost
-        belief.see(Pose2(0.5, 0.0, 0.0), 0.2)
-        assert not belief.lost
+def test_who_was_carried_may_be_anywhere_until_it_sees_something_or_begins_a_map() -> None:
+    belief = PoseFilter(P)
+    belief.forget(100.0)
+    belief.move(Pose2(0.5, 0.0, 0.0), 0.1)
+    belief.make(sure=False)
+    assert belief.sigma_m == pytest.approx(100.1)
+    assert belief.local == Pose2(0.0, 0.0, 0.0)
+    belief.see(Pose2(0.1, 0.0, 0.0), 0.2)
+    assert belief.sigma_m < 0.21
+    belief.forget(100.0)
+    belief.make(sure=True)
+    assert belief.sigma_m == 0.0
+    assert math.isinf(LatestLook(P).sigma_m)
 
 
 @given(near, sigmas)

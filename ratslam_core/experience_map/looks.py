@@ -1,0 +1,106 @@
+"""Looks: which experience the robot sees, where that puts it, and whether it can be. ACRA 2006 section 3.1.
+
+A look is a state of the pose cells and a scene. The papers take the experience with the most energy. What is ours
+asks, too, whether the robot can be there (`extensions/gate.py`, `extensions/islands.py`).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ratslam_core.experience_map.map_reading import MapReading
+from ratslam_core.extensions.gate import Gate
+from ratslam_core.extensions.islands import Islands, move
+from ratslam_core.extensions.torn import soften
+from ratslam_core.params import ExperienceMapParams, PoseFilterParams
+from ratslam_core.types import IDENTITY, Packet, Pose2, Recognition, wrap_angle
+
+
+class Looks(MapReading):
+    """An experience map that knows what it sees."""
+
+    def __init__(
+        self,
+        shape: tuple[int, int, int],
+        cell_m: float,
+        params: ExperienceMapParams | None = None,
+        filter_params: PoseFilterParams | None = None,
+    ) -> None:
+        super().__init__(shape, cell_m, params, filter_params)
+        self.gate = Gate(filter_params or PoseFilterParams())
+        self.islands = Islands()
+        self.lost = False  # it knows that it was carried away and has not found itself again
+        self.corrected = 0  # how often looks that were held back proved the robot wrong
+
+    def _seen_experience(self, packet: Packet, seen: Recognition) -> int:
+        """The experience that the robot sees: the most energetic of those that it can see, -1 for none.
+
+        When what was held back has won, it is one beyond reach; where that lies on another island, the two were joined.
+        """
+        reach = math.inf if self.lost and not self.params.islands else self.gate.reach_m(self.pose_filter.sigma_m)
+        best = self._most_energetic(packet, seen.view, reach)
+        if seen.view < 0 or not self.params.match_view:
+            return best
+        foreign = self._most_energetic(packet, seen.view, math.inf, foreign=True) if self.islands.begun else -1
+        if foreign >= 0:
+            return foreign if self._crosses(foreign, packet, seen) else best
+        if math.isinf(reach):
+            return best
+        if best >= 0 and not self._experiences.doubtful[best]:
+            self.gate.doubt()
+            return best
+        far = self._most_energetic(packet, seen.view, reach, beyond=True)
+        return far if far >= 0 and self._jumps(far, packet, seen) else best
+
+    def _most_energetic(
+        self, packet: Packet, view: int, reach_m: float, *, foreign: bool = False, beyond: bool = False
+    ) -> int:
+        return self._experiences.most_energetic(
+            packet, view, self.params, self.robot, reach_m, self.islands.current, foreign, beyond
+        )
+
+    def _crosses(self, experience: int, packet: Packet, seen: Recognition) -> bool:
+        """Whether a look at another island is believed; the robot's own is then joined to it."""
+        robot, claimed = self.robot, self._claimed(experience, packet, seen)
+        if not self.gate.believes(robot, claimed, self.params.join_sights, len(self)):
+            return False
+        known = self._experiences
+        self.islands.join(int(known.island[experience]), known.island[: len(self)], self.poses, robot, claimed)
+        return True
+
+    def _jumps(self, experience: int, packet: Packet, seen: Recognition) -> bool:
+        """Whether a look at the robot's own island is believed although it is beyond reach."""
+        robot, claimed = self.robot, self._claimed(experience, packet, seen)
+        needed = self.params.join_sights if self.lost else self.gate.params.gate_sights
+        if not self.gate.believes(robot, claimed, needed, len(self)):
+            return False
+        self.corrected += 1
+        if self.lost and experience < self.islands.landed:
+            self.transitions.forget_across(self.islands.landed)
+            move(np.arange(self.islands.landed, len(self)), self.poses, robot, claimed)
+        elif not self.lost:
+            off = math.hypot(claimed.x - robot.x, claimed.y - robot.y)
+            soften(self.transitions, experience, self.gate.known, off, self.params.odometry_sigma)
+        return True
+
+    def _claimed(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
+        return self.pose(experience).compose(self._look(experience, packet, seen))
+
+    def _look(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
+        """The look: the robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
+        if not self.params.zone_offset:
+            return IDENTITY
+        dx, dy, dtheta = self._experiences.cells_from(experience, packet)
+        facing = self.cell_states[experience, 2] * 2 * math.pi / self.shape[0]
+        c, s = math.cos(facing), math.sin(facing)
+        dx, dy = dx * self.cell_m, dy * self.cell_m
+        turn = seen.facing_rad if seen.view >= 0 else None
+        if turn is None:  # only the pose cells tell the heading
+            turn = dtheta * 2 * math.pi / self.shape[0]
+        return Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(turn))
+
+    def _deviation(self, seen: Recognition) -> float:
+        """How far (m) the robot may be from where the view was taken: the more the view differs, the farther."""
+        return self.params.anchor_sigma * seen.difference if seen.view >= 0 else self.params.blind_sigma

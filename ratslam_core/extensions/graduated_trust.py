@@ -1,0 +1,64 @@
+"""[ours] Closures that no map can bring together with the others are given up, by graduated non-convexity.
+
+Odometry between experiences made one after the other is sure; every other row rests on a look and may be false. At first
+all of them count. Then, round by round, those that the map contradicts count less, in the beginning gently, in the end
+wholly or not at all (truncated least squares). So many false closures are found out together; and since each solution
+asks all of them anew, one that was believed for a while is let go when others contradict it, and one that was given up
+counts again when they agree. Yang, Antonante, Tzoumas and Carlone, RA-L 2020, eqs. 12-14.
+test_graduated_trust.py::test_false_closures_are_found_out. `solver.closures` "reweighted" is the plain twin: it asks
+only how well the map fits a row as it is (`relaxation.trust`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ratslam_core.experience_map import relaxation
+from ratslam_core.params import SolverParams
+
+MOST_ROUNDS = 100
+DECIDED = 0.01  # a share this near to 0 or 1 no longer changes
+
+
+def kept(
+    poses: NDArray[np.float64],
+    ends: NDArray[np.int64],
+    moves: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    sure: NDArray[np.bool_],
+    sigma: float,
+    p: SolverParams,
+) -> tuple[NDArray[np.float64], float]:
+    """How far each row is kept, 0 to 1, and the work. `poses` are changed in place, and fit the rows that are kept.
+
+    weights: sigma^2 / variance; sure: rows that are never doubted.
+    """
+    rows = np.flatnonzero(~sure & (weights > 0.0))
+    share = np.ones(len(weights))
+    work = relaxation.solve(poses, ends, moves, weights, None, p).work
+    chi = contradiction(poses, ends, moves, weights, rows, sigma, p)
+    mu = 1.0 / max(2.0 * chi.max(initial=0.0) - 1.0, 1e-9)
+    for _ in range(MOST_ROUNDS):
+        share[rows] = np.clip(np.sqrt(mu * (mu + 1.0) / np.maximum(chi, 1e-12)) - mu, 0.0, 1.0)
+        work += relaxation.solve(poses, ends, moves, weights * share, None, p).work
+        chi = contradiction(poses, ends, moves, weights, rows, sigma, p)
+        if not ((share[rows] > DECIDED) & (share[rows] < 1.0 - DECIDED)).any():
+            break
+        mu *= p.closure_growth
+    return share, work
+
+
+def contradiction(
+    poses: NDArray[np.float64],
+    ends: NDArray[np.int64],
+    moves: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    rows: NDArray[np.intp],
+    sigma: float,
+    p: SolverParams,
+) -> NDArray[np.float64]:
+    """How far the map contradicts each of these rows, as a share of the bar: a row above 1 is one to give up."""
+    ex, ey, turn = relaxation.disagreement(poses, ends[rows], moves[rows]).T
+    variance = sigma**2 / weights[rows] + p.closure_sigma**2
+    return (ex**2 + ey**2 + (turn / p.rad_per_m) ** 2) / variance / p.closure_bar

@@ -1,0 +1,102 @@
+"""False closures are found out together, and judged anew each time."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from app.evaluation.alignment import rmse
+from ratslam_core import ExperienceMap, ExperienceMapParams, Packet, Pose2, SolverParams
+from ratslam_core.experience_map import relaxation
+from ratslam_core.extensions.exact_solver import ExactSolver
+from ratslam_core.extensions.graduated_trust import contradiction, kept
+
+from .graphs import Graph, city
+
+P = SolverParams()
+SIGMA = 0.01
+
+
+def solved(graph: Graph) -> NDArray[np.float64]:
+    poses = graph.by_odometry()
+    for _ in range(5):
+        relaxation.solve(poses, graph.ends, graph.moves, np.ones(len(graph.ends)), None, P)
+    return poses
+
+
+def judged(graph: Graph) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    poses, ones = graph.by_odometry(), np.ones(len(graph.ends))
+    share, work = kept(poses, graph.ends, graph.moves, ones, graph.odometry, SIGMA, P)
+    assert work > 0
+    return poses, share
+
+
+def corrected(graph: Graph, closures: str) -> ExperienceMap:
+    """A map of these rows after ten exact corrections."""
+    params = ExperienceMapParams(sweeps=0, solve_every=1, calibrate=False, odometry_sigma=SIGMA)
+    map_ = ExperienceMap((36, 64, 64), 0.25, params, optimiser=ExactSolver(replace(P, closures=closures)))
+    for k, (x, y, heading) in enumerate(graph.by_odometry()):
+        map_._experiences.add(Packet(0.0, 0.0, 0.0, 1.0), k, Pose2(x, y, heading))
+        map_.transitions.graph.add_node()
+    for (i, j), move in zip(graph.ends.tolist(), graph.moves, strict=True):
+        row = map_.transitions.add(i, j, travelled=True)
+        map_.transitions.measure(row, Pose2(*move.tolist()), 1.0, map_.transitions.move[row].copy(), 0.0)
+    assert (map_.transitions.chain[: len(graph.ends)] == graph.odometry).all()
+    for _ in range(10):
+        map_.steps, map_.closures = map_.steps + 10**9, map_.closures + 1
+        map_.correct()
+    return map_
+
+
+@pytest.mark.parametrize("false", [0, 10, 100, 400])
+@pytest.mark.parametrize("seed", [3, 4])
+def test_false_closures_are_found_out(false: int, seed: int) -> None:
+    clean = city(800, 20, seed)
+    map_ = corrected(clean.with_false(false, seed), "graduated")
+    assert rmse(map_.poses[:, :2], solved(clean)[:, :2]) < 0.1
+    t = map_.transitions
+    believed = t.believed[: t.count] / t.weight[: t.count]
+    assert (believed[len(clean.ends) :] > 0.1).sum() <= 0.03 * false  # some are nearly true by chance
+
+
+def test_what_only_reweights_is_bent_by_them() -> None:
+    """The plain twin: it asks only how well the map fits a row as it is."""
+    clean = city(800, 20, 3)
+    map_ = corrected(clean.with_false(100, 3), "reweighted")
+    assert rmse(map_.poses[:, :2], solved(clean)[:, :2]) > 1.0
+
+
+@given(st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3), st.floats(1e-3, 1.0))
+def test_the_bar_is_in_sigmas_of_closure_and_row(dx: float, dy: float, turn: float, weight: float) -> None:
+    poses, ends = np.zeros((2, 3)), np.array([[0, 1]])
+    moves = np.array([[dx, dy, turn]])
+    found = contradiction(poses, ends, moves, np.array([weight]), np.array([0]), SIGMA, P)
+    squares = dx**2 + dy**2 + (turn / P.rad_per_m) ** 2
+    assert found[0] == pytest.approx(squares / (SIGMA**2 / weight + P.closure_sigma**2) / P.closure_bar)
+
+
+def test_a_false_closure_is_let_go_when_others_contradict_it() -> None:
+    """One closure alone is believed. When three say otherwise it is given up, and the map straightens."""
+    graph = city(60, 12, 5)
+    rows = graph.odometry
+    chain = Graph(graph.truth, graph.ends[rows], graph.moves[rows])
+    first = Graph(chain.truth, np.vstack([chain.ends, [[0, 59]]]), np.vstack([chain.moves, [[0.0, 0.0, 0.0]]]))
+    _, alone = judged(first)
+    assert alone[-1] == 1.0  # nothing contradicts it but odometry, which has drifted
+    ends = np.array([[1, 59], [2, 58], [3, 57], [4, 56]])
+    true = np.array([graph_move(chain.truth, i, j) for i, j in ends])
+    both = Graph(chain.truth, np.vstack([first.ends, ends]), np.vstack([first.moves, true]))
+    poses, share = judged(both)
+    assert share[len(chain.ends)] == 0.0
+    assert (share[len(chain.ends) + 1 :] == 1.0).all()
+    assert rmse(poses[:, :2], chain.truth[:, :2]) < 0.3
+
+
+def graph_move(poses: NDArray[np.float64], i: int, j: int) -> tuple[float, float, float]:
+    move = Pose2(*poses[i].tolist()).inverse().compose(Pose2(*poses[j].tolist()))
+    return move.x, move.y, move.heading_rad

@@ -1,0 +1,128 @@
+"""A robot that was carried away maps an island, which is joined as a whole when looks agree."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ratslam_core import ExperienceMapParams, Odometry, Pose2, PoseFilterParams
+from ratslam_core.extensions.islands import Islands, move
+
+from .drives import Robot, relative
+
+NEEDED = 4
+PLAIN = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0, join_sights=NEEDED)
+poses = st.builds(Pose2, st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3))
+
+
+@given(poses, poses, st.lists(poses, min_size=1, max_size=6))
+def test_what_is_moved_keeps_its_shape(robot: Pose2, claimed: Pose2, made: list[Pose2]) -> None:
+    rows = np.array([[p.x, p.y, p.heading_rad] for p in [*made, robot]])
+    before = rows.copy()
+    move(np.arange(len(made) + 1), rows, robot, claimed)
+    assert rows[-1, :2] == pytest.approx([claimed.x, claimed.y], abs=1e-9)
+    for k in range(len(made)):
+        was, now = relative(before[-1], before[k]), relative(rows[-1], rows[k])
+        assert (now.x, now.y) == pytest.approx((was.x, was.y), abs=1e-9)
+
+
+def test_a_joined_island_takes_the_number_of_the_other() -> None:
+    islands, of = Islands(), np.array([0, 0, 1, 2, 2], np.int32)
+    rows = np.zeros((5, 3))
+    for experiences in (2, 3):
+        islands.begin(experiences)
+    assert (islands.current, islands.landed) == (2, 3)
+    islands.join(1, of, rows, Pose2(0.0, 0.0, 0.0), Pose2(1.0, 2.0, 0.0))
+    assert of.tolist() == [0, 0, 1, 1, 1]
+    assert rows[:, :2].tolist() == [[0.0, 0.0]] * 3 + [[1.0, 2.0]] * 2
+    assert (islands.current, islands.begun, islands.joined) == (1, 2, 1)
+
+
+# ---------------------------------------------------------------- in the map
+
+
+def carried(islands: bool = True, to: Pose2 | None = None) -> Robot:
+    """A walk along x past the views 0 to 5, after which the robot is carried to the place of view 2, or to another one."""
+    robot = Robot(replace(PLAIN, islands=islands), filter_params=PoseFilterParams())
+    robot.see(0, new=True)
+    for view in range(1, 6):
+        robot.go(1.0, 0.0, view, new=True)
+    robot.map.declare_kidnapped()
+    robot.pose = to or Pose2(2.0, 0.0, 0.0)
+    return robot
+
+
+def test_nothing_is_glued_on_a_guess() -> None:
+    robot = carried()
+    for _ in range(NEEDED - 1):
+        robot.see(2)
+        assert robot.map.islands.current == 1
+        assert robot.map.closures == 0
+    assert len(robot.map) == 7  # one on the island
+    robot.see(2)
+    assert robot.map.islands.current == 0
+    assert robot.map.active == 2
+    assert robot.map.robot.x == pytest.approx(2.0)
+
+
+def test_without_islands_the_first_look_is_believed() -> None:
+    robot = carried(islands=False)
+    robot.see(2)
+    assert (robot.map.active, len(robot.map)) == (2, 6)
+    assert robot.map.robot.x == pytest.approx(2.0)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(-2.5, 2.5), st.integers(1, 4))
+def test_an_island_is_moved_as_a_whole(heading: float, ways: int) -> None:
+    """The robot maps new ground that lies before a known place. When it comes there, all of it is where it belongs."""
+    start = Pose2(2.0, 0.0, heading).compose(Pose2(-float(ways), 0.0, 0.0))
+    robot = carried(to=start)
+    robot.see(10, new=True)
+    made = {6: robot.pose}
+    for view in range(11, 10 + ways):
+        robot.go(1.0, 0.0, view, new=True)
+        made[len(robot.map) - 1] = robot.pose
+    robot.pose = robot.pose.compose(Pose2(1.0, 0.0, 0.0))
+    robot.see(2, odometry=Odometry(10.0, 0.0, 0.1), packet=robot.packet(Pose2(2.0, 0.0, 0.0)), facing=heading)
+    for _ in range(NEEDED - 1):
+        robot.see(2, packet=robot.packet(Pose2(2.0, 0.0, 0.0)), facing=heading)
+    assert robot.map.islands.joined == 1
+    assert robot.map.active == 2
+    for experience, pose in made.items():
+        assert robot.map.poses[experience, :2] == pytest.approx([pose.x, pose.y], abs=1e-6)
+    assert robot.map.poses[:6, 0] == pytest.approx(np.arange(6.0), abs=1e-6)  # what was known stays
+
+
+def test_a_wrong_guess_is_taken_back() -> None:
+    """Carried to the place of view 4, the robot first sees 2, which looks like it, then 4 and again 4: the island is moved
+    again, and the closure to 2 no longer counts."""
+    robot = carried(to=Pose2(4.0, 0.0, 0.0))
+    for _ in range(NEEDED):
+        robot.see(2, packet=robot.packet(Pose2(2.0, 0.0, 0.0)))
+    assert robot.map.robot.x == pytest.approx(2.0)
+    t = robot.map.transitions
+    wrong = t.row_of.get((6, 2), -1)
+    for _ in range(NEEDED):
+        robot.see(4)
+    assert robot.map.robot.x == pytest.approx(4.0)
+    assert robot.map.poses[6, 0] == pytest.approx(4.0)
+    assert wrong >= 0
+    assert t.weight[wrong] == 0.0
+    assert (6, 2) not in t.row_of
+
+
+def test_a_robot_that_has_found_itself_is_gated_again() -> None:
+    robot = carried()
+    assert robot.map.lost
+    for _ in range(NEEDED):
+        robot.see(2)
+    robot.map.declare_found()
+    for _ in range(2 * NEEDED):
+        robot.see(5, packet=robot.packet(Pose2(5.0, 0.0, 0.0)))
+    assert robot.map.robot.x == pytest.approx(2.0)
+    assert robot.map.gate.sights == 2 * NEEDED

@@ -1,0 +1,59 @@
+"""The backbone is torn where no closure bridges it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from ratslam_core import Pose2
+from ratslam_core.experience_map.transitions import Transitions
+from ratslam_core.extensions.torn import soften, torn
+
+
+def a_backbone(experiences: int, closures: list[tuple[int, int]]) -> Transitions:
+    t = Transitions()
+    for _ in range(experiences):
+        t.graph.add_node()
+    for i in range(experiences - 1):
+        row = t.add(i, i + 1, travelled=True)
+        t.measure(row, Pose2(1.0, 0.0, 0.0), 1.0, t.move[row].copy(), 0.0)
+    for i, j in closures:
+        row = t.add(i, j, travelled=True)
+        t.measure(row, Pose2(0.0, 0.0, 0.0), 0.5, t.move[row].copy(), 0.0)
+    return t
+
+
+@pytest.mark.parametrize(
+    ("closures", "first", "last", "found"),
+    [
+        ([], 0, 9, list(range(9))),
+        ([], 3, 6, [3, 4, 5]),
+        ([(5, 0)], 0, 9, [5, 6, 7, 8]),
+        ([(5, 0), (9, 6)], 0, 9, [5]),  # between two loops
+        ([(0, 5), (4, 9)], 0, 9, []),  # each is bridged
+        ([(4, 2), (8, 6)], 0, 9, [8]),  # the last stretch alone
+    ],
+)
+def test_an_unnoticed_kidnap_is_found_in_the_backbone(
+    closures: list[tuple[int, int]], first: int, last: int, found: list[int]
+) -> None:
+    assert torn(a_backbone(10, closures), first, last).tolist() == found
+
+
+def test_a_closure_that_is_not_believed_bridges_nothing() -> None:
+    t = a_backbone(10, [(9, 0)])
+    assert torn(t, 0, 9).tolist() == []
+    t.believed[9] = 0.0
+    assert torn(t, 0, 9).tolist() == list(range(9))
+
+
+def test_the_torn_rows_are_together_as_uncertain_as_they_were_wrong() -> None:
+    t, sigma, off_m = a_backbone(10, [(5, 0)]), 0.01, 3.0
+    rows = soften(t, 0, 9, off_m, sigma)
+    added = sum(sigma**2 / t.weight[row] - sigma**2 for row in rows)
+    assert math.sqrt(added) == pytest.approx(off_m)
+    assert (t.believed[rows] == t.weight[rows]).all()
+    others = np.setdiff1d(np.arange(t.count), rows)
+    assert (t.weight[others] == a_backbone(10, [(5, 0)]).weight[others]).all()
