@@ -2,5 +2,7 @@
 
 from app.evaluation.alignment import align, alignment, rmse
 from app.evaluation.evaluation import Evaluation
+from app.evaluation.looks import Judged, backbone, looks
+from app.evaluation.loops import loops_closed
 
-__all__ = ["Evaluation", "align", "alignment", "rmse"]
+__all__ = ["Evaluation", "Judged", "align", "alignment", "backbone", "looks", "loops_closed", "rmse"]

@@ -60,7 +60,7 @@ class Evaluation:
             if experiences.active >= len(self._made_at):
                 self._made_at = np.concatenate([self._made_at, np.full_like(self._made_at, np.nan)])
             self._made_at[experiences.active] = truth.x, truth.y, truth.heading_rad, time_s
-        self._judge(time_s, truth, experiences, local, abs(truth.speed) * odometry.dt)
+        self._judge(time_s, truth, experiences, abs(truth.speed) * odometry.dt)
 
     def kidnapped(self, time_s: float, experiences: ExperienceMap) -> None:
         self.kidnaps.append(Kidnapping(time_s, self._map_in_office(experiences), len(experiences.poses)))
@@ -79,6 +79,35 @@ class Evaluation:
         """The robot's true heading (rad) when it made this experience; None for one that its brain brought with it."""
         heading = float(self._made_at[experience, 2])
         return heading if math.isfinite(heading) else None
+
+    def births(self, experiences: int) -> NDArray[np.float64]:
+        """True x, y (m), heading (rad) and time (s) of making the first so many experiences, (n, 4); NaN where unknown."""
+        known = self._made_at[:experiences]
+        unknown = np.full((experiences - len(known), 4), np.nan)
+        return np.concatenate([known, unknown])
+
+    @property
+    def path(self) -> Points:
+        """Where the robot truly was in each tick, (n, 2). A view."""
+        return self._rows[: self._count, :2]
+
+    def belief_off(self, truth: Truth, experiences: ExperienceMap) -> tuple[float, float]:
+        """How far (m, rad) the robot is from where it believes itself to be beside the active experience.
+
+        The experience counts as being where it was truly made, so a map that is bent or moves later changes nothing.
+        NaN for an experience that the brain brought with it.
+        """
+        x, y, heading, _ = self._made_at[experiences.active].tolist()
+        if math.isnan(x):
+            return math.nan, math.nan
+        believed = Pose2(x, y, heading).compose(experiences.local_pose)
+        turn = abs(math.remainder(believed.heading_rad - truth.heading_rad, math.tau))
+        return math.hypot(believed.x - truth.x, believed.y - truth.y), turn
+
+    @property
+    def revisit_share(self) -> float:
+        """Share of the ticks in which the active experience was an old one."""
+        return self._revisits / self._count if self._count else 0.0
 
     @property
     def revisit_consistency(self) -> float | None:
@@ -99,25 +128,25 @@ class Evaluation:
         truth, mapped, odometry = self.trajectories(experiences, every)
         return rmse(mapped, truth), rmse(odometry, truth)
 
-    def _judge(self, time_s: float, truth: Truth, experiences: ExperienceMap, local: Pose2, way_m: float) -> None:
-        made = self._made_at[experiences.active].tolist()
-        c, s = math.cos(made[2]), math.sin(made[2])
-        believed = made[0] + c * local.x - s * local.y, made[1] + s * local.x + c * local.y
-        off = math.hypot(believed[0] - truth.x, believed[1] - truth.y)
-        if time_s - made[3] > REVISIT_AGE_S:
+    def _judge(self, time_s: float, truth: Truth, experiences: ExperienceMap, way_m: float) -> None:
+        off = self.belief_off(truth, experiences)
+        if time_s - self._made_at[experiences.active, 3] > REVISIT_AGE_S:
             self._revisits += 1
-            self._consistent += off <= CONSISTENT_M
+            self._consistent += off[0] <= CONSISTENT_M
         for kidnap in self.kidnaps[-1:]:
             if kidnap.after_s is None:
-                kidnap.note(time_s, way_m, self._knows(kidnap, truth, experiences))
+                kidnap.note(time_s, way_m, self._knows(kidnap, truth, experiences, off))
 
-    def _knows(self, kidnap: Kidnapping, truth: Truth, experiences: ExperienceMap) -> bool:
+    def _knows(self, kidnap: Kidnapping, truth: Truth, experiences: ExperienceMap, off: tuple[float, float]) -> bool:
         """Whether place and heading are right. Place alone is not enough: a robot turned on the spot has not moved."""
-        if experiences.active >= kidnap.known:
-            return False
-        robot = kidnap.map_in_office.compose(experiences.robot)
-        turn = abs(math.remainder(robot.heading_rad - truth.heading_rad, math.tau))
-        return math.hypot(robot.x - truth.x, robot.y - truth.y) <= NEAR_M and turn <= NEAR_RAD
+        made_s = float(self._made_at[experiences.active, 3])
+        if made_s <= kidnap.at_s:
+            return off[0] <= NEAR_M and off[1] <= NEAR_RAD
+        if math.isnan(made_s) and experiences.active < kidnap.known:  # the brain brought it: the map says where it is
+            robot = kidnap.map_in_office.compose(experiences.robot)
+            turn = abs(math.remainder(robot.heading_rad - truth.heading_rad, math.tau))
+            return math.hypot(robot.x - truth.x, robot.y - truth.y) <= NEAR_M and turn <= NEAR_RAD
+        return False
 
     def _map_in_office(self, experiences: ExperienceMap) -> Pose2:
         """The pose of the map's frame in the office, by aligning the path; while that is too short, by its end."""

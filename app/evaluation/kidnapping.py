@@ -15,8 +15,10 @@ STAY_S = 0.5  # how long the robot must be right before it counts as recovered
 class Kidnapping:
     """One kidnap and, once the robot has recovered, the time (s) and distance (m) that this took.
 
-    It has recovered when, for half a second, an experience from before the kidnap is active and the robot's pose in the
-    map is within 1 m and 0.6 rad of the truth. The map is laid over the office as it fitted before the kidnap.
+    It has recovered when, for half a second, an experience from before the kidnap is active and the robot truly is
+    within 1 m and 0.6 rad of where it believes itself to be beside that experience. The experience counts as being where
+    it was truly made: the map may be bent, or move after the kidnap. Of an experience that the brain brought with it
+    that place is unknown; then the map counts, laid over the office as it fitted before the kidnap.
     """
 
     at_s: float

@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import label
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
@@ -131,6 +132,37 @@ class FreeSpace:
         nodes, graph = self._graph
         metres = dijkstra(graph, directed=False, indices=nodes[start])[nodes[goal]]
         return max(straight, float(metres))
+
+    def share_near(self, places: NDArray[np.float64], metres: float) -> float:
+        """The share of this floor from which the robot can drive to one of `places`, (n, 2), in at most so many metres."""
+        x0, y0 = self.world.bounds[:2]
+        columns, rows = np.floor((places - (x0, y0)) / self._cell).astype(np.int64).T
+        nodes, graph = self._graph
+        inside = (columns >= 0) & (rows >= 0) & (columns < nodes.shape[1]) & (rows < nodes.shape[0])
+        been = np.unique(nodes[rows[inside], columns[inside]])
+        been = been[been >= 0]
+        if been.size == 0:
+            return 0.0
+        away = dijkstra(graph, directed=False, indices=been, limit=metres, min_only=True)
+        return float(np.mean(np.isfinite(away)))
+
+    def islands(self, least_m2: float) -> NDArray[np.float64]:
+        """A point in each part of the world that this floor surrounds and that is no smaller than this, (n, 2).
+
+        Such a part is walls, what they enclose, and the rim round them that is too narrow for the robot.
+        """
+        padded: NDArray[np.int32] = np.zeros(np.add(self._reachable.shape, 2), np.int32)
+        label(np.pad(~self._reachable, 1, constant_values=True), output=padded)
+        outside, parts = padded[0, 0], padded[1:-1, 1:-1]
+        sizes = np.bincount(parts.ravel()) * self._cell**2
+        points: list[tuple[float, float]] = []
+        for part in np.flatnonzero(sizes >= least_m2):
+            if part in (0, outside):  # 0 is the floor itself
+                continue
+            rows, columns = np.nonzero(parts == part)
+            k = int(np.argmin((rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2))
+            points.append((float(self._xs[columns[k]]), float(self._ys[rows[k]])))
+        return np.array(points).reshape(-1, 2)
 
     def _touches_free(self, x: float, y: float) -> bool:
         """Whether (x, y) is free, or at most a cell too near to a wall, as when the robot leans on it."""

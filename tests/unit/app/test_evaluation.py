@@ -199,12 +199,60 @@ def test_an_experience_made_after_the_kidnap_recovers_nothing() -> None:
     assert kidnapped(known=False).kidnaps[0].after_s is None
 
 
+def test_a_map_that_moves_after_the_kidnap_changes_no_verdict() -> None:
+    """The active experience counts as being where it was truly made, wherever the map has it now."""
+    evaluation, map_ = Evaluation(), Map()
+    drive(evaluation, map_, 100)
+    evaluation.kidnapped(9.9, map_)  # type: ignore[arg-type]
+    map_.poses[0] = 5.0, -3.0, 1.0
+    drive(evaluation, map_, 50, start=100)
+    assert evaluation.kidnaps[0].after_s == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(("wrong_m", "after_s"), [(0.5, 0.1), (1.5, None)])
+def test_of_what_a_brain_brought_the_map_says_where_it_is(wrong_m: float, after_s: float | None) -> None:
+    evaluation, map_ = Evaluation(known=1), Map()
+    drive(evaluation, map_, 100, start=1)
+    evaluation.kidnapped(10.0, map_)  # type: ignore[arg-type]
+    drive(evaluation, map_, 50, start=101, wrong_m=wrong_m)
+    assert evaluation.kidnaps[0].after_s == (None if after_s is None else pytest.approx(after_s))
+
+
+def test_what_the_robot_believes_is_compared_with_where_it_is() -> None:
+    evaluation, map_ = Evaluation(), Map()
+    drive(evaluation, map_, 10)
+    truth = Truth(7.0, 1.27, math.pi / 2, 0.3, 0.0)
+    assert evaluation.belief_off(truth, map_) == pytest.approx((0.0, 0.0), abs=1e-9)  # type: ignore[arg-type]
+    map_.local_pose = Pose2(0.27, 0.4, 0.3)
+    assert evaluation.belief_off(truth, map_) == pytest.approx((0.4, 0.3))  # type: ignore[arg-type]
+    map_.poses, map_.active = np.zeros((2, 3)), 1
+    assert np.isnan(evaluation.belief_off(truth, map_)).all()  # type: ignore[arg-type]
+
+
+def test_the_share_of_the_ticks_on_an_old_experience() -> None:
+    evaluation, map_ = Evaluation(), Map()
+    assert evaluation.revisit_share == 0.0
+    drive(evaluation, map_, 400)  # the first 20 s do not count
+    assert evaluation.revisit_share == pytest.approx(199 / 400)
+
+
+def test_births_are_known_or_not_a_number() -> None:
+    evaluation, map_ = Evaluation(), Map()
+    drive(evaluation, map_, 10)
+    births = evaluation.births(3000)
+    assert births.shape == (3000, 4)
+    assert births[0] == pytest.approx([7.0, 1.0, math.pi / 2, 0.0])
+    assert np.isnan(births[1:]).all()
+    assert evaluation.path == pytest.approx(evaluation.trajectories(map_)[0])  # type: ignore[arg-type]
+
+
 def test_a_robot_that_has_never_driven_is_judged_by_how_it_stood() -> None:
     evaluation, map_ = Evaluation(), Map()
     stood, turned = Truth(7.0, 1.0, 2.0, 0.0, 0.0), Truth(7.0, 1.0, -1.0, 0.0, 0.0)
     for truth in (stood, turned):
         for tick in range(10):
-            evaluation.record(tick * DT, truth, map_, tick == 0, Odometry(0.0, 0.0, DT))  # type: ignore[arg-type]
+            made = truth is stood and tick == 0
+            evaluation.record(tick * DT, truth, map_, made, Odometry(0.0, 0.0, DT))  # type: ignore[arg-type]
         if truth is stood:
             evaluation.kidnapped(0.9, map_)  # type: ignore[arg-type]
     assert evaluation.kidnaps[0].after_s is None

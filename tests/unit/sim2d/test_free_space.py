@@ -64,3 +64,31 @@ def test_a_robot_that_leans_on_a_wall_still_has_a_way() -> None:
     assert not FREE.is_free(0.2, 0.5)
     assert FREE.shortest_m((0.2, 0.5), (3.5, 0.5)) == pytest.approx(3.3, abs=0.15)
     assert FREE.shortest_m((0.15, 0.5), (3.5, 0.5)) == math.inf
+
+
+def test_the_share_of_the_floor_near_a_path_is_that_of_a_slow_count() -> None:
+    space = FreeSpace(load_world("loop"), 0.22, cell_m=0.25)
+    places = np.array([(space.world.starts[0].x, space.world.starts[0].y), (3.1, 0.9), (-50.0, 2.0), (3.0, 3.0)])
+    points = _open_points(space)
+    near = [min(space.shortest_m(point, (x, y)) for x, y in places[:2]) for point in points]
+    for metres in (0.6, 1.0, 2.5):
+        share = space.share_near(places, metres)
+        assert share == pytest.approx(np.mean([away <= metres for away in near]), abs=0.06)
+    assert space.share_near(np.array([(3.0, 3.0)]), 9.0) == 0.0  # in the walls
+    assert space.share_near(places, 100.0) == 1.0
+
+
+def _open_points(space: FreeSpace) -> list[tuple[float, float]]:
+    x0, y0, x1, y1 = space.world.bounds
+    cells = [(x, y) for x in np.arange(x0 + 0.125, x1, 0.25) for y in np.arange(y0 + 0.125, y1, 0.25)]
+    return [(float(x), float(y)) for x, y in cells if space.is_free(x, y)]
+
+
+@pytest.mark.parametrize(("name", "count"), [("loop", 1), ("office", 0), ("twins", 1), ("corridors", 1)])
+def test_islands_are_what_the_floor_surrounds(name: str, count: int) -> None:
+    space = FreeSpace(load_world(name), 0.22)
+    islands = space.islands(4.0)
+    assert islands.shape == (count, 2)
+    assert not any(space.is_free(x, y) for x, y in islands)
+    assert len(space.islands(0.0)) >= count
+    assert len(space.islands(1e4)) == 0
