@@ -1,10 +1,12 @@
-"""A progress bar for long runs."""
+"""What is shown while a long run takes its time."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable
 from typing import TypeVar
+
+from app.startup.compiling import Compiling, say_how_far
 
 Result = TypeVar("Result")
 
@@ -25,3 +27,12 @@ def with_progress(seconds: float, work: Callable[[Callable[[float, str], None]],
             bar.update(simulated_s)
 
         return work(progress)
+
+
+def compile_first() -> None:
+    """Compile what is not compiled yet, and say how far that is, before the run's own progress begins."""
+    compiling = Compiling()
+    try:
+        compiling.wait(say_how_far)
+    finally:
+        compiling.stop()

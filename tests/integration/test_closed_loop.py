@@ -14,6 +14,7 @@ import pytest
 from app.config import Config
 from app.engine_thread import EngineThread
 from app.headless import run_headless
+from app.headless.report import MACHINE
 from app.session import Session, spread_goals
 from ratslam_core import LocalView, LocalViewParams, Recognition
 from sim2d import load_world
@@ -63,11 +64,8 @@ def live(seed: int) -> Life:
         session.tick()
         if kidnap.after_s is not None:
             break
-    robot = kidnap.map_in_office.compose(brain.experience_map.robot)
-    truth = session.simulator.truth
-    return Life(
-        session, errors, consistency, miss, arrived, kidnap.after_s, math.dist((robot.x, robot.y), (truth.x, truth.y))
-    )
+    off_m, _ = evaluation.belief_off(session.simulator.truth, brain.experience_map)
+    return Life(session, errors, consistency, miss, arrived, kidnap.after_s, off_m)
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +113,7 @@ def test_a_kidnap_is_survived(lives: list[Life]) -> None:
 def test_the_same_seed_gives_the_same_run_with_and_without_a_thread() -> None:
     reports = [run_headless(OFFICE, 11, 0.8, kidnap_at_s=[20.0]) for _ in range(2)]
     assert reports[0]["state_hash"] == reports[1]["state_hash"]
-    one, two = ({k: v for k, v in r.items() if k not in ("wall_s", "real_time_factor")} for r in reports)
+    one, two = ({k: v for k, v in r.items() if k not in MACHINE} for r in reports)
     assert one == two
     engine = EngineThread(OFFICE, 11, Config(), speed=0.0, running=False)
     engine.start()

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from app import headless
-from app.headless import BrainFile, run_headless
+from app.config import Config
+from app.headless import BrainFile, growth, loop, run_headless
 from app.session import Session
 from disk import state_codec
 from ratslam_core import load_brain
@@ -14,8 +14,9 @@ from sim2d import load_world
 
 OFFICE = load_world("office")
 KEYS = [
-    "world", "seed", "simulated_s", "wall_s", "real_time_factor", "ticks", "views", "false_positives", "experiences",
-    "links", "relocalisations", "error_m", "revisit_consistency", "goals", "kidnaps", "state_hash",
+    "world", "seed", "simulated_s", "wall_s", "real_time_factor", "ticks", "metres", "views", "false_positives",
+    "experiences", "links", "relocalisations", "error_m", "revisit_consistency", "revisit_share", "looks", "coverage",
+    "loops", "uncertainty", "growth", "real_time_factors", "rss_mb", "goals", "kidnaps", "state_hash",
 ]  # fmt: skip
 
 
@@ -27,7 +28,7 @@ def test_the_report_has_its_shape() -> None:
     assert list(report["error_m"]) == ["map", "odometry"]
     assert list(report["revisit_consistency"]) == ["within_half_metre"]
     assert [list(goal) for goal in report["goals"]] == [
-        ["experience", "reached", "time_s", "path_m", "shortest_m", "miss_m"]
+        ["experience", "reached", "time_s", "path_m", "shortest_m", "miss_m", "reason"]
     ] * 2
     assert [list(kidnap) for kidnap in report["kidnaps"]] == [["at_s", "recovered", "after_s", "after_m"]] * 2
     assert [kidnap["at_s"] for kidnap in report["kidnaps"]] == [5.0, 20.0]
@@ -64,8 +65,39 @@ def test_nothing_simulated_is_a_report_too() -> None:
     json.dumps(report, allow_nan=False)
 
 
+def test_growth_is_sampled_at_regular_times(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(growth, "EVERY_S", 6.0)
+    report = run_headless(OFFICE, 4, 0.3)
+    assert [row["at_s"] for row in report["growth"]] == [6.0, 12.0, 18.0]
+    assert len(report["rss_mb"]) == len(report["real_time_factors"]) == 3
+    for name in ("views", "experiences", "links", "view_links"):
+        counts = [row[name] for row in report["growth"]]
+        assert counts == sorted(counts)
+    for name in ("views", "experiences", "links"):
+        assert report["growth"][-1][name] == report[name]
+
+
+def test_what_is_judged_lies_within_its_bounds() -> None:
+    report = run_headless(load_world("loop"), 3, 1.5)
+    assert 0.2 < report["coverage"] <= 1.0
+    assert report["loops"]["of"] == 1
+    assert 0 <= report["loops"]["closed"] <= 1
+    looks = report["looks"]
+    assert 0 <= looks["false_believed"] <= looks["false"] <= looks["all"]
+    assert 0.0 <= report["revisit_share"] <= 1.0
+    sure = report["uncertainty"]
+    assert 0 < sure["median_m"] <= sure["most_m"]
+    assert 0 <= sure["within_two_sigma"] <= 1
+    assert sure["lost_share"] == 0.0
+
+
+def test_a_belief_without_a_sigma_has_no_uncertainty() -> None:
+    sure = run_headless(OFFICE, 4, 0.1, config=Config().with_value("pose_filter.enabled", False))["uncertainty"]
+    assert (sure["median_m"], sure["most_m"], sure["within_two_sigma"]) == (None, None, None)
+
+
 def test_a_goal_that_is_not_reached_in_time_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.headless.GOAL_TIMEOUT_S", 2.0)
+    monkeypatch.setattr("app.headless.run.GOAL_TIMEOUT_S", 2.0)
     report = run_headless(OFFICE, 2, 0.7, goals=1)
     goal = report["goals"][0]
     assert goal["reached"] is False
@@ -76,7 +108,7 @@ def test_a_goal_that_is_not_reached_in_time_is_given_up(monkeypatch: pytest.Monk
 def test_a_brain_that_grows_too_large_for_a_file_is_told_of_in_time(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(headless, "LOOK_AFTER", 10)
+    monkeypatch.setattr(loop, "LOOK_AFTER", 10)
     monkeypatch.setattr(state_codec, "MOST_BYTES", 1 << 20)
     run_headless(OFFICE, 2, 0.1)
     assert capsys.readouterr().err == ""
