@@ -50,7 +50,7 @@ def rows() -> Iterator[Row]:
     yield _hebbian()
     yield from _map(50_000, 60_000)
     for views, bar in ((5_000, 0.5), (50_000, 1.5)):
-        yield _whole_step(views, bar)
+        yield whole_step(views, bar)
     yield _start()
 
 
@@ -226,7 +226,7 @@ def _long_map(experiences: int, links: int) -> ExperienceMap:
     return made
 
 
-def _whole_step(views: int, bar: float) -> Row:
+def whole_step(views: int, bar: float) -> Row:
     """A brain that knows so many views and experiences and drives along a known way."""
     rng = np.random.default_rng(4)
     brain = RatSlam()
