@@ -17,13 +17,12 @@ from pathlib import Path
 from typing import Any
 
 from app.config import parse_value
+from benchmarks.back_end.rows import DATA
 from benchmarks.true_map import local
 from benchmarks.true_map.figures import Figure, Report
 from benchmarks.true_map.jobs import Job, run_all, words_of_time
 from benchmarks.true_map.rows import PLANS, ROWS, WORLDS, Options
 from disk import require_writable, write_whole
-
-DATA = Path(__file__).parents[3] / "shared" / "data"
 
 
 def main(argv: list[str] | None = None) -> int:

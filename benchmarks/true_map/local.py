@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from benchmarks import engine
+from benchmarks.back_end.rows import BAR_LIES, BAR_M, BAR_S, graphs, rows
 from benchmarks.true_map.figures import Figure, at_most
 
 MOST_MS = 1.0
@@ -16,6 +17,16 @@ def _step(_data: Path) -> Iterator[Figure]:
     yield at_most("RatSlam.step at 50,000", row["ms"], MOST_MS, "ms")
 
 
+def _back_end(data: Path) -> Iterator[Figure]:
+    for graph in graphs(data):
+        for row in rows(graph, (BAR_LIES,)):
+            if row["lies"]:
+                name = f"{graph.name}, {BAR_LIES} false closures"
+                yield at_most(f"{name}: off", row["to_clean_m"], BAR_M)
+                yield at_most(f"{name}: time", row["seconds"], BAR_S, "s")
+
+
 ROWS: dict[str, tuple[str, Callable[[Path], Iterator[Figure]]]] = {
+    "back-end": (f"{BAR_LIES} false closures in graphs; about a minute", _back_end),
     "step": ("RatSlam.step with 50,000 views and experiences; about half a minute", _step),
 }
