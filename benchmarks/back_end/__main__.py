@@ -3,7 +3,8 @@
     python -m benchmarks.back_end                            # the graphs made up here, and those in ../shared/data
     python -m benchmarks.back_end some.g2o --lies 10 200     # one's own, too
 
-Places are chosen at random and said to be one. The bar: with 200 of them 0.1 m to the clean solution, in 0.5 s.
+Places are chosen at random and said to be one. The clean solution is that of the graph without lies, by an optimiser
+that doubts nothing. The bar: with 200 lies 0.1 m to the clean solution, in 0.5 s.
 """
 
 from __future__ import annotations

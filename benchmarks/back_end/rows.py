@@ -11,8 +11,8 @@ import numpy as np
 from app.evaluation import rmse
 from benchmarks.back_end.cities import manhattan, ring_city
 from benchmarks.back_end.files import g2o_files, intel, read_g2o
-from benchmarks.back_end.graph import Graph, lied_to
-from benchmarks.back_end.solving import solve
+from benchmarks.back_end.graph import Graph, Rows, lied_to
+from benchmarks.back_end.solving import Solved, solve
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 LIES = (10, 50, 200, 500, 1000)
@@ -34,30 +34,40 @@ def graphs(data: Path = DATA, given: list[Path] | None = None) -> Iterator[Graph
 
 
 def rows(graph: Graph, lies: tuple[int, ...] = LIES, seed: int = 1) -> Iterator[Row]:
-    """A row for the clean graph, and one for each number of false closures. Same seed, same lies."""
-    clean, seconds = solve(graph)
-    yield _row(graph, 0, clean, clean, seconds)
+    """A row for the graph as it is, and one for each number of false closures. Same seed, same lies.
+
+    The clean solution is that of the graph as it is by an optimiser that doubts nothing.
+    """
+    clean = solve(graph, doubting=False).poses
+    solve(graph)  # so that nothing is compiled while the clock runs
+    yield _row(graph, 0, clean, solve(graph))
     for count in lies:
-        found, seconds = solve(lied_to(graph, clean, count, np.random.default_rng([seed, count])))
-        yield _row(graph, count, found, clean, seconds)
+        yield _row(graph, count, clean, solve(lied_to(graph, clean, count, np.random.default_rng([seed, count]))))
 
 
-def _row(graph: Graph, lies: int, found: np.ndarray, clean: np.ndarray, seconds: float) -> Row:
-    to_clean = rmse(found[:, :2], clean[:, :2])
-    to_truth = None if graph.truth is None else rmse(found[:, :2], graph.truth[:, :2])
+def _row(graph: Graph, lies: int, clean: Rows, solved: Solved) -> Row:
+    to_clean = rmse(solved.poses[:, :2], clean[:, :2])
+    truth = None if graph.truth is None else graph.truth[:, :2]
     judged = lies == BAR_LIES
     return {
         "graph": graph.name, "places": len(graph), "closures": len(graph.ends), "lies": lies,
-        "to_clean_m": round(to_clean, 4), "to_truth_m": None if to_truth is None else round(to_truth, 4),
-        "seconds": round(seconds, 3), "holds": to_clean <= BAR_M and seconds <= BAR_S if judged else None,
+        "to_clean_m": round(to_clean, 4), "seconds": round(solved.seconds, 3), "calls": solved.calls,
+        "to_truth_m": None if truth is None else round(rmse(solved.poses[:, :2], truth), 4),
+        "clean_to_truth_m": None if truth is None else round(rmse(clean[:, :2], truth), 4),
+        "holds": to_clean <= BAR_M and solved.seconds <= BAR_S if judged else None,
     }  # fmt: skip
 
 
 def line(row: Row) -> str:
-    truth = "" if row["to_truth_m"] is None else f"{row['to_truth_m']:7.2f} m to the truth"
+    """A row in words."""
+    truth = (
+        ""
+        if row["to_truth_m"] is None
+        else f"to the truth {row['to_truth_m']:.2f} m (clean {row['clean_to_truth_m']:.2f})"
+    )
     verdict = "" if row["holds"] is None else f"bar {BAR_M:g} m, {BAR_S:g} s: {'holds' if row['holds'] else 'MISSED'}"
     size = f"{row['places']:,} places, {row['closures']:,} closures"
     return (
-        f"{row['graph']:12} {size:32} {row['lies']:5} false {row['to_clean_m']:8.2f} m to the clean one "
-        f"{row['seconds']:7.2f} s {truth:22} {verdict}"
+        f"{row['graph']:10} {size:30} {row['lies']:5} false: {row['to_clean_m']:6.2f} m off the clean one, "
+        f"{row['seconds']:6.2f} s in {row['calls']:3} calls; {truth:35} {verdict}"
     ).rstrip()

@@ -84,16 +84,19 @@ def square(laps: int = 3) -> Graph:
 def test_the_clean_graph_is_solved_better_than_odometry() -> None:
     graph = square()
     assert graph.truth is not None
-    found, seconds = solve(graph)
+    found, calls, seconds = solve(graph)
     assert rmse(found[:, :2], graph.truth[:, :2]) < 0.5 * rmse(graph.odometry[:, :2], graph.truth[:, :2])
+    assert 1 <= calls < 100
     assert seconds > 0
-    assert np.array_equal(found, solve(graph)[0])
+    assert np.array_equal(found, solve(graph).poses)
+    assert solve(graph, doubting=False).poses == pytest.approx(found, abs=0.2)
 
 
 def test_the_rows_say_how_far_off_lies_take_it() -> None:
     told = list(rows(square(), (5, 200)))
     assert [row["lies"] for row in told] == [0, 5, 200]
-    assert told[0]["to_clean_m"] == 0.0
+    assert told[0]["to_clean_m"] < 0.05
+    assert told[0]["clean_to_truth_m"] < 0.5
     assert [row["holds"] is None for row in told] == [True, True, False]
     assert told[1]["closures"] == told[0]["closures"] == 80  # the true ones
     assert "200 false" in line(told[2])
@@ -119,7 +122,7 @@ def test_a_g2o_file_is_read(tmp_path: Path) -> None:
     assert graph.backbone[1] == pytest.approx([1.0, 0.0, 1.5])  # the gap: as the vertices lie
     assert graph.ends.tolist() == [[0, 2]]
     assert graph.sigma == pytest.approx([0.2])
-    found, _ = solve(graph)
+    found = solve(graph).poses
     assert found[2] == pytest.approx([2.2, 0.0, 1.4], abs=1e-3)
     assert list(g2o_files(tmp_path, [Path("mine.g2o")])) == [Path("mine.g2o"), file]
     assert list(g2o_files(tmp_path / "none", [])) == []
