@@ -19,7 +19,7 @@ from typing import Any
 from app.config import parse_value
 from benchmarks.back_end.rows import DATA
 from benchmarks.true_map import local
-from benchmarks.true_map.figures import Figure, Report
+from benchmarks.true_map.figures import Figure, Report, of_run
 from benchmarks.true_map.jobs import Job, run_all, words_of_time
 from benchmarks.true_map.rows import PLANS, ROWS, WORLDS, Options
 from disk import require_writable, write_whole
@@ -69,14 +69,13 @@ def _make(jobs: list[Job], workers: int, done: list[tuple[Job, Report]]) -> None
     with tqdm(total=len(jobs), unit="run", disable=not sys.stderr.isatty()) as bar:
         for job, report in run_all(jobs, workers):
             done.append((job, report))
+            bar.write(f"  {of_run(report)}", file=sys.stdout)
+            sys.stdout.flush()
             bar.update()
 
 
 def _judged(name: str, jobs: list[Job], done: list[tuple[Job, Report]]) -> dict[str, Any]:
     runs = [report for _, report in sorted(done, key=lambda pair: jobs.index(pair[0]))]
-    for run in runs:
-        if run["error"]:
-            print(f"{name}: {run['name']}, seed {run['seed']} failed: {run['error']}", flush=True)
     figures = list(_printed(name, ROWS[name].judge(runs))) if runs else []
     return _told(name, figures, runs, partial=len(done) < len(jobs))
 

@@ -22,6 +22,21 @@ class Figure:
     holds: bool | None = None
 
 
+def of_run(run: Report) -> str:
+    """One run in a line."""
+    name = f"{run['name']}, seed {run['seed']}{', ' + run['variant'] if run['variant'] else ''}"
+    if run["error"]:
+        return f"{name}: failed: {run['error']}"
+    words = [f"map {run['error_m']['map']} m"]
+    if "deliveries" in run:
+        words.append(f"{run['succeeded']} of {run['deliveries']} deliveries")
+    for key, good, what in (("goals", "reached", "goals"), ("kidnaps", "recovered", "kidnaps recovered")):
+        some = [one[good] for one in run.get(key, ()) if good in one]
+        if some:
+            words.append(f"{sum(some)} of {len(some)} {what}")
+    return f"{name}: {', '.join(words)}; {run['real_time_factor']:g} x real time"
+
+
 def at_most(what: str, value: float, bar: float, unit: str = "m") -> Figure:
     return Figure(what, _json(value), f"{value:.2f} {unit}", f"<= {bar:g} {unit}", value <= bar)
 

@@ -96,6 +96,17 @@ def test_a_run_that_failed_misses_every_bar() -> None:
     assert list(ROWS["deliveries"].judge([failed])) == []
 
 
+def test_a_run_is_told_in_a_line() -> None:
+    kidnaps = [{"recovered": True}, {"recovered": False}]
+    assert figures.of_run(report(kidnaps=kidnaps, goals=[], variant="off")) == (
+        "office, seed 1, off: map 0.1 m, 1 of 2 kidnaps recovered; 300 x real time"
+    )
+    assert figures.of_run(report(deliveries=9, succeeded=8, goals=[{"visits": 3}])) == (
+        "office, seed 1: map 0.1 m, 8 of 9 deliveries; 300 x real time"
+    )
+    assert figures.of_run(report(error="ValueError: no")) == "office, seed 1: failed: ValueError: no"
+
+
 def test_living_is_judged_beside_everything_off() -> None:
     on, off = report(revisit_share=0.2), report(variant="off", revisit_share=0.4, error_m={"map": 9.0})
     found = verdicts("living", [on, off])
@@ -173,7 +184,8 @@ def test_figures_are_printed_beside_their_bars_and_written(tmp_path: Path, capsy
     assert command.main(["office", "step", "--seeds", "1", "2", "--workers", "1", "--report", str(file)]) == 0
     out = capsys.readouterr().out.splitlines()
     assert out[0].startswith("office: 20 min and 5 goals; 2 runs, 0.8 simulated h: about ")
-    assert out[1].split() == ["office", "map", "error,", "median", "0.10", "m", "bar", "<=", "0.15", "m", "holds"]
+    assert out[1:3] == [f"  office, seed {seed}: map 0.1 m, 5 of 5 goals; 300 x real time" for seed in (1, 2)]
+    assert out[3].split() == ["office", "map", "error,", "median", "0.10", "m", "bar", "<=", "0.15", "m", "holds"]
     assert out[-1].split() == ["step", "step", "1.00", "ms"]
     told = json.loads(file.read_text("utf-8"))
     assert [row["row"] for row in told] == ["office", "step"]
