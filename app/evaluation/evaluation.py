@@ -105,6 +105,11 @@ class Evaluation:
         return math.hypot(believed.x - truth.x, believed.y - truth.y), turn
 
     @property
+    def memory_bytes(self) -> int:
+        """What this record takes. It grows for ever, whatever the brain does."""
+        return self._rows.nbytes + self._experience.nbytes + self._made_at.nbytes
+
+    @property
     def revisit_share(self) -> float:
         """Share of the ticks in which the active experience was an old one."""
         return self._revisits / self._count if self._count else 0.0

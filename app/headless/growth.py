@@ -23,7 +23,7 @@ class Sample:
     links: int
     view_links: int  # from views to pose cells
     wall_s: float  # since the run began
-    rss_mb: float | None
+    rss_mb: float | None  # in use, without what the judge keeps of the run
 
 
 class Growth:
@@ -45,7 +45,8 @@ class Growth:
         views, links = len(brain.local_view), brain.view_links
         return Sample(
             round(session.time_s, 3), views, len(brain.experience_map), brain.experience_map.link_count,
-            sum(len(links.of(view)[0]) for view in range(views)), time.perf_counter() - self._began, rss_mb(),
+            sum(len(links.of(view)[0]) for view in range(views)), time.perf_counter() - self._began,
+            _memory_mb(session.evaluation.memory_bytes),
         )  # fmt: skip
 
     def speeds(self, samples: list[Sample]) -> list[float]:
@@ -58,10 +59,10 @@ class Growth:
         return speeds
 
 
-def rss_mb() -> float | None:
-    """The memory (MB) that this process has in use; None where the system does not tell it as Linux does."""
+def _memory_mb(judge: int) -> float | None:
+    """The memory that this process has in use, without `judge` bytes; None where the system does not tell as Linux does."""
     try:
         pages = int(_STATM.read_text(encoding="ascii").split()[1])
     except (OSError, ValueError, IndexError):
         return None
-    return round(pages * os.sysconf("SC_PAGE_SIZE") / 1e6, 1)
+    return round((pages * os.sysconf("SC_PAGE_SIZE") - judge) / 1e6, 1)

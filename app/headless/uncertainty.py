@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from array import array
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,7 @@ class Uncertainty:
     """Call `note` after each tick."""
 
     def __init__(self) -> None:
-        self._sigma_m: list[float] = []
-        self._off_m: list[float] = []
+        self._sigma_m, self._off_m = array("d"), array("d")
         self._ticks = self._lost = 0
 
     def note(self, session: Session) -> None:

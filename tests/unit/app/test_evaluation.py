@@ -267,6 +267,7 @@ def test_thousands_of_experiences_keep_where_they_were_made() -> None:
     for i in range(2500):
         map_.active = i
         evaluation.record(i * DT, Truth(i, -i, 0.0, 0.0, 0.0), map_, True, Odometry(0.0, 0.0, DT))  # type: ignore[arg-type]
+    assert evaluation.memory_bytes >= 2500 * 13 * 8
     for i in (0, 1023, 1024, 2499):
         assert evaluation.made_at(i, map_) == (i, -i)
 

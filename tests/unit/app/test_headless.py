@@ -3,9 +3,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from app.config import Config
+from app.evaluation import Evaluation
 from app.headless import BrainFile, growth, loop, run_headless
 from app.session import Session
 from disk import state_codec
@@ -75,6 +77,18 @@ def test_growth_is_sampled_at_regular_times(monkeypatch: pytest.MonkeyPatch) -> 
         assert counts == sorted(counts)
     for name in ("views", "experiences", "links"):
         assert report["growth"][-1][name] == report[name]
+
+
+def test_memory_is_that_of_the_process_without_the_judges_record(monkeypatch: pytest.MonkeyPatch) -> None:
+    session = Session(OFFICE, 1)
+    before = growth.Growth(session).sample(session).rss_mb
+    record = np.ones(30_000_000)  # 240 MB
+    during = growth.Growth(session).sample(session).rss_mb
+    monkeypatch.setattr(Evaluation, "memory_bytes", record.nbytes)  # as if the judge kept that
+    without = growth.Growth(session).sample(session).rss_mb
+    if before is not None and during is not None and without is not None:  # on Linux
+        assert during - before == pytest.approx(240, abs=30)
+        assert without - before == pytest.approx(0, abs=30)
 
 
 def test_what_is_judged_lies_within_its_bounds() -> None:
