@@ -39,13 +39,14 @@ def backbone(experiences: ExperienceMap, births: Births) -> Judged:
 
 
 def _judged(experiences: ExperienceMap, births: Births, which: NDArray[np.bool_]) -> Judged:
-    """These rows, if both ends were made in this run, so that it is known where.
+    """These rows, if both ends were made in this run, so that it is known where, and if they claim to be good to a metre.
 
     How far off: the distance between where the link puts its second end, seen from where its first end was truly made,
     and where the second was truly made.
     """
     t = experiences.transitions
-    rows = np.flatnonzero(which[: t.count] & (t.weight[: t.count] > 0))
+    claims = t.weight[: t.count] >= (experiences.params.odometry_sigma / FALSE_M) ** 2  # a row's sigma is at most 1 m
+    rows = np.flatnonzero(which[: t.count] & claims)
     rows = rows[np.isfinite(births[t.ends[rows], 0]).all(axis=1)]
     ends, move = t.ends[rows], t.move[rows]
     a, b = births[ends[:, 0]], births[ends[:, 1]]

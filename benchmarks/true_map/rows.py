@@ -97,7 +97,7 @@ def _plans(options: Options, seeds: tuple[int, ...]) -> list[Job]:
 
 
 def _kidnaps(_options: Options, seeds: tuple[int, ...]) -> list[Job]:
-    """Ten in each world, in runs of at most four, so that each robot has time to find itself; and the runs without."""
+    """Ten in each world, in runs of two or three, so that each robot has time to find itself; and the runs without."""
     each = [10 // len(seeds) + (k < 10 % len(seeds)) for k in range(len(seeds))]
     return [
         Job(
@@ -176,7 +176,7 @@ ROWS: dict[str, Row] = {
         Row("halls", "campus, corridors, floor, two-goals: 30 min and 5 goals", 5, _explored("halls", HALLS, 30), _judge_halls),
         Row("plans", "real floor plans: 60 min and 5 goals", 3, _plans, _maps(0.5, 1.0, 0.9, "9 of 10")),
         Row("suburb", "5 h", 1, _explored("suburb", ("suburb",), 300, goals=0), _judge_suburb),
-        Row("kidnaps", "ten kidnaps in each of ten worlds, and the same without", 3, _kidnaps, _judge_kidnaps),
+        Row("kidnaps", "ten kidnaps in each of ten worlds, and the same without", 4, _kidnaps, _judge_kidnaps),
         Row("wheels", "office, 20 min, all errors of the wheels times 4", 5,
             _explored("wheels", ("office",), 20, goals=0, variants={"": _times_4()}), _maps(None, 0.5)),
         Row("deliveries", "living office, 11 goals", 1, _deliveries, figures.deliveries),

@@ -66,6 +66,8 @@ def test_links_that_were_dropped_or_join_what_is_not_known_are_not_judged() -> N
     assert looks(map_, births).ends.tolist() == [[2, 0]]
     map_.transitions.weight[0] = 0.0
     assert len(looks(map_, births).ends) == 0
+    map_.transitions.weight[0] = (0.01 / 2.0) ** 2  # it says itself that it may be 2 m off
+    assert len(looks(map_, births).ends) == 0
 
 
 def rounds(islands: list[tuple[float, float, float]], steps: int = 100) -> tuple[list[Pose2], NDArray[np.float64]]:

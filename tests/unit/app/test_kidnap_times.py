@@ -23,10 +23,13 @@ def test_a_third_comes_in_the_first_five_minutes(count: int, minutes: float, see
 
 
 @given(st.integers(1, 9), SEEDS)
-def test_where_there_is_time_each_has_two_minutes(count: int, seed: int) -> None:
-    times = [*kidnap_times(count, 60.0, seed), 3600.0]
+def test_where_there_is_time_each_has_four_minutes(count: int, seed: int) -> None:
+    times = [*kidnap_times(count, 90.0, seed), 5400.0]
     late = [at for at in times if at > 300.0]
-    assert all(b - a >= 119.8 for a, b in pairwise(late))
+    assert all(b - a >= 239.8 for a, b in pairwise(late))
+    assert late[0] >= 539.8
+    early = [at for at in times if at <= 300.0]
+    assert all(b - a >= 55.8 for a, b in pairwise(early))
 
 
 def test_other_seeds_have_other_times() -> None:
