@@ -32,8 +32,10 @@ def main(argv: list[str] | None = None) -> int:
     args = parser.parse_args(argv)
     if min(args.lies) < 1 or args.seed < 0:
         parser.error("--lies must be 1 or more, --seed 0 or more")
-    if args.report is not None:
+    try:
         require_writable("--report", args.report)
+    except (OSError, ValueError) as error:
+        parser.error(str(error))
     told: list[Row] = []
     try:
         for graph in graphs(args.data, args.files):

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from app.config import parse_value
+from app.config import Config, Value, parse_value
 from benchmarks.back_end.rows import DATA
 from benchmarks.true_map import local
 from benchmarks.true_map.figures import Figure, Report, of_run
@@ -27,23 +27,25 @@ from disk import require_writable, write_whole
 
 def main(argv: list[str] | None = None) -> int:
     parser, args = _arguments(argv)
-    if args.report is not None:
+    try:
         require_writable("--report", args.report)
-    options = _options(args, parser)
+        options = _options(args)
+    except (OSError, ValueError) as error:
+        parser.error(str(error))
     told: list[dict[str, Any]] = []
     try:
         for name in args.rows:
             told.append(_row(name, options, args.workers))
-    except KeyboardInterrupt as stopped:
-        told += stopped.args[:1]
+            if told[-1]["partial"]:
+                return 130
     finally:
         if args.report is not None:
             write_whole(args.report, json.dumps(told, indent=1) + "\n")
-    return 0 if len(told) == len(args.rows) and not any(row["partial"] for row in told) else 130
+    return 0
 
 
 def _row(name: str, options: Options, workers: int) -> dict[str, Any]:
-    """Make the runs of a row and print its figures. KeyboardInterrupt has the figures of the runs done so far."""
+    """Make the runs of a row and print its figures; after Ctrl+C, of the runs that were done."""
     if name in local.ROWS:
         print(f"{name}: {local.ROWS[name][0]}", flush=True)
         figures = list(_printed(name, local.ROWS[name][1](options.data)))
@@ -59,7 +61,6 @@ def _row(name: str, options: Options, workers: int) -> dict[str, Any]:
         _make(jobs, workers, done)
     except KeyboardInterrupt:
         print(f"{name}: stopped after {len(done)} of {len(jobs)} runs; their figures:", flush=True)
-        raise KeyboardInterrupt(_judged(name, jobs, done)) from None
     return _judged(name, jobs, done)
 
 
@@ -99,17 +100,19 @@ def _why(name: str, options: Options) -> str:
     return f"it has no world named {' or '.join(options.worlds)}"
 
 
-def _options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Options:
-    values: dict[str, Any] = {}
+def _options(args: argparse.Namespace) -> Options:
+    """ValueError says what is wrong with them."""
+    values: dict[str, Value] = {}
     for pair in args.set:
         dotted, equals, value = pair.partition("=")
         if not equals:
-            parser.error(f"--set takes NAME=VALUE, got {pair!r}")
+            raise ValueError(f"--set takes NAME=VALUE, got {pair!r}")
         values[dotted] = parse_value(value)
+    Config().with_values(values)
     if args.workers < 1 or args.deliveries < 1:
-        parser.error("--workers and --deliveries must be 1 or more")
+        raise ValueError("--workers and --deliveries must be 1 or more")
     if len(set(args.seeds)) < len(args.seeds) or min(args.seeds, default=0) < 0:
-        parser.error("--seeds must be different numbers from 0 on")
+        raise ValueError("--seeds must be different numbers from 0 on")
     return Options(args.data, tuple(args.seeds), tuple(args.worlds), args.deliveries, values)
 
 

@@ -226,6 +226,8 @@ def test_control_c_ends_with_the_figures_of_what_was_done(
         ["castle"],
         ["office", "--workers", "0"],
         ["--seeds", "1", "1"],
+        ["--report", "/nowhere/at/all.json"],
+        ["--set", "robot.lihgt=1"],
         ["--set", "x"],
         ["--worlds", "x"],
         ["--deliveries", "0"],
