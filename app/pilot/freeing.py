@@ -43,7 +43,7 @@ class Freeing:
                 self._drive = (0.0, self._drive[1])
             return self._drive
         if self._still_s > p.stuck_s or (bumped and self._still_s > p.bumped_s):
-            self._begin(p)
+            self.begin(p)
             return self._drive
         return None
 
@@ -63,7 +63,8 @@ class Freeing:
         elif abs(heading - self._looked_at) > p.turned_rad and self._turns < p.most_turns:
             self._still_s, self._looked_at, self._turns = 0.0, float(heading), self._turns + 1
 
-    def _begin(self, p: PilotParams) -> None:
+    def begin(self, p: PilotParams) -> None:
+        """Back off and turn, from the next tick on."""
         share = float(self._rng.uniform(p.free_turn_share, 1.0))
         turn = share * math.copysign(p.turn_rate, self._rng.uniform(-1, 1))
         self._left_s, self._drive = p.free_turn_s + p.back_off_s, (-p.back_off_speed, turn)

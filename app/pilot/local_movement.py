@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from app.pilot.params import DrivingParams
+from app.pilot.params import DrivingParams, PilotParams
 from disk import kind
 from ratslam_core import Odometry
 
@@ -77,6 +77,18 @@ class LocalMovement:
     def free_way(self, bearing: float, p: DrivingParams) -> float:
         """How far (m) the robot can drive straight in this direction (rad) before it is too close to an echo."""
         return _free_way(self._echoes, bearing, p.clearance, p.echo_range_m)
+
+    def gap_towards(self, x: float, y: float, p: PilotParams) -> tuple[float, float]:
+        """[ours] (x, y), or if echoes are in the way, a point in the freest direction beside it. Metres, robot's frame.
+
+        The map may be off by half a door. test_local_movement.py::test_the_gap_beside_the_point_is_headed_for.
+        """
+        want = min(math.hypot(x, y), p.gap_m)
+        bearing = math.atan2(y, x)
+        if want <= 0 or self.free_way(bearing, p) >= want:
+            return x, y
+        better = _freest(self._echoes, bearing, want, p.clearance, p.gap_rad / p.gap_steps, p.gap_steps, p.gap_cost)
+        return want * math.cos(better), want * math.sin(better)
 
     def _chosen_by(self, p: DrivingParams) -> _Choice:
         """The same object for the same parameters, since it is needed in every tick."""
@@ -192,3 +204,17 @@ def _free_way(echoes: _Array, bearing: float, clearance: float, farthest: float)
         if 0.0 < along < way + clearance and abs(-s * echoes[e, 0] + c * echoes[e, 1]) < clearance:
             way = min(way, max(0.0, along - clearance))
     return way
+
+
+@njit(cache=True, nogil=True)
+def _freest(
+    echoes: _Array, bearing: float, want: float, clearance: float, step: float, steps: int, cost: float
+) -> float:
+    """The direction (rad), up to `steps` steps (rad) from this one, with most free way up to `want` less its cost."""
+    best, chosen = -np.inf, bearing
+    for k in range(2 * steps + 1):
+        turn = (k + 1) // 2 * step * (1 if k % 2 else -1)
+        worth = _free_way(echoes, bearing + turn, clearance, want) - cost * abs(turn)
+        if worth > best:
+            best, chosen = worth, bearing + turn
+    return chosen

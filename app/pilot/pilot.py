@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from app.pilot.bars import Bars
 from app.pilot.behaviours import Behaviour
 from app.pilot.explore import Explorer
 from app.pilot.freeing import Freeing
@@ -35,6 +36,7 @@ class Pilot:
         self._asked = (0.0, 0.0)  # speed, yaw rate of the last tick
         self._astray = False  # has a goal, but explores since no route to it is known
         self._freeing = Freeing(rng)
+        self._bars = Bars()
 
     # ------------------------------------------------------------ orders
 
@@ -64,7 +66,7 @@ class Pilot:
         return self._follower.progress(experiences) if self._follower else None
 
     def set_goal(self, experience: int) -> None:
-        self._follower = RouteFollower(experience)
+        self._follower = RouteFollower(experience, self._bars)
         self.mode = "goal"
 
     def cancel_goal(self) -> None:
@@ -107,6 +109,8 @@ class Pilot:
         self._local.sense(ranges_m, odometry, self.params)
         if self.mode == "manual":
             return self._by_hand()
+        if self.mode == "goal" and self._follower is not None:
+            self._follower.move(odometry, self.behaviour is not Behaviour.FREEING_ITSELF, self.params)
         drive = self._freeing.step(bumped, odometry, self._asked[1], self.params)
         if drive is not None:
             self.behaviour = Behaviour.FREEING_ITSELF
@@ -114,7 +118,7 @@ class Pilot:
                 self._local.forget()
             return drive
         if self.mode == "goal" and self._follower is not None:
-            drive = self._to_the_goal(self._follower, odometry.dt, experiences)
+            drive = self._to_the_goal(self._follower, odometry, experiences)
             if drive is not None:
                 return drive
         drive = self._explorer.step(ranges_m, odometry, self._local, self.params)
@@ -122,19 +126,22 @@ class Pilot:
         return drive
 
     def _to_the_goal(
-        self, follower: RouteFollower, dt: float, experiences: ExperienceMap
+        self, follower: RouteFollower, odometry: Odometry, experiences: ExperienceMap
     ) -> tuple[float, float] | None:
         """The drive towards the goal. None: no route is known, so explore."""
-        target = follower.step(experiences, dt, self.params)
+        target = follower.step(experiences, self._local, odometry.dt, self.params)
         if follower.state == "arrived":
             self.behaviour = Behaviour.AT_THE_GOAL
             self._freeing.at_rest()
             return 0.0, 0.0
+        if follower.failed:
+            self._freeing.begin(self.params)
+            self._local.forget()
         if target is not None:
             tracking = follower.state == "tracking"
             self.behaviour = Behaviour.FOLLOWING_THE_ROUTE if tracking else Behaviour.COASTING
             self._astray = False
-            return self._local.towards(*target, self.params)
+            return self._local.towards(*self._local.gap_towards(*target, self.params), self.params)
         if not self._astray:
             self._astray = True
             self._explorer.begin_crossing(self.params)

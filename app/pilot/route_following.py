@@ -7,14 +7,18 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from app.pilot.params import RouteParams
+from app.pilot.bars import Bars, bar_ahead, crosses
+from app.pilot.headway import Headway
+from app.pilot.local_movement import LocalMovement
+from app.pilot.params import PilotParams, RouteParams
 from disk import kind
-from ratslam_core import ExperienceMap, Pose2, Route
+from ratslam_core import ExperienceMap, Odometry, Pose2, Route
 from web.messages import GoalState
 
-_Points = NDArray[np.float64]  # (..., 2)
+_Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,41 +33,59 @@ class Progress:
     arrival_s: NDArray[np.float64]  # seconds from now
 
 
-@kind("route follower/1")
+@kind("route follower/2")
 class RouteFollower:
     """Keeps the quickest route to one goal and says which point to head for."""
 
-    def __init__(self, goal: int) -> None:
+    def __init__(self, goal: int, bars: Bars | None = None) -> None:
+        """bars: what was in the robot's way so far."""
         self.goal = goal
         self.state: GoalState = "tracking"
+        self.failed = False  # in this tick: the robot could not get on, and should back out
         self._route: Route | None = None
+        self._at = 0  # the route's experience that the robot has come to
         self._age_s = math.inf  # time since the route was planned
         self._plan_in_s = 0.0
         self._no_route_s = 0.0
         self._nearest_m = math.inf  # least distance to the goal so far
         self._since_nearer_s = 0.0
-        self._least_left_s = math.inf  # least travel time left to the goal so far
-        self._since_headway_s = self._look_around_s = 0.0
-        self._failed_trials = 0  # since it last made headway
-        self._bars: list[NDArray[np.float64]] = []  # lines that it could not cross, (2, 2) each, map frame
+        self._look_around_s = 0.0
+        self._headway = Headway()
+        self._bars = Bars() if bars is None else bars
 
-    def step(self, experiences: ExperienceMap, dt: float, p: RouteParams) -> tuple[float, float] | None:
+    def move(self, odometry: Odometry, trying: bool, p: RouteParams) -> None:
+        """The robot moved. Called in every tick on the way to the goal. trying: whether it drove as `step` said."""
+        self._bars.fade(odometry.dt)
+        if self._look_around_s > 0:
+            self._look_around_s -= odometry.dt
+        elif self.state != "arrived":
+            self._headway.move(odometry, trying, p)
+
+    def step(
+        self, experiences: ExperienceMap, local: LocalMovement, dt: float, p: PilotParams
+    ) -> tuple[float, float] | None:
         """The next point to head for, metres in the robot's frame. None: it has arrived, or no route is known."""
+        self.failed = False
         if self.state == "arrived":
             return None
-        robot = experiences.robot
-        goal = experiences.pose(self.goal)
+        goal = self._goal_from_robot(experiences)
         self._age_s += dt
         self._plan_in_s -= dt
-        if self._there(math.hypot(goal.x - robot.x, goal.y - robot.y), dt, p):
+        if self._there(math.hypot(*goal), dt, p):
             self.state = "arrived"
             return None
-        self._watch_headway(experiences, dt, p)
+        self._watch_headway(experiences, p)
+        if self.state == "arrived":
+            return None
         if self._plan_in_s <= 0:
             self._plan_in_s = p.replan_s
-            self._plan(experiences, p)
+            self._plan(experiences, local, p)
         self.state = self._state_on_the_way(dt, p)
-        return self._aim(experiences, p.lookahead_m) if self.state in ("tracking", "coasting") else None
+        aim = self._aim(experiences, p) if self.state in ("tracking", "coasting") else None
+        if aim is not None and self._free_to(goal, local, p):
+            aim = goal
+        self._headway.head_for(aim)
+        return aim
 
     def _state_on_the_way(self, dt: float, p: RouteParams) -> GoalState:
         if self._route is None or self._age_s > p.coast_s:
@@ -80,127 +102,157 @@ class RouteFollower:
             return Progress(self.goal, self.state, 0.0, 0.0, *nothing)
         if self._route is None or self.state in ("exploring", "unreachable"):
             return Progress(self.goal, self.state, None, None, *nothing)
-        at = self._nearest(experiences)
-        nodes = self._route.experiences[at:]
-        arrival = self._route.arrival_s[at:] - self._route.arrival_s[at]
+        nodes = self._route.experiences[self._at :]
+        arrival = self._route.arrival_s[self._at :] - self._route.arrival_s[self._at]
         xy = experiences.poses[nodes, :2]
         robot = experiences.robot
         first = math.hypot(xy[0, 0] - robot.x, xy[0, 1] - robot.y)
         remaining = first + float(np.hypot(*np.diff(xy, axis=0).T).sum())
         return Progress(self.goal, self.state, float(arrival[-1]), remaining, nodes, arrival)
 
-    def _watch_headway(self, experiences: ExperienceMap, dt: float, p: RouteParams) -> None:
-        """No headway on the route counts as a failed trial of the links ahead. If it lasts, the robot looks around.
+    # ------------------------------------------------------------ what is in the way
+
+    def _watch_headway(self, experiences: ExperienceMap, p: RouteParams) -> None:
+        """No headway is a failed trial of the way ahead. A robot that stays at one place for long looks around.
 
         test_routes.py::{test_a_blocked_way_is_left, test_a_door_that_was_shut_is_given_up}.
         """
-        if self._look_around_s > 0:
-            self._look_around_s -= dt
+        if self._look_around_s > 0 or self._route is None:
             return
-        if self._route is None:
-            return
-        left_s = float(self._route.arrival_s[-1])
-        self._since_headway_s += dt
-        if left_s < self._least_left_s - p.headway_s:
-            self._least_left_s, self._since_headway_s, self._failed_trials = left_s, 0.0, 0
-        if self._since_headway_s > p.trial_s * (self._failed_trials + 1):
-            self._failed_trials += 1
+        if self._headway.blocked(p):
+            self._headway.begin()
+            if math.hypot(*self._goal_from_robot(experiences)) < p.good_enough_m:
+                self.state = "arrived"
+                return
             self._fail(experiences, p)
-        if self._since_headway_s > p.no_headway_s:
-            self._begin_anew()
+        if self._headway.astray(p):
+            self._headway.leave()
             self._look_around_s = p.look_around_s
 
-    def _begin_anew(self) -> None:
-        self._least_left_s, self._since_headway_s, self._failed_trials = math.inf, 0.0, 0
-
     def _fail(self, experiences: ExperienceMap, p: RouteParams) -> None:
-        """The robot could not cross a line ahead of it, the bar: a failed trial of every link across it. ACRA 2006 3.4.
+        """The robot could not cross a line ahead of it, the bar. With fading bars the ways across it are slower for a
+        while; without, it is a failed trial of every link across it. ACRA 2006 3.4.
 
         [ours] Every link counts, not only that of the route. A place has many experiences, and otherwise the robot
         would try their links one by one.
         """
-        bar = _bar_ahead(experiences.robot, math.atan2(*self._aim(experiences, p.lookahead_m)[::-1]), p)
-        self._bars.append(bar)
+        bearing = math.atan2(*self._aim(experiences, p)[::-1])
+        self._bars.add(experiences.robot, bearing, p)
+        self.failed, self._plan_in_s, self._route = True, 0.0, None
+        if p.bar_fade_s:
+            return
         links, xy = experiences.links, experiences.poses[:, :2]
+        bar = bar_ahead(experiences.robot, bearing, p.widest_bar_m, p)
         across = links[crosses(bar, xy[links[:, 0]], xy[links[:, 1]])]
         pairs = np.unique(np.sort(across, axis=1), axis=0)
-        deleted = [experiences.tried(int(i), int(j), False) for i, j in pairs]
-        if any(deleted):
-            self._route, self._plan_in_s = None, 0.0
-            self._begin_anew()
+        for i, j in pairs:
+            experiences.tried(int(i), int(j), False)
+
+    # ------------------------------------------------------------ arriving
+
+    def _goal_from_robot(self, experiences: ExperienceMap) -> tuple[float, float]:
+        """The place of the goal, whichever way its experience faces; m, robot's frame."""
+        goal = experiences.pose(self.goal)
+        return _from_robot(experiences.robot, goal.x, goal.y)
 
     def _there(self, away: float, dt: float, p: RouteParams) -> bool:
         """Near enough; or close by and no longer getting nearer, as at a goal in a corner too tight for the robot."""
         self._since_nearer_s = 0.0 if away < self._nearest_m - p.nearer_m else self._since_nearer_s + dt
         self._nearest_m = min(self._nearest_m, away)
-        return away < p.arrival_m or (away < p.close_by_share * p.arrival_m and self._since_nearer_s > p.close_by_s)
+        patience = p.close_by_s * away / p.close_by_m if p.close_by_m else math.inf
+        return away < p.arrival_m or (away < p.close_by_m and self._since_nearer_s > patience)
 
-    def _plan(self, experiences: ExperienceMap, p: RouteParams) -> None:
+    def _free_to(self, goal: tuple[float, float], local: LocalMovement, p: PilotParams) -> bool:
+        """[ours] Whether the robot may leave the route and drive straight to the goal, since the sonars see nothing in
+        between. test_routes.py::test_the_last_metre_is_driven_straight."""
+        away = math.hypot(*goal)
+        return away < p.approach_m and local.free_way(math.atan2(goal[1], goal[0]), p) >= away - p.arrival_m
+
+    # ------------------------------------------------------------ planning
+
+    def _plan(self, experiences: ExperienceMap, local: LocalMovement, p: PilotParams) -> None:
         """Plan the quickest route, from the active experience or, over an imagined link, from another one nearby."""
         self._succeed(experiences, p)
+        t = experiences.transitions
+        delays = self._bars.delays(t.ends[: t.count], experiences.poses, p) if p.bar_fade_s else None
         ways, robot, poses = experiences.temporal_map, experiences.robot, experiences.poses
-        times = ways.times_to(self.goal)
+        times = ways.times_to(self.goal, delays)
         away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
-        near = self._near(experiences, away, p)
-        turn = np.abs(np.remainder(poses[near, 2] - robot.heading_rad + np.pi, 2 * np.pi) - np.pi)
-        cost = times[near] + away[near] / p.near_speed + p.near_turn_cost * turn
-        start = int(near[np.argmin(cost)])
+        start = self._start(experiences, local, times, away, p)
         if not np.isfinite(times[start]):
             return
-        self._route = ways.route(start, self.goal)
-        self._age_s = 0.0
+        self._route = ways.route(start, self.goal, delays)
+        self._age_s, self._at = 0.0, 0
 
-    def _near(self, experiences: ExperienceMap, away: NDArray[np.float64], p: RouteParams) -> NDArray[np.intp]:
-        """Experiences at which a route may start: the active one, and those nearby that no bar separates."""
-        robot, near = experiences.robot, np.flatnonzero(away < p.near_m)
-        for bar in self._bars:
-            near = near[~crosses(bar, np.array([[robot.x, robot.y]]), experiences.poses[near, :2])]
-        return near if experiences.active in near else np.append(near, experiences.active)
+    def _start(
+        self, experiences: ExperienceMap, local: LocalMovement, times: _Array, away: _Array, p: PilotParams
+    ) -> int:
+        """Where the route starts: where the last one has led to, at the active experience, or over an imagined link at
+        one nearby, if that is quicker and neither a bar nor an echo lies between.
+
+        times: to the goal, s; away: from the robot, m; (n,) each.
+        """
+        robot, poses, active = experiences.robot, experiences.poses, experiences.active
+        reach = max(p.near_m, min(p.near_m + p.near_growth * self._no_route_s, p.near_most_m))
+        near = np.flatnonzero((away < reach) & np.isfinite(times))
+        near = near[~self._bars.between(robot.x, robot.y, poses[near, :2])]
+        on_route = -1 if self._route is None else int(self._route.experiences[self._at])
+        near = np.append(near, active)
+        turn = np.abs(np.remainder(poses[near, 2] - robot.heading_rad + np.pi, 2 * np.pi) - np.pi)
+        cost = times[near] + away[near] / p.near_speed + p.near_turn_cost * turn
+        cost += (p.near_cost + p.near_doubt_s * self._bars.failures) * ((near != active) & (near != on_route))
+        cost -= p.stay_s * (near == on_route)
+        for at in np.argsort(cost, kind="stable").tolist():
+            if near[at] in (active, on_route) or self._sees(_from_robot(robot, *poses[near[at], :2]), local, p):
+                return int(near[at])
+        return active
+
+    def _sees(self, place: tuple[float, float], local: LocalMovement, p: PilotParams) -> bool:
+        """Whether the sonars, which look ahead and to the sides, find the way to a place (m, robot's frame) free."""
+        return (
+            place[0] >= 0 and local.free_way(math.atan2(place[1], place[0]), p) >= math.hypot(*place) - p.near_blind_m
+        )
 
     def _succeed(self, experiences: ExperienceMap, p: RouteParams) -> None:
         """Every link of the route that was driven since the last plan counts as a successful trial."""
         if self._route is None or self._age_s > p.credited_plans * p.replan_s:
             return
-        for i, j in pairwise(self._route.experiences[: self._nearest(experiences) + 1]):
+        for i, j in pairwise(self._route.experiences[: self._at + 1]):
             experiences.tried(int(i), int(j), True)
 
-    def _nearest(self, experiences: ExperienceMap) -> int:
-        """Index of the route's experience that is nearest to the robot; of equals, the last."""
+    def _aim(self, experiences: ExperienceMap, p: RouteParams) -> tuple[float, float]:
+        """The route's point `lookahead_m` ahead of the robot. Notes how far on the route the robot has come."""
         assert self._route is not None
-        xy = experiences.poses[self._route.experiences, :2]
-        robot = experiences.robot
-        away = np.hypot(xy[:, 0] - robot.x, xy[:, 1] - robot.y)
-        return int(len(away) - 1 - np.argmin(away[::-1]))
-
-    def _aim(self, experiences: ExperienceMap, lookahead: float) -> tuple[float, float]:
-        assert self._route is not None
-        robot = experiences.robot
-        xy = experiences.poses[self._route.experiences, :2]
-        at = self._nearest(experiences)
-        target, way = xy[at], 0.0
-        for k in range(at, len(xy) - 1):
-            way += float(np.hypot(*(xy[k + 1] - xy[k])))
-            target = xy[k + 1]
-            if way > lookahead:
-                break
-        c, s = math.cos(robot.heading_rad), math.sin(robot.heading_rad)
-        dx, dy = float(target[0]) - robot.x, float(target[1]) - robot.y
-        return c * dx + s * dy, -s * dx + c * dy
+        robot, nodes = experiences.robot, self._route.experiences
+        self._at, to = _along(experiences.poses, nodes, self._at, robot.x, robot.y, p.window_m, p.lookahead_m)
+        x, y, _ = experiences.poses[nodes[to]]
+        return _from_robot(robot, x, y)
 
 
-def _bar_ahead(robot: Pose2, bearing: float, p: RouteParams) -> NDArray[np.float64]:
-    """The two ends (2, 2), map frame, of a bar that lies across the way in this direction (rad, robot's frame)."""
-    ahead = robot.compose(Pose2(0.0, 0.0, bearing)).compose(Pose2(p.bar_ahead_m, 0.0, 0.0))
-    left, right = (ahead.compose(Pose2(0.0, side * p.bar_m / 2, 0.0)) for side in (1, -1))
-    return np.array([(left.x, left.y), (right.x, right.y)])
+def _from_robot(robot: Pose2, x: float, y: float) -> tuple[float, float]:
+    """A place of the map in the robot's frame, m."""
+    c, s = math.cos(robot.heading_rad), math.sin(robot.heading_rad)
+    dx, dy = float(x) - robot.x, float(y) - robot.y
+    return c * dx + s * dy, -s * dx + c * dy
 
 
-def crosses(bar: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which of the segments from a to b, (n, 2) each, cross the bar, (2, 2)."""
-
-    def side(start: _Points, end: _Points, point: _Points) -> _Points:
-        along, to = end - start, point - start
-        return along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0]
-
-    apart = side(bar[0], bar[1], a) * side(bar[0], bar[1], b) < 0
-    return apart & (side(a, b, bar[0]) * side(a, b, bar[1]) < 0)
+@njit(cache=True, nogil=True)
+def _along(
+    poses: NDArray[np.float64], nodes: NDArray[np.int64], at: int, x: float, y: float, window: float, lookahead: float
+) -> tuple[int, int]:
+    """Where on the route the robot at (x, y) is, on the stretch of length `window` from `at`: the nearest node, of
+    equals the last. And the first node more than `lookahead` farther on. All lengths in m."""
+    here, least, way = at, np.inf, 0.0
+    for k in range(at, len(nodes)):
+        if k > at:
+            way += math.hypot(poses[nodes[k], 0] - poses[nodes[k - 1], 0], poses[nodes[k], 1] - poses[nodes[k - 1], 1])
+        if way > window:
+            break
+        away = math.hypot(poses[nodes[k], 0] - x, poses[nodes[k], 1] - y)
+        if away <= least:
+            here, least = k, away
+    to, way = here, 0.0
+    while to < len(nodes) - 1 and way <= lookahead:
+        to += 1
+        way += math.hypot(poses[nodes[to], 0] - poses[nodes[to - 1], 0], poses[nodes[to], 1] - poses[nodes[to - 1], 1])
+    return here, to

@@ -10,6 +10,7 @@ from typing import get_args
 import numpy as np
 
 from app.pilot import Mode, Pilot, PilotParams
+from app.pilot.bars import Bar, Bars
 from app.pilot.behaviours import Behaviour
 from app.pilot.explore import Explorer, Turn
 from app.pilot.route_following import RouteFollower
@@ -41,7 +42,9 @@ def pilot(pilot: Pilot, experiences: int) -> None:
     _explorer(pilot._explorer)
     one = pilot._explorer._rng is pilot._rng is pilot._freeing._rng
     true(one, "all parts of the pilot must draw from one generator")
+    _bars(pilot._bars)
     if pilot._follower is not None:
+        true(pilot._follower._bars is pilot._bars, "who follows a route must know the pilot's bars")
         _follower(pilot._follower, experiences)
 
 
@@ -64,5 +67,13 @@ def _follower(follower: RouteFollower, experiences: int) -> None:
         within("the route", nodes, 0, experiences - 1)
         times = array("times of the route", follower._route.arrival_s, np.float64, (len(nodes),))
         within("times of the route", times, 0.0, LONGEST_S)
-    for bar in follower._bars:
-        within("a bar", array("a bar", bar, np.float64, (2, 2)), -FAR_M, FAR_M)
+        whole("how far the route has been driven", follower._at, 0, len(nodes) - 1)
+
+
+def _bars(bars: Bars) -> None:
+    for bar in bars._bars:
+        true(isinstance(bar, Bar), "a bar must be one")
+        within("a bar", array("a bar", bar.ends, np.float64, (2, 2)), -FAR_M, FAR_M)
+        number("what is left of a bar", bar.left_s, -LONGEST_S, LONGEST_S)
+        number("how long a bar lasts", bar.lasts_s, 0.0, LONGEST_S)
+        whole("failures at a bar", bar.failures, 1)

@@ -51,24 +51,28 @@ class TemporalMap:
         self._times = np.zeros(0)
         self._parent = np.zeros(0, np.int32)
 
-    def times_to(self, experience: int) -> NDArray[np.float64]:
-        """Seconds from every experience to this one (and back), shape (n,); inf where no way is known."""
-        self._answer(experience)
+    def times_to(self, experience: int, delays: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Seconds from every experience to this one (and back), shape (n,); inf where no way is known.
+
+        delays: seconds by which each row of the transitions takes longer now, shape (rows,); [ours], for what the robot
+        knows to be in its way. test_temporal_map.py::test_a_delay_sends_the_robot_round.
+        """
+        self._answer(experience, delays)
         return self._times.copy()
 
-    def route(self, start: int, goal: int) -> Route | None:
+    def route(self, start: int, goal: int, delays: NDArray[np.float64] | None = None) -> Route | None:
         """The quickest way, None when there is none. Among equal ways, the one over experiences with lower numbers."""
         self._require(start)
-        asked = self._answer(goal)
+        asked = self._answer(goal, delays)
         if not np.isfinite(self._times[start]):
             return None
         nodes = dijkstra.trace(start, goal, self._times, asked.links, asked.near)
         return Route(nodes, self._times[start] - self._times[nodes])
 
-    def _answer(self, goal: int) -> _Asked:
+    def _answer(self, goal: int, delays: NDArray[np.float64] | None) -> _Asked:
         """Bring times and tree up to date for this goal; returns what they hold for."""
         self._require(goal)
-        asked, before, n = _Asked(self._map), self._asked, len(self._map)
+        asked, before, n = _Asked(self._map, delays), self._asked, len(self._map)
         if goal != self._goal or before is None:
             self._times, self._parent = np.empty(n), np.empty(n, np.int32)
             dijkstra.fresh(goal, self._times, self._parent, asked.links, asked.near)
@@ -87,9 +91,11 @@ class TemporalMap:
 class _Asked:
     """Links, their times, and for shortcuts the places, as they are now."""
 
-    def __init__(self, map_: MapReading) -> None:
+    def __init__(self, map_: MapReading, delays: NDArray[np.float64] | None) -> None:
         graph, reach = map_.transitions.graph, float(map_.params.shortcut_m)
         self.seconds = np.maximum(map_.transitions.seconds(map_.poses, map_.pace), dijkstra.LEAST_S)
+        if delays is not None:
+            self.seconds += delays
         self.changes, self.reach, self.pace = graph.changes, reach, map_.pace
         self.poses = map_.poses.copy() if reach > 0 else map_.poses
         grid: tuple[NDArray[np.int32], NDArray[np.int32]] = (

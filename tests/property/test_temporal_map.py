@@ -205,6 +205,22 @@ def test_of_equal_ways_that_over_lower_numbers_is_taken() -> None:
     assert route.experiences.tolist() == [0, 1, 4]
 
 
+def test_a_delay_sends_the_robot_round() -> None:
+    """And only while it lasts."""
+    links = Links(np.zeros((3, 3)))
+    direct = links.link(0, 2, 5.0)
+    links.link(0, 1, 4.0)
+    links.link(1, 2, 4.0)
+    ways, delays = TemporalMap(links), np.zeros(links.transitions.count)
+    for delay, expected in ((0.0, [0, 2]), (2.9, [0, 2]), (3.1, [0, 1, 2]), (0.0, [0, 2])):
+        delays[direct] = delay
+        assert ways.times_to(2, delays).tolist() == [min(5.0 + delay, 8.0), 4.0, 0.0]
+        route = ways.route(0, 2, delays)
+        assert route is not None
+        assert route.experiences.tolist() == expected
+    assert ways.times_to(2)[0] == 5.0
+
+
 def test_a_link_of_no_time_is_a_link() -> None:
     ways = ways_of(links(3, [(0, 1, 0.0), (1, 2, 1.0)]))
     assert ways.times_to(2) == pytest.approx([1.0, 1.0, 0.0], abs=0.01)

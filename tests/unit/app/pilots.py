@@ -7,6 +7,8 @@ from collections import Counter
 import numpy as np
 
 from app.pilot import Pilot, PilotParams
+from app.pilot.local_movement import LocalMovement
+from app.pilot.route_following import RouteFollower
 from ratslam_core import Odometry
 from sim2d import SONAR_ANGLES_RAD, Drive, Simulator
 
@@ -32,6 +34,11 @@ EXPLORING = {"following the wall", "crossing", "turning back to look"}
 
 def a_pilot(seed: int = 0, **params: float) -> Pilot:
     return Pilot(PilotParams(**params), ANGLES, np.random.default_rng(seed))
+
+
+def follow(follower: RouteFollower, map_: HandMadeMap, p: PilotParams = USUAL) -> tuple[float, float] | None:
+    """One step of a follower whose robot has heard no echo."""
+    return follower.step(map_, LocalMovement(ANGLES, 1), DT, p)  # type: ignore[arg-type]
 
 
 class Run:

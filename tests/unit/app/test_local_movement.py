@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from app.pilot import local_movement
+from app.pilot import PilotParams, local_movement
 from app.pilot.local_movement import LocalMovement
 from ratslam_core import Odometry, Pose2
 from tests.unit.ratslam_core import literal
@@ -107,3 +107,19 @@ def test_echoes_are_carried_along_and_forgotten(interpreted: bool, monkeypatch: 
     assert local.free_way(0.0, NEAR) < 1.0
     local.forget()
     assert local.free_way(0.0, NEAR) == pytest.approx(1.6)
+
+
+@pytest.mark.parametrize("interpreted", [False, True])
+def test_the_gap_beside_the_point_is_headed_for(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The map has the point half a metre beside a door: the robot heads for the door, not for the jamb."""
+    if interpreted:
+        literal.interpret(local_movement, monkeypatch)
+    jamb = [(math.atan2(y, 0.6), math.hypot(0.6, y)) for y in (-0.3, -0.2, -0.1, 0.0, 0.1, 0.9, 1.0)]
+    local = sensed(*jamb)  # the gap is between 0.1 and 0.9
+    x, y = local.gap_towards(1.2, 0.0, USUAL)
+    at = y / x * 0.6
+    assert 0.3 < at < 0.7
+    assert local.free_way(math.atan2(y, x), USUAL) >= USUAL.gap_m
+    assert sensed((0.0, 1.5)).gap_towards(1.2, 0.1, USUAL) == (1.2, 0.1)  # free: nothing is changed
+    assert local.gap_towards(-1.0, 0.0, USUAL) == (-1.0, 0.0)
+    assert local.gap_towards(1.2, 0.0, PilotParams(gap_m=0.0)) == (1.2, 0.0)

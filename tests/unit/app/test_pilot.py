@@ -99,7 +99,7 @@ def test_a_goal_that_was_reached_is_done_with_when_the_robot_goes_elsewhere(leav
 
 def test_an_unreachable_goal_is_explored_for_and_reached_when_a_way_is_found() -> None:
     places, links = chain((0.0, 0.0), (3.0, 0.0))
-    gap = [link for link in links if link != (5, 6)]
+    gap = [(i, j) for i, j in links if not 2 <= i < 9]  # too wide to be imagined away
     map_ = HandMadeMap(places, gap)
     pilot = a_pilot()
     pilot.set_goal(len(places) - 1)

@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 
 from app.pilot import Pilot, PilotParams
+from app.pilot.bars import Bars
 from app.pilot.local_movement import LocalMovement
 from app.pilot.params import DrivingParams, ExploringParams, FreeingParams, RouteParams
 from app.pilot.route_following import RouteFollower
 from ratslam_core import Odometry, Pose2
 from sim2d import Simulator
 
-from .pilots import ANGLES, DT, FAR, STILL, Run
+from .pilots import ANGLES, DT, FAR, STILL, Run, follow
 from .test_routes import two_ways
 from .worlds import EXACT, HandMadeMap, chain, room
 
@@ -29,9 +30,13 @@ OTHER: dict[str, float] = {
     "corner_aside_m": 1.5, "turned_to_rad": 0.8, "turn_patience_s": 1.0, "look_back_after_m": 3.0, "look_turn_rad": 2.0,
     "look_back_m": 0.3, "look_back_s": 0.5, "look_stop_m": 1.5, "look_return_rad": 2.0, "cross_after_s": 12.0,
     "cross_spread": 0.9, "cross_least_s": 0.0, "cross_most_s": 7.0, "cross_ahead_m": 0.2, "cross_stop_m": 1.0,
-    "lookahead_m": 1.5, "arrival_m": 0.6, "close_by_share": 4.0, "close_by_s": 1.0, "nearer_m": 0.5, "coast_s": 2.0,
-    "replan_s": 3.0, "credited_plans": 1.0, "near_m": 0.0, "near_speed": 2.0, "near_turn_cost": 10.0, "lost_s": 5.0,
-    "headway_s": 5.0, "trial_s": 1.0, "bar_ahead_m": 2.0, "bar_m": 0.1, "no_headway_s": 8.0, "look_around_s": 3.0,
+    "lookahead_m": 1.5, "arrival_m": 0.6, "approach_m": 3.0, "close_by_m": 1.2,
+    "good_enough_m": 3.0, "close_by_s": 1.0, "nearer_m": 0.5, "coast_s": 2.0,
+    "replan_s": 3.0, "credited_plans": 1.0, "near_m": 0.0, "near_speed": 0.05, "near_turn_cost": 10.0, "lost_s": 5.0,
+    "near_cost": 0.0, "near_growth": 0.5, "near_most_m": 0.6, "stay_s": 0.0,
+    "near_blind_m": 3.0, "near_doubt_s": 0.0, "window_m": 0.3, "headway_m": 0.02, "headway_rad": 0.05, "trial_s": 1.0,
+    "bar_ahead_m": 2.0, "bar_m": 0.1, "widest_bar_m": 0.6, "bar_fade_s": 5.0, "longest_bar_s": 60.0, "bar_delay_s": 1.0,
+    "place_m": 0.2, "gap_m": 0.0, "gap_rad": 0.3, "gap_steps": 2, "gap_cost": 3.0, "no_headway_s": 8.0, "look_around_s": 3.0,
     "stuck_s": 3.0, "bumped_s": 2.0, "somewhere_m": 0.2, "turned_rad": 0.5, "most_turns": 0, "grip_yaw_rate": 1.0,
     "least_grip": 0.8, "grip_s": 0.5, "back_off_s": 2.0, "back_off_speed": 0.1, "free_turn_s": 0.5, "free_turn_share": 1.0,
 }  # fmt: skip
@@ -87,12 +92,45 @@ def standing(p: PilotParams) -> Trace:
         for tick in range(600 if away == 3.0 else 80):
             if tick == 100:
                 map_.links, map_.link_times = links[:0], times[:0]
-            yield follower.step(map_, DT, p), follower.state  # type: ignore[arg-type]
+            yield follow(follower, map_, p), follower.state
     map_.links, map_.link_times, map_.robot = links, times, Pose2(4.8, 0.1, 0.3)
     map_.poses[:, 2] = np.where(map_.poses[:, 0] < 4.8, 0.3, 1.5)
     follower = RouteFollower(goal)
-    follower.step(map_, DT, p)  # type: ignore[arg-type]
+    follow(follower, map_, p)
     yield follower.progress(map_).route.tolist()  # type: ignore[arg-type]
+
+
+def side_by_side(p: PilotParams) -> Trace:
+    """Two rows of places without a link between them; the one at which the robot is leads to the goal by a way round,
+    or nowhere. There is a bar, and an echo from beside the robot."""
+    for apart, round_s in ((0.3, 4.0), (0.3, 30.0), (0.3, 15.0), (1.2, np.inf), (2.5, np.inf)):
+        places, links = chain((0.0, 0.0), (4.0, 0.0))
+        n, goal = len(places), len(places) - 1
+        links = [(i + n, j + n) for i, j in links] + [(0, 2 * n - 1)] * (round_s < np.inf)
+        map_ = HandMadeMap([*places, *[(x, apart) for x, _ in places]], links)
+        if round_s < np.inf:
+            map_.link_times[-1] = 14.0 + round_s
+        map_.poses[n:, 2] = 2.0
+        map_.robot = Pose2(0.0, 0.0, 0.3)
+        for distance in (0.5, 5.0):
+            bars, local = Bars(), LocalMovement(ANGLES, p.echo_ticks)
+            bars.add(Pose2(3.0, 3.0, 0.0), 0.0, p)
+            local.sense(np.full(8, distance, np.float32), STILL, p)
+            follower = RouteFollower(goal + n, bars)
+            for _ in range(250):
+                follower.step(map_, local, DT, p)  # type: ignore[arg-type]
+                yield follower.state, follower.progress(map_).route.tolist()  # type: ignore[arg-type]
+
+
+def failing_again(p: PilotParams) -> Trace:
+    """Bars at one place, more than once."""
+    bars, links = Bars(), np.array([(0, 1), (2, 3)])
+    for _ in range(5):
+        bars.add(Pose2(0.0, 0.0, 0.0), 0.0, p)
+        for _ in range(300):
+            bars.fade(DT)
+        delays = bars.delays(links, np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 0.5), (1.0, 0.5)]), p)
+        yield None if delays is None else delays.tolist()
 
 
 def getting_nowhere(p: PilotParams) -> Trace:
@@ -109,7 +147,7 @@ def getting_nowhere(p: PilotParams) -> Trace:
 SITUATIONS: dict[type, tuple[Callable[[PilotParams], Trace], ...]] = {
     DrivingParams: (arcs,),
     ExploringParams: (exploring,),
-    RouteParams: (past_a_shut_door, at_a_wall, standing),
+    RouteParams: (past_a_shut_door, at_a_wall, standing, side_by_side, failing_again),
     FreeingParams: (getting_nowhere,),
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,11 +12,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.pilot import PilotParams
-from app.pilot.route_following import RouteFollower, crosses
+from app.pilot.bars import crosses
+from app.pilot.route_following import RouteFollower
 from ratslam_core import Pose2
 from sim2d import Simulator, World
+from sim2d.world.elements import SlowZone
 
-from .pilots import DT, EXPLORING, USUAL, Run, a_pilot
+from .pilots import DT, EXPLORING, USUAL, Run, a_pilot, follow
 from .worlds import EXACT, HandMadeMap, chain, room
 
 
@@ -27,7 +30,7 @@ def test_progress_counts_down_along_the_links() -> None:
     for x in (0.0, 1.0, 2.0, 3.0, 4.0):
         map_.robot = Pose2(x, 0.1, 0.0)
         for _ in range(11):
-            assert follower.step(map_, DT, USUAL) is not None  # type: ignore[arg-type]
+            assert follow(follower, map_) is not None
         progress = follower.progress(map_)  # type: ignore[arg-type]
         assert progress.state == "tracking"
         assert progress.route[-1] == goal
@@ -43,7 +46,7 @@ def test_the_robot_heads_for_a_point_ahead_on_the_route() -> None:
     map_ = HandMadeMap(*chain((0.0, 0.0), (4.0, 0.0)))
     for heading in (0.0, 1.0, -2.5, math.pi):
         map_.robot = Pose2(1.0, 0.2, heading)
-        target = RouteFollower(len(map_) - 1).step(map_, DT, PilotParams(lookahead_m=0.6))  # type: ignore[arg-type]
+        target = follow(RouteFollower(len(map_) - 1), map_, PilotParams(lookahead_m=0.6))
         assert target is not None
         there = map_.robot.compose(Pose2(*target, 0.0))
         assert there.y == pytest.approx(0.0, abs=1e-9)
@@ -57,7 +60,7 @@ def test_the_quickest_of_two_ways_is_taken() -> None:
     for quick, expected in ((False, False), (True, True)):
         map_.link_times[-2:] = 3.0 if quick else 30.0
         follower = RouteFollower(middle - 1)
-        follower.step(map_, DT, USUAL)  # type: ignore[arg-type]
+        follow(follower, map_)
         assert (middle in follower.progress(map_).route) is expected  # type: ignore[arg-type]
 
 
@@ -68,7 +71,7 @@ def test_a_brand_new_experience_is_left_by_way_of_a_near_one() -> None:
     map_.robot = Pose2(0.3, 0.34, 0.0)
     assert map_.active == len(places)
     follower = RouteFollower(len(places) - 1)
-    assert follower.step(map_, DT, USUAL) is not None  # type: ignore[arg-type]
+    assert follow(follower, map_) is not None
     assert follower.state == "tracking"
 
 
@@ -81,7 +84,7 @@ def test_a_lost_route_is_coasted_on_then_given_up() -> None:
         if tick == 20:
             map_.links, map_.link_times = map_.links[:0], map_.link_times[:0]
         map_.robot = Pose2(min(0.03 * tick, 1.5), 0.0, 0.0)
-        target = follower.step(map_, DT, params)  # type: ignore[arg-type]
+        target = follow(follower, map_, params)
         states.append(follower.state)
         assert (target is None) == (follower.state in ("exploring", "unreachable"))
         progress = follower.progress(map_)  # type: ignore[arg-type]
@@ -104,14 +107,14 @@ def test_a_blocked_way_is_left(seed: int) -> None:
     while run.pilot.goal_state == (goal, "tracking"):
         run.tick()
         assert len(run.track) < 10 * (6 * USUAL.no_headway_s)
-    assert len(run.track) > 10 * USUAL.no_headway_s
+    assert len(run.track) >= 10 * USUAL.no_headway_s
     assert run.pilot.goal_state == (goal, "exploring")
     before = Counter(run.doing)
     while run.pilot.goal_state == (goal, "exploring"):
         run.tick()
         assert len(run.track) < 10 * (6 * USUAL.no_headway_s + 60)  # it may have to free itself from the corner first
     looked = run.doing - before
-    assert sum(looked[doing] for doing in EXPLORING) > 10 * (USUAL.look_around_s - 2)
+    assert sum(looked[doing] for doing in EXPLORING) > 10 * (USUAL.look_around_s - 4)
     assert run.pilot.goal_state in ((goal, "tracking"), (goal, "arrived"))  # and tries again
 
 
@@ -133,12 +136,12 @@ def two_ways() -> tuple[World, list[tuple[float, float]], list[tuple[int, int]]]
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_door_that_was_shut_is_given_up(seed: int) -> None:
-    """All ways through the door fail together, not one after the other, and the robot goes round."""
+    """As in ACRA 2006: all ways through the door fail together, not one after the other, and the robot goes round."""
     world, places, links = two_ways()
     map_ = HandMadeMap(places, links)
     map_.patience = 4
     goal = round(2.0 / 0.25)
-    run = Run(Simulator(world, EXACT, seed), a_pilot(seed), map_)
+    run = Run(Simulator(world, EXACT, seed), a_pilot(seed, bar_fade_s=0.0), map_)
     run.pilot.set_goal(goal)
     while run.pilot.goal_state != (goal, "arrived"):
         run.tick()
@@ -157,7 +160,7 @@ def test_what_was_driven_of_a_route_was_a_trial() -> None:
     follower = RouteFollower(len(map_) - 1)
     for tick in range(150):
         map_.robot = Pose2(0.03 * tick, 0.0, 0.0)
-        follower.step(map_, DT, USUAL)  # type: ignore[arg-type]
+        follow(follower, map_)
     tried = {(i, j) for i, j, _ in map_.trials}
     assert all(well for _, _, well in map_.trials)
     assert len(tried) >= 8  # of the 18 that were driven; a plan may begin beyond the end of the one before
@@ -184,18 +187,74 @@ def test_headway_is_no_reason_to_look_around() -> None:
     follower = RouteFollower(len(map_) - 1)
     for tick in range(600):
         map_.robot = Pose2(0.03 * tick, 0.0, 0.0)
-        follower.step(map_, DT, USUAL)  # type: ignore[arg-type]
+        follow(follower, map_)
         assert follower.state == "tracking"
+
+
+def test_a_slow_floor_is_not_blocked() -> None:
+    """The wheels give a fifth of what is asked for. Nothing is in the way, so no bar is put up."""
+    world = room(start=(1.0, 0.6, 0.0))
+    x, y, right, top = world.bounds
+    zone = SlowZone("slippery", ((x, y), (right, y), (right, top), (x, top)), 0.2)
+    map_ = HandMadeMap(*chain((1.0, 0.6), (3.4, 0.6), (3.4, 3.0)))
+    run = Run(Simulator(replace(world, slow_zones=(zone,)), EXACT), a_pilot(), map_)
+    goal = len(map_) - 1
+    run.pilot.set_goal(goal)
+    for _ in range(1500):
+        run.tick()
+        assert run.doing["freeing itself"] == 0
+    assert run.pilot.goal_state == (goal, "arrived")
+
+
+@pytest.mark.parametrize("shut_s", [40.0])
+def test_a_door_that_opens_again_is_found_again(shut_s: float) -> None:
+    """The only way is shut when the robot comes. It never gives the goal up, and is there soon after it has opened."""
+    world, open_ = room((2.0, 0.0, 2.0, 4.0), start=(1.0, 2.0, 0.0)), room(start=(1.0, 2.0, 0.0))
+    map_ = HandMadeMap(*chain((1.0, 2.0), (3.4, 2.0)))
+    run = Run(Simulator(world, EXACT, 1), a_pilot(1), map_)
+    goal = len(map_) - 1
+    run.pilot.set_goal(goal)
+    run.run(shut_s)
+    assert run.pilot.goal_state != (goal, "arrived")
+    run.simulator.set_world(open_)
+    run.run(60.0)
+    assert run.pilot.goal_state == (goal, "arrived")
+
+
+def test_the_last_metre_is_driven_straight() -> None:
+    """The route comes to the goal by a way round; where the sonars see that nothing lies between, the robot cuts it."""
+    map_ = HandMadeMap(*chain((0.0, 0.0), (0.0, 3.0), (0.8, 3.0), (0.8, 0.0)))
+    goal = len(map_) - 1
+    for approach, aims_at_goal in ((1.0, True), (0.5, False)):
+        follower = RouteFollower(goal)
+        aim = follow(follower, map_, PilotParams(approach_m=approach))
+        assert (aim == (0.8, 0.0)) is aims_at_goal
+
+
+def test_the_robot_stays_on_its_route_unless_another_is_much_quicker() -> None:
+    """Where two rows of experiences lie side by side, it does not swerve between them with every plan."""
+    places, links = chain((0.0, 0.0), (6.0, 0.0))
+    other, joined = chain((0.0, 0.3), (6.0, 0.3))
+    n, goal = len(places), len(places) - 1
+    links += [(i + n, j + n) for i, j in joined] + [(n + len(other) - 1, goal)]
+    map_ = HandMadeMap(places + other, links)
+    for saves, stays in ((2.0, True), (20.0, False)):
+        map_.link_times[:] = 1.0
+        follower = RouteFollower(goal)
+        follow(follower, map_)
+        map_.link_times[goal - 1] += saves  # the end of the first row
+        for _ in range(15):
+            follow(follower, map_)
+        assert bool(follower.progress(map_).route[0] < n) is stays  # type: ignore[arg-type]
 
 
 def test_close_by_and_not_getting_nearer_is_there() -> None:
     """At a goal in a corner where the robot just does not fit."""
     map_ = HandMadeMap(*chain((0.0, 0.0), (3.0, 0.0)))
-    params = PilotParams(arrival_m=0.3)
     for away, arrives in ((0.5, True), (0.7, False)):
         follower = RouteFollower(len(map_) - 1)
         map_.robot = Pose2(3.0 - away, 0.0, 0.0)
         for _ in range(80):
-            follower.step(map_, DT, params)  # type: ignore[arg-type]
+            follow(follower, map_)
         assert (follower.state == "arrived") is arrives
-    assert follower.step(map_, DT, params) is not None  # type: ignore[arg-type]
+    assert follow(follower, map_) is not None

@@ -10,6 +10,7 @@ import pytest
 
 from app.session import Session, spread_goals
 from disk.kinds import attributes, is_known
+from ratslam_core import Pose2
 from sim2d import load_world
 
 Put = Callable[[Any], None]
@@ -30,7 +31,7 @@ def session() -> Session:
     follower = made.pilot._follower
     assert follower is not None
     assert follower._route is not None
-    follower._bars.append(np.zeros((2, 2)))
+    made.pilot._bars.add(Pose2(0.0, 0.0, 0.0), 0.0, made.pilot.params)
     return made
 
 
