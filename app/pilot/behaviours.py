@@ -16,6 +16,8 @@ class Behaviour(Enum):
     LOOKING_BACK = 3, "turning back to look"
     FOLLOWING_THE_ROUTE = 4, "following the route"
     COASTING = 4, "coasting on the old route"
+    SEEKING = 4, "going where the map is thin"
+    RETURNING = 4, "going back to known ground"
     FREEING_ITSELF = 5, "freeing itself"
     DRIVEN_BY_HAND = 6, "driven by hand"
 

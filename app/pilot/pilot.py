@@ -14,13 +14,14 @@ from app.pilot.freeing import Freeing
 from app.pilot.local_movement import LocalMovement
 from app.pilot.params import PilotParams
 from app.pilot.route_following import Progress, RouteFollower
+from app.pilot.seeking import Seeker
 from disk import kind
 from ratslam_core import ExperienceMap, Odometry
 
 Mode = Literal["explore", "manual", "goal"]
 
 
-@kind("pilot/1")
+@kind("pilot/2")
 class Pilot:
     """`step` gives the drive for the next tick: speed (m/s) and yaw rate (rad/s)."""
 
@@ -37,6 +38,7 @@ class Pilot:
         self._astray = False  # has a goal, but explores since no route to it is known
         self._freeing = Freeing(rng)
         self._bars = Bars()
+        self._seeker = Seeker(sonar_angles_rad, self._bars)
 
     # ------------------------------------------------------------ orders
 
@@ -67,6 +69,7 @@ class Pilot:
 
     def set_goal(self, experience: int) -> None:
         self._follower = RouteFollower(experience, self._bars)
+        self._seeker.stop()
         self.mode = "goal"
 
     def cancel_goal(self) -> None:
@@ -86,6 +89,7 @@ class Pilot:
     def drive(self, speed: float, yaw_rate: float) -> None:
         """Drive by hand, until the next order. The engine ends an order that is not renewed in time."""
         self._leave_goal()
+        self._seeker.stop()
         self.mode = "manual"
         self._hand = (speed, yaw_rate)
 
@@ -107,23 +111,43 @@ class Pilot:
         self, ranges_m: NDArray[np.float32], bumped: bool, odometry: Odometry, experiences: ExperienceMap
     ) -> tuple[float, float]:
         self._local.sense(ranges_m, odometry, self.params)
+        self._seeker.ground.step(experiences, ranges_m, abs(odometry.speed * odometry.dt), odometry.dt, self.params)
         if self.mode == "manual":
             return self._by_hand()
-        if self.mode == "goal" and self._follower is not None:
-            self._follower.move(odometry, self.behaviour is not Behaviour.FREEING_ITSELF, self.params)
+        to_goal = self.mode == "goal" and self._follower is not None
+        follower = self._follower if to_goal else self._seeker.follower
+        if follower is not None:
+            follower.move(odometry, self.behaviour is not Behaviour.FREEING_ITSELF, self.params)
         drive = self._freeing.step(bumped, odometry, self._asked[1], self.params)
         if drive is not None:
             self.behaviour = Behaviour.FREEING_ITSELF
             if self._freeing.has_begun:
                 self._local.forget()
             return drive
-        if self.mode == "goal" and self._follower is not None:
-            drive = self._to_the_goal(self._follower, odometry, experiences)
-            if drive is not None:
-                return drive
+        drive = (
+            self._to_the_goal(self._follower, odometry, experiences)
+            if to_goal and self._follower is not None
+            else self._seek(odometry, experiences)
+        )
+        if drive is not None:
+            return drive
         drive = self._explorer.step(ranges_m, odometry, self._local, self.params)
         self.behaviour = self._explorer.doing
         return drive
+
+    def _seek(self, odometry: Odometry, experiences: ExperienceMap) -> tuple[float, float] | None:
+        """The drive on a trip of its own choice. None: it wanders."""
+        target = self._seeker.step(experiences, self._local, odometry, self.params)
+        if self._seeker.failed:
+            self._back_out()
+        if target is None:
+            return None
+        self.behaviour = Behaviour.RETURNING if self._seeker.returning else Behaviour.SEEKING
+        return self._local.towards(*self._local.gap_towards(*target, self.params), self.params)
+
+    def _back_out(self) -> None:
+        self._freeing.begin(self.params)
+        self._local.forget()
 
     def _to_the_goal(
         self, follower: RouteFollower, odometry: Odometry, experiences: ExperienceMap
@@ -135,8 +159,7 @@ class Pilot:
             self._freeing.at_rest()
             return 0.0, 0.0
         if follower.failed:
-            self._freeing.begin(self.params)
-            self._local.forget()
+            self._back_out()
         if target is not None:
             tracking = follower.state == "tracking"
             self.behaviour = Behaviour.FOLLOWING_THE_ROUTE if tracking else Behaviour.COASTING

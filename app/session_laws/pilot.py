@@ -13,7 +13,9 @@ from app.pilot import Mode, Pilot, PilotParams
 from app.pilot.bars import Bar, Bars
 from app.pilot.behaviours import Behaviour
 from app.pilot.explore import Explorer, Turn
+from app.pilot.known_ground import KnownGround
 from app.pilot.route_following import RouteFollower
+from app.pilot.seeking import Seeker
 from ratslam_core import Route
 from ratslam_core.laws.kinds import same_kind
 from ratslam_core.laws.measures import FAR_M, array, number, true, whole, within
@@ -43,6 +45,9 @@ def pilot(pilot: Pilot, experiences: int) -> None:
     one = pilot._explorer._rng is pilot._rng is pilot._freeing._rng
     true(one, "all parts of the pilot must draw from one generator")
     _bars(pilot._bars)
+    _seeker(pilot._seeker, experiences)
+    shared = pilot._seeker._bars is pilot._bars
+    true(shared, "who seeks must know the pilot's bars")
     if pilot._follower is not None:
         true(pilot._follower._bars is pilot._bars, "who follows a route must know the pilot's bars")
         _follower(pilot._follower, experiences)
@@ -68,6 +73,25 @@ def _follower(follower: RouteFollower, experiences: int) -> None:
         times = array("times of the route", follower._route.arrival_s, np.float64, (len(nodes),))
         within("times of the route", times, 0.0, LONGEST_S)
         whole("how far the route has been driven", follower._at, 0, len(nodes) - 1)
+
+
+def _seeker(seeker: Seeker, experiences: int) -> None:
+    ground = seeker.ground
+    true(isinstance(ground, KnownGround), "known ground must be one")
+    true(np.array_equal(ground._angles, SONAR_ANGLES_RAD), "known ground must know the robot's sonars")
+    count = whole("experiences of the known ground", ground.count, 0, experiences)
+    rows = len(array("times of visits", ground._last_s, np.float64, (None,)))
+    true(rows >= count, "every experience must have a time of its last visit")
+    array("times of making", ground._made_s, np.float64, (rows,))
+    seen = array("what was seen of the ground", ground._seen_m, np.float32, (rows, len(SONAR_ANGLES_RAD)))
+    within("what was seen of the ground", seen, 0.0, FAR_M)
+    for name, value in (("time", ground.now_s), ("way on new ground", ground.new_m)):
+        number(f"the {name} of the known ground", value, 0.0, LONGEST_S)
+    for place in ground._done:
+        within("an opening", np.array(place, np.float64), -FAR_M, FAR_M)
+    if seeker.follower is not None:
+        _follower(seeker.follower, experiences)
+    whole("trips", seeker._trips)
 
 
 def _bars(bars: Bars) -> None:

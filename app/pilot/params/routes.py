@@ -140,13 +140,13 @@ class RouteParams:
         1.4, unit="m", low=0.1, high=10.0, meaning="it becomes as much wider, up to this", source="ours"
     )
     bar_fade_s: float = param(
-        60.0, unit="s", low=0.0, high=1e5,
+        45.0, unit="s", low=0.0, high=1e5,
         meaning="time in which a bar fades, doubled each time the robot fails there again; "
         "0 = bars stay, and links across them are deleted in the end",
         source="ours; 0: D 3.4",
     )  # fmt: skip
     longest_bar_s: float = param(
-        480.0, unit="s", low=1.0, high=1e6, meaning="longest time in which a bar fades", source="ours"
+        90.0, unit="s", low=1.0, high=1e6, meaning="longest time in which a bar fades", source="ours"
     )
     bar_delay_s: float = param(
         30.0, unit="s", low=0.0, high=1e5,

@@ -12,7 +12,7 @@ import pytest
 from app.pilot import Pilot, PilotParams
 from app.pilot.bars import Bars
 from app.pilot.local_movement import LocalMovement
-from app.pilot.params import DrivingParams, ExploringParams, FreeingParams, RouteParams
+from app.pilot.params import DrivingParams, ExploringParams, FreeingParams, RouteParams, SeekingParams
 from app.pilot.route_following import RouteFollower
 from ratslam_core import Odometry, Pose2
 from sim2d import Simulator
@@ -37,6 +37,9 @@ OTHER: dict[str, float] = {
     "near_blind_m": 3.0, "near_doubt_s": 0.0, "window_m": 0.3, "headway_m": 0.02, "headway_rad": 0.05, "trial_s": 1.0,
     "bar_ahead_m": 2.0, "bar_m": 0.1, "widest_bar_m": 0.6, "bar_fade_s": 5.0, "longest_bar_s": 60.0, "bar_delay_s": 1.0,
     "place_m": 0.2, "gap_m": 0.0, "gap_rad": 0.3, "gap_steps": 2, "gap_cost": 3.0, "no_headway_s": 8.0, "look_around_s": 3.0,
+    "seek": False, "seek_after_s": 20.0, "openings_every": 1, "trip_most_s": 10.0, "return_after_m": 10.0,
+    "old_after_s": 5.0, "long_ago_s": 900.0, "place_reach_m": 6.0, "opening_m": 4.9, "opening_gap_m": 1.2,
+    "opening_most_m": 1.2, "opening_beams": 30, "thin_m": 0.4, "into_s": 2.0, "into_reach_m": 1.0, "into_free_m": 3.0,
     "stuck_s": 3.0, "bumped_s": 2.0, "somewhere_m": 0.2, "turned_rad": 0.5, "most_turns": 0, "grip_yaw_rate": 1.0,
     "least_grip": 0.8, "grip_s": 0.5, "back_off_s": 2.0, "back_off_speed": 0.1, "free_turn_s": 0.5, "free_turn_share": 1.0,
 }  # fmt: skip
@@ -133,6 +136,23 @@ def failing_again(p: PilotParams) -> Trace:
         yield None if delays is None else delays.tolist()
 
 
+def on_trips(p: PilotParams) -> Trace:
+    """In a room with a map of two of its walls, from which the sonars saw far, after a long time."""
+    map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
+    world = room(side=8.0, start=(7.0, 7.0, 0.0))
+    for new_m in (5.0, 20.0, 50.0):
+        run = Run(Simulator(world, EXACT, 1), Pilot(p, ANGLES, np.random.default_rng(1)), map_)
+        run.tick()
+        ground = run.pilot._seeker.ground
+        ground.now_s, ground.new_m = 1000.0, new_m
+        ground._made_s[:] = 985.0
+        ground._made_s[:12], ground._last_s[: ground.count] = 0.0, np.linspace(500.0, 950.0, ground.count)
+        ground._seen_m[: ground.count] = np.random.default_rng(2).uniform(0.5, 5.0, (ground.count, 8))
+        for _ in range(700):
+            run.tick()
+            yield run.truth
+
+
 def getting_nowhere(p: PilotParams) -> Trace:
     """Bumped and still, then turning slower than asked for, then spinning, then creeping: over and over."""
     pilot, map_ = Pilot(p, ANGLES, np.random.default_rng(3)), HandMadeMap([(0.0, 0.0)], [])
@@ -149,11 +169,12 @@ SITUATIONS: dict[type, tuple[Callable[[PilotParams], Trace], ...]] = {
     ExploringParams: (exploring,),
     RouteParams: (past_a_shut_door, at_a_wall, standing, side_by_side, failing_again),
     FreeingParams: (getting_nowhere,),
+    SeekingParams: (on_trips,),
 }
 
 
 def usual(**changes: float) -> PilotParams:
-    return PilotParams(**({"look_back_after_m": 4.0, "cross_after_s": 6.0} | changes))
+    return PilotParams(**({"look_back_after_m": 4.0, "cross_after_s": 6.0, "seek_after_s": 8.0} | changes))
 
 
 @cache
