@@ -20,6 +20,7 @@ class LocalViewPart(Protocol):
     """Recognises scenes."""
 
     params: Any
+    recruits: bool  # set by the brain before each step: whether an unknown sight may become a view
     image_change: float  # since the step before, as a share of what driving can explain; above 1 it cannot
 
     def __len__(self) -> int: ...
@@ -75,6 +76,7 @@ class ExperienceMapPart(Protocol):
 
     active: int
     agrees: bool
+    ground: Any  # a `FamiliarGround`, or `NewGround(MemoryParams())`, with which every sight is learnt
 
     def __len__(self) -> int: ...
     @property

@@ -87,6 +87,7 @@ class RatSlam:
         require_behaviour(behaviour)
         scan = None if ranges_m is None else self._require_sonars(ranges_m)
         watch = watch or _nobody
+        self.local_view.recruits = not self.experience_map.ground.familiar
         seen = self.local_view.observe(image, scene)
         watch("view match")
         odometry = self.experience_map.calibrated(odometry)
@@ -103,6 +104,7 @@ class RatSlam:
         created = self.experience_map.step(packet, seen, odometry, behaviour)
         known = NOTHING if created or seen.view == NOTHING else self.experience_map.active
         self._settle(known)
+        self.experience_map.ground.note(self.experience_map, seen, created, odometry, self.lost)
         watch("experience")
         self.experience_map.correct()
         watch("correction")
@@ -145,6 +147,7 @@ class RatSlam:
         self.local_view.params = params.local_view
         self.association.set_params(params.local_view)
         self.experience_map.set_params(params.experience_map, params.pose_filter, params.solver)
+        self.experience_map.ground.params = params.memory
         self.kidnap_detector.params, self.kidnap_detector.view_params = params.kidnap, params.local_view
         self.goal_memory.params = params.goal_memory
         for grid in (self.occupancy, self.map_grid):

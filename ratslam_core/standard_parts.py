@@ -8,6 +8,7 @@ from ratslam_core.experience_map.cells_only import CellsOnly
 from ratslam_core.experience_map.experience_map import ExperienceMap
 from ratslam_core.experience_map.relaxation import Relaxation
 from ratslam_core.extensions.exact_solver import ExactSolver
+from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.kidnap_detector import KidnapDetector, NeverKidnapped
 from ratslam_core.local_view.recogniser import LocalView
 from ratslam_core.params import RatSlamParams
@@ -29,7 +30,10 @@ class StandardParts:
         """optimiser: one that was handed in."""
         p = self._params
         kind = ExperienceMap if p.experience_map.enabled else CellsOnly
-        return kind(shape, p.pose_cells.cell_m, p.experience_map, p.pose_filter, optimiser or self.optimiser())
+        ground = FamiliarGround if p.memory.familiar and p.experience_map.enabled else NewGround
+        return kind(
+            shape, p.pose_cells.cell_m, p.experience_map, p.pose_filter, optimiser or self.optimiser(), ground(p.memory)
+        )
 
     def optimiser(self) -> Optimiser:
         return ExactSolver(self._params.solver) if self._params.solver.enabled else Relaxation(self._params.solver)

@@ -76,7 +76,7 @@ class Packet:
     id: int = 0
 
 
-@kind("recognition/1")
+@kind("recognition/2")
 @dataclass(frozen=True, slots=True)
 class Recognition:
     """What the local view says of one image."""
@@ -87,6 +87,7 @@ class Recognition:
     difference: float  # mean absolute difference to it in levels of the front end, inf when there was none
     facing_rad: float | None = 0.0  # heading relative to that at which the active view was taken; None = unknown
     false_positive: bool = False  # the active view was put in the place of `best_view`, which was the right one
+    familiar: bool = False  # unlike every known view, but no cell is recruited, because the place is known well
 
 
 @kind("estimate/1")

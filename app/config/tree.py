@@ -15,6 +15,7 @@ from ratslam_core.params import (
     GoalMemoryParams,
     KidnapParams,
     LocalViewParams,
+    MemoryParams,
     OccupancyParams,
     PoseCellParams,
     PoseFilterParams,
@@ -39,6 +40,7 @@ class Config:
     kidnap: KidnapParams = KidnapParams()
     pose_filter: PoseFilterParams = PoseFilterParams()
     solver: SolverParams = SolverParams()
+    memory: MemoryParams = MemoryParams()
     robot: SimParams = SimParams()
     office: OfficeParams = OfficeParams()
     pilot: PilotParams = PilotParams()

@@ -17,13 +17,14 @@ from ratslam_core.experience_map.looks import Looks
 from ratslam_core.experience_map.preintegrated import PreintegratedOdometry, moved_by
 from ratslam_core.experience_map.transitions import require_behaviour
 from ratslam_core.extensions.exact_solver import ExactSolver
+from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges
-from ratslam_core.params import ExperienceMapParams, PoseFilterParams, SolverParams
+from ratslam_core.params import ExperienceMapParams, MemoryParams, PoseFilterParams, SolverParams
 from ratslam_core.parts import Optimiser
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite
 
 
-@kind("experience map/2")
+@kind("experience map/3")
 class ExperienceMap(Looks):
     """Experiences and links. `step` finds or makes the active experience and learns the transition to it."""
 
@@ -34,10 +35,12 @@ class ExperienceMap(Looks):
         params: ExperienceMapParams | None = None,
         filter_params: PoseFilterParams | None = None,
         optimiser: Optimiser | None = None,
+        ground: FamiliarGround | NewGround | None = None,
     ) -> None:
         """shape: layers, cells along y' and x' of the pose cells; cell_m: side of one cell."""
         super().__init__(shape, cell_m, params, filter_params)
         self.optimiser: Optimiser = optimiser or ExactSolver(SolverParams())
+        self.ground = ground or NewGround(MemoryParams())
         self.yaw_bias = 0.0  # rad/s, learnt
         self.agrees = True  # whether the last look agreed with where the robot believed itself to be
         self.closures = 0  # links made to experiences that existed before
@@ -64,14 +67,22 @@ class ExperienceMap(Looks):
             self._create(packet, seen.view, IDENTITY)
             return True
         self._move(odometry)
-        before, best = self._departure(), self._seen_experience(packet, seen)
+        before = self._departure()
+        best = (
+            -1 if seen.familiar else self._seen_experience(packet, seen)
+        )  # then the experiences of nothing do not count
+        by_place = self.ground.of_view(self, seen.view) if best < 0 else -1
+        if max(best, by_place) < 0 and self.ground.spare():
+            return False
+        best = max(best, by_place)
         if best < 0:
             self._create(packet, seen.view, self.robot)
             driven = self._learn_link(before, behaviour)
             self._edges.made(self.active, driven, self.transitions, self._weight_of_way)
             return True
         if best != before.experience:
-            self._enter(best, self._look(best, packet, seen), self._deviation(seen))
+            look = self._look(best, packet, seen) if by_place < 0 else self._look_by_view(best, seen)
+            self._enter(best, look, self._deviation(seen))
             self._learn_link(before, behaviour)
         elif self._arrival is not None and self._deviation(seen) < self._sigma:
             self._see_better(seen)
@@ -105,6 +116,7 @@ class ExperienceMap(Looks):
         self._kidnapped, self._sigma, self.lost = True, self.params.carried_sigma, True
         self.pose_filter.forget(self.params.carried_sigma)
         self._edges.forget()
+        self.ground.forget()
         self.gate.dismiss()
         if self.params.islands:
             self.islands.begin(len(self))
@@ -132,6 +144,13 @@ class ExperienceMap(Looks):
 
     def _departure(self) -> _Departure:
         return _Departure(self.active, self._offset.compose(self._travel), self._sigma, self._kidnapped)
+
+    def _look_by_view(self, experience: int, seen: Recognition) -> Pose2:
+        """[ours] The look without the pose cells: the robot is where the view was taken. See `FamiliarGround.of_view`."""
+        turn = seen.facing_rad
+        if turn is None:
+            turn = self.pose(experience).inverse().compose(self.robot).heading_rad
+        return Pose2(0.0, 0.0, turn)
 
     def _create(self, packet: Packet, view: int, pose: Pose2) -> None:
         self.active = self._experiences.add(packet, view, pose, self.islands.current)
@@ -165,11 +184,14 @@ class ExperienceMap(Looks):
         self._measure(arrival)
 
     def _learn_link(self, before: _Departure, behaviour: int) -> int:
-        """Learn move and time of the transition to the active experience, and return its row. Repeats are averaged.
+        """Learn move and time of the transition to the active experience, and return its row, -1 for none. Repeats are averaged.
         ACRA 2006 eqs. 5-6."""
         i, j, t, leg = before.experience, self.active, self.transitions, self._leg
         self._leg = PreintegratedOdometry()
         row = None if before.kidnapped else t.row_of.get((i, j))
+        if row is None and not before.kidnapped and self.ground.well_tied(t, i, j):
+            self._arrival = None  # nothing is learnt, so there is nothing to measure better
+            return -1
         if row is None:
             row = t.add(i, j, travelled=not before.kidnapped, behaviour=behaviour)
             self.closures += j != len(self) - 1

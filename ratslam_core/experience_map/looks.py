@@ -66,8 +66,7 @@ class Looks(MapReading):
         robot, claimed = self.robot, self._claimed(experience, packet, seen)
         if not self.gate.believes(robot, claimed, self.params.join_sights, len(self)):
             return False
-        known = self._experiences
-        self.islands.join(int(known.island[experience]), known.island[: len(self)], self.poses, robot, claimed)
+        self.islands.join(int(self.island_of[experience]), self.island_of, self.poses, robot, claimed)
         return True
 
     def _jumps(self, experience: int, packet: Packet, seen: Recognition) -> bool:

@@ -53,6 +53,11 @@ class MapReading:
         """The scene of every experience, -1 for nothing to see, shape (n,). A view."""
         return self._experiences.view[: len(self)]
 
+    @property
+    def island_of(self) -> NDArray[np.int32]:
+        """The number of the island that each experience lies on, shape (n,): extensions/islands.py. A view."""
+        return self._experiences.island[: len(self)]
+
     def pose(self, experience: int) -> Pose2:
         """An experience's place in the map."""
         return Pose2(*self._experiences.pose[self._require(experience)].tolist())

@@ -10,6 +10,7 @@ import numpy as np
 from ratslam_core.experience_map.experience_map import ExperienceMap, _Arrival
 from ratslam_core.experience_map.preintegrated import PreintegratedOdometry
 from ratslam_core.extensions.exact_solver import ExactSolver
+from ratslam_core.extensions.familiar_ground import MOST_NEAR, FamiliarGround
 from ratslam_core.extensions.odometry_edges import OdometryEdges
 from ratslam_core.extensions.pose_filter import PoseFilter
 from ratslam_core.laws import experiences as law
@@ -42,6 +43,8 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     if isinstance(map_._edges, OdometryEdges):
         whole("the latest experience", map_._edges.latest, -1, n - 1)
         _leg(map_._edges.since)
+    if isinstance(map_.ground, FamiliarGround):
+        _ground(map_.ground, n)
     if isinstance(map_.optimiser, ExactSolver):
         _solver(map_.optimiser)
     if map_._arrival is not None:
@@ -55,6 +58,16 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     whole("joined islands", map_.islands.joined, 0, map_.islands.begun)
     pose("the robot at the latest sight", gate._robot)
     pose("where it was put", gate._other)
+
+
+def _ground(ground: FamiliarGround, n: int) -> None:
+    for name in ("spared", "adopted", "links_spared"):
+        whole(name, getattr(ground, name))
+    share = array("shares", ground._share, np.float64, (None,))
+    true(len(share) >= n, "each experience must have a share of recognised sights")
+    within("a share", share, 0.0, 1.0)
+    near = array("what is near", ground._near, np.int64, (MOST_NEAR,))
+    within("an experience nearby", near[: whole("how many are near", ground._found, 0, MOST_NEAR)], 0, n - 1)
 
 
 def _solver(solver: ExactSolver) -> None:

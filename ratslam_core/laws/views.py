@@ -60,6 +60,7 @@ def view_links(links: ViewLinks, views: int, cells: int) -> None:
     size = len(array("linked cells", links._cells, np.int32, (None,)))
     strength = array("strengths", links._strength, np.float32, (size,))
     start, used, room = array("blocks", links._blocks, np.int64, (None, 3)).T
+    whole("forgotten links", links.forgotten)
     array("seen", links._seen, np.bool_, (None,))
     apart("blocks of links", start, room, whole("their end", links._end, 0, size), size)
     true(((used >= 0) & (used <= room)).all(), "a block of links must have room for those in use")

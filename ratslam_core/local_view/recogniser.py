@@ -20,7 +20,7 @@ from ratslam_core.types import Recognition
 NOTHING = -1
 
 
-@kind("local view/1")
+@kind("local view/2")
 class LocalView:
     """The known scenes. `observe` recognises an image or recruits a new cell for it."""
 
@@ -41,6 +41,7 @@ class LocalView:
         self.recognition = Recognition(NOTHING, False, NOTHING, math.inf)
         self.image_change = 0.0  # since the image before, as a share of what driving can explain; above 1 it cannot
         self.false_positives = 0  # so far
+        self.recruits = True  # whether an unknown sight becomes a view
         self._templates = np.zeros((1024, size), np.uint8)
         self._count = 0
         self._matcher = Matcher(self.front_end.columns, self.front_end.rows)
@@ -96,6 +97,8 @@ class LocalView:
             self.recognition = Recognition(NOTHING, False, best, apart)
         elif apart <= self.front_end.threshold(self.params):
             self.recognition = self._recognised(best, apart, shift)
+        elif not self.recruits:
+            self.recognition = Recognition(NOTHING, False, best, apart, familiar=True)
         else:
             self._recruit(features)
             self.recognition = Recognition(self._count - 1, True, best, apart)

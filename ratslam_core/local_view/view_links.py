@@ -16,7 +16,7 @@ from ratslam_core.params import LocalViewParams
 from ratslam_core.pose_cells.activity_kernels import FLAT
 
 
-@kind("view links/1")
+@kind("view links/2")
 class ViewLinks:
     """beta_i,xyz for every view i."""
 
@@ -26,6 +26,7 @@ class ViewLinks:
         self._strength = np.zeros(65_536, np.float32)
         self._blocks = np.zeros((1024, 3), np.int64)  # start, used, room of each view
         self._end = 0
+        self.forgotten = 0  # links so far that were weaker than the strongest
         self._seen = np.zeros(4096, np.bool_)
 
     def of(self, view: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
@@ -68,6 +69,25 @@ class ViewLinks:
             self._cells[block[0] : block[0] + block[2]], self._strength[block[0] : block[0] + block[2]], block[1],
             cells, activity, slot, self._seen, np.float32(eta), np.float32(self.params.decay),
         )  # fmt: skip
+        most = self.params.most_links
+        if most and block[1] > most + most // 4:  # not with every sight, since to find the weakest takes time
+            self._forget_weakest(view, most)
+
+    def _forget_weakest(self, view: int, most: int) -> None:
+        """[ours] Keep the strongest links of a view, of equals those learnt first.
+
+        A view is linked to every cell that was ever active while it was seen, however faintly. The weak ones would be
+        most of the memory, and blur what the view injects.
+        test_view_links.py::test_a_view_keeps_its_strongest_links.
+        """
+        start, used = self._blocks[view, :2].tolist()
+        cells, strength = self._cells[start : start + used], self._strength[start : start + used]
+        least = np.partition(strength, used - most)[used - most]
+        kept = strength > least
+        kept[np.flatnonzero(strength == least)[: most - np.count_nonzero(kept)]] = True
+        cells[:most], strength[:most] = cells[kept], strength[kept]
+        self._blocks[view, 1] = most
+        self.forgotten += used - most
 
     def recall(self, view: int, lost: bool = False) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """What the active view injects: min(beta, s_max) per link. ACRA 2004 eq. 4.

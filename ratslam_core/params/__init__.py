@@ -12,6 +12,7 @@ from ratslam_core.params.experience_map import ExperienceMapParams
 from ratslam_core.params.goal_memory import GoalMemoryParams
 from ratslam_core.params.kidnap import KidnapParams
 from ratslam_core.params.local_view import LocalViewParams
+from ratslam_core.params.memory import MemoryParams
 from ratslam_core.params.occupancy import OccupancyParams
 from ratslam_core.params.parameter import check_ranges, param
 from ratslam_core.params.pose_cells import PoseCellParams
@@ -23,6 +24,7 @@ __all__ = [
     "GoalMemoryParams",
     "KidnapParams",
     "LocalViewParams",
+    "MemoryParams",
     "OccupancyParams",
     "PoseCellParams",
     "PoseFilterParams",
@@ -46,3 +48,4 @@ class RatSlamParams:
     kidnap: KidnapParams = KidnapParams()
     pose_filter: PoseFilterParams = PoseFilterParams()
     solver: SolverParams = SolverParams()
+    memory: MemoryParams = MemoryParams()

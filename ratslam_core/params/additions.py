@@ -151,6 +151,18 @@ ADDITIONS = (
         {"experience_map.link_trials_are": "departures", "experience_map.link_recency": 0.0},
     ),
     Addition(
+        "familiar ground",
+        "where enough of the sights are recognised, no more views, experiences and links are learnt",
+        "otherwise the memory grows for as long as the robot drives, in a place that never changes",
+        {"memory.familiar": False},
+    ),
+    Addition(
+        "bounded links of a view",
+        "a view keeps only its strongest links to pose cells",
+        "it is linked to every cell that was ever active while it was seen, and these links fill most of the memory",
+        {"local_view.most_links": 0},
+    ),
+    Addition(
         "sparse links of the goal memory",
         "cells above half of the peak are linked, once every half metre, and not across jumps",
         "at 10 Hz a packet is wider than its movement in a tick, so link times would not depend on speed",

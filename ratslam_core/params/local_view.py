@@ -91,6 +91,13 @@ class LocalViewParams:
     decay: float = param(
         0.0, symbol="δ", low=0.0, high=1.0, meaning="share of a link forgotten at each sight", source="A eq. 2"
     )
+    most_links: int = param(
+        600,
+        low=0,
+        high=1_000_000,
+        meaning="links to pose cells that a view keeps, the strongest; 0 = all",
+        source="ours",
+    )
     saturation: float = param(
         0.02, symbol="s_max", low=0.0, high=1.0, meaning="most that one link injects", source="A eq. 4; value ours"
     )

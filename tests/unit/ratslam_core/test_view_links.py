@@ -28,7 +28,7 @@ def dense(links: ViewLinks, view: int, size: int) -> np.ndarray:
 def test_learning_is_hebbian(decay: float, interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if interpreted:
         literal.interpret(view_links, monkeypatch)
-    links = ViewLinks(LocalViewParams(learning_rate=0.3, decay=decay))
+    links = ViewLinks(LocalViewParams(learning_rate=0.3, decay=decay, most_links=0))
     pose_cells = PoseCells()
     beta = np.zeros((3, pose_cells.slot.size))
     rng = np.random.default_rng(0)
@@ -152,7 +152,7 @@ def active_cells(flats: np.ndarray, value: float) -> tuple[np.ndarray, np.ndarra
 
 def test_links_are_kept_when_the_arena_is_full() -> None:
     """Every view gets new links again and again, so that all blocks move, and the arena several times."""
-    links, rooms = ViewLinks(LocalViewParams(learning_rate=1.0, decay=0.0)), set()
+    links, rooms = ViewLinks(LocalViewParams(learning_rate=1.0, decay=0.0, most_links=0)), set()
     for turn in range(4):
         for view in range(60):
             flats = 1000 * view + 600 * turn + np.arange(600)
@@ -167,7 +167,7 @@ def test_links_are_kept_when_the_arena_is_full() -> None:
 
 
 def test_the_arena_grows_when_it_is_full_and_not_before() -> None:
-    links = ViewLinks()
+    links = ViewLinks(LocalViewParams(most_links=0))
     room = links.room
     for _ in range(2):  # the second time the links are there already
         links.learn(0, *active_cells(np.arange(room), 1.0))
@@ -177,3 +177,26 @@ def test_the_arena_grows_when_it_is_full_and_not_before() -> None:
     assert links.of(0)[0].tolist() == list(range(room + 1))
     links.learn(1, *active_cells(np.arange(5), 1.0))
     assert links.of(1)[0].tolist() == list(range(5))
+
+
+def test_a_view_keeps_its_strongest_links() -> None:
+    """The strongest as they were when it had too many; of equals the older. Without a limit it keeps all."""
+    kept, every = (ViewLinks(LocalViewParams(learning_rate=0.3, most_links=most)) for most in (40, 0))
+    pose_cells = PoseCells()
+    rng = np.random.default_rng(0)
+    for _ in range(25):
+        pose_cells.step(speed=float(rng.uniform(0, 2)), yaw_rate=float(rng.uniform(-1, 1)), dt=0.1)
+        before = dict(zip(*(part.tolist() for part in kept.of(0)), strict=True))
+        flats = pose_cells.active[0][:, 3].tolist()
+        learn(kept, 0, pose_cells)
+        learn(every, 0, pose_cells)
+        would = {**before, **dict.fromkeys(set(flats) - set(before), 0.0)}
+        would = {cell: beta + 0.3 * float(pose_cells.activity.ravel()[cell]) for cell, beta in would.items()}
+        cells, strength = kept.of(0)
+        assert len(cells) == (40 if len(would) > 50 else len(would))
+        assert dict(zip(cells.tolist(), strength.tolist(), strict=True)) == pytest.approx(
+            {cell: would[cell] for cell in cells.tolist()}, rel=1e-5
+        )
+        assert strength.min() >= sorted(would.values())[-len(cells)] * (1 - 1e-5)
+    assert kept.forgotten > 0 == every.forgotten
+    assert len(every.of(0)[0]) > 100

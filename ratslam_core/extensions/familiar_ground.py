@@ -1,0 +1,180 @@
+"""[ours] Ground that is recognised often enough gets no more views and experiences.
+
+The papers' robot recruits a view for each sight that is unlike all others, and an experience for each view at a new
+state of the pose cells, so its memory grows for as long as it drives, even in an office that never changes. Here each
+experience knows which share of the latest sights near it were recognised. Where the shares of the experiences near the
+robot add up to `enough`, one more would tell it nothing, and what it sees is let go: it goes on by odometry until it
+recognises something again, never for long. Where a place changes, nothing is recognised any more, the shares fall, and
+the new appearance is learnt. A robot that is not sure of its place learns as in the papers.
+test_familiar_ground.py. `NewGround` is the plain twin: every place is new for ever.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from disk import kind
+from ratslam_core.params import MemoryParams
+from ratslam_core.types import Odometry, Recognition
+
+if TYPE_CHECKING:
+    from ratslam_core.experience_map.experience_map import ExperienceMap
+    from ratslam_core.experience_map.transitions import Transitions
+
+MOST_NEAR = 256  # experiences near the robot that are looked at
+
+
+@kind("familiar ground/1")
+class FamiliarGround:
+    """`familiar` says whether the robot is at a place that is known well enough."""
+
+    def __init__(self, params: MemoryParams) -> None:
+        self.params = params
+        self.familiar = False
+        self.spared = 0  # sights so far that would have become experiences
+        self.adopted = 0  # sights so far that were taken for an experience since it is near in the map
+        self.links_spared = 0
+        self._let_go = False  # what was seen in this step
+        self._share = np.zeros(1024)
+        self._near = np.zeros(MOST_NEAR, np.int64)
+        self._found = 0
+
+    @property
+    def near(self) -> NDArray[np.int64]:
+        """The experiences near the robot that face alike; none if it is not sure of its place. A view."""
+        return self._near[: self._found]
+
+    @property
+    def share(self) -> NDArray[np.float64]:
+        """For each experience, which share of the latest sights near it was recognised. A view, with room to spare."""
+        return self._share
+
+    def forget(self) -> None:
+        """The robot was carried away: nothing is near."""
+        self.familiar, self._found = False, 0
+
+    def of_view(self, map_: ExperienceMap, view: int) -> int:
+        """The experience of this view that is nearest to the robot, of those near it; -1 for none.
+
+        The pose cells have drifted from it, but map and image agree that the robot is there.
+        test_familiar_ground.py::test_a_known_view_at_its_place_makes_no_experience.
+        """
+        own = self.near[map_.views[self.near] == view] if view >= 0 else self.near[:0]
+        if len(own) == 0:
+            return -1
+        self.adopted += 1
+        robot = map_.robot
+        return int(own[np.argmin(np.hypot(map_.poses[own, 0] - robot.x, map_.poses[own, 1] - robot.y))])
+
+    def spare(self) -> bool:
+        """Whether to let go what was seen, which fits no experience."""
+        self._let_go = self.familiar
+        self.spared += self.familiar
+        return self.familiar
+
+    def well_tied(self, t: Transitions, i: int, j: int) -> bool:
+        """Whether both experiences have as many links as a place needs, so that another between them tells nothing.
+
+        Only links that were driven and that the map bears out count. A new experience has none, and is always tied.
+        test_familiar_ground.py::test_no_place_gets_links_without_end.
+        """
+        tied = min(_ties(t, i), _ties(t, j)) >= self.params.links
+        self.links_spared += tied
+        return tied
+
+    def note(self, map_: ExperienceMap, seen: Recognition, created: bool, odometry: Odometry, lost: bool) -> None:
+        """The end of a step: count what was seen for the place where the robot was, and look where it is now.
+
+        Only sights on the way count, since one that lasts says no more than one; and neither do those of nothing. An
+        experience that was just made begins with the mean share of those around it.
+        """
+        while len(map_) > len(self._share):
+            self._share = np.concatenate([self._share, np.zeros_like(self._share)])
+        under_way = odometry.speed != 0 or odometry.yaw_rate != 0
+        if under_way and (seen.view >= 0 or seen.familiar):
+            hit = map_.agrees and not (created or self._let_go)
+            _count(self._share, self.near, float(hit), 1 / self.params.sights)
+        if created:
+            self._share[map_.active] = self._share[self.near].mean() if self._found else 0.0
+        self._let_go = False
+        self._look(map_, lost)
+
+    def _look(self, map_: ExperienceMap, lost: bool) -> None:
+        p, robot = self.params, map_.robot
+        self.forget()
+        if lost or getattr(map_.pose_filter, "sigma_m", math.inf) > p.sure_m:
+            return
+        self._found, total = _near(
+            map_.poses, map_.island_of, map_.islands.current, self._share, robot.x, robot.y, robot.heading_rad, p.near_m,
+            p.near_rad, self._near,
+        )  # fmt: skip
+        self.familiar = total * self._found >= p.enough
+
+
+@kind("new ground/1")
+class NewGround:
+    """As in the papers: every sight that is unlike all others is kept."""
+
+    familiar = False
+    spared = adopted = links_spared = 0
+
+    def __init__(self, params: MemoryParams) -> None:
+        self.params = params
+
+    def forget(self) -> None:
+        """There is nothing to forget."""
+
+    def of_view(self, _map: ExperienceMap, _view: int) -> int:
+        return -1
+
+    def spare(self) -> bool:
+        return False
+
+    def well_tied(self, _t: Transitions, _i: int, _j: int) -> bool:
+        return False
+
+    def note(self, _map: ExperienceMap, _seen: Recognition, _created: bool, _odometry: Odometry, _lost: bool) -> None:
+        """Nothing is counted."""
+
+
+def _ties(t: Transitions, experience: int) -> int:
+    rows = t.graph.at(experience)[0] >> 1
+    return int(np.count_nonzero(t.travelled[rows] & (2 * t.believed[rows] > t.weight[rows])))
+
+
+@njit(cache=True, nogil=True)
+def _count(share: NDArray[np.float64], near: NDArray[np.int64], hit: float, rate: float) -> None:
+    for i in near:
+        share[i] += rate * (hit - share[i])
+
+
+@njit(cache=True, nogil=True)
+def _near(
+    poses: NDArray[np.float64],
+    islands: NDArray[np.int32],
+    island: int,
+    share: NDArray[np.float64],
+    x: float,
+    y: float,
+    heading: float,
+    near_m: float,
+    near_rad: float,
+    out: NDArray[np.int64],
+) -> tuple[int, float]:
+    """The experiences of an island near a place that face alike, as many as there is room for, and the sum of their shares."""
+    found, total = 0, 0.0
+    for i in range(len(poses)):
+        dx, dy = poses[i, 0] - x, poses[i, 1] - y
+        if islands[i] != island or dx * dx + dy * dy > near_m * near_m or found == len(out):
+            continue
+        turn = abs(poses[i, 2] - heading) % (2 * math.pi)
+        if min(turn, 2 * math.pi - turn) <= near_rad:
+            out[found] = i
+            total += share[i]
+            found += 1
+    return found, total

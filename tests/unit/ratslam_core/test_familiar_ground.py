@@ -1,0 +1,162 @@
+"""Ground that is known well: what is no longer learnt there, and what still is."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ratslam_core import Odometry, Packet, Pose2, RatSlam, RatSlamParams, Recognition
+from ratslam_core.experience_map.experience_map import ExperienceMap
+from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
+from ratslam_core.params import MemoryParams
+
+from .drives import CELL_M, EXACT, SHAPE
+
+CRAWL = Odometry(0.001, 0.0, 0.1)
+STILL = Odometry(0.0, 0.0, 0.1)
+KNOWN = Recognition(0, False, 0, 0.0, 0.0)
+
+
+class Visitor:
+    """A robot that hardly moves, at a place with one experience of view 0."""
+
+    def __init__(self, params: MemoryParams | None = None, *, plain: bool = False) -> None:
+        self.ground = FamiliarGround(params or MemoryParams())
+        ground = NewGround(self.ground.params) if plain else self.ground
+        self.map = ExperienceMap(SHAPE, CELL_M, replace(EXACT, odometry_drift=0.03), ground=ground)
+        self.views = 0
+        self.look(Recognition(0, True, -1, math.inf, 0.0))
+
+    def look(self, seen: Recognition, odometry: Odometry = CRAWL, *, x: float = 32.0, lost: bool = False) -> bool:
+        created = self.map.step(Packet(x, 32.0, 0.0, 1.0), seen, odometry)
+        self.map.ground.note(self.map, seen, created, odometry, lost)
+        return created
+
+    def unknown(self) -> bool:
+        """See what no view is like, as the local view tells it. True when an experience was made of it."""
+        if self.map.ground.familiar:
+            return self.look(Recognition(-1, False, 0, 50.0, familiar=True))
+        self.views += 1
+        return self.look(Recognition(self.views, True, 0, 50.0, 0.0))
+
+
+def test_a_place_becomes_familiar_when_it_is_recognised() -> None:
+    visitor = Visitor(MemoryParams(sights=10, enough=0.5))
+    needed = math.ceil(math.log(0.5) / math.log(0.9))  # the share after k sights is 1 - 0.9^k
+    for sight in range(1, needed + 3):
+        visitor.look(KNOWN)
+        assert visitor.ground.share[0] == pytest.approx(1 - 0.9**sight)
+        assert visitor.ground.familiar is (sight >= needed)
+
+
+def test_sights_of_a_robot_that_stands_still_do_not_count() -> None:
+    visitor = Visitor()
+    for _ in range(200):
+        visitor.look(KNOWN, STILL)
+    assert visitor.ground.share[0] == 0.0
+    assert not visitor.ground.familiar
+
+
+def test_on_familiar_ground_an_unknown_sight_is_let_go() -> None:
+    visitor = Visitor()
+    for _ in range(100):
+        visitor.look(KNOWN)
+    assert not visitor.unknown()
+    assert (len(visitor.map), visitor.map.active, visitor.ground.spared) == (1, 0, 1)
+    assert visitor.map.robot.x == pytest.approx(101 * 1e-4)  # odometry goes on
+
+
+def test_a_place_that_changes_is_learnt_anew() -> None:
+    """Nothing is recognised any more: after some time views are recruited, until they are recognised."""
+    visitor = Visitor(MemoryParams(sights=20))
+    for _ in range(200):
+        visitor.look(KNOWN)
+    made = [visitor.unknown() for _ in range(100)]
+    assert not any(made[:10])
+    assert any(made)
+    grown = len(visitor.map)
+    assert grown < 100
+    newest = Recognition(int(visitor.map.views[-1]), False, 0, 0.0, 0.0)
+    for _ in range(100):
+        visitor.look(newest)
+    assert not any(visitor.unknown() for _ in range(5))
+    assert len(visitor.map) == grown
+
+
+@pytest.mark.parametrize("why", ["lost", "unsure", "elsewhere", "turned"])
+def test_ground_is_familiar_only_to_a_robot_that_is_sure_to_be_there(why: str) -> None:
+    visitor = Visitor()
+    for _ in range(100):
+        visitor.look(KNOWN)
+    assert visitor.ground.familiar
+    if why == "unsure":
+        visitor.map.pose_filter.forget(1.0)
+    if why in ("elsewhere", "turned"):
+        visitor.map.pose_filter.local = Pose2(0.5, 0.0, 0.0) if why == "elsewhere" else Pose2(0.0, 0.0, 0.4)
+    visitor.ground.note(visitor.map, KNOWN, False, STILL, why == "lost")
+    assert not visitor.ground.familiar
+    assert len(visitor.ground.near) == 0
+
+
+def test_a_known_view_at_its_place_makes_no_experience() -> None:
+    """The pose cells have drifted by five cells, but the map says that the robot is at the view's experience."""
+    visitor = Visitor()
+    visitor.look(KNOWN)
+    assert not visitor.look(KNOWN, x=37.0)
+    assert (len(visitor.map), visitor.ground.adopted) == (1, 1)
+    twin = ExperienceMap(SHAPE, CELL_M, EXACT)  # as in the papers
+    for x, made in ((32.0, True), (32.0, False), (37.0, True)):
+        assert twin.step(Packet(x, 32.0, 0.0, 1.0), KNOWN, CRAWL) is made
+
+
+def test_a_carried_robot_is_near_nothing() -> None:
+    visitor = Visitor()
+    for _ in range(100):
+        visitor.look(KNOWN)
+    visitor.map.declare_kidnapped()
+    assert not visitor.ground.familiar
+    assert len(visitor.ground.near) == 0
+
+
+@given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=150), st.integers(1, 6))
+def test_no_place_gets_links_without_end(steps: list[tuple[int, int]], links: int) -> None:
+    """Ten experiences, and transitions between them by chance: no more than `links` a place; those that exist stay."""
+    params = MemoryParams(links=links)
+    ground = FamiliarGround(params)
+    map_ = ExperienceMap(SHAPE, CELL_M, EXACT, ground=ground)
+    for view in range(10):
+        map_.step(Packet(32.0, 32.0, 0.0, 1.0), Recognition(view, True, -1, math.inf, 0.0), CRAWL)
+    chain = map_.link_count
+    for pair in steps:
+        for view in pair:
+            known = {(i, j) for i, j in map_.links.tolist()}
+            map_.step(Packet(32.0, 32.0, 0.0, 1.0), Recognition(view, False, view, 0.0, 0.0), CRAWL)
+            assert known <= {(i, j) for i, j in map_.links.tolist()}
+            assert map_.active == view
+    assert map_.link_count <= chain + 10 * links
+
+
+def test_where_half_of_the_sights_are_recognised_memory_stops_growing() -> None:
+    """As in an office at a fine grain: every other sight is a little unlike all views. The twin keeps them all."""
+    visitor, twin = Visitor(), Visitor(plain=True)
+    sizes = []
+    for sight in range(400):
+        for robot in (visitor, twin):
+            robot.look(KNOWN) if sight % 2 else robot.unknown()
+        sizes.append((len(visitor.map), len(twin.map)))
+    assert sizes[-1][0] == sizes[99][0] < 60
+    assert sizes[-1][1] == 201
+
+
+def test_without_an_experience_map_every_sight_is_learnt() -> None:
+    params = RatSlamParams()
+    brain = RatSlam(replace(params, experience_map=replace(params.experience_map, enabled=False)))
+    assert isinstance(brain.experience_map.ground, NewGround)
+    image = np.random.default_rng(0).integers(0, 255, (48, 64), np.uint8)
+    brain.step(image, STILL)
+    assert brain.local_view.recruits
