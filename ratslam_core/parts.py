@@ -21,6 +21,7 @@ class LocalViewPart(Protocol):
 
     params: Any
     recruits: bool  # set by the brain before each step: whether an unknown sight may become a view
+    faded: int  # set likewise: the view whose room it gets, -1 for a room of its own
     image_change: float  # since the step before, as a share of what driving can explain; above 1 it cannot
 
     def __len__(self) -> int: ...

@@ -87,7 +87,8 @@ class RatSlam:
         require_behaviour(behaviour)
         scan = None if ranges_m is None else self._require_sonars(ranges_m)
         watch = watch or _nobody
-        self.local_view.recruits = not self.experience_map.ground.familiar
+        ground = self.experience_map.ground
+        self.local_view.recruits, self.local_view.faded = not ground.familiar, ground.faded
         seen = self.local_view.observe(image, scene)
         watch("view match")
         odometry = self.experience_map.calibrated(odometry)
@@ -104,7 +105,7 @@ class RatSlam:
         created = self.experience_map.step(packet, seen, odometry, behaviour)
         known = NOTHING if created or seen.view == NOTHING else self.experience_map.active
         self._settle(known)
-        self.experience_map.ground.note(self.experience_map, seen, created, odometry, self.lost)
+        ground.note(self.experience_map, seen, created, odometry, self.lost)
         watch("experience")
         self.experience_map.correct()
         watch("correction")

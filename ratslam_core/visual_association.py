@@ -38,7 +38,7 @@ class VisualAssociation:
         """
         self._time_s += dt
         if seen.recruited:
-            self._learnt_s.append(self._time_s)
+            self._begin(seen.view)
         if seen.view < 0:
             return
         self.learning_rate = self._rate(strength, 0.0 if lost else min(1.0, pose_cells.winner.mass))
@@ -53,6 +53,14 @@ class VisualAssociation:
         if not learns_first:
             self._learn(seen.view, pose_cells)
         pose_cells.inject(cells, injection)
+
+    def _begin(self, view: int) -> None:
+        """A view was recruited, perhaps in the room of one that has faded."""
+        if view == len(self._learnt_s):
+            self._learnt_s.append(self._time_s)
+            return
+        self._learnt_s[view] = self._time_s
+        self.links.forget(view)
 
     def _learn(self, view: int, pose_cells: PoseCellsPart) -> None:
         self.links.learn(view, *pose_cells.active, pose_cells.slot, self.learning_rate)

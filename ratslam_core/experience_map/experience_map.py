@@ -67,10 +67,11 @@ class ExperienceMap(Looks):
             self._create(packet, seen.view, IDENTITY)
             return True
         self._move(odometry)
+        if seen.recruited:
+            self._experiences.forget_view(seen.view)
         before = self._departure()
-        best = (
-            -1 if seen.familiar else self._seen_experience(packet, seen)
-        )  # then the experiences of nothing do not count
+        # On familiar ground there is something to see, so the experiences of nothing do not count.
+        best = -1 if seen.familiar else self._seen_experience(packet, seen)
         by_place = self.ground.of_view(self, seen.view) if best < 0 else -1
         if max(best, by_place) < 0 and self.ground.spare():
             return False

@@ -55,6 +55,25 @@ class Experiences:
         self.count += 1
         return i
 
+    def forget_view(self, view: int) -> None:
+        """The view is no more. Its experiences stay in the map as places where there is nothing to see."""
+        i = self._newest_of_view.pop(view, -1)
+        while i >= 0:
+            before = int(self._before_of_view[i])
+            self.view[i] = -1
+            self._insert_blind(i)
+            i = before
+
+    def _insert_blind(self, i: int) -> None:
+        after, j = -1, self._newest_of_view.get(-1, -1)
+        while j > i:
+            after, j = j, int(self._before_of_view[j])
+        self._before_of_view[i] = j
+        if after < 0:
+            self._newest_of_view[-1] = i
+        else:
+            self._before_of_view[after] = i
+
     def _state(self, packet: Packet) -> tuple[float, float, float]:
         """x', y' in cells and theta' in layers, from 0 to below the size of the network."""
         n_theta, n_y, n_x = self.shape

@@ -38,9 +38,12 @@ class FamiliarGround:
         self.familiar = False
         self.spared = 0  # sights so far that would have become experiences
         self.adopted = 0  # sights so far that were taken for an experience since it is near in the map
+        self.faded = -1  # the view whose room the next one gets, -1 for none: the place has room
+        self.views_faded = 0  # views so far that another took the room of
         self.links_spared = 0
         self._let_go = False  # what was seen in this step
         self._share = np.zeros(1024)
+        self._unseen = np.zeros(1024, np.int64)  # counted sights near each experience since it was recognised
         self._near = np.zeros(MOST_NEAR, np.int64)
         self._found = 0
 
@@ -56,7 +59,7 @@ class FamiliarGround:
 
     def forget(self) -> None:
         """The robot was carried away: nothing is near."""
-        self.familiar, self._found = False, 0
+        self.familiar, self.faded, self._found = False, -1, 0
 
     def of_view(self, map_: ExperienceMap, view: int) -> int:
         """The experience of this view that is nearest to the robot, of those near it; -1 for none.
@@ -95,10 +98,14 @@ class FamiliarGround:
         """
         while len(map_) > len(self._share):
             self._share = np.concatenate([self._share, np.zeros_like(self._share)])
+            self._unseen = np.concatenate([self._unseen, np.zeros_like(self._unseen)])
+        self.views_faded += seen.recruited and seen.view == self.faded
         under_way = odometry.speed != 0 or odometry.yaw_rate != 0
         if under_way and (seen.view >= 0 or seen.familiar):
             hit = map_.agrees and not (created or self._let_go)
-            _count(self._share, self.near, float(hit), 1 / self.params.sights)
+            _count(self._share, self._unseen, self.near, float(hit), 1 / self.params.sights)
+            if hit:
+                self._unseen[map_.active] = 0
         if created:
             self._share[map_.active] = self._share[self.near].mean() if self._found else 0.0
         self._let_go = False
@@ -110,10 +117,17 @@ class FamiliarGround:
         if lost or getattr(map_.pose_filter, "sigma_m", math.inf) > p.sure_m:
             return
         self._found, total = _near(
-            map_.poses, map_.island_of, map_.islands.current, self._share, robot.x, robot.y, robot.heading_rad, p.near_m,
-            p.near_rad, self._near,
+            map_.poses, map_.views, map_.island_of, map_.islands.current, self._share, robot.x, robot.y, robot.heading_rad,
+            p.near_m, p.near_rad, self._near,
         )  # fmt: skip
         self.familiar = total * self._found >= p.enough
+        if self._found >= p.views and not self.familiar:
+            self.faded = self._oldest(map_)
+
+    def _oldest(self, map_: ExperienceMap) -> int:
+        """The view of the experience near the robot that was longest not recognised; of equals, the first."""
+        others = self.near[self.near != map_.active]
+        return int(map_.views[others[np.argmax(self._unseen[others])]]) if len(others) else -1
 
 
 @kind("new ground/1")
@@ -121,7 +135,8 @@ class NewGround:
     """As in the papers: every sight that is unlike all others is kept."""
 
     familiar = False
-    spared = adopted = links_spared = 0
+    faded = -1
+    spared = adopted = links_spared = views_faded = 0
 
     def __init__(self, params: MemoryParams) -> None:
         self.params = params
@@ -148,14 +163,18 @@ def _ties(t: Transitions, experience: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _count(share: NDArray[np.float64], near: NDArray[np.int64], hit: float, rate: float) -> None:
+def _count(
+    share: NDArray[np.float64], unseen: NDArray[np.int64], near: NDArray[np.int64], hit: float, rate: float
+) -> None:
     for i in near:
+        unseen[i] += 1
         share[i] += rate * (hit - share[i])
 
 
 @njit(cache=True, nogil=True)
 def _near(
     poses: NDArray[np.float64],
+    views: NDArray[np.int64],
     islands: NDArray[np.int32],
     island: int,
     share: NDArray[np.float64],
@@ -166,11 +185,15 @@ def _near(
     near_rad: float,
     out: NDArray[np.int64],
 ) -> tuple[int, float]:
-    """The experiences of an island near a place that face alike, as many as there is room for, and the sum of their shares."""
+    """The experiences of an island near a place that face alike and have a view, and the sum of their shares.
+
+    As many as there is room for in `out`.
+    """
     found, total = 0, 0.0
     for i in range(len(poses)):
         dx, dy = poses[i, 0] - x, poses[i, 1] - y
-        if islands[i] != island or dx * dx + dy * dy > near_m * near_m or found == len(out):
+        other = views[i] < 0 or islands[i] != island
+        if other or dx * dx + dy * dy > near_m * near_m or found == len(out):
             continue
         turn = abs(poses[i, 2] - heading) % (2 * math.pi)
         if min(turn, 2 * math.pi - turn) <= near_rad:

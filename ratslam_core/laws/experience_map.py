@@ -14,7 +14,7 @@ from ratslam_core.extensions.familiar_ground import MOST_NEAR, FamiliarGround
 from ratslam_core.extensions.odometry_edges import OdometryEdges
 from ratslam_core.extensions.pose_filter import PoseFilter
 from ratslam_core.laws import experiences as law
-from ratslam_core.laws.measures import FAR_M, array, number, pose, true, whole, within
+from ratslam_core.laws.measures import FAR_M, MOST, array, number, pose, true, whole, within
 
 LONGEST = 1e12  # metres and seconds
 FASTEST = 10.0  # rad/s, the largest yaw bias
@@ -44,7 +44,7 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
         whole("the latest experience", map_._edges.latest, -1, n - 1)
         _leg(map_._edges.since)
     if isinstance(map_.ground, FamiliarGround):
-        _ground(map_.ground, n)
+        _ground(map_.ground, n, views)
     if isinstance(map_.optimiser, ExactSolver):
         _solver(map_.optimiser)
     if map_._arrival is not None:
@@ -60,12 +60,15 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     pose("where it was put", gate._other)
 
 
-def _ground(ground: FamiliarGround, n: int) -> None:
-    for name in ("spared", "adopted", "links_spared"):
+def _ground(ground: FamiliarGround, n: int, views: int) -> None:
+    for name in ("spared", "adopted", "links_spared", "views_faded"):
         whole(name, getattr(ground, name))
     share = array("shares", ground._share, np.float64, (None,))
     true(len(share) >= n, "each experience must have a share of recognised sights")
     within("a share", share, 0.0, 1.0)
+    unseen = array("unseen", ground._unseen, np.int64, share.shape)
+    within("a count of sights", unseen, 0, MOST)
+    whole("the faded view", ground.faded, -1, views - 1)
     near = array("what is near", ground._near, np.int64, (MOST_NEAR,))
     within("an experience nearby", near[: whole("how many are near", ground._found, 0, MOST_NEAR)], 0, n - 1)
 

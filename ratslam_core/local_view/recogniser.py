@@ -42,6 +42,7 @@ class LocalView:
         self.image_change = 0.0  # since the image before, as a share of what driving can explain; above 1 it cannot
         self.false_positives = 0  # so far
         self.recruits = True  # whether an unknown sight becomes a view
+        self.faded = -1  # the view whose room it then gets; -1: a room of its own
         self._templates = np.zeros((1024, size), np.uint8)
         self._count = 0
         self._matcher = Matcher(self.front_end.columns, self.front_end.rows)
@@ -100,8 +101,7 @@ class LocalView:
         elif not self.recruits:
             self.recognition = Recognition(NOTHING, False, best, apart, familiar=True)
         else:
-            self._recruit(features)
-            self.recognition = Recognition(self._count - 1, True, best, apart)
+            self.recognition = Recognition(self._recruit(features), True, best, apart)
         return self.recognition
 
     def _recognised(self, best: int, apart: float, shift: int) -> Recognition:
@@ -143,7 +143,10 @@ class LocalView:
     def _apart(self, new: Features, stored: Features, shift: int) -> float:
         return difference(new, stored, shift, self.front_end.columns, self.front_end.rows)
 
-    def _recruit(self, features: Features) -> None:
+    def _recruit(self, features: Features) -> int:
+        if self.faded >= 0:
+            self._templates[self.faded] = features
+            return self.faded
         if self._count == len(self._templates):
             more = np.zeros(
                 (self._count // 2, features.size), np.uint8
@@ -151,3 +154,4 @@ class LocalView:
             self._templates = np.concatenate([self._templates, more])
         self._templates[self._count] = features
         self._count += 1
+        return self._count - 1

@@ -89,6 +89,10 @@ class ViewLinks:
         self._blocks[view, 1] = most
         self.forgotten += used - most
 
+    def forget(self, view: int) -> None:
+        """Drop all links of a view."""
+        self._blocks[view, 1] = 0
+
     def recall(self, view: int, lost: bool = False) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """What the active view injects: min(beta, s_max) per link. ACRA 2004 eq. 4.
 

@@ -47,6 +47,13 @@ class MemoryParams:
         meaning="only a robot whose place is known to this precision calls it familiar",
         source="ours",
     )
+    views: int = param(
+        5,
+        low=1,
+        high=256,
+        meaning="a place of so many views gets another only in the room of that which was longest not recognised",
+        source="ours",
+    )
     links: int = param(
         5,
         low=1,

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition
 from ratslam_core.experience_map import experiences
 from ratslam_core.experience_map.experiences import Experiences
+from ratslam_core.laws.experiences import experiences as law
 
 from .literal import interpret
 
@@ -166,3 +167,18 @@ def test_energy_has_to_be_above_the_threshold(match_view: bool, energy: str) -> 
     for threshold, found in ((1.5, -1), (1.4375, 0)):
         p = ExperienceMapParams(match_view=match_view, energy=energy, threshold=threshold, zone_xy=2.0)  # type: ignore[arg-type]
         assert known.most_energetic(beside, 0, p, Pose2(0.0, 0.0, 0.0)) == found
+
+
+@given(st.lists(st.tuples(st.booleans(), st.integers(-1, 4)), max_size=60))
+def test_a_view_that_is_no_more_leaves_blind_experiences(steps: list[tuple[bool, int]]) -> None:
+    """Experiences are added, and views forgotten, in any order: the chains hold, and nothing else changes."""
+    known, expected = Experiences((36, 64, 64)), list[int]()
+    for forget, view in steps:
+        if forget and view >= 0:
+            known.forget_view(view)
+            expected = [-1 if one == view else one for one in expected]
+        else:
+            known.add(Packet(3.0, 4.0, 0.1, 1.0), view, Pose2(0.0, 0.0, 0.0))
+            expected.append(view)
+        assert known.view[: known.count].tolist() == expected
+        law(known, 5)

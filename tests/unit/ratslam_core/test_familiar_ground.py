@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from ratslam_core import Odometry, Packet, Pose2, RatSlam, RatSlamParams, Recognition
 from ratslam_core.experience_map.experience_map import ExperienceMap
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
+from ratslam_core.laws import check
 from ratslam_core.params import MemoryParams
 
-from .drives import CELL_M, EXACT, SHAPE
+from .drives import CELL_M, EXACT, SHAPE, start
 
 CRAWL = Odometry(0.001, 0.0, 0.1)
 STILL = Odometry(0.0, 0.0, 0.1)
@@ -160,3 +161,38 @@ def test_without_an_experience_map_every_sight_is_learnt() -> None:
     image = np.random.default_rng(0).integers(0, 255, (48, 64), np.uint8)
     brain.step(image, STILL)
     assert brain.local_view.recruits
+
+
+def test_a_place_has_room_for_so_many_views_and_the_oldest_fades() -> None:
+    """A place that looks different at every sight: of its four views the one longest not recognised makes room."""
+    visitor = Visitor(MemoryParams(views=4, sights=1000))
+    for _ in range(3):
+        visitor.unknown()
+    visitor.look(KNOWN)
+    visitor.unknown()
+    ground, first = visitor.ground, visitor.map.views.tolist()
+    assert ground.faded == 1  # view 0 was recognised since
+    assert visitor.look(Recognition(1, True, 0, 50.0, 0.0))
+    assert ground.views_faded == 1
+    assert visitor.map.views.tolist() == [first[0], -1, *first[2:], 1]
+    assert ground.faded == 2
+
+
+def test_what_takes_the_room_of_a_view_is_new() -> None:
+    """It has no links of the old one, rests as a new one, and looks as what was seen."""
+    circle, brain = start()
+    circle.advance(brain, 120)
+    view, views = int(brain.experience_map.views[0]), len(brain.local_view)
+    assert len(brain.view_links.of(view)[0]) > 0
+    ground = brain.experience_map.ground
+    assert isinstance(ground, FamiliarGround)
+    ground.familiar, ground.faded = False, view
+    image = np.random.default_rng(3).integers(0, 255, (6, 8), np.uint8).repeat(8, 0).repeat(8, 1)
+    seen = brain.step(image, STILL).recognition
+    assert (seen.view, seen.recruited, len(brain.local_view)) == (view, True, views)
+    assert np.array_equal(brain.local_view.stored(view), brain.local_view.features)
+    assert brain.view_links.of(view)[1].sum() == pytest.approx(brain.params.local_view.learning_rate, rel=0.01)
+    assert [i for i in range(len(brain.experience_map)) if brain.experience_map.views[i] == view] == [
+        len(brain.experience_map) - 1
+    ]
+    check(brain)
