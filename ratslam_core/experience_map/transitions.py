@@ -50,7 +50,7 @@ class Link:
     believed: float  # the weight times how far (0 to 1) the map agrees with it
 
 
-@kind("transitions/1")
+@kind("transitions/2")
 class Transitions:
     """Rows that are added, averaged and dropped. Arrays have room to spare; `count` rows are used."""
 
@@ -70,22 +70,33 @@ class Transitions:
         self.trials = np.zeros(1024, np.int64)
         self.confidence = np.zeros(1024)
         self.row_of: dict[tuple[int, int], int] = {}
+        self.free: list[int] = []  # rows of looks that are no way any more; the next rows take their room
         self.dropped: list[tuple[int, int]] = []  # every link that was deleted, in order
 
     def add(self, i: int, j: int, *, travelled: bool, behaviour: int = 0) -> int:
         """A new row, still without a move; returns its number."""
-        if self.count == len(self.ends):
-            for name in _COLUMNS:
-                array = getattr(self, name)
-                setattr(self, name, np.concatenate([array, np.zeros_like(array)]))
-        row = self.count
+        row = self._room()
         self.ends[row], self.travelled[row], self.behaviour[row] = (i, j), travelled, behaviour
         self.chain[row] = self.graph.degree(j) == 0 or not travelled
-        self.count += 1
         self.graph.add_link(i, j, row)
         if travelled:
             self.row_of[i, j] = row
         return row
+
+    def _room(self) -> int:
+        """An empty row: that of a look that was deleted, or else one more."""
+        if self.free:
+            row = self.free.pop()
+            self.graph.remove_link(int(self.ends[row, 0]), int(self.ends[row, 1]), row)
+            for name in _COLUMNS:
+                getattr(self, name)[row] = 0
+            return row
+        if self.count == len(self.ends):
+            for name in _COLUMNS:
+                array = getattr(self, name)
+                setattr(self, name, np.concatenate([array, np.zeros_like(array)]))
+        self.count += 1
+        return self.count - 1
 
     def measure(self, row: int, move: Pose2, weight: float, old: NDArray[np.float64], old_weight: float) -> None:
         """Average a passage into the row as it was before, each by its weight. ACRA 2006 eq. 6."""
@@ -132,6 +143,7 @@ class Transitions:
         self.travelled[row] = False
         if not self.chain[row]:
             self.weight[row] = self.believed[row] = 0.0
+            self.free.append(row)
         self.dropped.append((i, j))
 
     def forget_across(self, first: int) -> None:

@@ -99,6 +99,11 @@ def transitions(t: Transitions, nodes: int) -> None:
     rows = np.flatnonzero(travelled)
     ways = {(i, j): row for (i, j), row in zip(t.ends[rows].tolist(), rows.tolist(), strict=True)}
     true(t.row_of == ways, "the rows of links must be those that were travelled")
+    for row in t.free:
+        whole("an empty row", row, 0, n - 1)
+        empty = not travelled[row] and t.weight[row] == 0 == t.believed[row]
+        true(empty, "a row that is used again must be no way and of no weight")
+    true(len(set(t.free)) == len(t.free), "a row must be empty only once")
     for ends in t.dropped:
         true(isinstance(ends, tuple) and len(ends) == 2, "a dropped link must have two ends")
         for end in ends:

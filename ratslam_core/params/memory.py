@@ -55,7 +55,7 @@ class MemoryParams:
         source="ours",
     )
     links: int = param(
-        5,
+        4,
         low=1,
         high=10_000,
         meaning="two experiences that both have this many links get none between them",

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2, Recognition
 from ratslam_core.experience_map.transitions import Transitions
+from ratslam_core.laws.experiences import transitions as transitions_law
 
 from .drives import EXACT, Robot
 
@@ -192,6 +193,21 @@ def test_a_deleted_link_comes_back_when_driven_again() -> None:
     assert (link.trials, link.confidence, link.behaviour, link.passages) == (1, 1.0, 4, 1)
     assert link.distance_m == pytest.approx(1.0)
     assert len(robot.map.dropped_links) == 2
+
+
+def test_a_deleted_look_leaves_its_row_to_the_next() -> None:
+    robot = two_places(replace(EXACT, link_recency=0.3))
+    robot.see(0)
+    t, rows = robot.map.transitions, robot.map.transitions.count
+    fail(robot, 1, 0)
+    for again in range(3):
+        drive_there_and_back(robot, behaviour=again)
+        assert sorted(robot.map.links.tolist()) == [[0, 1], [1, 0]]
+        assert robot.map.link(1, 0).passages == robot.map.link(1, 0).trials == 1
+        assert robot.map.link(1, 0).behaviour == again
+        fail(robot, 1, 0)
+        assert t.count <= rows + 1
+        transitions_law(t, len(robot.map))
 
 
 def test_what_was_deleted_is_measured_no_more() -> None:
