@@ -26,7 +26,13 @@ class LocalViewPart(Protocol):
 
     def __len__(self) -> int: ...
 
-    def observe(self, image: NDArray[np.uint8] | None, scene: int | None = None, /) -> Recognition:
+    def observe(
+        self,
+        image: NDArray[np.uint8] | None,
+        scene: int | None = None,
+        ranges_m: NDArray[np.float64] | None = None,
+        /,
+    ) -> Recognition:
         """The active cell for what is seen now. When it raises a ValueError, nothing may have changed."""
         ...
 

@@ -81,7 +81,7 @@ class RatSlam:
 
         image: (h, w) or (h, w, 3) uint8; scene: its number, for the front end "scene numbers", which ignores the image;
         behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: the sonars' ranges in m, shape
-        (n_sonars,), for the occupancy pictures and to notice a kidnap; watch: called after each of STAGES with its
+        (n_sonars,), for the occupancy pictures, to notice a kidnap, and for views of "image and sonars"; watch: called after each of STAGES with its
         name; it may look but change nothing. ValueError when one of them is not valid; nothing has changed then.
         """
         require_behaviour(behaviour)
@@ -89,7 +89,7 @@ class RatSlam:
         watch = watch or _nobody
         ground = self.experience_map.ground
         self.local_view.recruits, self.local_view.faded = not ground.familiar, ground.faded
-        seen = self.local_view.observe(image, scene)
+        seen = self.local_view.observe(image, scene, scan)
         watch("view match")
         odometry = self.experience_map.calibrated(odometry)
         if self.kidnap_detector.observe(self.local_view.image_change, scan):

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core.laws.measures import apart, array, number, true, whole, within
+from ratslam_core.local_view.echo_matcher import EchoMatcher
 from ratslam_core.local_view.front_ends.complex_cells import ComplexCells
 from ratslam_core.local_view.front_ends.hue_saturation import HueSaturation
+from ratslam_core.local_view.front_ends.image_and_sonars import ImageAndSonars
 from ratslam_core.local_view.matcher import Matcher
-from ratslam_core.local_view.recogniser import LocalView
+from ratslam_core.local_view.recogniser import LocalView, matcher_of
 from ratslam_core.local_view.view_links import ViewLinks
 from ratslam_core.types import Recognition
 
@@ -20,6 +22,7 @@ from ratslam_core.types import Recognition
 def local_view(view: LocalView) -> None:
     """ValueError names the first law that does not hold."""
     size = whole("columns", view.front_end.columns, 1, 4096) * whole("rows", view.front_end.rows, 1, 4096)
+    size += whole("echoes", view.front_end.echoes, 0, 4096)
     known = array("templates", view._templates, np.uint8, (None, size))
     true(len(known) > 1, "templates must have room to grow by half")
     count = whole("the number of views", view._count, 0, len(known))
@@ -29,12 +32,12 @@ def local_view(view: LocalView) -> None:
     whole("the faded view", view.faded, -1, count - 1)
     number("surprise", view.image_change, 0.0)
     whole("false positives", view.false_positives)
-    if isinstance(view.front_end, ComplexCells | HueSaturation):
+    if isinstance(view.front_end, ComplexCells | HueSaturation | ImageAndSonars):
         fresh, front_end = type(view.front_end)(view.params), view.front_end
         same = all(np.array_equal(value, vars(fresh)[name]) for name, value in vars(front_end).items())
         true(same, "the front end must be that of the parameters")
     _recognition(view.recognition, count)
-    _matcher(view._matcher, Matcher(view.front_end.columns, view.front_end.rows))
+    _matcher(view._matcher, matcher_of(view.front_end))
 
 
 def _recognition(seen: Recognition, count: int) -> None:
@@ -48,6 +51,11 @@ def _recognition(seen: Recognition, count: int) -> None:
 def _matcher(matcher: Matcher, fresh: Matcher) -> None:
     same = (matcher.columns, matcher.rows) == (fresh.columns, fresh.rows)
     true(same, "the matcher must be of the front end's columns and rows")
+    if isinstance(matcher, EchoMatcher) and isinstance(fresh, EchoMatcher):
+        same = (matcher.echoes, matcher.echo_weight) == (fresh.echoes, fresh.echo_weight)
+        true(same, "the matcher must weigh echoes as the front end does")
+        whole("where the search begins", matcher._guess, 0)
+    true(type(matcher) is type(fresh), "the matcher must be of the front end's kind")
     array("masks", matcher._masks, np.uint8, fresh._masks.shape)
     true(np.array_equal(matcher._masks, fresh._masks), "masks must be those of the shifts")
     shifted = array("the shifted view", matcher._shifted, np.uint8, fresh._shifted.shape)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
+from ratslam_core.local_view.echo_matcher import EchoMatcher, heard_apart
 from ratslam_core.local_view.front_ends import FrontEnd, named_front_end
 from ratslam_core.local_view.matcher import Features, Matcher, difference
 from ratslam_core.params import LocalViewParams
@@ -36,7 +37,8 @@ class LocalView:
         self.params = params or LocalViewParams()
         self.rng = rng or np.random.default_rng(0)  # draws false positives and nothing else
         self.front_end: FrontEnd = front_end or named_front_end(self.params)
-        size = self.front_end.columns * self.front_end.rows
+        end = self.front_end
+        size = end.columns * end.rows + end.echoes
         self.features = np.zeros(size, np.uint8)  # of what is seen now
         self.recognition = Recognition(NOTHING, False, NOTHING, math.inf)
         self.image_change = 0.0  # since the image before, as a share of what driving can explain; above 1 it cannot
@@ -45,7 +47,7 @@ class LocalView:
         self.faded = -1  # the view whose room it then gets; -1: a room of its own
         self._templates = np.zeros((1024, size), np.uint8)
         self._count = 0
-        self._matcher = Matcher(self.front_end.columns, self.front_end.rows)
+        self._matcher = matcher_of(end)
         self._last: Features | None = None
 
     def __len__(self) -> int:
@@ -53,7 +55,7 @@ class LocalView:
 
     @property
     def templates(self) -> NDArray[np.uint8]:
-        """The features of all known scenes, shape (n, columns * rows). A view."""
+        """The features of all known scenes, shape (n, columns * rows + echoes). A view."""
         return self._templates[: self._count]
 
     @property
@@ -62,7 +64,7 @@ class LocalView:
         return self._templates.nbytes
 
     def stored(self, view: int) -> Features:
-        """The features of one view, shape (columns * rows,); `front_end.picture` draws them."""
+        """The features of one view, shape (columns * rows + echoes,); `front_end.picture` draws them."""
         if not 0 <= view < self._count:
             raise ValueError(f"view must be from 0 to {self._count - 1}, got {view!r}")
         return self._templates[view]
@@ -72,28 +74,34 @@ class LocalView:
         most = self.params.shift if self.front_end.shifts else 0
         stored = self.stored(view)
         apart = min(self._apart(self.features, stored, shift) for shift in range(-most, most + 1))
-        return max(apart * self.front_end.scale, self.front_end.vague)
+        return self._levels(apart + self._heard_apart(self.features, stored), self.features)
 
     def strength(self, seen: Recognition) -> float:
         """How sure a recognition is: 1 for a new or an equal view, 0 for one that is only just recognised."""
         vague, limit = self.front_end.vague, self.front_end.threshold(self.params)
         return 1.0 if seen.recruited or limit <= vague else 1 - (seen.difference - vague) / (limit - vague)
 
-    def observe(self, image: NDArray[np.uint8] | None, scene: int | None = None) -> Recognition:
+    def observe(
+        self,
+        image: NDArray[np.uint8] | None,
+        scene: int | None = None,
+        ranges_m: NDArray[np.floating] | None = None,
+    ) -> Recognition:
         """The active cell for what is seen now; a new one if no known one is like it.
 
-        image: (h, w) grey or (h, w, 3) RGB, uint8. scene: for the front end "scene numbers", which looks at nothing else.
+        image: (h, w) grey or (h, w, 3) RGB, uint8. scene: for the front end "scene numbers", which looks at nothing
+        else. ranges_m: of the sonars, for "image and sonars", shape (n_sonars,); without them the image alone counts.
 
         [ours] An image that shows nothing (a wall at arm's length) activates no cell and recruits none, since such
         images look alike everywhere. test_local_view.py::test_a_bland_view_shows_nothing. With vision off, no image
         does.
         """
-        features = self.front_end.look(image, scene)
+        features = self.front_end.look(image, scene, ranges_m)
         self.image_change = self._jump(features)
         self.features = self._last = features
         most = self.params.shift if self.front_end.shifts else 0
         best, apart, shift = self._matcher.nearest(self.templates, features, most)
-        apart = max(apart * self.front_end.scale, self.front_end.vague)
+        apart = self._levels(apart, features)
         if not self.params.enabled or self.front_end.bland(features, self.params):
             self.recognition = Recognition(NOTHING, False, best, apart)
         elif apart <= self.front_end.threshold(self.params):
@@ -140,6 +148,15 @@ class LocalView:
         steepest = max(left, right) - least
         return shift + (left - right) / (2 * steepest) if steepest > 0 else float(shift)
 
+    def _levels(self, apart: float, new: Features) -> float:
+        """A mean difference in bytes from the new view in levels."""
+        end = self.front_end
+        return max(apart * end.scale + end.doubt(new, self.params), end.vague)
+
+    def _heard_apart(self, new: Features, stored: Features) -> float:
+        end = self.front_end
+        return end.echo_weight * heard_apart(new, stored, end.columns * end.rows) if end.echoes else 0.0
+
     def _apart(self, new: Features, stored: Features, shift: int) -> float:
         return difference(new, stored, shift, self.front_end.columns, self.front_end.rows)
 
@@ -155,3 +172,12 @@ class LocalView:
         self._templates[self._count] = features
         self._count += 1
         return self._count - 1
+
+
+def matcher_of(end: FrontEnd) -> Matcher:
+    """The matcher for a front end's features."""
+    return (
+        EchoMatcher(end.columns, end.rows, end.echoes, end.echo_weight)
+        if end.echoes
+        else Matcher(end.columns, end.rows)
+    )

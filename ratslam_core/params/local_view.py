@@ -16,9 +16,9 @@ class LocalViewParams:
 
     front_end: str = param(
         "template",
-        choices=("template", "complex cells", "hue and saturation", "scene numbers"),
+        choices=("template", "complex cells", "hue and saturation", "scene numbers", "image and sonars"),
         meaning="what the features of a view are",
-        source="D 7; A 3.3; B 7; B 5",
+        source="D 7; A 3.3; B 7; B 5; ours",
         live=False,
     )
     match_threshold: float = param(
@@ -28,6 +28,14 @@ class LocalViewParams:
         high=255.0,
         meaning="mean absolute difference up to which a view is recognised",
         source="D 7; value ours",
+    )
+    composite_threshold: float = param(
+        6.0,
+        unit="levels",
+        low=0.0,
+        high=255.0,
+        meaning="as `match_threshold`, for image and sonars",
+        source="ours",
     )
     edge_threshold: float = param(
         6.0,
@@ -116,6 +124,9 @@ class LocalViewParams:
         meaning="difference from the image before that driving cannot explain",
         source="ours",
     )
+    composite_surprise: float = param(
+        9.0, unit="levels", low=0.0, high=255.0, meaning="as `surprise`, for image and sonars", source="ours"
+    )
     edge_surprise: float = param(
         20.0, unit="levels", low=0.0, high=255.0, meaning="as `surprise`, for complex cells", source="ours"
     )
@@ -147,6 +158,69 @@ class LocalViewParams:
     )
     turn_shift: int = param(
         3, unit="columns", low=0, high=11, meaning="how far one tick of turning may shift the image", source="ours"
+    )
+    dark: float = param(
+        40.0,
+        unit="grey levels",
+        low=1.0,
+        high=1000.0,
+        meaning="added to grey levels before their logarithm is taken, so that noise in the dark is not amplified",
+        source="ours",
+        live=False,
+    )
+    even_light: float = param(
+        0.7,
+        low=0.0,
+        high=1.0,
+        meaning="share of the mean of an image's column that image and sonars take for light",
+        source="ours",
+        live=False,
+    )
+    echo_weight: float = param(
+        0.12,
+        low=0.0,
+        high=10.0,
+        meaning="weight of the echoes' mean difference against that of the picture",
+        source="ours",
+        live=False,
+    )
+    echo_least_m: float = param(
+        0.2, unit="m", low=0.01, high=1.0, meaning="nearer echoes count as this", source="ours", live=False
+    )
+    echo_most_m: float = param(
+        4.0, unit="m", low=1.1, high=100.0, meaning="farther echoes count as none", source="ours", live=False
+    )
+    full_pattern: float = param(
+        12.0,
+        unit="levels",
+        low=0.1,
+        high=255.0,
+        meaning="how much an image must change along its rows to be trusted altogether",
+        source="ours",
+    )
+    plain_doubt: float = param(
+        6.0,
+        unit="levels",
+        low=0.0,
+        high=255.0,
+        meaning="added to the difference of a view that does not change along its rows at all",
+        source="ours",
+    )
+    silent_doubt: float = param(
+        1.0,
+        unit="levels",
+        low=0.0,
+        high=255.0,
+        meaning="added to the difference of a view without any echo",
+        source="ours",
+    )
+    min_pattern: float = param(
+        2.0,
+        unit="levels",
+        low=0.0,
+        high=255.0,
+        meaning="a view that changes less along its rows shows nothing to image and sonars",
+        source="ours",
     )
     edge_neighbourhood: int = param(
         9,

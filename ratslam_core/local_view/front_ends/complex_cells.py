@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
+from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.front_ends.image import grey
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
 from ratslam_core.params import LocalViewParams
@@ -23,7 +24,7 @@ GLYPH = 9  # pixels of the small picture that stands for one place
 
 
 @kind("complex cells/1")
-class ComplexCells:
+class ComplexCells(FrontEnd):
     """Energy of quadrature pairs of Gabor filters, divided by the brightness around, so that the light may change."""
 
     columns, rows = COLUMNS, ROWS
@@ -33,7 +34,7 @@ class ComplexCells:
         self._neighbourhood, self._dark, self._gain = params.edge_neighbourhood, params.edge_dark, params.edge_gain
         self._pairs = [gabor_pair(math.pi * k / ORIENTATIONS) for k in range(ORIENTATIONS)]
 
-    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None) -> Features:
+    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
         seen = cv2.resize(grey(image), (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA).astype(np.float32)
         around = cv2.blur(seen, (self._neighbourhood,) * 2, borderType=cv2.BORDER_REFLECT) + self._dark
         features = np.empty((COLUMNS, BANDS, ORIENTATIONS), np.float32)

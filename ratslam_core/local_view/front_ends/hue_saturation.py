@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
+from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.front_ends.image import checked
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
 from ratslam_core.params import LocalViewParams
@@ -16,7 +17,7 @@ WIDTH, HEIGHT = 32, 24  # pixels; fewer than the camera's, which averages out it
 
 
 @kind("hue and saturation/1")
-class HueSaturation:
+class HueSaturation(FrontEnd):
     """A histogram of the whole image. Neither brightness nor where in the image a colour is makes a difference."""
 
     columns, rows = COLUMNS, ROWS
@@ -26,7 +27,7 @@ class HueSaturation:
         self._full_bin = params.full_bin
         self._full, self._certain = params.full_saturation, params.certain_saturation
 
-    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None) -> Features:
+    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
         rgb = checked(image)
         if rgb.ndim == 2:
             raise ValueError(f"image must be in colour, shape (h, w, 3), for hue and saturation, got {rgb.shape}")

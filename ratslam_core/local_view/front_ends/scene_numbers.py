@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
+from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, SIZE, Features
 from ratslam_core.params import LocalViewParams
 
@@ -20,13 +21,13 @@ NUMBER = slice(0, 8)  # where the number is kept in the features
 
 
 @kind("scene numbers/1")
-class SceneNumbers:
+class SceneNumbers(FrontEnd):
     """Each number is one local view cell, recruited at first sight. The image is ignored."""
 
     columns, rows = COLUMNS, ROWS
     shifts, scale, vague = False, 1000.0, 5.0  # other numbers are 10 levels away or more; a scene is no point
 
-    def look(self, _image: NDArray[np.uint8] | None, scene: int | None = None) -> Features:
+    def look(self, _image: NDArray[np.uint8] | None, scene: int | None = None, _ranges_m: object = None) -> Features:
         if not isinstance(scene, numbers.Integral) or isinstance(scene, bool) or not 0 <= scene <= LARGEST:
             raise ValueError(f"scene must be a whole number from 0 to {LARGEST} for scene numbers, got {scene!r}")
         features = np.zeros(SIZE, np.uint8)

@@ -7,19 +7,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
+from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.front_ends.image import grey
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
 from ratslam_core.params import LocalViewParams
 
 
 @kind("template/1")
-class Template:
+class Template(FrontEnd):
     """Every change counts, the light included, so several views may stand for one place."""
 
     columns, rows = COLUMNS, ROWS
     shifts, scale, vague = True, 1.0, 0.0
 
-    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None) -> Features:
+    def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
         return np.ascontiguousarray(grey_template(image).T).ravel()
 
     def bland(self, features: Features, params: LocalViewParams) -> bool:

@@ -9,12 +9,13 @@ import pytest
 from numpy.typing import NDArray
 
 from ratslam_core import LocalView, LocalViewParams, Recognition
+from ratslam_core.local_view.front_ends import FrontEnd
 
 FOV = math.radians(50)
 Bytes = NDArray[np.uint8]
 
 
-class AsItIs:
+class AsItIs(FrontEnd):
     """Two levels for each byte, at least 3 levels, recognised up to 11, surprising above 4."""
 
     columns, rows = 12, 1
@@ -23,7 +24,7 @@ class AsItIs:
     def __init__(self, limit: float = 11.0, jump: float = 4.0) -> None:
         self._limit, self._surprise = limit, jump
 
-    def look(self, image: Bytes | None, _scene: int | None = None, /) -> Bytes:
+    def look(self, image: Bytes | None, _scene: int | None = None, _ranges_m: object = None, /) -> Bytes:
         assert image is not None
         return image
 

@@ -1,0 +1,56 @@
+"""What the local view requires of a front end."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ratslam_core.local_view.matcher import Features
+from ratslam_core.params import LocalViewParams
+
+
+class FrontEnd(Protocol):
+    """Features are uint8, shape (columns * rows + echoes,). Their mean absolute difference says how unlike two views are.
+
+    A class that inherits from this has no echoes and never doubts.
+    """
+
+    columns: int
+    rows: int  # bytes of each column
+    shifts: bool  # features are columns of the image: turning the robot shifts them, and the shift tells its heading
+    scale: float  # levels for a mean difference of one byte; in levels all front ends are about equally strict
+    vague: float  # least difference in levels, since even an equal view leaves the place uncertain
+    echoes: int = 0  # bytes behind the columns that do not shift, for what is heard; 0 = unknown
+    echo_weight: float = 0.0  # of their mean difference against that of the columns
+
+    def look(
+        self, image: NDArray[np.uint8] | None, scene: int | None, ranges_m: NDArray[np.floating] | None, /
+    ) -> Features:
+        """The features of what is sensed now; ValueError says what is wrong with it."""
+        ...
+
+    def bland(self, features: Features, params: LocalViewParams, /) -> bool:
+        """Whether they show nothing that could be recognised."""
+        ...
+
+    def doubt(self, _features: Features, _params: LocalViewParams, /) -> float:
+        """Levels that are added to every difference, since the features tell little."""
+        return 0.0
+
+    def threshold(self, params: LocalViewParams, /) -> float:
+        """The difference up to which a view is recognised."""
+        ...
+
+    def surprise(self, params: LocalViewParams, /) -> float:
+        """The difference between two successive images above which driving cannot explain it; inf = cannot be told."""
+        ...
+
+    def picture(self, features: Features, /) -> NDArray[np.uint8]:
+        """The features as a picture for people: (h, w) grey or (h, w, 3) RGB."""
+        ...
+
+    def words(self, features: Features, /) -> str:
+        """The features in words, for people who cannot see the picture."""
+        ...

@@ -1,0 +1,120 @@
+"""[ours] A view as 12 x 8 levels that hardly depend on the light, and the echoes of the sonars.
+
+ACRA 2006 section 7 compares grey levels: `template` is the plain twin. Lamps and daylight change these, and walls look
+alike; the sonars see in the dark and tell many look-alikes apart. benchmarks/recognition.py measures what each part is
+worth. test_image_and_sonars.py::{test_light_is_mostly_taken_off, test_sonars_tell_look_alikes_apart}.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from disk import kind
+from ratslam_core.local_view.front_ends.front_end import FrontEnd
+from ratslam_core.local_view.front_ends.template import grey_template
+from ratslam_core.local_view.matcher import COLUMNS, ROWS, SIZE, Features
+from ratslam_core.params import LocalViewParams
+
+ECHOES = 8
+GAIN = 90.0  # bytes for a brightness that is e times as large
+MIDDLE = 128.0  # the byte of a column whose mean is this grey
+
+
+@kind("image and sonars/1")
+class ImageAndSonars(FrontEnd):
+    """Logarithms of grey levels, less most of their column's mean; behind them logarithms of ranges.
+
+    In logarithms, light is something added. A lamp changes a whole column of the image by about the same amount, so the
+    mean of a column tells more of the lamp than of the wall, and the pattern within the column is what stays.
+    """
+
+    columns, rows = COLUMNS, ROWS
+    shifts, scale, vague = True, 1.0, 0.0
+    echoes = ECHOES
+
+    def __init__(self, params: LocalViewParams) -> None:
+        self.echo_weight = params.echo_weight
+        self._least_m, self._most_m, self._even = params.echo_least_m, params.echo_most_m, params.even_light
+        self._levels = (GAIN * np.log(np.arange(256) + params.dark)).astype(np.float32)
+
+    def look(
+        self,
+        image: NDArray[np.uint8] | None,
+        _scene: int | None = None,
+        ranges_m: NDArray[np.floating] | None = None,
+    ) -> Features:
+        features = np.zeros(SIZE + ECHOES, np.uint8)
+        _picture_bytes(grey_template(image), self._levels, self._even, features)
+        if ranges_m is not None:
+            features[SIZE:] = self._heard(ranges_m)
+        return features
+
+    def bland(self, features: Features, params: LocalViewParams) -> bool:
+        """A wall at arm's length, or an empty hall, looks the same to either side."""
+        return along_rows(features) < params.min_pattern
+
+    def doubt(self, features: Features, params: LocalViewParams) -> float:
+        """[ours] The less the rows differ from left to right, and the fewer echoes there are, the less a match means.
+
+        Floors and ceilings alone look alike everywhere. test_image_and_sonars.py::test_what_tells_little_is_doubted.
+        """
+        plain = max(0.0, 1.0 - along_rows(features) / params.full_pattern)
+        silent = np.count_nonzero((features[SIZE:] == 0) | (features[SIZE:] == 255)) / ECHOES
+        return params.plain_doubt * plain + params.silent_doubt * silent
+
+    def threshold(self, params: LocalViewParams) -> float:
+        return params.composite_threshold
+
+    def surprise(self, params: LocalViewParams) -> float:
+        return params.composite_surprise
+
+    def picture(self, features: Features) -> NDArray[np.uint8]:
+        """The levels; below them a strip with the echoes from left to right, the nearer the brighter."""
+        near = np.where(features[SIZE:] == 0, 0, 255 - features[SIZE:].astype(np.int64))
+        strip = near[np.arange(COLUMNS) * ECHOES // COLUMNS].astype(np.uint8)
+        return np.vstack([features[:SIZE].reshape(COLUMNS, ROWS).T, strip])
+
+    def words(self, features: Features) -> str:
+        heard = np.count_nonzero((features[SIZE:] > 0) & (features[SIZE:] < 255))
+        return f"12 x 8 levels in even light, {features[:SIZE].mean():.0f} on average, and {heard} echoes"
+
+    def _heard(self, ranges_m: NDArray[np.floating]) -> NDArray[np.uint8]:
+        """(8,) bytes, 1 for the nearest and 255 for none within reach. Of more than 8 sonars, the nearest of each group."""
+        ranges = np.clip(np.asarray(ranges_m, np.float64), self._least_m, self._most_m)
+        if len(ranges) > ECHOES:
+            ranges = np.minimum.reduceat(ranges, np.arange(ECHOES) * len(ranges) // ECHOES)
+        heard = np.zeros(ECHOES, np.uint8)
+        share = np.log(ranges / self._least_m) / np.log(self._most_m / self._least_m)
+        heard[: len(ranges)] = np.rint(1 + 254 * share)
+        return heard
+
+
+@njit(cache=True, nogil=True)
+def _picture_bytes(grey: NDArray[np.uint8], levels: NDArray[np.float32], even: float, out: Features) -> None:
+    """Column after column; `even` is the share of a column's mean that is taken off."""
+    rows, columns = grey.shape
+    middle = levels[int(MIDDLE)]
+    for c in range(columns):
+        mean = 0.0
+        for r in range(rows):
+            mean += levels[grey[r, c]]
+        mean /= rows
+        base = MIDDLE - even * mean - (1.0 - even) * middle
+        for r in range(rows):
+            out[c * rows + r] = np.uint8(min(max(round(base + levels[grey[r, c]]), 0.0), 255.0))
+
+
+@njit(cache=True, nogil=True)
+def along_rows(features: Features) -> float:
+    """How much the picture changes along its rows: root mean square difference from the mean of each row, in bytes."""
+    total = 0.0
+    for r in range(ROWS):
+        mean, square = 0.0, 0.0
+        for c in range(COLUMNS):
+            value = float(features[c * ROWS + r])
+            mean += value
+            square += value * value
+        total += square - mean * mean / COLUMNS
+    return (max(total, 0.0) / SIZE) ** 0.5

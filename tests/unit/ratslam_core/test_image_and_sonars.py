@@ -1,0 +1,150 @@
+"""Levels in even light, and echoes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ratslam_core import LocalView, LocalViewParams, Odometry, RatSlam, RatSlamParams
+from ratslam_core.local_view.front_ends.image_and_sonars import ImageAndSonars, along_rows
+from ratslam_core.local_view.front_ends.template import grey_template
+
+from .scenes import office, view_of
+
+KIND = "image and sonars"
+P = LocalViewParams(front_end=KIND)
+NEAR, FAR = np.full(8, 0.7), np.full(8, 9.0)
+
+
+def features(image: np.ndarray, ranges: np.ndarray | None = None, **params: float) -> np.ndarray:
+    return ImageAndSonars(LocalViewParams(front_end=KIND, **params)).look(image, None, ranges)  # type: ignore[arg-type]
+
+
+@settings(max_examples=20)
+@given(st.integers(0, 999), st.sampled_from([1.0, 40.0, 300.0]), st.sampled_from([0.0, 0.7, 1.0]))
+def test_levels_are_logarithms_less_a_share_of_their_columns_mean(seed: int, dark: float, even: float) -> None:
+    grey = grey_template(office(seed)).astype(float)
+    logs = 90 * np.log(grey + dark)
+    expected = 128 + logs - even * logs.mean(axis=0) - (1 - even) * 90 * math.log(128 + dark)
+    got = features(office(seed), dark=dark, even_light=even)[:96].reshape(12, 8).T
+    assert np.abs(got - np.clip(expected, 0, 255)).max() <= 0.51
+
+
+@pytest.mark.parametrize("light", [0.6, 0.8, 1.3])
+def test_light_is_mostly_taken_off(light: float) -> None:
+    """It changes the levels by less than half as much as it changes logarithms of which nothing is taken off."""
+    for seed in range(6):
+        taken, left = (
+            np.abs(
+                features(office(seed, light), even_light=even) - features(office(seed), even_light=even) * 1.0
+            ).mean()
+            for even in (0.7, 0.0)
+        )
+        assert taken < 0.5 * left
+
+
+def test_a_lamp_over_a_part_of_the_picture_is_taken_off_too() -> None:
+    lit = office(3).astype(float)
+    lit[:, 30:] *= 1.4
+    local_view = view_of(KIND, composite_threshold=8.0)
+    local_view.observe(office(3), None, NEAR)
+    seen = local_view.observe(np.minimum(lit, 255).astype(np.uint8), None, NEAR)
+    assert (seen.view, seen.recruited) == (0, False)
+
+
+def test_sonars_tell_look_alikes_apart() -> None:
+    local_view = view_of(KIND)
+    assert local_view.observe(office(1), None, NEAR).view == 0
+    assert local_view.observe(office(1), None, NEAR + 0.02).view == 0
+    seen = local_view.observe(office(1), None, 3 * NEAR)
+    assert (seen.view, seen.recruited) == (1, True)
+
+
+def test_without_sonars_the_picture_alone_counts() -> None:
+    local_view = view_of(KIND)
+    local_view.observe(office(1), None, NEAR)
+    seen = local_view.observe(office(1))
+    assert (seen.view, seen.recruited) == (0, False)
+    assert local_view.observe(office(2)).recruited
+    assert local_view.observe(office(1), None, NEAR).difference == pytest.approx(0.0, abs=P.plain_doubt)
+
+
+@pytest.mark.parametrize("count", [1, 3, 8, 11, 16, 180])
+def test_any_number_of_sonars_is_heard(count: int) -> None:
+    """Of more than eight the nearest of each group counts; of fewer, those that there are."""
+    ranges = np.linspace(0.5, 3.0, count)
+    heard = features(office(1), ranges)[96:].astype(int)
+    assert np.count_nonzero(heard) == min(count, 8)
+    assert (np.diff(heard[: min(count, 8)]) > 0).all()
+    assert heard[0] == round(1 + 254 * math.log(0.5 / 0.2) / math.log(4.0 / 0.2))
+
+
+def test_what_tells_little_is_doubted() -> None:
+    """Floor and ceiling alone, and sonars without an echo, look and sound alike everywhere."""
+    bands = np.repeat(np.linspace(40, 160, 48), 64).reshape(48, 64).astype(np.uint8)
+    end = ImageAndSonars(P)
+    hall, empty = end.look(bands, None, FAR), end.look(bands, None, None)
+    assert along_rows(hall) < 1
+    assert end.bland(hall, P)
+    assert not end.bland(end.look(office(1), None, FAR), P)
+    assert end.doubt(hall, P) == pytest.approx(P.plain_doubt + P.silent_doubt, abs=0.5)
+    assert end.doubt(empty, P) == end.doubt(hall, P)
+    assert end.doubt(end.look(office(1), None, NEAR), P) < end.doubt(end.look(office(1), None, FAR), P)
+    assert end.doubt(end.look(office(1), None, NEAR), LocalViewParams(full_pattern=0.1)) == 0.0
+
+
+def test_doubt_is_part_of_the_difference() -> None:
+    sure, unsure = (view_of(KIND, silent_doubt=doubt) for doubt in (0.0, 2.0))
+    for local_view in (sure, unsure):
+        local_view.observe(office(1), None, FAR)
+        local_view.observe(office(1), None, FAR)
+    assert unsure.recognition.difference == pytest.approx(sure.recognition.difference + 2.0)
+    assert unsure.difference_to(0) == unsure.recognition.difference
+    assert unsure.strength(unsure.recognition) < sure.strength(sure.recognition)
+
+
+def test_sonars_change_no_image() -> None:
+    """The kidnap detector counts the sonars by itself."""
+    local_view = view_of(KIND)
+    local_view.observe(office(1), None, NEAR)
+    local_view.observe(office(1), None, FAR)
+    assert local_view.image_change == 0.0
+
+
+def test_the_picture_has_a_strip_of_echoes() -> None:
+    end = ImageAndSonars(P)
+    near_left = end.picture(end.look(office(1), None, np.array([0.3, 4, 4, 4, 4, 4, 4, 4])))
+    assert near_left.shape == (9, 12)
+    assert near_left[8, 0] > 200
+    assert not near_left[8, 2:].any()
+    assert "and 1 echoes" in end.words(end.look(office(1), None, np.array([0.3, 4, 4, 4, 4, 4, 4, 4])))
+    assert not end.picture(end.look(office(1)))[8].any()
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [{"dark": 8.0}, {"even_light": 0.0}, {"echo_least_m": 0.5}, {"echo_most_m": 2.0}],
+)  # fmt: skip
+def test_each_parameter_changes_what_is_sensed(changed: dict[str, float]) -> None:
+    assert not np.array_equal(features(office(1), NEAR, **changed), features(office(1), NEAR))
+
+
+def test_the_weight_of_the_echoes() -> None:
+    for weight in (0.0, 0.5):
+        local_view = view_of(KIND, echo_weight=weight, plain_doubt=0.0, silent_doubt=0.0)
+        local_view.observe(office(1), None, NEAR)
+        apart = np.abs(features(office(1), FAR)[96:] * 1.0 - features(office(1), NEAR)[96:]).mean()
+        assert local_view.observe(office(1), None, FAR).difference == pytest.approx(weight * apart)
+
+
+def test_the_ranges_of_a_step_reach_the_local_view() -> None:
+    brain = RatSlam(RatSlamParams(local_view=P), sonar_angles_rad=np.linspace(-1, 1, 8).tolist())
+    for ranges in (NEAR, 4 * NEAR):
+        brain.step(office(1), Odometry(0.0, 0.0, 0.1), ranges_m=ranges)
+    assert len(brain.local_view) == 2
+    deaf = LocalView(P)
+    assert [deaf.observe(office(1)).view for _ in range(2)] == [0, 0]
