@@ -86,7 +86,9 @@ class Sights:
 def driven(world: World, seed: int, minutes: float) -> Frames:
     """Drive in the closed loop with default parameters, and keep every third frame."""
     session = Session(world, seed, Config())
-    images, ranges, poses = [], [], []
+    images: list[NDArray[np.uint8]] = []
+    ranges: list[NDArray[np.float32]] = []
+    poses: list[tuple[float, float, float]] = []
     for tick in range(round(minutes * 60 / session.frame.dt)):
         if tick % EVERY == 0:
             truth = session.simulator.truth
@@ -135,11 +137,11 @@ def recalls(frames: Frames, seen: Sights, again: NDArray[np.bool_]) -> list[tupl
     order = order[np.argsort(seen.levels[order], kind="stable")]
     count = np.arange(1, len(order) + 1)
     precision, found = np.cumsum(right[order]) / count, np.cumsum((right & again)[order])
-    out = []
+    out: list[tuple[float, float]] = []
     for least in PRECISIONS:
         good = np.flatnonzero((precision >= least) & (count >= FEWEST))
         last = good[-1] if len(good) else None
-        out.append((0.0, 0.0) if last is None else (found[last] / max(again.sum(), 1), seen.levels[order[last]]))
+        out.append((0.0, 0.0) if last is None else (found[last] / max(again.sum(), 1), float(seen.levels[order[last]])))
     return out
 
 

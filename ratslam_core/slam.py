@@ -81,8 +81,9 @@ class RatSlam:
 
         image: (h, w) or (h, w, 3) uint8; scene: its number, for the front end "scene numbers", which ignores the image;
         behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: the sonars' ranges in m, shape
-        (n_sonars,), for the occupancy pictures, to notice a kidnap, and for views of "image and sonars"; watch: called after each of STAGES with its
-        name; it may look but change nothing. ValueError when one of them is not valid; nothing has changed then.
+        (n_sonars,), for the front end "image and sonars", the occupancy pictures and to notice a kidnap; watch: called
+        after each of STAGES with its name; it may look but change nothing. ValueError when one of them is not valid;
+        nothing has changed then.
         """
         require_behaviour(behaviour)
         scan = None if ranges_m is None else self._require_sonars(ranges_m)

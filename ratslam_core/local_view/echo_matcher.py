@@ -12,6 +12,7 @@ from disk import kind
 from ratslam_core.local_view.matcher import SIZE, Features, Matcher, overlap
 
 ECHOES = 8  # compiled with this number as a constant
+FARTHEST = 1e5  # no two views are that far apart
 
 
 @kind("echo matcher/1")
@@ -69,19 +70,15 @@ def _nearest(
         for k in range(width):
             shifted[row, there + k] = new[here + k]
     tried, size = slice(first, columns + most), columns * rows
-    heard = new[size:]
-    start = (-1, np.inf, 0)
+    views, masked, heard = shifted[tried], masks[tried], new[size:]
+    near = known[guess : guess + 1]
     if size == SIZE and echoes == ECHOES:  # several times as quick with the sizes as constants
-        start = _search(
-            known[guess : guess + 1], heard, shifted[tried], masks[tried], widths, weight, SIZE, ECHOES, np.inf
-        )
-        best = _search(known, heard, shifted[tried], masks[tried], widths, weight, SIZE, ECHOES, start[1])
+        _, limit, _ = _search(near, heard, views, masked, widths, weight, SIZE // 2, SIZE, ECHOES, FARTHEST)
+        best, least, by = _search(known, heard, views, masked, widths, weight, SIZE // 2, SIZE, ECHOES, limit)
     else:
-        start = _search(
-            known[guess : guess + 1], heard, shifted[tried], masks[tried], widths, weight, size, echoes, np.inf
-        )
-        best = _search(known, heard, shifted[tried], masks[tried], widths, weight, size, echoes, start[1])
-    return best[0], best[1], best[2] - most
+        _, limit, _ = _search(near, heard, views, masked, widths, weight, size // 2, size, echoes, FARTHEST)
+        best, least, by = _search(known, heard, views, masked, widths, weight, size // 2, size, echoes, limit)
+    return best, least, by - most
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -92,6 +89,7 @@ def _search(
     masks: NDArray[np.uint8],
     widths: NDArray[np.float64],
     weight: float,
+    half: int,
     size: int,
     echoes: int,
     limit: float,
@@ -99,20 +97,31 @@ def _search(
     """The nearest view that is no farther than `limit`. Among equals the first shift wins, then the first view."""
     best, least, by = -1, limit, len(shifted)
     for i in range(len(known)):
+        row = known[i]
         total = np.int32(0)
         for k in range(echoes):
-            a, b = np.int32(known[i, size + k]), np.int32(heard[k])
+            a, b = np.int32(row[size + k]), np.int32(heard[k])
             apart = np.abs(np.subtract(a, b))
             total = np.add(total, apart if a > 0 and b > 0 else np.int32(0))
         echo = weight * (total / echoes)
         if echo > least:
             continue
         for s in range(len(shifted)):
-            total = np.int32(0)
-            for k in range(size):
-                apart = np.subtract(np.int32(known[i, k] & masks[s, k]), np.int32(shifted[s, k]))
-                total = np.add(total, np.abs(apart))
+            most = np.int32((least - echo) * widths[s]) + 1  # a sum above this is farther off, whatever is rounded
+            total = _sum(row, shifted[s], masks[s], 0, half)
+            if total > most:
+                continue
+            total = np.add(total, _sum(row, shifted[s], masks[s], half, size))
             mean = total / widths[s] + echo
             if mean < least or (mean == least and s < by):
                 best, least, by = i, mean, s
     return best, least, by
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _sum(stored: Features, new: Features, mask: Features, first: int, end: int) -> np.int32:
+    total = np.int32(0)
+    for k in range(first, end):
+        apart = np.subtract(np.int32(stored[k] & mask[k]), np.int32(new[k]))
+        total = np.add(total, np.abs(apart))
+    return total

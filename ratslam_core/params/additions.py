@@ -49,6 +49,12 @@ ADDITIONS = (
         {"local_view.capped": False},
     ),
     Addition(
+        "image and sonars",
+        "views are levels in even light together with the sonars' echoes; what tells little is doubted",
+        "grey levels change with every lamp, and walls look alike where echoes differ",
+        {"local_view.front_end": "template"},
+    ),
+    Addition(
         "waiting time of new views",
         "a new view injects nothing for some seconds, and later only what it had learnt before the step",
         "otherwise it would hold the packet back where it has just been learnt",
@@ -58,7 +64,12 @@ ADDITIONS = (
         "gate for bland views",
         "an image that shows nothing activates no view",
         "walls at arm's length look alike everywhere",
-        {"local_view.min_contrast": 0.0, "local_view.min_edges": 0.0, "local_view.min_colour": 0.0},
+        {
+            "local_view.min_contrast": 0.0,
+            "local_view.min_edges": 0.0,
+            "local_view.min_colour": 0.0,
+            "local_view.min_pattern": 0.0,
+        },
     ),
     Addition(
         "heading from the shift",

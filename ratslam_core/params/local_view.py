@@ -15,7 +15,7 @@ class LocalViewParams:
     """Recognising scenes (D section 7) and their Hebbian links to pose cells (A 4)."""
 
     front_end: str = param(
-        "template",
+        "image and sonars",
         choices=("template", "complex cells", "hue and saturation", "scene numbers", "image and sonars"),
         meaning="what the features of a view are",
         source="D 7; A 3.3; B 7; B 5; ours",
@@ -30,7 +30,7 @@ class LocalViewParams:
         source="D 7; value ours",
     )
     composite_threshold: float = param(
-        6.0,
+        7.0,
         unit="levels",
         low=0.0,
         high=255.0,
@@ -211,7 +211,15 @@ class LocalViewParams:
         unit="levels",
         low=0.0,
         high=255.0,
-        meaning="added to the difference of a view without any echo",
+        meaning="added to the difference of a view when nothing is within reach of the sonars",
+        source="ours",
+    )
+    deaf_doubt: float = param(
+        3.0,
+        unit="levels",
+        low=0.0,
+        high=255.0,
+        meaning="added to the difference of a view of a robot without sonars, which the picture alone must tell apart",
         source="ours",
     )
     min_pattern: float = param(

@@ -26,7 +26,11 @@ class FrontEnd(Protocol):
     echo_weight: float = 0.0  # of their mean difference against that of the columns
 
     def look(
-        self, image: NDArray[np.uint8] | None, scene: int | None, ranges_m: NDArray[np.floating] | None, /
+        self,
+        image: NDArray[np.uint8] | None,
+        scene: int | None = None,
+        ranges_m: NDArray[np.floating] | None = None,
+        /,
     ) -> Features:
         """The features of what is sensed now; ValueError says what is wrong with it."""
         ...

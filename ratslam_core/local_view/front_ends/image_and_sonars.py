@@ -7,6 +7,8 @@ worth. test_image_and_sonars.py::{test_light_is_mostly_taken_off, test_sonars_te
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -48,7 +50,7 @@ class ImageAndSonars(FrontEnd):
         features = np.zeros(SIZE + ECHOES, np.uint8)
         _picture_bytes(grey_template(image), self._levels, self._even, features)
         if ranges_m is not None:
-            features[SIZE:] = self._heard(ranges_m)
+            _echo_bytes(np.asarray(ranges_m, np.float64), self._least_m, self._most_m, features)
         return features
 
     def bland(self, features: Features, params: LocalViewParams) -> bool:
@@ -61,8 +63,8 @@ class ImageAndSonars(FrontEnd):
         Floors and ceilings alone look alike everywhere. test_image_and_sonars.py::test_what_tells_little_is_doubted.
         """
         plain = max(0.0, 1.0 - along_rows(features) / params.full_pattern)
-        silent = np.count_nonzero((features[SIZE:] == 0) | (features[SIZE:] == 255)) / ECHOES
-        return params.plain_doubt * plain + params.silent_doubt * silent
+        silent, deaf = (np.count_nonzero(features[SIZE:] == code) / ECHOES for code in (255, 0))
+        return params.plain_doubt * plain + params.silent_doubt * silent + params.deaf_doubt * deaf
 
     def threshold(self, params: LocalViewParams) -> float:
         return params.composite_threshold
@@ -80,16 +82,6 @@ class ImageAndSonars(FrontEnd):
         heard = np.count_nonzero((features[SIZE:] > 0) & (features[SIZE:] < 255))
         return f"12 x 8 levels in even light, {features[:SIZE].mean():.0f} on average, and {heard} echoes"
 
-    def _heard(self, ranges_m: NDArray[np.floating]) -> NDArray[np.uint8]:
-        """(8,) bytes, 1 for the nearest and 255 for none within reach. Of more than 8 sonars, the nearest of each group."""
-        ranges = np.clip(np.asarray(ranges_m, np.float64), self._least_m, self._most_m)
-        if len(ranges) > ECHOES:
-            ranges = np.minimum.reduceat(ranges, np.arange(ECHOES) * len(ranges) // ECHOES)
-        heard = np.zeros(ECHOES, np.uint8)
-        share = np.log(ranges / self._least_m) / np.log(self._most_m / self._least_m)
-        heard[: len(ranges)] = np.rint(1 + 254 * share)
-        return heard
-
 
 @njit(cache=True, nogil=True)
 def _picture_bytes(grey: NDArray[np.uint8], levels: NDArray[np.float32], even: float, out: Features) -> None:
@@ -104,6 +96,19 @@ def _picture_bytes(grey: NDArray[np.uint8], levels: NDArray[np.float32], even: f
         base = MIDDLE - even * mean - (1.0 - even) * middle
         for r in range(rows):
             out[c * rows + r] = np.uint8(min(max(round(base + levels[grey[r, c]]), 0.0), 255.0))
+
+
+@njit(cache=True, nogil=True)
+def _echo_bytes(ranges_m: NDArray[np.float64], least_m: float, most_m: float, out: Features) -> None:
+    """1 for the nearest and 255 for none within reach. Of more than 8 sonars, the nearest of each group counts."""
+    n = len(ranges_m)
+    groups = min(n, ECHOES)
+    for g in range(groups):
+        nearest = most_m
+        for k in range(g * n // groups, (g + 1) * n // groups):
+            nearest = min(nearest, ranges_m[k])
+        share = math.log(max(nearest, least_m) / least_m) / math.log(most_m / least_m)
+        out[SIZE + g] = np.uint8(round(1 + 254 * share))
 
 
 @njit(cache=True, nogil=True)

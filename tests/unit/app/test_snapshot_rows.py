@@ -120,5 +120,5 @@ def test_the_first_snapshot_has_no_best_view() -> None:
     assert (senses.best, senses.best_view, senses.difference) == (None, -1, math.inf)
     later = build(snapshots(a_session(20))).senses
     assert later.best is not None
-    assert later.best.shape == later.seen.shape == (8, 12)
+    assert later.best.shape == later.seen.shape == (9, 12)
     assert later.camera.dtype == np.uint8

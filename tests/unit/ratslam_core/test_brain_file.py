@@ -133,7 +133,7 @@ MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "exper
         (put("association.links._blocks", (0, 2), 1), "must"),
         (write("association.links._end", 10**7), "their end must be a whole number"),
         (write("local_view._count", 2000), "the number of views must be a whole number from 0 to 1024"),
-        (reshape("local_view.features", lambda a: a[:5]), r"features must have shape \(96\)"),
+        (reshape("local_view.features", lambda a: a[:5]), r"features must have shape \(104\)"),
         (put("local_view._matcher._masks", (0, 0), 7), "masks must be those of the shifts"),
         (write("local_view._templates", 5), "must be a ndarray, got a int"),
         (write("local_view.recognition.view", 800), "the recognised view must be a whole number from -1 to"),

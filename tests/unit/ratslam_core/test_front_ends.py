@@ -107,7 +107,7 @@ def test_what_is_no_image_is_refused(kind: str, bad: Any, message: str) -> None:
 def test_the_front_end_is_fixed_until_a_reset() -> None:
     brain = RatSlam()
     changed = RatSlamParams(local_view=LocalViewParams(front_end="complex cells"))
-    with pytest.raises(ValueError, match="front_end is fixed at 'template' until a reset, got 'complex cells'"):
+    with pytest.raises(ValueError, match="front_end is fixed at 'image and sonars' until a reset, got 'complex cells'"):
         brain.set_params(changed)
     with pytest.raises(ValueError, match="front_end must be one of 'template', 'complex cells'"):
         LocalViewParams(front_end="eyes")

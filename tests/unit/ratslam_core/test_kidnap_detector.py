@@ -94,7 +94,7 @@ def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: 
     brain.step(circle.image, still, ranges_m=near)
     circle.angle += 2.6
     params = brain.params.local_view
-    changed = replace(params, surprise=params.surprise * _unlikeness(circle) / alike)
+    changed = replace(params, composite_surprise=params.composite_surprise * _unlikeness(circle) / alike)
     brain.set_params(replace(brain.params, local_view=changed, kidnap=KidnapParams(usual_times=0.0)))
     brain.step(circle.image, still, ranges_m=np.array([1.0, 1.0, 1.0, *[others_m] * 5]))
     assert brain.local_view.image_change == pytest.approx(alike)

@@ -1,16 +1,24 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ratslam_core import LocalView, LocalViewParams, Recognition
+from ratslam_core import LocalView, Recognition
 from ratslam_core.local_view.front_ends.template import grey_template
+
+from .scenes import view_of
 
 Image = NDArray[np.uint8]
 FOV = math.radians(50)
+
+
+def templates(**params: Any) -> LocalView:
+    """With the papers' front end: what is seen is 12 x 8 grey levels, and nothing else counts."""
+    return view_of("template", **params)
 
 
 def panorama(seed: int, columns: int = 60) -> NDArray[np.float64]:
@@ -54,7 +62,7 @@ def literal_match(new: Image, known: list[Image], most: int) -> tuple[float, int
 def test_matching_is_the_least_sum_of_absolute_differences(most: int) -> None:
     rng = np.random.default_rng(most)
     scenes = [panorama(seed) for seed in range(12)]
-    local_view = LocalView(LocalViewParams(shift=most, match_threshold=0.0))
+    local_view = templates(shift=most, match_threshold=0.0)
     known: list[Image] = []
     for _ in range(60):
         new = look(scenes[rng.integers(12)], float(rng.uniform(5, 40)))
@@ -72,7 +80,7 @@ def test_matching_is_the_least_sum_of_absolute_differences(most: int) -> None:
 
 
 def test_a_new_scene_recruits_a_cell_and_is_known_from_then_on() -> None:
-    local_view = LocalView()
+    local_view = templates()
     first = local_view.observe(image(1))
     assert first == Recognition(view=0, recruited=True, best_view=-1, difference=math.inf)
     second = local_view.observe(image(2))
@@ -89,14 +97,14 @@ def test_the_threshold_decides() -> None:
     base = image(4)
     brighter = (base.astype(int) + 6).clip(0, 255).astype(np.uint8)
     for threshold, recruited in ((6.0, False), (5.9, True)):
-        local_view = LocalView(LocalViewParams(match_threshold=threshold, shift=0))
+        local_view = templates(match_threshold=threshold, shift=0)
         local_view.observe(base)
         assert local_view.observe(brighter).recruited is recruited
 
 
 def test_thousands_of_views_are_all_kept() -> None:
     rng = np.random.default_rng(0)
-    local_view = LocalView(LocalViewParams(shift=0))
+    local_view = templates(shift=0)
     images = rng.integers(0, 255, (2500, 8, 12)).astype(np.uint8)
     for number, one in enumerate(images):
         assert local_view.observe(one).view == number
@@ -106,7 +114,7 @@ def test_thousands_of_views_are_all_kept() -> None:
 
 
 def test_a_bland_view_shows_nothing() -> None:
-    local_view = LocalView()
+    local_view = templates()
     wall = np.full((8, 12), 140, np.uint8)
     wall[:, 6:] += 20  # contrast 10
     nothing = local_view.observe(wall)
@@ -124,7 +132,7 @@ def test_the_shift_of_the_image_tells_the_heading(columns: float) -> None:
     wrong = []
     for seed in range(20):
         scene = panorama(seed)
-        local_view = LocalView(LocalViewParams(match_threshold=40.0))
+        local_view = templates(match_threshold=40.0)
         local_view.observe(look(scene, 20))
         seen = local_view.observe(look(scene, 20 - columns))
         assert seen.view == 0
@@ -135,7 +143,7 @@ def test_the_shift_of_the_image_tells_the_heading(columns: float) -> None:
 
 
 def test_without_shifts_nothing_is_known_of_the_heading() -> None:
-    local_view = LocalView(LocalViewParams(shift=0, match_threshold=60.0))
+    local_view = templates(shift=0, match_threshold=60.0)
     local_view.observe(look(panorama(1), 20))
     seen = local_view.observe(look(panorama(1), 19))
     assert (seen.view, seen.facing_rad) == (0, 0.0)
@@ -144,7 +152,7 @@ def test_without_shifts_nothing_is_known_of_the_heading() -> None:
 def test_a_scene_without_an_edge_tells_no_fraction_of_a_shift() -> None:
     """A scene of stripes along the rows fits equally well at all shifts."""
     stripes = np.repeat(np.linspace(0, 250, 8).astype(np.uint8)[:, None], 12, axis=1)
-    local_view = LocalView()
+    local_view = templates()
     local_view.observe(stripes)
     seen = local_view.observe(stripes)
     assert (seen.view, seen.difference) == (0, 0.0)
@@ -153,7 +161,7 @@ def test_a_scene_without_an_edge_tells_no_fraction_of_a_shift() -> None:
 
 def test_surprised_by_what_no_turn_explains() -> None:
     scene = panorama(7)
-    local_view = LocalView()
+    local_view = templates()
     local_view.observe(look(scene, 20))
     assert local_view.image_change <= 1
     for column in (23, 20, 19, 17):  # within three columns of the one before
@@ -171,7 +179,7 @@ def test_surprise_is_a_matter_of_degree(jump: int) -> None:
     scene = panorama(7)
     change, _, _ = literal_match(look(scene, 20 + jump), [look(scene, 20)], 3)
     for limit, surprised in ((change - 0.01, True), (change + 0.01, False)):
-        local_view = LocalView(LocalViewParams(surprise=limit))
+        local_view = templates(surprise=limit)
         local_view.observe(look(scene, 20))
         local_view.observe(look(scene, 20 + jump))
         assert (local_view.image_change > 1) is surprised
@@ -179,7 +187,7 @@ def test_surprise_is_a_matter_of_degree(jump: int) -> None:
 
 def test_with_no_limit_left_every_change_is_a_surprise() -> None:
     scene = panorama(7)
-    local_view = LocalView(LocalViewParams(surprise=0.0))
+    local_view = templates(surprise=0.0)
     found = []
     for column in (20, 20, 40):
         local_view.observe(look(scene, column))
@@ -213,7 +221,7 @@ def test_a_camera_image_becomes_the_mean_of_its_areas() -> None:
     ],
 )
 def test_what_is_not_an_image_is_refused(bad: object, message: str) -> None:
-    local_view = LocalView()
+    local_view = templates()
     with pytest.raises(ValueError, match=message):
         local_view.observe(bad)  # type: ignore[arg-type]
     assert len(local_view) == 0
@@ -221,7 +229,7 @@ def test_what_is_not_an_image_is_refused(bad: object, message: str) -> None:
 
 @pytest.mark.parametrize("view", [-1, 1])
 def test_only_known_views_are_stored(view: int) -> None:
-    local_view = LocalView()
+    local_view = templates()
     local_view.observe(image(1))
     with pytest.raises(ValueError, match=f"view must be from 0 to 0, got {view}"):
         local_view.stored(view)
@@ -229,7 +237,7 @@ def test_only_known_views_are_stored(view: int) -> None:
 
 @pytest.mark.parametrize("shift", [0, 2])
 def test_the_difference_to_a_view_is_that_of_the_recognition(shift: int) -> None:
-    local_view = LocalView(LocalViewParams(shift=shift))
+    local_view = templates(shift=shift)
     rng = np.random.default_rng(3)
     for _ in range(12):
         seen = local_view.observe(rng.integers(0, 256, (8, 12), np.uint8))
