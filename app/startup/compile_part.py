@@ -19,6 +19,8 @@ import app.pilot.local_movement
 import ratslam_core.experience_map.places
 import ratslam_core.experience_map.relaxation
 import ratslam_core.goal_links
+import ratslam_core.local_view.echo_matcher
+import ratslam_core.local_view.front_ends.image_and_sonars
 import ratslam_core.local_view.matcher
 import ratslam_core.local_view.view_links
 import ratslam_core.occupancy_grid
@@ -78,7 +80,8 @@ def cells() -> None:
     pose_cells, jump = PoseCells(config.pose_cells), ScanChange()
     images = rng.integers(0, 256, (4, 8, 12), dtype=np.uint8).repeat(6, axis=1).repeat(6, axis=2)
     for k in range(60):
-        seen = local_view.observe(images[k // 5 % 4])
+        seen = local_view.observe(images[k // 5 % 4], None, RANGES)
+        local_view.difference_to(0)
         jump.observe(RANGES + k % 2, config.kidnap)
         pose_cells.integrate(0.03, 0.02)
         links.learn(seen.view, *pose_cells.active, pose_cells.slot, config.local_view.learning_rate)
@@ -129,6 +132,7 @@ PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
     "office": (office, (sim2d.geometry.connected_cells, sim2d.camera.painting, sim2d.sensors.ranges, app.pilot.local_movement)),
     "cells": (cells, (ratslam_core.pose_cells.activity_kernels, ratslam_core.pose_cells.attractor_kernels,
                       ratslam_core.pose_cells.packet_kernels,
+                      ratslam_core.local_view.front_ends.image_and_sonars, ratslam_core.local_view.echo_matcher,
                       ratslam_core.local_view.matcher, ratslam_core.local_view.view_links)),
     "loops": (loops, (ratslam_core.experience_map.relaxation, ratslam_core.solvers.laplacian, ratslam_core.solvers.dijkstra,
                       ratslam_core.experience_map.places)),
