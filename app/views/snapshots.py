@@ -7,6 +7,7 @@ from typing import Any
 from app.config.presets import PRESETS
 from app.session import Session
 from app.views.actors import ActorsView
+from app.views.belief import belief_of
 from app.views.goal_memory_layer import goal_memory_layer
 from app.views.goal_view import goal_view
 from app.views.history import History
@@ -73,6 +74,7 @@ class Snapshots:
             map=parts["map"],
             times=parts["times"],
             goal=goal_view(session),
+            belief=belief_of(session),
             views=len(brain.local_view),
             experiences=len(brain.experience_map),
             links=brain.experience_map.link_count,

@@ -24,6 +24,7 @@ class Gate:
     def __init__(self, params: PoseFilterParams) -> None:
         self.params = params
         self.sights = 0  # that agree on the hypothesis
+        self.needed = params.gate_sights  # that must agree before it is believed
         self.known = 0  # how many experiences there were when it arose
         self._robot = Pose2(0.0, 0.0, 0.0)  # in the map, at the latest of these sights
         self._other = Pose2(0.0, 0.0, 0.0)  # where that put it
@@ -51,6 +52,7 @@ class Gate:
         A sight that contradicts the hypothesis takes one away from those that agree; with the last of them, its own claim
         takes their place. needed: how many must agree; experiences: how many there are.
         """
+        self.needed = needed
         expected = self.hypothesis(robot)
         if expected is not None and not self._alike(expected, claimed):
             self.doubt()

@@ -50,7 +50,7 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     if map_._arrival is not None:
         _arrival(map_._arrival, map_.transitions.count)
     gate = map_.gate
-    for name in ("sights", "known"):
+    for name in ("sights", "needed", "known"):
         whole(name, getattr(gate, name))
     whole("the latest island", map_.islands.begun)
     whole("the island", map_.islands.current, 0, map_.islands.begun)

@@ -1,6 +1,7 @@
 """What crosses between the engine's thread and the browser's: `Snapshot` out, `Command` in. Nothing else is shared."""
 
 from web.messages.brain import (
+    Belief,
     Goal,
     GoalMemoryLayer,
     GoalState,
@@ -76,6 +77,7 @@ from web.messages.tick import TickStage, TickWalk, Timing
 
 __all__ = [
     "Accepted",
+    "Belief",
     "CancelGoal",
     "CellReport",
     "Command",

@@ -122,6 +122,22 @@ class GoalMemoryLayer:
     direction_rad: float | None  # where they fall fastest at the packet; None at the goal or without a way
 
 
+@dataclass(frozen=True, slots=True)
+class Belief:
+    """How sure the robot is of its place, and what it doubts. Map frame."""
+
+    off_m: float  # how far off it may be; inf: it does not know
+    other: Pose | None  # where it would be by the looks that it holds back
+    sights: int  # that agree on it
+    needed: int  # how many must agree before it believes them
+    corrected: int  # how often they proved it wrong
+    apart: int  # experiences on islands other than the robot's
+    joined: int  # islands that were joined
+    spared: int  # sights on familiar ground that became no experience
+    links_spared: int  # links between places that had enough of them
+    forgotten: int  # links of views to pose cells
+
+
 GoalState = Literal["tracking", "coasting", "exploring", "arrived", "unreachable"]
 
 

@@ -15,7 +15,17 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from web.messages.brain import Goal, GoalMemoryLayer, MapLayer, OccupancyLayer, Pose, PoseCellLayer, Senses, TimesLayer
+from web.messages.brain import (
+    Belief,
+    Goal,
+    GoalMemoryLayer,
+    MapLayer,
+    OccupancyLayer,
+    Pose,
+    PoseCellLayer,
+    Senses,
+    TimesLayer,
+)
 from web.messages.office import LivingLayer, OfficeEdition, WorldDrawing
 from web.messages.reports import Report
 from web.messages.tick import TickWalk, Timing
@@ -111,4 +121,5 @@ class Snapshot:
     presets: tuple[str, ...] = ()
     preset: str = ""  # the preset whose values are all set; empty: none
     office: OfficeEdition | None = None
+    belief: Belief | None = None  # None: there is no experience map
     map_turn_rad: float = 0.0  # turns the map, for the eye only, so that it lies as the office does

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from web.messages import Goal, PoseCellLayer, Snapshot
+from web.messages import Belief, Goal, PoseCellLayer, Snapshot
 from web.panel.part import Content
-from web.panel.words import clock, number, table, thousands
+from web.panel.words import clock, number, often, table, thousands
 
 LOG = 8
 SNAP_KINDS = ("snap", "kidnap", "recovered", "lost")
@@ -15,7 +15,14 @@ SNAP_KINDS = ("snap", "kidnap", "recovered", "lost")
 
 def memory(snapshot: Snapshot) -> Content:
     cells = snapshot.pose_cells
-    tables = [_counts(snapshot), _packets(cells), _attractor(cells), _goal(snapshot.goal), _log(snapshot)]
+    tables = [
+        _belief(snapshot),
+        _counts(snapshot),
+        _packets(cells),
+        _attractor(cells),
+        _goal(snapshot.goal),
+        _log(snapshot),
+    ]
     return Content({"tables": tables})
 
 
@@ -26,9 +33,39 @@ def _counts(snapshot: Snapshot) -> dict[str, Any]:
         "links between them": snapshot.links,
         "relocalisations": snapshot.relocalisations,
     }
+    if snapshot.belief is not None:
+        counts |= {
+            "sights on familiar ground, not stored": snapshot.belief.spared,
+            "links not needed": snapshot.belief.links_spared,
+            "links to pose cells forgotten": snapshot.belief.forgotten,
+        }
     if snapshot.goal_memory is not None:
         counts["links of the goal memory"] = snapshot.goal_memory.links
     return table("Stored", [(name, thousands(value)) for name, value in counts.items()])
+
+
+def _belief(snapshot: Snapshot) -> dict[str, Any]:
+    """What the robot thinks of its place: how far off it may be, and which looks it does not believe."""
+    belief, title = snapshot.belief, "How sure it is of its place"
+    if belief is None:
+        return table(title, [], "it has no experience map")
+    known = math.isfinite(belief.off_m)
+    rows = [
+        ("may be off by", number(belief.off_m, "m", 2) if known else "it does not know"),
+        ("looks held back", _held_back(belief, snapshot)),
+        ("proved wrong by them", often(belief.corrected) if belief.corrected else "never"),
+    ]
+    if belief.apart or belief.joined:
+        rows.append(("islands joined", thousands(belief.joined)))
+        rows.append(("experiences on other islands", thousands(belief.apart)))
+    return table(title, rows)
+
+
+def _held_back(belief: Belief, snapshot: Snapshot) -> str:
+    if belief.other is None:
+        return "none"
+    away = math.hypot(belief.other.x - snapshot.estimate.x, belief.other.y - snapshot.estimate.y)
+    return f"{belief.sights} of {belief.needed} sights for a place {away:.1f} m away"
 
 
 def _packets(layer: PoseCellLayer) -> dict[str, Any]:

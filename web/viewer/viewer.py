@@ -137,12 +137,13 @@ class Viewer:
             offer["map"].offer(now_s, snapshot.map, snapshot.map_turn_rad)
             offer["times"].offer(now_s, snapshot.times)
             offer["estimate"].offer(now_s, snapshot.estimate)
+            offer["other"].offer(now_s, snapshot.belief.other if snapshot.belief else None)
             offer["goal"].offer(now_s, snapshot.goal)
             self._pointer.settle(snapshot, self._scenery.map, now_s)
 
     def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
         if self._scenery.map.set_map(layer, turn_rad):
-            self._forget("times", "estimate", "goal", "inspected")
+            self._forget("times", "estimate", "other", "goal", "inspected")
             self._pointer.moved(self._scenery.map)
 
     def _draw_overlays(self, snapshot: Snapshot, now_s: float) -> None:
@@ -197,6 +198,7 @@ class Viewer:
             "map": Throttle(2, self._draw_map),
             "times": Throttle(3, map_plate.set_times),
             "estimate": Throttle(15, map_plate.set_robot),
+            "other": Throttle(6, map_plate.set_other),
             "goal": Throttle(3, map_plate.set_goal),
             "cell_floor": Throttle(2, cells.set_floor),
             "zone": Throttle(4, cells.set_inspected),

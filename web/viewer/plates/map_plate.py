@@ -21,7 +21,7 @@ from web.viewer.primitives.palette import Palette
 
 ORIGIN = (5.85, -2.2, 0.0)
 SHEET = (11.0, 10.0, -0.5, 0.45)
-NODE_Z, LINK_Z, ARROW_Z = 0.05, 0.03, 0.22
+NODE_Z, LINK_Z, OTHER_Z, ARROW_Z = 0.05, 0.03, 0.19, 0.22
 ARROW = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)])
 BAR = (2.7, 0.26)
 BAR_X = 3.65
@@ -58,6 +58,9 @@ class MapPlate(Plate):
         self._arrow = scene.add_frame(f"{self.root}/arrow", show_axes=False, visible=False)
         add_mesh(scene, f"{self.root}/arrow/casing", _arrow(1.22, 0.0), palette.lit(palette.casing))
         add_mesh(scene, f"{self.root}/arrow/body", _arrow(1.0, 0.02), palette.lit(palette.robot))
+        self._other = scene.add_frame(f"{self.root}/other", show_axes=False, visible=False)
+        add_mesh(scene, f"{self.root}/other/body", _arrow(1.1, 0.0), palette.lit(palette.casing))
+        add_mesh(scene, f"{self.root}/other/ring", meshes.ring(0.42, 0.06, 0.02), palette.lit(palette.robot))
         self._route = Route(scene, palette, f"{self.root}/route")
         self._flag = GoalFlag(scene, palette, f"{self.root}/flag")
         self._clicked = scene.add_frame(f"{self.root}/clicked", show_axes=False, visible=False)
@@ -145,11 +148,21 @@ class MapPlate(Plate):
         self.set_heading("Experience map", f"what it built - colour: {words}")
 
     def set_robot(self, estimate: Pose) -> None:
-        x, y = self.fit.to_plate(np.array([[estimate.x, estimate.y]]))[0]
-        half = (estimate.heading_rad + self.fit.turn_rad) / 2
-        self._arrow.position = (float(x), float(y), ARROW_Z)
-        self._arrow.wxyz = (math.cos(half), 0.0, 0.0, math.sin(half))
-        self._arrow.visible = True
+        self._put(self._arrow, estimate, ARROW_Z)
+
+    def set_other(self, other: Pose | None) -> None:
+        """Shows, as a pale arrow in a ring, where the robot would be by the looks that it does not believe yet."""
+        if other is None:
+            self._other.visible = False
+        else:
+            self._put(self._other, other, OTHER_Z)
+
+    def _put(self, frame: viser.FrameHandle, pose: Pose, z: float) -> None:
+        x, y = self.fit.to_plate(np.array([[pose.x, pose.y]]))[0]
+        half = (pose.heading_rad + self.fit.turn_rad) / 2
+        frame.position = (float(x), float(y), z)
+        frame.wxyz = (math.cos(half), 0.0, 0.0, math.sin(half))
+        frame.visible = True
 
     def set_goal(self, goal: Goal | None) -> None:
         if goal is None:
