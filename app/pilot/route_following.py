@@ -71,12 +71,13 @@ class RouteFollower:
         goal = self._goal_from_robot(experiences)
         self._age_s += dt
         self._plan_in_s -= dt
-        if self._there(math.hypot(*goal), dt, p):
+        away = math.hypot(*goal)
+        blocked = self._watch_headway(p)
+        if self._there(away, dt, p) or (blocked and away < p.good_enough_m):
             self.state = "arrived"
             return None
-        self._watch_headway(experiences, p)
-        if self.state == "arrived":
-            return None
+        if blocked:
+            self._fail(experiences, p)
         if self._plan_in_s <= 0:
             self._plan_in_s = p.replan_s
             self._plan(experiences, local, p)
@@ -112,22 +113,19 @@ class RouteFollower:
 
     # ------------------------------------------------------------ what is in the way
 
-    def _watch_headway(self, experiences: ExperienceMap, p: RouteParams) -> None:
-        """No headway is a failed trial of the way ahead. A robot that stays at one place for long looks around.
-
-        test_routes.py::{test_a_blocked_way_is_left, test_a_door_that_was_shut_is_given_up}.
+    def _watch_headway(self, p: RouteParams) -> bool:
+        """Whether a trial of the way ahead has failed for want of headway. A robot that stays at one place for long
+        looks around. test_routes.py::{test_a_blocked_way_is_left, test_a_door_that_was_shut_is_given_up}.
         """
         if self._look_around_s > 0 or self._route is None:
-            return
-        if self._headway.blocked(p):
-            self._headway.begin()
-            if math.hypot(*self._goal_from_robot(experiences)) < p.good_enough_m:
-                self.state = "arrived"
-                return
-            self._fail(experiences, p)
+            return False
         if self._headway.astray(p):
             self._headway.leave()
             self._look_around_s = p.look_around_s
+        if not self._headway.blocked(p):
+            return False
+        self._headway.begin()
+        return True
 
     def _fail(self, experiences: ExperienceMap, p: RouteParams) -> None:
         """The robot could not cross a line ahead of it, the bar. With fading bars the ways across it are slower for a

@@ -221,6 +221,20 @@ def test_a_door_that_opens_again_is_found_again(shut_s: float) -> None:
     assert run.pilot.goal_state == (goal, "arrived")
 
 
+def test_a_goal_is_reached_after_a_kidnap_on_the_way() -> None:
+    """Put down in a corner behind a wall, the robot plans anew from there."""
+    world = room((2.0, 0.0, 2.0, 2.8), start=(1.0, 0.6, 0.0))
+    map_ = HandMadeMap(*chain((1.0, 0.6), (1.0, 3.4), (3.0, 3.4), (3.0, 0.6)))
+    run = Run(Simulator(world, EXACT), a_pilot(), map_)
+    run.pilot.set_goal(0)
+    run.simulator.teleport(3.0, 1.6, 0.0)
+    run.run(2.0)
+    run.simulator.teleport(3.2, 0.5, -1.0)
+    run.run(60.0)
+    assert run.pilot.goal_state == (0, "arrived")
+    assert math.dist(run.truth, (1.0, 0.6)) < 0.2
+
+
 def test_the_last_metre_is_driven_straight() -> None:
     """The route comes to the goal by a way round; where the sonars see that nothing lies between, the robot cuts it."""
     map_ = HandMadeMap(*chain((0.0, 0.0), (0.0, 3.0), (0.8, 3.0), (0.8, 0.0)))
