@@ -23,8 +23,8 @@ class Uncertainty:
     def note(self, session: Session) -> None:
         self._ticks += 1
         self._lost += session.brain.lost
-        sigma_m: float | None = getattr(session.brain.experience_map.pose_filter, "sigma_m", None)
-        if sigma_m is None or session.brain.lost or session.tick_count % EVERY:
+        sigma_m: float = getattr(session.brain.experience_map.pose_filter, "sigma_m", math.inf)
+        if not math.isfinite(sigma_m) or session.brain.lost or session.tick_count % EVERY:
             return
         self._sigma_m.append(sigma_m)
         self._off_m.append(session.evaluation.belief_off(session.simulator.truth, session.brain.experience_map)[0])
