@@ -29,6 +29,8 @@ def counts(session: Session, wall_s: float) -> dict[str, Any]:
         "false_positives": brain.local_view.false_positives,
         "experiences": len(brain.experience_map),
         "links": brain.experience_map.link_count,
+        "view_links": brain.view_links.count,
+        "let_go": {**brain.experience_map.ground.let_go, "view_links": brain.view_links.forgotten},
         "relocalisations": brain.relocalisations,
     }
 

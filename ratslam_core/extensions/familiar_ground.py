@@ -53,6 +53,16 @@ class FamiliarGround:
         return self._near[: self._found]
 
     @property
+    def let_go(self) -> dict[str, int]:
+        """How much was not kept so far, for people to see."""
+        return {
+            "sights": self.spared,
+            "experiences_adopted": self.adopted,
+            "links": self.links_spared,
+            "views_faded": self.views_faded,
+        }
+
+    @property
     def share(self) -> NDArray[np.float64]:
         """For each experience, which share of the latest sights near it was recognised. A view, with room to spare."""
         return self._share
@@ -140,6 +150,10 @@ class NewGround:
 
     def __init__(self, params: MemoryParams) -> None:
         self.params = params
+
+    @property
+    def let_go(self) -> dict[str, int]:
+        return {}
 
     def forget(self) -> None:
         """There is nothing to forget."""

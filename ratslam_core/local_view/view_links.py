@@ -39,6 +39,11 @@ class ViewLinks:
         """How many links the arena has room for."""
         return self._cells.size
 
+    @property
+    def count(self) -> int:
+        """How many links there are."""
+        return int(self._blocks[:, 1].sum())
+
     def views_at(self, column: int, columns: int, views: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """The views, of the first `views`, that are linked to pose cells at one place x', y', and the sums of those links.
 
