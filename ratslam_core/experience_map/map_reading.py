@@ -72,9 +72,10 @@ class MapReading:
         return self._experiences.energy(self._require(experience), packet, view, self.params)
 
     def _require(self, experience: int) -> int:
-        if not len(self):
+        n = self._experiences.count
+        if n == 0:
             raise ValueError(f"there is no experience yet, got {experience!r}")
-        if not 0 <= experience < len(self):
+        if not 0 <= experience < n:
             raise ValueError(f"experience must be from 0 to {len(self) - 1}, got {experience!r}")
         return experience
 
