@@ -25,7 +25,7 @@ sights = st.lists(
 @settings(max_examples=60)
 @given(sights, st.sampled_from([0.0, 0.25]))
 def test_growing_keeps_what_was_learnt(sights: list[tuple[int, int, int, int]], decay: float) -> None:
-    links = ViewLinks(LocalViewParams(learning_rate=0.5, decay=decay))
+    links = ViewLinks(LocalViewParams(learning_rate=0.5, decay=decay, most_links=0))
     beta: dict[int, np.ndarray] = {}
     for view, first, count, seed in sights:
         flats = (first + np.arange(count)) % N
