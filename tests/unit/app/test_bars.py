@@ -14,7 +14,9 @@ from app.pilot.bars import Bars, crosses
 from ratslam_core import Pose2
 from tests.unit.ratslam_core import literal
 
-from .pilots import DT, USUAL
+from .pilots import DT
+
+USUAL = PilotParams(bar_fade_s=60.0, longest_bar_s=480.0)
 
 LINKS = np.array([(0, 1), (2, 3), (0, 3)])
 PLACES = np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 2.0, 0.0), (1.0, 2.0, 0.0)])  # the first link crosses a bar
