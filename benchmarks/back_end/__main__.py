@@ -27,11 +27,14 @@ def main(argv: list[str] | None = None) -> int:
         "--lies", type=int, nargs="+", default=list(LIES), metavar="N", help="numbers of false closures"
     )
     parser.add_argument("--seed", type=int, default=1, help="of the false closures (default 1)")
+    parser.add_argument("--claims", type=float, metavar="M", help="sigma that all rows claim (default: what is true)")
     parser.add_argument("--data", type=Path, default=DATA, metavar="FOLDER", help="with the graphs of others")
     parser.add_argument("--report", type=Path, metavar="FILE", help="write the rows to FILE as JSON")
     args = parser.parse_args(argv)
     if min(args.lies) < 1 or args.seed < 0:
         parser.error("--lies must be 1 or more, --seed 0 or more")
+    if args.claims is not None and not 0.001 <= args.claims <= 10:
+        parser.error(f"--claims must be from 0.001 to 10 m, got {args.claims:g}")
     try:
         require_writable("--report", args.report)
     except (OSError, ValueError) as error:
@@ -39,7 +42,8 @@ def main(argv: list[str] | None = None) -> int:
     told: list[Row] = []
     try:
         for graph in graphs(args.data, args.files):
-            for row in rows(graph, tuple(args.lies), args.seed):
+            claimed = graph if args.claims is None else graph.claiming(args.claims)
+            for row in rows(claimed, tuple(args.lies), args.seed):
                 print(line(row), flush=True)
                 told.append(row)
     except (OSError, ValueError) as error:

@@ -10,6 +10,7 @@ from benchmarks.back_end.rows import BAR_LIES, BAR_M, BAR_S, graphs, rows
 from benchmarks.true_map.figures import Figure, at_most
 
 MOST_MS = 1.0
+CLAIMED_M = 0.15
 
 
 def _step(_data: Path) -> Iterator[Figure]:
@@ -18,12 +19,13 @@ def _step(_data: Path) -> Iterator[Figure]:
 
 
 def _back_end(data: Path) -> Iterator[Figure]:
+    """Each graph twice: claiming what is true, and what the files of others claim."""
     for graph in graphs(data):
-        for row in rows(graph, (BAR_LIES,)):
-            if row["lies"]:
-                name = f"{graph.name}, {BAR_LIES} false closures"
-                yield at_most(f"{name}: off", row["to_clean_m"], BAR_M)
-                yield at_most(f"{name}: time", row["seconds"], BAR_S, "s")
+        for claimed, words in ((graph, "true claims"), (graph.claiming(CLAIMED_M), f"claiming {CLAIMED_M:g} m")):
+            for row in rows(claimed, (BAR_LIES,)):
+                if row["lies"]:
+                    yield at_most(f"{graph.name}, {words}: off", row["to_clean_m"], BAR_M)
+                    yield at_most(f"{graph.name}, {words}: time", row["seconds"], BAR_S, "s")
 
 
 ROWS: dict[str, tuple[str, Callable[[Path], Iterator[Figure]]]] = {

@@ -92,6 +92,14 @@ def test_the_clean_graph_is_solved_better_than_odometry() -> None:
     assert solve(graph, doubting=False).poses == pytest.approx(found, abs=0.2)
 
 
+def test_a_graph_may_claim_another_precision() -> None:
+    graph = square()
+    claimed = graph.claiming(0.15)
+    assert set(claimed.sigma) == set(claimed.backbone_sigma) == {0.15}
+    assert np.array_equal(claimed.moves, graph.moves)
+    assert solve(claimed, doubting=False).poses == pytest.approx(solve(graph, doubting=False).poses, abs=1e-6)
+
+
 def test_the_rows_say_how_far_off_lies_take_it() -> None:
     told = list(rows(square(), (5, 200)))
     assert [row["lies"] for row in told] == [0, 5, 200]
@@ -175,5 +183,6 @@ def test_the_command_prints_and_writes_its_rows(
     ]
     file.write_text("EDGE_SE2 0\n", encoding="ascii")
     assert command.main(["--data", str(tmp_path), "--lies", "3"]) == 2
-    with pytest.raises(SystemExit):
-        command.main(["--lies", "0"])
+    for wrong in (["--lies", "0"], ["--claims", "0"], ["--report", "/nowhere/at/all.json"]):
+        with pytest.raises(SystemExit):
+            command.main(wrong)

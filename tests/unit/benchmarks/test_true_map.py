@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from benchmarks.back_end.cities import manhattan
 from benchmarks.true_map import __main__ as command
 from benchmarks.true_map import figures, jobs, local
 from benchmarks.true_map.figures import Figure
@@ -170,6 +171,15 @@ def test_a_run_is_a_headless_run_or_deliveries() -> None:
     )
     delivered = jobs.run(Job(row="x", world="loop", name="loop", seed=2, minutes=0.5, goals=2, deliveries=1))
     assert delivered["deliveries"] == 1
+
+
+def test_graphs_with_lies_are_judged_with_true_and_with_usual_claims(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(local, "graphs", lambda _data: iter([manhattan(120)]))
+    found = list(local.ROWS["back-end"][1](NOWHERE))
+    assert [f.what for f in found] == [
+        f"Manhattan, {claims}: {what}" for claims in ("true claims", "claiming 0.15 m") for what in ("off", "time")
+    ]
+    assert [f.bar for f in found] == 2 * ["<= 0.1 m", "<= 0.5 s"]
 
 
 @pytest.fixture
