@@ -17,8 +17,9 @@ from sim2d import load_world
 OFFICE = load_world("office")
 KEYS = [
     "world", "seed", "simulated_s", "wall_s", "real_time_factor", "ticks", "metres", "views", "false_positives",
-    "experiences", "links", "view_links", "let_go", "relocalisations", "error_m", "revisit_consistency", "revisit_share", "looks", "coverage",
-    "loops", "uncertainty", "growth", "real_time_factors", "rss_mb", "goals", "kidnaps", "state_hash",
+    "experiences", "links", "view_links", "let_go", "relocalisations", "error_m", "revisit_consistency",
+    "revisit_share", "looks", "coverage", "loops", "uncertainty", "growth", "real_time_factors", "rss_mb", "goals",
+    "kidnaps", "state_hash",
 ]  # fmt: skip
 
 

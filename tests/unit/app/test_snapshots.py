@@ -108,3 +108,19 @@ def test_a_slow_part_is_built_when_time_has_come_and_something_has_changed(monke
     assert part.part(4) is built[1]
     part.due = -math.inf  # a command has changed something while paused
     assert part.part(4) is built[2]
+
+
+def test_a_hypothesis_of_the_robot_is_shown_where_it_is(session: Session) -> None:
+    belief = build(session).belief
+    assert belief is not None
+    map_ = session.brain.experience_map
+    assert belief.off_m == map_.pose_filter.sigma_m
+    assert (belief.other is None) == (map_.gate.sights == 0)
+    before, robot = map_.gate.sights, map_.robot
+    map_.gate.believes(robot, robot, 9, len(map_))
+    told = build(session).belief
+    assert told is not None
+    assert (told.sights, told.needed) == (max(before - 1, 1), 9)
+    if before == 0:
+        assert told.other == m.Pose(robot.x, robot.y, robot.heading_rad)
+    map_.gate.doubt()

@@ -11,7 +11,7 @@ import pytest
 
 from tests.fake_snapshots import fake_reports, fake_snapshot
 from tests.unit.web.bench import Bench
-from web.messages import MapLayer, OccupancyPicture, TimesLayer
+from web.messages import Belief, MapLayer, OccupancyPicture, Pose, TimesLayer
 from web.viewer.plates.map_plate import seconds_words
 
 
@@ -196,3 +196,19 @@ def test_what_is_inspected_is_marked(bench: Bench, kind: str) -> None:
     assert not bench.visible("/map/inspected")
     assert not len(bench.drawn("/map/inspected_links"))
     bench.switch("goal_memory", True)
+
+
+def test_what_the_robot_holds_back_is_a_pale_arrow_at_that_place(bench: Bench) -> None:
+    snapshot = fake_snapshot(450)
+    bench.show(snapshot, 5)
+    bench.settle()
+    assert not bench.visible("/map/other")
+    here = snapshot.estimate
+    doubt = Belief(0.1, Pose(here.x, here.y, here.heading_rad), 5, 300, 0, 0, 0, 0, 0, 0)
+    bench.show(replace(snapshot, belief=doubt), 5)
+    bench.settle()
+    assert bench.visible("/map/other")
+    assert bench.node("/map/other")["position"][:2] == bench.node("/map/arrow")["position"][:2]
+    bench.show(replace(snapshot, belief=replace(doubt, other=None)), 5)
+    bench.settle()
+    assert not bench.visible("/map/other")
