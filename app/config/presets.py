@@ -40,9 +40,14 @@ ROBOTS: dict[str, dict[str, Value]] = {
         "robot.gyro_bias": 0.0,
     },
 }
-# What the pilot adds to following a route, switched off: bars stay and links are deleted (ACRA 2006 3.4), the robot drives
-# along the route to its end, and straight towards its next point.
-_PLAIN_PILOT: dict[str, Value] = {"pilot.bar_fade_s": 0.0, "pilot.approach_m": 0.0, "pilot.gap_m": 0.0}
+# What the pilot adds, switched off: it only wanders (IROS 2005 IV.D), bars stay and links are deleted (ACRA 2006 3.4), and
+# the robot drives along the route to its end, and straight towards its next point.
+_PLAIN_PILOT: dict[str, Value] = {
+    "pilot.seek": False,
+    "pilot.bar_fade_s": 0.0,
+    "pilot.approach_m": 0.0,
+    "pilot.gap_m": 0.0,
+}
 _OUR_PILOT: dict[str, Value] = {name: value for name, _, value in Config().items() if name in _PLAIN_PILOT}
 _WITH_PILOT: dict[str, dict[str, Value]] = {
     name: {**values, **(_OUR_PILOT if name == "ours" else _PLAIN_PILOT)} for name, values in ENGINES.items()

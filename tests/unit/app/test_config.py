@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.config import Config, from_toml, parse_value, to_toml
+from app.config.presets import preset
 
 NAMES = [name for name, _, _ in Config().items()]
 
@@ -168,3 +169,9 @@ def test_what_is_not_a_value_is_refused(text: str) -> None:
 def test_a_value_that_is_nested_too_deeply_gets_a_sentence(text: str) -> None:
     with pytest.raises(ValueError, match="nested too deeply"):
         parse_value(text)
+
+
+def test_a_paper_s_pilot_only_wanders_and_ours_comes_back() -> None:
+    paper = preset("paper-2006", Config())
+    assert (paper.pilot.seek, paper.pilot.bar_fade_s, paper.pilot.approach_m, paper.pilot.gap_m) == (False, 0, 0, 0)
+    assert preset("ours", paper).pilot == Config().pilot
