@@ -43,30 +43,42 @@ class ExactSolver:
             self._solve(map_)
 
     def _solve(self, map_: ExperienceMap) -> None:
-        t, p = map_.transitions, map_.params
-        work = self._settle(map_, 1.0)
-        rows, looks = slice(t.count), np.flatnonzero(~t.chain[: t.count] & (t.weight[: t.count] > 0.0))
-        given = map_.poses, t.ends[rows], t.move[rows], t.weight[rows]
-        if p.robust and self.params.closures == "graduated":
-            off = contradiction(*given, looks, p.odometry_sigma, self.params)
-            if off.max(initial=0.0) > self.params.closure_trial / self.params.closure_bar:
-                share, more = kept(*given, t.chain[rows], p.odometry_sigma, self.params)
-                work += more + self._settle(map_, share)
+        before = map_.poses.copy()
+        work = self._settle(map_, None)
+        if map_.params.robust and self.params.closures == "graduated" and self._contradicted(map_):
+            map_.poses[:] = before  # many false closures would have led it far astray
+            share, more = kept(*_given(map_), self._odometry(map_), map_.params.odometry_sigma, self.params)
+            work += more + self._settle(map_, share)
         self._solved_at, self._closures_at_solve = map_.steps, map_.closures
         self._rest_after_solve = work / self.params.work_a_step
 
-    def _settle(self, map_: ExperienceMap, share: NDArray[np.float64] | float) -> float:
-        """One exact correction, with what the map contradicts believed less; returns its work. share: of each row's weight."""
-        t, p, poses = map_.transitions, map_.params, map_.poses
-        rows = slice(t.count)
-        ends, moves, turning = t.ends[rows], t.move[rows], t.turning_s[rows] if p.calibrate else None
-        t.believed[rows] = t.weight[rows] * share
-        if p.robust:
-            t.believed[rows] *= relaxation.trust(
-                poses, ends, moves, t.weight[rows], t.chain[rows], p.odometry_sigma, self.params
-            )
-        more, work = relaxation.solve(poses, ends, moves, t.believed[rows], turning, self.params)
+    def _contradicted(self, map_: ExperienceMap) -> bool:
+        """Whether the map leaves a closure so far off that all of them are put on trial."""
+        looks = np.flatnonzero(~self._odometry(map_) & (map_.transitions.weight[: map_.transitions.count] > 0.0))
+        off = contradiction(*_given(map_), looks, map_.params.odometry_sigma, self.params)
+        return bool(off.max(initial=0.0) > self.params.closure_trial / self.params.closure_bar)
+
+    def _odometry(self, map_: ExperienceMap) -> NDArray[np.bool_]:
+        return map_.transitions.chain[: map_.transitions.count]
+
+    def _settle(self, map_: ExperienceMap, share: NDArray[np.float64] | None) -> float:
+        """One exact correction; returns its work. share: how far each row is kept, 0 to 1; None: by how well it fits."""
+        t, p = map_.transitions, map_.params
+        poses, ends, moves, weights = _given(map_)
+        turning = t.turning_s[: t.count] if p.calibrate else None
+        if share is None and p.robust:
+            share = relaxation.trust(poses, ends, moves, weights, self._odometry(map_), p.odometry_sigma, self.params)
+        t.believed[: t.count] = weights if share is None else weights * share
+        more, work = relaxation.solve(poses, ends, moves, t.believed[: t.count], turning, self.params)
         if turning is not None:
             map_.yaw_bias += more
             moves[:, 2] -= more * turning
         return work
+
+
+def _given(
+    map_: ExperienceMap,
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """Poses, ends, moves and weights of all rows, as views."""
+    t = map_.transitions
+    return map_.poses, t.ends[: t.count], t.move[: t.count], t.weight[: t.count]
