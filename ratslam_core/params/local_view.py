@@ -169,7 +169,7 @@ class LocalViewParams:
         live=False,
     )
     even_light: float = param(
-        0.7,
+        0.8,
         low=0.0,
         high=1.0,
         meaning="share of the mean of an image's column that image and sonars take for light",
