@@ -63,7 +63,7 @@ class ImageAndSonars(FrontEnd):
         Floors and ceilings alone look alike everywhere. test_image_and_sonars.py::test_what_tells_little_is_doubted.
         """
         plain = max(0.0, 1.0 - along_rows(features) / params.full_pattern)
-        silent, deaf = (np.count_nonzero(features[SIZE:] == code) / ECHOES for code in (255, 0))
+        silent, deaf = (int(np.count_nonzero(features[SIZE:] == code)) / ECHOES for code in (255, 0))
         return params.plain_doubt * plain + params.silent_doubt * silent + params.deaf_doubt * deaf
 
     def threshold(self, params: LocalViewParams) -> float:
