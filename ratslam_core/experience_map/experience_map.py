@@ -41,6 +41,7 @@ class ExperienceMap(Looks):
         super().__init__(shape, cell_m, params, filter_params)
         self.optimiser: Optimiser = optimiser or ExactSolver(SolverParams())
         self.ground = ground or NewGround(MemoryParams())
+        self.transitions.reuses = isinstance(self.ground, FamiliarGround)
         self.yaw_bias = 0.0  # rad/s, learnt
         self.agrees = True  # whether the last look agreed with where the robot believed itself to be
         self.closures = 0  # links made to experiences that existed before

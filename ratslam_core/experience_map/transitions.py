@@ -70,7 +70,8 @@ class Transitions:
         self.trials = np.zeros(1024, np.int64)
         self.confidence = np.zeros(1024)
         self.row_of: dict[tuple[int, int], int] = {}
-        self.free: list[int] = []  # rows of looks that are no way any more; the next rows take their room
+        self.reuses = False  # whether the next rows take the room of those that are free
+        self.free: list[int] = []  # rows of looks that are no way any more
         self.dropped: list[tuple[int, int]] = []  # every link that was deleted, in order
 
     def add(self, i: int, j: int, *, travelled: bool, behaviour: int = 0) -> int:
@@ -84,8 +85,11 @@ class Transitions:
         return row
 
     def _room(self) -> int:
-        """An empty row: that of a look that was deleted, or else one more."""
-        if self.free:
+        """An empty row. [ours] That of a look that was deleted, or else one more, as in the plain twin (`reuses` off).
+
+        test_transitions.py::test_a_deleted_look_leaves_its_row_to_the_next.
+        """
+        if self.reuses and self.free:
             row = self.free.pop()
             self.graph.remove_link(int(self.ends[row, 0]), int(self.ends[row, 1]), row)
             for name in _COLUMNS:

@@ -199,6 +199,7 @@ def test_a_deleted_look_leaves_its_row_to_the_next() -> None:
     robot = two_places(replace(EXACT, link_recency=0.3))
     robot.see(0)
     t, rows = robot.map.transitions, robot.map.transitions.count
+    t.reuses = True
     fail(robot, 1, 0)
     for again in range(3):
         drive_there_and_back(robot, behaviour=again)
