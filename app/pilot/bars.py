@@ -49,6 +49,10 @@ class Bars:
     def __len__(self) -> int:
         return len(self._bars)
 
+    def forget(self) -> None:
+        """None is left."""
+        self._bars = []
+
     @property
     def failures(self) -> float:
         """How often the robot failed of late; a failure counts less as its bar fades."""

@@ -68,6 +68,7 @@ class Pilot:
         return self._follower.progress(experiences) if self._follower else None
 
     def set_goal(self, experience: int) -> None:
+        self._bars.forget()  # they may lie wrong by now: the map is bent, doors move
         self._follower = RouteFollower(experience, self._bars)
         self._seeker.stop()
         self.mode = "goal"

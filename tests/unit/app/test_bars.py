@@ -54,6 +54,8 @@ def test_failing_again_at_a_bar_makes_it_last_longer() -> None:
         assert len(made) == 1  # the second lasts twice as long, the third four times
     made.add(Pose2(0.0, 1.5, 0.0), 0.0, USUAL)
     assert len(made) == 2
+    made.forget()
+    assert len(made) == 0
 
 
 def test_a_bar_of_the_paper_stays() -> None:
