@@ -86,10 +86,10 @@ def _pose_cell_memory() -> Iterator[Row]:
     bytes_a_cell = _settled(n, packets=1).memory_bytes / (n * n * 36)
     size = f"{n} x {n} x 36: {bytes_a_cell:.2f} B a cell"
     yield _row("memory, pose cells", size, None, "-", None, "6 B a cell", bytes_a_cell <= 6)
-    view = LocalView(LocalViewParams(match_threshold=0.0, surprise=255.0, min_contrast=0.0))
+    view = LocalView(LocalViewParams(composite_threshold=0.0, composite_surprise=255.0))
     rng, most = np.random.default_rng(6), 0.0
     for count in range(1, 50_001):  # with as little room to spare as a growing memory has, and as much
-        view._recruit(rng.integers(0, 256, 96, dtype=np.uint8))
+        view._recruit(rng.integers(0, 256, view.features.size, dtype=np.uint8))
         most = max(most, view.memory_bytes / count) if count >= 2000 else 0.0
     yield _row("memory, views", f"2,000 to 50,000: {most:.0f} B a view", None, "-", None, "250 B a view", most <= 250)
 
@@ -141,7 +141,7 @@ def _views() -> Iterator[Row]:
     flat = np.ascontiguousarray(image.T).reshape(1, -1)
     bare = _median(lambda: cv2.batchDistance(flat, known, cv2.CV_32S, normType=cv2.NORM_L1, K=1), 40)
     for shift, most in ((0, 1.5), (2, 5.0)):
-        view = LocalView(LocalViewParams(shift=shift, match_threshold=255.0, surprise=255.0))
+        view = LocalView(LocalViewParams(front_end="template", shift=shift, match_threshold=255.0, surprise=255.0))
         view._templates, view._count = known.copy(), len(known)
         ms = _median(lambda v=view: v.observe(image), 40)
         name = f"view match 12 x 8, shifts +-{shift}"
@@ -232,7 +232,7 @@ def whole_step(views: int, bar: float) -> Row:
     brain = RatSlam()
     made = _long_map(views, views + views // 5)
     brain.experience_map = made
-    brain.local_view._templates = rng.integers(0, 256, (views + 4096, 96), dtype=np.uint8)
+    brain.local_view._templates = rng.integers(0, 256, (views + 4096, brain.local_view.features.size), dtype=np.uint8)
     brain.local_view._count = views
     brain.association._learnt_s = [0.0] * views
     images = rng.integers(0, 256, (50, 48, 64), dtype=np.uint8)
