@@ -44,6 +44,8 @@ class KnownGround:
         """The robot drove `way_m` and is at the active experience."""
         self.now_s += dt
         self.new_m += way_m
+        if len(experiences) == 0:
+            return
         if len(experiences) < self.count:  # another map
             self.count, self._done = 0, []
         new = len(experiences) - self.count

@@ -45,10 +45,12 @@ from ratslam_core import (
     Packet,
     Pose2,
     PoseCells,
+    PoseFilterParams,
     Recognition,
     ViewLinks,
     find_places,
 )
+from ratslam_core.extensions.familiar_ground import FamiliarGround
 from ratslam_core.extensions.scan_change import ScanChange
 from ratslam_core.pose_cells.activity_kernels import X, Y
 from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, load_world
@@ -116,12 +118,15 @@ def loops() -> None:
     """The experience map with closed loops, and the routes through it."""
     config = Config()
     cells = config.pose_cells
-    made = ExperienceMap((cells.n_theta, cells.n_y, cells.n_x), cells.cell_m, config.experience_map)
+    shape = cells.n_theta, cells.n_y, cells.n_x
+    believes = PoseFilterParams(gate=False)  # else it would hold back that it is now here, now there
+    made = ExperienceMap(shape, cells.cell_m, config.experience_map, believes, ground=FamiliarGround(config.memory))
     for k in range(600):
         view, known = k // 10 % 20, k >= 200
         packet = Packet(view % 5 * 4.0, view // 5 * 4.0, 0.0, 1.0)
         seen = Recognition(view, not known and k % 10 == 0, view if known else -1, 2.0)
-        made.step(packet, seen, Odometry(0.3, 0.1, 0.1))
+        created = made.step(packet, seen, Odometry(0.3, 0.1, 0.1))
+        made.ground.note(made, seen, created, Odometry(0.3, 0.1, 0.1), False)
         made.correct()
     made.temporal_map.times_to(0)
     find_places(made)

@@ -90,6 +90,15 @@ class Experiences:
             math.remainder(theta - own_theta, n_theta),
         )
 
+    def of_view(self, view: int) -> NDArray[np.int64]:
+        """The experiences of a view, the newest first."""
+        found: list[int] = []
+        i = self._newest_of_view.get(view, -1)
+        while i >= 0:
+            found.append(i)
+            i = int(self._before_of_view[i])
+        return np.array(found, np.int64)
+
     def energy(self, experience: int, packet: Packet, view: int, p: ExperienceMapParams) -> float:
         """ACRA 2006 eqs. 1-4: E = 0 if r > 1 or q > 1 or V != V_i, else 2 - r - q; ACRA 2005 eqs. 4-9: V ((1-r)+ + (1-q)+)."""
         if p.match_view and view != self.view[experience]:

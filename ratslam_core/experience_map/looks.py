@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ratslam_core.experience_map.map_reading import MapReading
 from ratslam_core.extensions.gate import Gate
@@ -43,16 +44,47 @@ class Looks(MapReading):
         best = self._most_energetic(packet, seen.view, reach)
         if seen.view < 0 or not self.params.match_view:
             return best
-        foreign = self._most_energetic(packet, seen.view, math.inf, foreign=True) if self.islands.begun else -1
+        foreign = self._foreign(packet, seen) if self.islands.begun else -1
         if foreign >= 0:
             return foreign if self._crosses(foreign, packet, seen) else best
         if math.isinf(reach):
             return best
-        if best >= 0 and not self._experiences.doubtful[best]:
+        if (best >= 0 and not self._experiences.doubtful[best]) or self._sees_where_it_is(seen.view, reach):
             self.gate.doubt()
             return best
         far = self._most_energetic(packet, seen.view, reach, beyond=True)
         return far if far >= 0 and self._jumps(far, packet, seen) else best
+
+    def _foreign(self, packet: Packet, seen: Recognition) -> int:
+        """The experience of another island that the robot sees, wherever its packet is; -1 for none.
+
+        One where the robot would be had it not been carried comes first: perhaps it was not. Then the most energetic;
+        then, of those of the view alone, the one nearest to where the robot would be by what it holds back.
+        """
+        others = self._of_view(seen.view, own=False)
+        if len(others) == 0:
+            return -1
+        uncarried = self._away(others, self.robot)
+        if uncarried.min() <= self.gate.params.snap_m:
+            return int(others[np.argmin(uncarried)])
+        best = self._most_energetic(packet, seen.view, math.inf, foreign=True)
+        if best >= 0:
+            return best
+        expected = self.gate.hypothesis(self.robot)
+        return int(others[0 if expected is None else np.argmin(self._away(others, expected))])
+
+    def _sees_where_it_is(self, view: int, reach_m: float) -> bool:
+        """Whether an experience of this view that was not made in doubt lies within reach, wherever the packet is."""
+        own = self._of_view(view, own=True)
+        own = own[~self._experiences.doubtful[own]]
+        return bool(len(own)) and self._away(own, self.robot).min() <= reach_m
+
+    def _of_view(self, view: int, *, own: bool) -> NDArray[np.int64]:
+        found = self._experiences.of_view(view)
+        return found[(self.island_of[found] == self.islands.current) == own]
+
+    def _away(self, which: NDArray[np.int64], pose: Pose2) -> NDArray[np.float64]:
+        return np.hypot(self.poses[which, 0] - pose.x, self.poses[which, 1] - pose.y)
 
     def _most_energetic(
         self, packet: Packet, view: int, reach_m: float, *, foreign: bool = False, beyond: bool = False
@@ -91,6 +123,8 @@ class Looks(MapReading):
         """The look: the robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
         if not self.params.zone_offset:
             return IDENTITY
+        if self.energy(experience, packet, seen.view) <= self.params.threshold:  # recognised by its view alone
+            return Pose2(0.0, 0.0, seen.facing_rad or 0.0)
         dx, dy, dtheta = self._experiences.cells_from(experience, packet)
         facing = self.cell_states[experience, 2] * 2 * math.pi / self.shape[0]
         c, s = math.cos(facing), math.sin(facing)

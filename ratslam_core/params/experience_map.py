@@ -93,7 +93,7 @@ class ExperienceMapParams:
         source="ours",
     )
     join_sights: int = param(
-        15,
+        8,
         unit="sights",
         low=1,
         high=10_000,

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from disk.state_codec import LONG, _Writer
 from disk.state_reading import _Reader
 from ratslam_core import RatSlam, load_brain, restore_snapshot, save_brain, take_snapshot
-from tests.unit.ratslam_core.drives import drive, driven
+from tests.unit.ratslam_core.drives import Circle, drive, driven
 
 
 @pytest.mark.parametrize("ticks", [1, 250, 420])
@@ -72,11 +72,12 @@ def test_what_the_engine_does_not_own_is_not_written() -> None:
 
 @pytest.mark.slow
 def test_nothing_in_the_json_grows_with_the_map() -> None:
-    circle, brain = driven(300)
+    circle, brain = driven(400)
+    drive(Circle(4), brain, 400)  # other views, so that there are many
     sizes = []
     for _ in range(3):
         sizes.append(len(json.dumps(take_snapshot(brain).tree)))
-        drive(circle, brain, 300)
+        drive(circle, brain, 400)
     assert max(sizes) - min(sizes) < 1000
     assert brain.experience_map.link_count > LONG < len(brain.association._learnt_s)
 

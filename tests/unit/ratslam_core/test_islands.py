@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core import ExperienceMapParams, Odometry, Pose2, PoseFilterParams
+from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2, PoseFilterParams
+from ratslam_core.experience_map.experiences import Experiences
 from ratslam_core.extensions.islands import Islands, move
 
 from .drives import Robot, relative
@@ -126,3 +127,21 @@ def test_a_robot_that_has_found_itself_is_gated_again() -> None:
         robot.see(5, packet=robot.packet(Pose2(5.0, 0.0, 0.0)))
     assert robot.map.robot.x == pytest.approx(2.0)
     assert robot.map.gate.sights == 2 * NEEDED
+
+
+def test_a_robot_that_was_not_carried_after_all_is_found_where_it_was() -> None:
+    """Of two places that look alike, the one where it would be anyway comes first, wherever its packet is."""
+    robot = carried(to=Pose2(5.0, 0.0, 0.0))
+    elsewhere = robot.packet(Pose2(-8.0, 5.0, 0.0))
+    for _ in range(NEEDED):
+        robot.see(5, packet=elsewhere)
+    assert robot.map.active == 5
+    assert robot.map.robot.x == pytest.approx(5.0)
+
+
+@given(st.lists(st.integers(0, 3), max_size=40), st.integers(0, 4))
+def test_the_experiences_of_a_view_are_found_newest_first(views: list[int], asked: int) -> None:
+    known = Experiences((36, 64, 64))
+    for view in views:
+        known.add(Packet(1.0, 2.0, 0.0, 1.0), view, Pose2(0.0, 0.0, 0.0))
+    assert known.of_view(asked).tolist() == [i for i in reversed(range(len(views))) if views[i] == asked]

@@ -98,13 +98,25 @@ def test_in_2004_the_packet_is_where_the_robot_is() -> None:
     assert not brain.lost
 
 
+ELSEWHERE = {
+    "local_view.min_pattern": "test_image_and_sonars.py: here a bare wall makes an experience with a view or without one",
+    "solver.closures": "test_graduated_trust.py: many false closures, of which this run has none",
+    "kidnap.usual_times": "test_kidnap_detector.py: images that always jump, which these do not",
+}
+
+
 @pytest.mark.parametrize(
-    "name", [name for name, value in PRESETS["paper-2006"].items() if value != PRESETS["ours"][name]]
+    "name",
+    [name for name, value in PRESETS["paper-2006"].items() if value != PRESETS["ours"][name] and name not in ELSEWHERE],
 )
 @pytest.mark.slow
 def test_each_addition_alone_changes_the_run(name: str) -> None:
     """Each switch must have an effect."""
-    fits = {"local_view.min_edges": "complex cells", "local_view.min_colour": "hue and saturation"}
+    fits = {
+        "local_view.min_edges": "complex cells",
+        "local_view.min_colour": "hue and saturation",
+        "local_view.front_end": "image and sonars",
+    }
     base = with_values(RatSlamParams(), {"local_view.front_end": fits.get(name, "template")})
     assert _told(base) != _told(with_values(base, {name: PRESETS["paper-2006"][name]}))
 
