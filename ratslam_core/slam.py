@@ -103,6 +103,7 @@ class RatSlam:
         jump = self.pose_cells.cells_apart(expected.x, expected.y, packet.x, packet.y)
         relocalised = jump > self.params.pose_cells.snap_cells
         self.relocalisations += relocalised
+        self.experience_map.gate.surprised = self._misses_what_it_expects()
         created = self.experience_map.step(packet, seen, odometry, behaviour)
         known = NOTHING if created or seen.view == NOTHING else self.experience_map.active
         self._settle(known)
@@ -129,6 +130,18 @@ class RatSlam:
         self.kidnap_detector.declare(len(self.experience_map))
         if self.lost:
             self.experience_map.declare_kidnapped()
+
+    def _misses_what_it_expects(self) -> bool:
+        """[ours] Whether a known view is seen, but the place where the robot believes itself to be is known and looks different.
+
+        test_gate.py::test_who_misses_what_it_expects_gives_way_sooner.
+        """
+        map_, view, seen = self.experience_map, self.local_view, self.local_view.recognition
+        views = map_.views[map_.ground.near]
+        if not map_.gate.sights or seen.view < 0 or seen.recruited or np.any(views == seen.view):
+            return False
+        limit = self.params.pose_filter.gate_unlike * view.front_end.threshold(self.params.local_view)
+        return len(views) > 0 and all(view.difference_to(int(v)) > limit for v in views if v >= 0)
 
     def _settle(self, known: int) -> None:
         lost = self.lost

@@ -3,7 +3,8 @@
 Look-alikes weld places together that are metres apart. A robot that knows how far off it may be need not believe them:
 it takes the place for a new one, and goes on. What it held back is not forgotten. It is a second robot in the map, which
 moves by the same odometry; each sight speaks for it or against it, and when enough have agreed, the robot was wrong, and
-jumps. Experiences made while in doubt are no witnesses: they would only repeat what the robot believed.
+jumps. Experiences made while in doubt are no witnesses: they would only repeat what the robot believed. A sight counts several
+times where the robot knows the place that it believes in and it looks different: in a twin it looks alike.
 test_gate.py::test_one_look_alike_closes_no_loop, ::test_sights_that_agree_win. With `pose_filter.gate` off every look is
 believed at once, as in the papers.
 """
@@ -24,6 +25,7 @@ class Gate:
     def __init__(self, params: PoseFilterParams) -> None:
         self.params = params
         self.sights = 0  # that agree on the hypothesis
+        self.surprised = False  # where it believes itself to be, the robot expects something else than it sees
         self.needed = params.gate_sights  # that must agree before it is believed
         self.known = 0  # how many experiences there were when it arose
         self._robot = Pose2(0.0, 0.0, 0.0)  # in the map, at the latest of these sights
@@ -60,7 +62,7 @@ class Gate:
                 return False
         if self.sights == 0:
             self.known = experiences
-        self.sights += 1
+        self.sights += self.params.gate_surprise if self.surprised else 1
         self._robot, self._other = robot, claimed
         if self.sights < needed:
             return False

@@ -59,6 +59,21 @@ class PoseFilterParams:
         meaning="sights held back that must agree on where the robot is before it believes them",
         source="ours",
     )
+    gate_surprise: int = param(
+        6,
+        unit="sights",
+        low=1,
+        high=1000,
+        meaning="such a sight counts as this many where the place that the robot believes in is known and looks different",
+        source="ours",
+    )
+    gate_unlike: float = param(
+        1.5,
+        low=1.0,
+        high=100.0,
+        meaning="it looks different when no view near there is as like as this many times the threshold",
+        source="ours",
+    )
     agrees_m: float = param(
         0.5,
         unit="m",

@@ -42,11 +42,8 @@ class Life:
 def live(seed: int) -> Life:
     session = Session(OFFICE, seed)
     brain, evaluation = session.brain, session.evaluation
-    track = []
     for _ in range(MINUTES * 600):
         session.tick()
-        truth = session.simulator.truth
-        track.append((truth.x, truth.y, truth.heading_rad))
     errors, consistency = evaluation.errors(brain.experience_map), evaluation.revisit_consistency
     goal = spread_goals(session, 1)[0]
     session.pilot.set_goal(goal)
@@ -57,8 +54,9 @@ def live(seed: int) -> Life:
     miss = math.dist((truth.x, truth.y), evaluation.made_at(goal, session.brain.experience_map))
     arrived = session.pilot.goal_state == (goal, "arrived")
     session.pilot.cancel_goal()
-    known = np.array(track[600:])
-    session.kidnap(*known[np.argmax(np.hypot(known[:, 0] - truth.x, known[:, 1] - truth.y))])  # far, but seen before
+    for _ in range(200):  # away from the goal, which may lie in a corner that looks like others
+        session.tick()
+    session.kidnap()
     kidnap = evaluation.kidnaps[-1]
     for _ in range(1200):
         session.tick()

@@ -80,6 +80,15 @@ def test_a_sight_against_it_takes_one_away_and_the_last_gives_way() -> None:
     assert gate.hypothesis(HERE) is None
 
 
+def test_who_misses_what_it_expects_gives_way_sooner() -> None:
+    gate = Gate(P)
+    gate.surprised = True
+    taken = 1
+    while not gate.believes(HERE, THERE, P.gate_sights, 7):
+        taken += 1
+    assert taken == -(-P.gate_sights // P.gate_surprise)
+
+
 # ---------------------------------------------------------------- in the map
 
 
