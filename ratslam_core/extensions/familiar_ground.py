@@ -144,6 +144,8 @@ class FamiliarGround:
 class NewGround:
     """As in the papers: every sight that is unlike all others is kept."""
 
+    near = np.zeros(0, np.int64)  # no experience is known to be near
+
     familiar = False
     faded = -1
     spared = adopted = links_spared = views_faded = 0
