@@ -83,6 +83,7 @@ class ExperienceMapPart(Protocol):
 
     active: int
     agrees: bool
+    gate: Any  # a `Gate`, with what is held back
     ground: Any  # a `FamiliarGround`, or `NewGround(MemoryParams())`, with which every sight is learnt
 
     def __len__(self) -> int: ...
