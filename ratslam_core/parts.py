@@ -96,7 +96,7 @@ class ExperienceMapPart(Protocol):
         """Odometry without the errors that the map has learnt."""
         ...
 
-    def declare_kidnapped(self) -> None:
+    def declare_kidnapped(self, *, sure: bool = True) -> None:
         """The robot was carried, not driven."""
         ...
 
@@ -127,6 +127,7 @@ class KidnapDetectorPart(Protocol):
     """Notices that the robot was carried away, and when it knows again where it is."""
 
     kidnapped: bool
+    sure: bool  # whether the last jump can be nothing else
     params: Any
     view_params: Any
 

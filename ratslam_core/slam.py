@@ -94,7 +94,7 @@ class RatSlam:
         watch("view match")
         odometry = self.experience_map.calibrated(odometry)
         if self.kidnap_detector.observe(self.local_view.image_change, scan):
-            self.declare_kidnapped()
+            self.declare_kidnapped(sure=self.kidnap_detector.sure)
         for stage, do in self._cell_stages():
             do(seen, odometry)
             watch(stage)
@@ -125,11 +125,14 @@ class RatSlam:
         """Whether the robot knows that it was carried away and has not found itself again."""
         return self.kidnap_detector.kidnapped
 
-    def declare_kidnapped(self) -> None:
-        """[ours] The robot was carried and knows it: image and sonars jumped although the wheels did not, or it is told so."""
+    def declare_kidnapped(self, *, sure: bool = True) -> None:
+        """[ours] The robot was carried and knows it: image and sonars jumped although the wheels did not, or it is told so.
+
+        sure: nothing else can explain it.
+        """
         self.kidnap_detector.declare(len(self.experience_map))
         if self.lost:
-            self.experience_map.declare_kidnapped()
+            self.experience_map.declare_kidnapped(sure=sure)
 
     def _misses_what_it_expects(self) -> bool:
         """[ours] Whether a known view is seen, but the place where the robot believes itself to be is known and looks different.

@@ -110,18 +110,20 @@ class ExperienceMap(Looks):
         deleted = [self._judge(row, reached) for row in rows if row >= 0]
         return any(deleted)
 
-    def declare_kidnapped(self) -> None:
+    def declare_kidnapped(self, *, sure: bool = True) -> None:
         """[ours] The robot was carried, not driven: the way here is no transition, and odometry starts afresh.
 
+        sure: it cannot have been otherwise; if not, looks that put it elsewhere than odometry does count for less.
         test_experience_map_transitions.py::test_a_kidnap_makes_no_way.
         """
-        self._kidnapped, self._sigma, self.lost = True, self.params.carried_sigma, True
+        self._kidnapped, self._sigma = True, self.params.carried_sigma
         self.pose_filter.forget(self.params.carried_sigma)
         self._edges.forget()
         self.ground.forget()
         self.gate.dismiss()
         if self.params.islands:
-            self.islands.begin(len(self))
+            self.islands.begin(len(self), sure=sure or (self.lost and self.islands.sure))
+        self.lost = True
 
     def declare_found(self) -> None:
         """[ours] The robot that was carried knows again where it is."""

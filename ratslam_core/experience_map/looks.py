@@ -96,7 +96,7 @@ class Looks(MapReading):
     def _crosses(self, experience: int, packet: Packet, seen: Recognition) -> bool:
         """Whether a look at another island is believed; the robot's own is then joined to it."""
         robot, claimed = self.robot, self._claimed(experience, packet, seen)
-        if not self.gate.believes(robot, claimed, self.params.join_sights, len(self)):
+        if not self.gate.believes(robot, claimed, self._needed(claimed), len(self)):
             return False
         self.islands.join(int(self.island_of[experience]), self.island_of, self.poses, robot, claimed)
         return True
@@ -104,7 +104,7 @@ class Looks(MapReading):
     def _jumps(self, experience: int, packet: Packet, seen: Recognition) -> bool:
         """Whether a look at the robot's own island is believed although it is beyond reach."""
         robot, claimed = self.robot, self._claimed(experience, packet, seen)
-        needed = self.params.join_sights if self.lost else self.gate.params.gate_sights
+        needed = self._needed(claimed) if self.lost else self.gate.params.gate_sights
         if not self.gate.believes(robot, claimed, needed, len(self)):
             return False
         self.corrected += 1
@@ -115,6 +115,16 @@ class Looks(MapReading):
             off = math.hypot(claimed.x - robot.x, claimed.y - robot.y)
             soften(self.transitions, experience, self.gate.known, off, self.params.odometry_sigma)
         return True
+
+    def _needed(self, claimed: Pose2) -> int:
+        """How many sights must agree on `claimed` before a robot that is lost believes it.
+
+        Perhaps it was not carried: then only where odometry leads to is a few sights worth.
+        test_islands.py::test_who_was_perhaps_not_carried_asks_for_more.
+        """
+        off = math.hypot(claimed.x - self.robot.x, claimed.y - self.robot.y)
+        plain = self.islands.sure or off <= self.gate.params.snap_m
+        return self.params.join_sights if plain else max(self.params.join_sights, self.params.doubtful_sights)
 
     def _claimed(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
         return self.pose(experience).compose(self._look(experience, packet, seen))

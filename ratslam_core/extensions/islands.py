@@ -26,11 +26,16 @@ class Islands:
         self.current = 0
         self.begun = 0  # how many were begun after the first
         self.joined = 0  # how many of them were joined with another
+        self.sure = True  # that the robot was carried there
         self.landed = 0  # the number of the first experience on the latest
 
-    def begin(self, experiences: int) -> None:
-        """The robot was carried away: what it makes from now on lies on a new island. experiences: how many there are."""
+    def begin(self, experiences: int, *, sure: bool) -> None:
+        """The robot was carried away: what it makes from now on lies on a new island.
+
+        experiences: how many there are; sure: nothing but being carried explains what it sees.
+        """
         self.begun += 1
+        self.sure = sure
         self.current, self.landed = self.begun, experiences
 
     def join(

@@ -25,6 +25,7 @@ class KidnapDetector:
     def __init__(self, params: KidnapParams, view_params: LocalViewParams) -> None:
         self.params, self.view_params = params, view_params
         self.kidnapped = False
+        self.sure = True  # whether the image alone told of the last jump, and driving cannot explain it
         self._scans = ScanChange()
         self._usual = 1.0  # mean change of the image; to begin with, nothing is known of it
         self._known_before = 0  # how many experiences there were when it happened
@@ -39,6 +40,7 @@ class KidnapDetector:
         """
         p = self.params
         heard = self.view_params.range_surprise * self._scans.observe(ranges_m, p)
+        self.sure = image_change > 1
         jumped = image_change > max(p.least_image, p.usual_times * self._usual) and image_change + heard > 1
         self._usual += p.usual_rate * (min(image_change, MOST_USUAL) - self._usual)
         return jumped
@@ -74,6 +76,7 @@ class NeverKidnapped:
     """As in the papers: kidnaps are not noticed."""
 
     kidnapped = False
+    sure = True
 
     def __init__(self, params: KidnapParams, view_params: LocalViewParams) -> None:
         self.params, self.view_params = params, view_params

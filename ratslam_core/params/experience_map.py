@@ -100,6 +100,14 @@ class ExperienceMapParams:
         meaning="sights that must agree on where an island lies, or on where a robot is that knows itself lost",
         source="ours",
     )
+    doubtful_sights: int = param(
+        150,
+        unit="sights",
+        low=1,
+        high=10_000,
+        meaning="so many must agree if perhaps it was not carried, and they put it elsewhere than odometry does",
+        source="ours",
+    )
     zone_offset: bool = param(
         True,
         meaning="the robot enters an experience's zone beside its centre; off = at its centre",

@@ -52,7 +52,7 @@ class PoseFilterParams:
         source="ours",
     )
     gate_sights: int = param(
-        300,
+        900,
         unit="sights",
         low=1,
         high=100_000,
@@ -60,7 +60,7 @@ class PoseFilterParams:
         source="ours",
     )
     gate_surprise: int = param(
-        6,
+        18,
         unit="sights",
         low=1,
         high=1000,
