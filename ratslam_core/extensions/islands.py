@@ -5,7 +5,9 @@ sees now to a place where it is not, and bend both. On an island it maps what is
 island is a hypothesis of how the two lie to each other (`gate.py`); when enough of them agree, the island is moved
 there as a whole, and a closure joins the two. Should that prove wrong before the robot has found itself, what was made
 since it was carried is moved again, and the closures that said so are dropped. test_islands.py::{
-test_nothing_is_glued_on_a_guess,test_an_island_is_moved_as_a_whole,test_a_wrong_guess_is_taken_back}. With
+test_nothing_is_glued_on_a_guess,test_an_island_is_moved_as_a_whole,test_a_wrong_guess_is_taken_back}. Perhaps it was not
+carried at all, but only came round a corner: if the image alone does not say so, looks that put it elsewhere than odometry
+does must be far more (test_islands.py::test_who_was_perhaps_not_carried_asks_for_more). With
 `experience_map.islands` off there is one map, as in the papers, and a robot that is lost believes every look.
 """
 
@@ -29,7 +31,7 @@ class Islands:
         self.sure = True  # that the robot was carried there
         self.landed = 0  # the number of the first experience on the latest
 
-    def begin(self, experiences: int, *, sure: bool) -> None:
+    def begin(self, experiences: int, *, sure: bool = True) -> None:
         """The robot was carried away: what it makes from now on lies on a new island.
 
         experiences: how many there are; sure: nothing but being carried explains what it sees.

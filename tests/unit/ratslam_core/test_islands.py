@@ -46,13 +46,13 @@ def test_a_joined_island_takes_the_number_of_the_other() -> None:
 # ---------------------------------------------------------------- in the map
 
 
-def carried(islands: bool = True, to: Pose2 | None = None) -> Robot:
+def carried(islands: bool = True, to: Pose2 | None = None, sure: bool = True) -> Robot:
     """A walk along x past the views 0 to 5, after which the robot is carried to the place of view 2, or to another one."""
-    robot = Robot(replace(PLAIN, islands=islands), filter_params=PoseFilterParams())
+    robot = Robot(replace(PLAIN, islands=islands, doubtful_sights=3 * NEEDED), filter_params=PoseFilterParams())
     robot.see(0, new=True)
     for view in range(1, 6):
         robot.go(1.0, 0.0, view, new=True)
-    robot.map.declare_kidnapped()
+    robot.map.declare_kidnapped(sure=sure)
     robot.pose = to or Pose2(2.0, 0.0, 0.0)
     return robot
 
@@ -137,6 +137,26 @@ def test_a_robot_that_was_not_carried_after_all_is_found_where_it_was() -> None:
         robot.see(5, packet=elsewhere)
     assert robot.map.active == 5
     assert robot.map.robot.x == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize(("view", "needed"), [(2, 3 * NEEDED), (5, NEEDED)])
+def test_who_was_perhaps_not_carried_asks_for_more(view: int, needed: int) -> None:
+    """Where odometry leads to, at view 5, it is believed as soon as ever; at view 2, which may only look alike, later."""
+    robot = carried(sure=False)
+    place = Pose2(float(view), 0.0, 0.0)
+    for sights in range(1, needed + 1):
+        robot.see(view, packet=robot.packet(place))
+        assert robot.map.islands.joined == (sights == needed)
+    assert robot.map.robot.x == pytest.approx(view)
+
+
+def test_a_doubtful_jump_after_a_sure_one_makes_nothing_doubtful() -> None:
+    robot = carried()
+    robot.map.declare_kidnapped(sure=False)
+    assert robot.map.islands.sure
+    robot.map.declare_found()
+    robot.map.declare_kidnapped(sure=False)
+    assert not robot.map.islands.sure
 
 
 @given(st.lists(st.integers(0, 3), max_size=40), st.integers(0, 4))

@@ -99,6 +99,8 @@ def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: 
     brain.step(circle.image, still, ranges_m=np.array([1.0, 1.0, 1.0, *[others_m] * 5]))
     assert brain.local_view.image_change == pytest.approx(alike)
     assert brain.lost is noticed
+    if noticed:
+        assert brain.experience_map.islands.sure is (alike > 1)
 
 
 def _unlikeness(circle: Circle) -> float:
