@@ -30,7 +30,7 @@ class CellsOnly(ExperienceMap):
         self.pose_filter.local = Pose2(c * dx + s * dy, -s * dx + c * dy, turn)
         return False
 
-    def declare_kidnapped(self, *, sure: bool = True) -> None:  # noqa: ARG002
+    def declare_kidnapped(self, *, sure: bool = True) -> None:
         """Nothing is done: only the pose cells can relocalise the robot."""
 
     def declare_found(self) -> None:
