@@ -31,9 +31,11 @@ class LocalViewPart(Protocol):
         image: NDArray[np.uint8] | None,
         scene: int | None = None,
         ranges_m: NDArray[np.float64] | None = None,
+        turned_rad: float = 0.0,
         /,
     ) -> Recognition:
-        """The active cell for what is seen now. When it raises a ValueError, nothing may have changed."""
+        """The active cell for what is seen now, after a turn of which the wheels tell. When it raises a ValueError, nothing
+        may have changed."""
         ...
 
     def strength(self, seen: Recognition, /) -> float:

@@ -90,7 +90,7 @@ class RatSlam:
         watch = watch or _nobody
         ground = self.experience_map.ground
         self.local_view.recruits, self.local_view.faded = not ground.familiar, ground.faded
-        seen = self.local_view.observe(image, scene, scan)
+        seen = self.local_view.observe(image, scene, scan, odometry.yaw_rate * odometry.dt)
         watch("view match")
         odometry = self.experience_map.calibrated(odometry)
         if self.kidnap_detector.observe(self.local_view.image_change, scan):

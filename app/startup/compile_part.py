@@ -82,7 +82,7 @@ def cells() -> None:
     pose_cells, jump = PoseCells(config.pose_cells), ScanChange()
     images = rng.integers(0, 256, (4, 8, 12), dtype=np.uint8).repeat(6, axis=1).repeat(6, axis=2)
     for k in range(60):
-        seen = local_view.observe(images[k // 5 % 4], None, RANGES)
+        seen = local_view.observe(images[k // 5 % 4], None, RANGES, 0.02)
         local_view.difference_to(0)
         jump.observe(RANGES + k % 2, config.kidnap)
         pose_cells.integrate(0.03, 0.02)

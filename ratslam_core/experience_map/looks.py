@@ -96,7 +96,7 @@ class Looks(MapReading):
     def _crosses(self, experience: int, packet: Packet, seen: Recognition) -> bool:
         """Whether a look at another island is believed; the robot's own is then joined to it."""
         robot, claimed = self.robot, self._claimed(experience, packet, seen)
-        if not self.gate.believes(robot, claimed, self._needed(claimed), len(self)):
+        if not self._proved(claimed, self._needed(claimed), seen.view):
             return False
         self.islands.join(int(self.island_of[experience]), self.island_of, self.poses, robot, claimed)
         return True
@@ -105,7 +105,7 @@ class Looks(MapReading):
         """Whether a look at the robot's own island is believed although it is beyond reach."""
         robot, claimed = self.robot, self._claimed(experience, packet, seen)
         needed = self._needed(claimed) if self.lost else self.gate.params.gate_sights
-        if not self.gate.believes(robot, claimed, needed, len(self)):
+        if not self._proved(claimed, needed, seen.view):
             return False
         self.corrected += 1
         if self.lost and experience < self.islands.landed:
@@ -115,6 +115,9 @@ class Looks(MapReading):
             off = math.hypot(claimed.x - robot.x, claimed.y - robot.y)
             soften(self.transitions, experience, self.gate.known, off, self.params.odometry_sigma)
         return True
+
+    def _proved(self, claimed: Pose2, needed: int, view: int) -> bool:
+        return self.gate.believes(self.robot, claimed, needed, len(self), view, self.params.join_views)
 
     def _needed(self, claimed: Pose2) -> int:
         """How many sights must agree on `claimed` before a robot that is lost believes it.

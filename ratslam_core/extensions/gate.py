@@ -28,6 +28,7 @@ class Gate:
         self.surprised = False  # where it believes itself to be, the robot expects something else than it sees
         self.needed = params.gate_sights  # that must agree before it is believed
         self.known = 0  # how many experiences there were when it arose
+        self._views: list[int] = []  # that were seen at these sights
         self._robot = Pose2(0.0, 0.0, 0.0)  # in the map, at the latest of these sights
         self._other = Pose2(0.0, 0.0, 0.0)  # where that put it
 
@@ -48,11 +49,14 @@ class Gate:
         """There is no doubt any more."""
         self.sights = 0
 
-    def believes(self, robot: Pose2, claimed: Pose2, needed: int, experiences: int) -> bool:
+    def believes(
+        self, robot: Pose2, claimed: Pose2, needed: int, experiences: int, view: int = -1, views: int = 1
+    ) -> bool:
         """Weigh one look beyond reach: whether the robot should believe that it is at `claimed`, not where it believes to be.
 
         A sight that contradicts the hypothesis takes one away from those that agree; with the last of them, its own claim
-        takes their place. needed: how many must agree; experiences: how many there are.
+        takes their place. needed: how many must agree; experiences: how many there are; view: what it sees; views: how
+        many different ones must be among those that agree, since a robot that stands sees one thing all the time.
         """
         self.needed = needed
         expected = self.hypothesis(robot)
@@ -61,10 +65,12 @@ class Gate:
             if self.sights > 0:
                 return False
         if self.sights == 0:
-            self.known = experiences
+            self.known, self._views = experiences, []
+        if view not in self._views:
+            self._views.append(view)
         self.sights += self.params.gate_surprise if self.surprised else 1
         self._robot, self._other = robot, claimed
-        if self.sights < needed:
+        if self.sights < needed or len(self._views) < views:
             return False
         self.dismiss()
         return True

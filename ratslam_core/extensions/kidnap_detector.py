@@ -41,7 +41,7 @@ class KidnapDetector:
         p = self.params
         heard = self.view_params.range_surprise * self._scans.observe(ranges_m, p)
         self.sure = image_change > 1
-        jumped = image_change > max(p.least_image, p.usual_times * self._usual) and image_change + heard > 1
+        jumped = image_change > p.usual_times * self._usual and image_change + heard > 1
         self._usual += p.usual_rate * (min(image_change, MOST_USUAL) - self._usual)
         return jumped
 

@@ -63,6 +63,27 @@ def difference(new: Features, stored: Features, shift: int, columns: int, rows: 
 
 
 @njit(cache=True, nogil=True)
+def turned_apart(new: Features, last: Features, shift: float, columns: int, rows: int) -> float:
+    """Mean absolute difference of an image and the last one moved `shift` columns to the right, over those that both show.
+
+    Between two columns, the last image is interpolated. 0 if the two show nothing in common.
+    """
+    total, seen = 0.0, 0
+    for c in range(columns):
+        at = c - shift
+        if at < 0.0 or at > columns - 1:
+            continue
+        left = min(int(at), columns - 2) if columns > 1 else 0
+        share = at - left
+        right = left + 1 if share > 0.0 else left
+        for r in range(rows):
+            before = (1.0 - share) * last[left * rows + r] + share * last[right * rows + r]
+            total += abs(new[c * rows + r] - before)
+        seen += 1
+    return total / (seen * rows) if seen else 0.0
+
+
+@njit(cache=True, nogil=True)
 def _nearest(
     known: NDArray[np.uint8],
     new: Features,

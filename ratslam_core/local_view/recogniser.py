@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.local_view.echo_matcher import EchoMatcher, heard_apart
 from ratslam_core.local_view.front_ends import FrontEnd, named_front_end
-from ratslam_core.local_view.matcher import Features, Matcher, difference
+from ratslam_core.local_view.matcher import Features, Matcher, difference, turned_apart
 from ratslam_core.params import LocalViewParams
 from ratslam_core.types import Recognition
 
@@ -86,18 +86,20 @@ class LocalView:
         image: NDArray[np.uint8] | None,
         scene: int | None = None,
         ranges_m: NDArray[np.floating] | None = None,
+        turned_rad: float = 0.0,
     ) -> Recognition:
         """The active cell for what is seen now; a new one if no known one is like it.
 
         image: (h, w) grey or (h, w, 3) RGB, uint8. scene: for the front end "scene numbers", which looks at nothing
         else. ranges_m: of the sonars, for "image and sonars", shape (n_sonars,); without them the image alone counts.
+        turned_rad: what the wheels say of the turn since the image before, left positive.
 
         [ours] An image that shows nothing (a wall at arm's length) activates no cell and recruits none, since such
         images look alike everywhere. test_local_view.py::test_a_bland_view_shows_nothing. With vision off, no image
         does.
         """
         features = self.front_end.look(image, scene, ranges_m)
-        self.image_change = self._jump(features)
+        self.image_change = self._jump(features, turned_rad)
         self.features = self._last = features
         most = self.params.shift if self.front_end.shifts else 0
         best, apart, shift = self._matcher.nearest(self.templates, features, most)
@@ -129,13 +131,18 @@ class LocalView:
             return None
         return self._sub_column(view, shift) * self.params.field_of_view / self.front_end.columns
 
-    def _jump(self, features: Features) -> float:
-        """By how much the last image, shifted as one tick of turning may shift it, differs from this one, over the limit."""
+    def _jump(self, features: Features, turned_rad: float) -> float:
+        """By how much the last image, turned as the wheels say, differs from this one, over the limit.
+
+        Wheels that slip turn nothing, so the image as it was explains this one as well.
+        test_recogniser.py::test_a_turn_that_the_wheels_tell_of_is_no_jump.
+        """
         limit = self.front_end.surprise(self.params)
         if self._last is None or not self.params.enabled or math.isinf(limit):
             return 0.0
-        most = self.params.turn_shift if self.front_end.shifts else 0
-        least = self.front_end.scale * min(self._apart(features, self._last, turn) for turn in range(-most, most + 1))
+        end = self.front_end
+        shifts = {0.0, turned_rad * end.columns / self.params.field_of_view} if end.shifts else {0.0}
+        least = end.scale * min(turned_apart(features, self._last, shift, end.columns, end.rows) for shift in shifts)
         if limit == 0:
             return math.inf if least > 0 else 0.0
         return least / limit

@@ -100,6 +100,14 @@ class ExperienceMapParams:
         meaning="sights that must agree on where an island lies, or on where a robot is that knows itself lost",
         source="ours",
     )
+    join_views: int = param(
+        3,
+        unit="views",
+        low=1,
+        high=1000,
+        meaning="so many different views must be among them, since who stands still sees one thing all the time",
+        source="ours",
+    )
     doubtful_sights: int = param(
         150,
         unit="sights",

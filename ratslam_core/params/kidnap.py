@@ -16,13 +16,6 @@ class KidnapParams:
     enabled: bool = param(
         True, meaning="notice a kidnap; off = a jump of the image is only another view", source="ours", live=False
     )
-    least_image: float = param(
-        0.5,
-        low=0.0,
-        high=1.0,
-        meaning="the image must change by this share of its threshold, however much the sonars change",
-        source="ours",
-    )
     usual_times: float = param(
         2.0,
         low=0.0,
@@ -38,28 +31,23 @@ class KidnapParams:
         meaning="weight of the newest change in the mean that counts as usual",
         source="ours",
     )
+    sonar_near_m: float = param(
+        0.2, unit="m", low=0.01, high=1.0, meaning="shorter ranges count as this", source="ours"
+    )
     sonar_reach_m: float = param(
-        3.0,
+        4.0,
         unit="m",
-        low=0.1,
+        low=1.1,
         high=20.0,
         meaning="longer ranges count as this, since distant echoes come and go",
         source="ours",
     )
-    sonar_most_m: float = param(
-        1.0,
-        unit="m",
+    sonar_most: float = param(
+        0.35,
+        unit="ln",
         low=0.01,
-        high=20.0,
-        meaning="a larger change of half of the sonars counts as this",
-        source="ours",
-    )
-    sonar_still_m: float = param(
-        0.17,
-        unit="m",
-        low=0.0,
-        high=5.0,
-        meaning="a smaller change of half of the sonars speaks against a kidnap",
+        high=3.0,
+        meaning="a larger change of one sonar, as the logarithm of the ratio of its ranges, counts as this",
         source="ours",
     )
     found_again: int = param(

@@ -125,7 +125,7 @@ class LocalViewParams:
         source="ours",
     )
     composite_surprise: float = param(
-        9.0, unit="levels", low=0.0, high=255.0, meaning="as `surprise`, for image and sonars", source="ours"
+        9.5, unit="levels", low=0.0, high=255.0, meaning="as `surprise`, for image and sonars", source="ours"
     )
     edge_surprise: float = param(
         20.0, unit="levels", low=0.0, high=255.0, meaning="as `surprise`, for complex cells", source="ours"
@@ -134,11 +134,10 @@ class LocalViewParams:
         20.0, unit="levels", low=0.0, high=255.0, meaning="as `surprise`, for hue and saturation", source="ours"
     )
     range_surprise: float = param(
-        1.5,
-        unit="1/m",
+        2.0,
         low=0.0,
         high=10.0,
-        meaning="added to the image's change for each metre that half of the sonars change by; above 1 is a kidnap",
+        meaning="how much a change of the sonars adds to the image's change; above 1 is a kidnap",
         source="ours",
     )
     lost_injection: float = param(
@@ -155,9 +154,6 @@ class LocalViewParams:
         high=1.0,
         meaning="share of the recognised views that are taken for another known one",
         source="D 5.1",
-    )
-    turn_shift: int = param(
-        3, unit="columns", low=0, high=11, meaning="how far one tick of turning may shift the image", source="ours"
     )
     dark: float = param(
         40.0,

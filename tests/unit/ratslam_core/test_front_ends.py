@@ -53,9 +53,10 @@ def test_the_shift_tells_the_heading(kind: str) -> None:
 @pytest.mark.parametrize("kind", SEEING)
 def test_surprise_is_a_jump_that_no_turn_explains(kind: str) -> None:
     local_view = view_of(kind, surprise=10.0, edge_surprise=10.0, colour_surprise=10.0, composite_surprise=7.0)
-    surprised = []
+    surprised, before = [], 0
     for turned in (0, 4, 8, 4):
-        local_view.observe(office(3, turned=turned))
+        local_view.observe(office(3, turned=turned), turned_rad=(turned - before) * math.radians(50) / 64)
+        before = turned
         surprised.append(local_view.image_change > 1)
     assert surprised == [False] * 4
     for seed in range(10, 20):

@@ -14,7 +14,7 @@ from ratslam_core.extensions.gate import Gate
 
 from .drives import Robot
 
-PLAIN = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0)
+PLAIN = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0, join_views=1)
 P = PoseFilterParams()
 HERE, THERE = Pose2(1.0, 1.0, 0.5), Pose2(4.0, -1.0, 2.0)
 poses = st.builds(Pose2, st.floats(-50, 50), st.floats(-50, 50), st.floats(-3, 3))
@@ -141,3 +141,13 @@ def test_what_was_made_in_doubt_is_no_witness() -> None:
     robot.see(16, packet=robot.packet(Pose2(16.0, 0.0, 0.0)))  # a place that was made without doubt
     assert robot.map.active == 16
     assert robot.map.gate.sights == 3
+
+
+@given(st.lists(st.integers(0, 4), min_size=1, max_size=20), st.integers(1, 5), st.integers(1, 8))
+def test_so_many_different_views_must_agree(seen: list[int], views: int, needed: int) -> None:
+    """Who stands before one view and sees it for ever has seen one thing."""
+    gate = Gate(P)
+    believed = [gate.believes(HERE, THERE, needed, 7, view, views) for view in seen]
+    ready = [k + 1 >= needed and len(set(seen[: k + 1])) >= views for k in range(len(seen))]
+    first = ready.index(True) if True in ready else len(seen)
+    assert believed[: first + 1] == ready[: first + 1]

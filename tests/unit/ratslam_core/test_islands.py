@@ -16,7 +16,7 @@ from ratslam_core.extensions.islands import Islands, move
 from .drives import Robot, relative
 
 NEEDED = 4
-PLAIN = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0, join_sights=NEEDED)
+PLAIN = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0, join_sights=NEEDED, join_views=1)
 poses = st.builds(Pose2, st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3))
 
 

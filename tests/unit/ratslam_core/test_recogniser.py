@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ratslam_core import LocalView, LocalViewParams, Recognition
@@ -90,17 +92,44 @@ def test_a_ramp_tells_the_fraction_of_a_shift_exactly(columns: float) -> None:
     assert seen.facing_rad == pytest.approx(columns * FOV / 12, abs=1e-9)
 
 
-@pytest.mark.parametrize("turn", [0, 1, 2, 3, -2, -3])
-def test_a_jump_is_what_is_left_after_the_best_turn(turn: int) -> None:
-    scene = np.random.default_rng(1).integers(60, 200, 40).astype(np.uint8)
-    local_view = LocalView(LocalViewParams(turn_shift=2), front_end=AsItIs())
+@pytest.mark.parametrize("turn", [0, 1, 2, 11, -2, -3])
+@pytest.mark.parametrize(("told", "explained"), [(0, False), (1, True), (-1, False)])
+def test_a_turn_that_the_wheels_tell_of_is_no_jump(turn: int, told: int, explained: bool) -> None:
+    """turn: by so many columns to the right; the wheels tell of none, of it, or of the opposite."""
+    scene = np.random.default_rng(1).integers(60, 200, 50).astype(np.uint8)
+    local_view = LocalView(LocalViewParams(), front_end=AsItIs())
     local_view.observe(scene[20:32])
     assert local_view.image_change == 0.0
-    local_view.observe(scene[20 + turn : 32 + turn] + np.uint8(3))
-    if abs(turn) <= 2:
+    local_view.observe(scene[20 + turn : 32 + turn] + np.uint8(3), turned_rad=-told * turn * FOV / 12)
+    if explained or turn == 0:
         assert local_view.image_change == pytest.approx(2 * 3 / 4)
     else:
         assert local_view.image_change > 4
+
+
+@given(st.floats(-1.0, 1.0))
+def test_a_turn_of_a_part_of_a_column_is_no_jump(columns: float) -> None:
+    local_view = LocalView(LocalViewParams(), front_end=AsItIs())
+    ramp = 50 + 10 * np.arange(12)
+    local_view.observe(ramp.astype(np.uint8))
+    local_view.observe(np.rint(ramp - 10 * columns).astype(np.uint8), turned_rad=columns * FOV / 12)
+    assert local_view.image_change <= 2 * 0.5 / 4 + 1e-9  # the rounding
+
+
+def test_wheels_that_slip_make_no_jump() -> None:
+    scene = np.random.default_rng(1).integers(60, 200, 12).astype(np.uint8)
+    local_view = LocalView(LocalViewParams(), front_end=AsItIs())
+    for _ in range(3):
+        local_view.observe(scene, turned_rad=2 * FOV / 12)
+        assert local_view.image_change == 0.0
+
+
+def test_after_a_turn_that_leaves_nothing_in_common_there_is_nothing_to_compare() -> None:
+    scene = np.random.default_rng(1).integers(60, 200, 24).astype(np.uint8)
+    local_view = LocalView(LocalViewParams(), front_end=AsItIs())
+    local_view.observe(scene[:12])
+    local_view.observe(scene[12:], turned_rad=-FOV)
+    assert local_view.image_change == 0.0
 
 
 @pytest.mark.parametrize(("jump", "enabled"), [(math.inf, True), (4.0, False)])
