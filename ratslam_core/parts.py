@@ -38,6 +38,10 @@ class LocalViewPart(Protocol):
         may have changed."""
         ...
 
+    def nearest_of(self, views: NDArray[np.int64], /) -> Recognition:
+        """Which of these known views is like what was seen last."""
+        ...
+
     def strength(self, seen: Recognition, /) -> float:
         """How sure a recognition is, 0 to 1."""
         ...
@@ -86,6 +90,7 @@ class ExperienceMapPart(Protocol):
     active: int
     agrees: bool
     gate: Any  # a `Gate`, with what is held back
+    elsewhere: Recognition  # set by the brain before each step: which of the foreign views it sees
     ground: Any  # a `FamiliarGround`, or `NewGround(MemoryParams())`, with which every sight is learnt
 
     def __len__(self) -> int: ...
@@ -93,6 +98,10 @@ class ExperienceMapPart(Protocol):
     def local_pose(self) -> Pose2: ...
     @property
     def robot(self) -> Pose2: ...
+    @property
+    def foreign_views(self) -> NDArray[np.int64]:
+        """Views of maps that are not yet joined with the one that the robot is in; empty where there is one map."""
+        ...
 
     def calibrated(self, odometry: Odometry, /) -> Odometry:
         """Odometry without the errors that the map has learnt."""

@@ -19,7 +19,7 @@ from ratslam_core.params import RatSlamParams
 from ratslam_core.parts import ExperienceMapPart, KidnapDetectorPart, LocalViewPart, Optimiser, PoseCellsPart
 from ratslam_core.pose_cells.network import PoseCells
 from ratslam_core.standard_parts import StandardParts
-from ratslam_core.types import Estimate, Odometry, Recognition
+from ratslam_core.types import Estimate, Odometry, Recognition, nothing_seen
 from ratslam_core.visual_association import VisualAssociation
 
 # The stages of `RatSlam.step`. In the papers the second and the third change places (`pose_cells.move_first` off).
@@ -104,6 +104,8 @@ class RatSlam:
         relocalised = jump > self.params.pose_cells.snap_cells
         self.relocalisations += relocalised
         self.experience_map.gate.surprised = self._misses_what_it_expects()
+        foreign = self.experience_map.foreign_views
+        self.experience_map.elsewhere = self.local_view.nearest_of(foreign) if len(foreign) else nothing_seen()
         created = self.experience_map.step(packet, seen, odometry, behaviour)
         known = NOTHING if created or seen.view == NOTHING else self.experience_map.active
         self._settle(known)

@@ -100,6 +100,11 @@ class Recognition:
     familiar: bool = False  # unlike every known view, but no cell is recruited, because the place is known well
 
 
+def nothing_seen() -> Recognition:
+    """What the local view says where there is nothing to recognise."""
+    return Recognition(-1, False, -1, math.inf)
+
+
 @kind("estimate/1")
 @dataclass(frozen=True, slots=True)
 class Estimate:

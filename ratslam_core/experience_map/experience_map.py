@@ -72,7 +72,7 @@ class ExperienceMap(Looks):
             self._experiences.forget_view(seen.view)
         before = self._departure()
         # On familiar ground there is something to see, so the experiences of nothing do not count.
-        best = -1 if seen.familiar else self._seen_experience(packet, seen)
+        best, seen = (-1, seen) if seen.familiar else self._seen_experience(packet, seen)
         by_place = self.ground.of_view(self, seen.view) if best < 0 else -1
         if max(best, by_place) < 0 and self.ground.spare():
             return False

@@ -16,7 +16,7 @@ from ratslam_core.extensions.gate import Gate
 from ratslam_core.extensions.islands import Islands, move
 from ratslam_core.extensions.torn import soften
 from ratslam_core.params import ExperienceMapParams, PoseFilterParams
-from ratslam_core.types import IDENTITY, Packet, Pose2, Recognition, wrap_angle
+from ratslam_core.types import IDENTITY, Packet, Pose2, Recognition, nothing_seen, wrap_angle
 
 
 class Looks(MapReading):
@@ -32,28 +32,41 @@ class Looks(MapReading):
         super().__init__(shape, cell_m, params, filter_params)
         self.gate = Gate(filter_params or PoseFilterParams())
         self.islands = Islands()
+        self.elsewhere = nothing_seen()  # what of the views of other islands it sees
+        self._foreign_views: tuple[int, int, NDArray[np.int64]] = (0, 0, np.zeros(0, np.int64))
         self.lost = False  # it knows that it was carried away and has not found itself again
         self.corrected = 0  # how often looks that were held back proved the robot wrong
 
-    def _seen_experience(self, packet: Packet, seen: Recognition) -> int:
-        """The experience that the robot sees: the most energetic of those that it can see, -1 for none.
+    @property
+    def foreign_views(self) -> NDArray[np.int64]:
+        """The views of other islands. Where the robot has been on its own, it made views that hide them."""
+        islands = self.islands
+        if self._foreign_views[:2] != (islands.begun, islands.joined):
+            apart = islands.begun > islands.joined
+            views = self.views[self.island_of != islands.current] if apart else self.views[:0]
+            self._foreign_views = islands.begun, islands.joined, np.unique(views[views >= 0]).astype(np.int64)
+        return self._foreign_views[2]
+
+    def _seen_experience(self, packet: Packet, seen: Recognition) -> tuple[int, Recognition]:
+        """The experience that the robot sees, the most energetic of those that it can see, -1 for none; and as what.
 
         When what was held back has won, it is one beyond reach; where that lies on another island, the two were joined.
         """
         reach = math.inf if self.lost and not self.params.islands else self.gate.reach_m(self.pose_filter.sigma_m)
         best = self._most_energetic(packet, seen.view, reach)
         if seen.view < 0 or not self.params.match_view:
-            return best
-        foreign = self._foreign(packet, seen) if self.islands.begun else -1
-        if foreign >= 0:
-            return foreign if self._crosses(foreign, packet, seen) else best
+            return best, seen
+        for look in (seen, self.elsewhere) if self.islands.begun else ():
+            foreign = self._foreign(packet, look) if look.view >= 0 else -1
+            if foreign >= 0:
+                return (foreign, look) if self._crosses(foreign, packet, look) else (best, seen)
         if math.isinf(reach):
-            return best
+            return best, seen
         if (best >= 0 and not self._experiences.doubtful[best]) or self._sees_where_it_is(seen.view, reach):
             self.gate.doubt()
-            return best
+            return best, seen
         far = self._most_energetic(packet, seen.view, reach, beyond=True)
-        return far if far >= 0 and self._jumps(far, packet, seen) else best
+        return (far if far >= 0 and self._jumps(far, packet, seen) else best), seen
 
     def _foreign(self, packet: Packet, seen: Recognition) -> int:
         """The experience of another island that the robot sees, wherever its packet is; -1 for none.

@@ -16,7 +16,7 @@ from ratslam_core.local_view.echo_matcher import EchoMatcher, heard_apart
 from ratslam_core.local_view.front_ends import FrontEnd, named_front_end
 from ratslam_core.local_view.matcher import Features, Matcher, difference, turned_apart
 from ratslam_core.params import LocalViewParams
-from ratslam_core.types import Recognition
+from ratslam_core.types import Recognition, nothing_seen
 
 NOTHING = -1
 
@@ -40,7 +40,7 @@ class LocalView:
         end = self.front_end
         size = end.columns * end.rows + end.echoes
         self.features = np.zeros(size, np.uint8)  # of what is seen now
-        self.recognition = Recognition(NOTHING, False, NOTHING, math.inf)
+        self.recognition = nothing_seen()
         self.image_change = 0.0  # since the image before, as a share of what driving can explain; above 1 it cannot
         self.false_positives = 0  # so far
         self.recruits = True  # whether an unknown sight becomes a view
@@ -75,6 +75,20 @@ class LocalView:
         stored = self.stored(view)
         apart = min(self._apart(self.features, stored, shift) for shift in range(-most, most + 1))
         return self._levels(apart + self._heard_apart(self.features, stored), self.features)
+
+    def nearest_of(self, views: NDArray[np.int64]) -> Recognition:
+        """[ours] Which of these known views is like what was seen last, whatever else is more like it; `NOTHING` if none is.
+
+        test_recogniser.py::test_a_view_is_looked_for_among_some.
+        """
+        most = self.params.shift if self.front_end.shifts else 0
+        best, apart, shift = self._matcher.nearest(self.templates[views], self.features, most)
+        apart = self._levels(apart, self.features)
+        limit = self.front_end.threshold(self.params)
+        if self.recognition.view == NOTHING or best < 0 or apart > limit:
+            return nothing_seen()
+        view = int(views[best])
+        return Recognition(view, False, view, apart, self._facing(view, shift))
 
     def strength(self, seen: Recognition) -> float:
         """How sure a recognition is: 1 for a new or an equal view, 0 for one that is only just recognised."""
