@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2, PoseFilterParams
 from ratslam_core.experience_map.experiences import Experiences
 from ratslam_core.extensions.islands import Islands, move
+from ratslam_core.types import Recognition, nothing_seen
 
 from .drives import Robot, relative
 
@@ -165,3 +166,29 @@ def test_the_experiences_of_a_view_are_found_newest_first(views: list[int], aske
     for view in views:
         known.add(Packet(1.0, 2.0, 0.0, 1.0), view, Pose2(0.0, 0.0, 0.0))
     assert known.of_view(asked).tolist() == [i for i in reversed(range(len(views))) if views[i] == asked]
+
+
+@pytest.mark.parametrize("hidden", [True, False])
+def test_an_own_view_does_not_hide_that_of_another_island(hidden: bool) -> None:
+    """Before it can be sure, the robot makes view 20 of what it saw as view 2; from then on that is what it recognises."""
+    robot = carried()
+    assert robot.map.foreign_views.tolist() == [0, 1, 2, 3, 4, 5]
+    robot.see(20, new=True)
+    for _ in range(NEEDED):
+        assert robot.map.islands.joined == 0
+        robot.map.elsewhere = Recognition(2, False, 2, 1.0, 0.0) if hidden else nothing_seen()
+        robot.see(20)
+    assert robot.map.islands.joined == hidden
+    assert robot.map.active == (2 if hidden else 6)
+    assert robot.map.foreign_views.tolist() == ([] if hidden else [0, 1, 2, 3, 4, 5])
+
+
+def test_what_is_seen_elsewhere_counts_for_where_it_is_and_not_for_here() -> None:
+    """Another island's view 4 is seen beside its own view 20: the claim is that of view 4."""
+    robot = carried(to=Pose2(4.0, 0.0, 1.0))
+    robot.see(20, new=True)
+    for _ in range(NEEDED):
+        robot.map.elsewhere = Recognition(4, False, 4, 1.0, 1.0)
+        robot.see(20)
+    assert robot.map.active == 4
+    assert robot.map.robot.heading_rad == pytest.approx(1.0)

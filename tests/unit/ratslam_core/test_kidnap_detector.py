@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -152,7 +151,8 @@ def test_a_change_is_a_jump_only_above_its_limits() -> None:
     """Image and sonars together change by more than 1; all that sonars can add is a half."""
     params, views = KidnapParams(usual_times=0.0, sonar_most=0.5), LocalViewParams(range_surprise=1.0)
     for image, change, noticed in (
-        (1.0, None, False), (1.001, None, True), (0.749, 0.25, False), (0.751, 0.25, True), (0.499, 2.0, False), (0.501, 2.0, True),
+        (1.0, None, False), (1.001, None, True), (0.749, 0.25, False), (0.751, 0.25, True), (0.499, 2.0, False),
+        (0.501, 2.0, True),
     ):  # fmt: skip
         detector = KidnapDetector(params, views)
         if change is None:

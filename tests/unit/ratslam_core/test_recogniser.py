@@ -168,3 +168,23 @@ def test_without_facing_a_shift_tells_no_heading() -> None:
     local_view.observe(even(100))
     seen = local_view.observe(even(100))
     assert (seen.view, seen.recruited, seen.facing_rad) == (0, False, None)
+
+
+@given(st.lists(st.integers(0, 9), max_size=6, unique=True), st.integers(0, 60))
+def test_a_view_is_looked_for_among_some(some: list[int], level: int) -> None:
+    """The views are 6 grey levels apart, and those within 5 are alike: the nearest of those that are asked for."""
+    local_view = LocalView(LocalViewParams(shift=0), front_end=AsItIs(limit=10.0))
+    for view in range(10):
+        assert local_view.observe(even(1 + 6 * view)).view == view
+    local_view.observe(even(1 + level))
+    found = local_view.nearest_of(np.array(some, np.int64))
+    near = sorted(some, key=lambda view: (abs(6 * view - level), some.index(view)))
+    assert found.view == (near[0] if near and abs(6 * near[0] - level) <= 5 else -1)
+    assert not found.recruited
+
+
+def test_where_nothing_is_seen_no_view_is_like_it() -> None:
+    local_view = LocalView(front_end=AsItIs(limit=99.0))
+    local_view.observe(even(20))
+    local_view.observe(even(0))
+    assert local_view.nearest_of(np.array([0])).view == -1
