@@ -44,36 +44,63 @@ class ExactSolver:
 
     def _solve(self, map_: ExperienceMap) -> None:
         before = map_.poses.copy()
-        work = self._settle(map_, None)
-        if map_.params.robust and self.params.closures == "graduated" and self._contradicted(map_):
-            map_.poses[:] = before  # many false closures would have led it far astray
-            share, more = kept(*_given(map_), self._odometry(map_), map_.params.odometry_sigma, self.params)
-            work += more + self._settle(map_, share)
+        given_up = self._given_up(map_)
+        learnt, work = self._settle(map_, None)
+        if map_.params.robust and self.params.closures == "graduated" and self._contradicted(map_, given_up):
+            map_.poses[:] = before  # many false closures would have led it far astray, and the bias, too
+            self._learn(map_, -learnt)
+            share, trying = kept(*_given(map_), self._odometry(map_), map_.params.odometry_sigma, self.params)
+            work += trying + self._settle(map_, share)[1]
         self._solved_at, self._closures_at_solve = map_.steps, map_.closures
         self._rest_after_solve = work / self.params.work_a_step
 
-    def _contradicted(self, map_: ExperienceMap) -> bool:
-        """Whether the map leaves a closure so far off that all of them are put on trial."""
-        looks = np.flatnonzero(~self._odometry(map_) & (map_.transitions.weight[: map_.transitions.count] > 0.0))
-        off = contradiction(*_given(map_), looks, map_.params.odometry_sigma, self.params)
-        return bool(off.max(initial=0.0) > self.params.closure_trial / self.params.closure_bar)
+    def _contradicted(self, map_: ExperienceMap, given_up: NDArray[np.bool_]) -> bool:
+        """Whether all closures are put on trial: one that was believed is left far off, or one that was given up agrees.
+
+        One that was given up and is still far off is no news. test_graduated_trust.py::test_a_lie_is_tried_once.
+        """
+        t = map_.transitions
+        looks = np.flatnonzero(~self._odometry(map_) & (t.weight[: t.count] > 0.0))
+        off, old = contradiction(*_given(map_), looks, map_.params.odometry_sigma, self.params), given_up[looks]
+        far = off > self.params.closure_trial / self.params.closure_bar
+        return bool(np.any(far & ~old) or np.any((off < 1.0) & old))
+
+    def _given_up(self, map_: ExperienceMap) -> NDArray[np.bool_]:
+        """The closures in which the last trial ended without belief, and that were not measured since."""
+        t = map_.transitions
+        graduated = map_.params.robust and self.params.closures == "graduated"
+        unbelieved: NDArray[np.bool_] = (t.believed[: t.count] == 0.0) & ~self._odometry(map_) & graduated
+        return unbelieved
 
     def _odometry(self, map_: ExperienceMap) -> NDArray[np.bool_]:
         return map_.transitions.chain[: map_.transitions.count]
 
-    def _settle(self, map_: ExperienceMap, share: NDArray[np.float64] | None) -> float:
-        """One exact correction; returns its work. share: how far each row is kept, 0 to 1; None: by how well it fits."""
+    def _settle(self, map_: ExperienceMap, share: NDArray[np.float64] | None) -> tuple[float, float]:
+        """One exact correction; returns the bias it learnt (rad/s) and its work.
+
+        share: how far each row is kept, 0 to 1; None: by how well it fits.
+        """
         t, p = map_.transitions, map_.params
         poses, ends, moves, weights = _given(map_)
         turning = t.turning_s[: t.count] if p.calibrate else None
         if share is None and p.robust:
-            share = relaxation.trust(poses, ends, moves, weights, self._odometry(map_), p.odometry_sigma, self.params)
+            if self._given_up(map_).any():  # the verdict of the last trial stands
+                share = np.divide(t.believed[: t.count], weights, out=np.zeros(t.count), where=weights > 0.0)
+            else:
+                share = relaxation.trust(
+                    poses, ends, moves, weights, self._odometry(map_), p.odometry_sigma, self.params
+                )
         t.believed[: t.count] = weights if share is None else weights * share
         more, work = relaxation.solve(poses, ends, moves, t.believed[: t.count], turning, self.params)
         if turning is not None:
-            map_.yaw_bias += more
-            moves[:, 2] -= more * turning
-        return work
+            self._learn(map_, more)
+        return more, work
+
+    def _learn(self, map_: ExperienceMap, bias: float) -> None:
+        """Take so much more for the bias of the yaw rate (rad/s), also in what was measured before."""
+        t = map_.transitions
+        map_.yaw_bias += bias
+        t.move[: t.count, 2] -= bias * t.turning_s[: t.count]
 
 
 def _given(

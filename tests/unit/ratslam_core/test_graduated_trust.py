@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from app.evaluation.alignment import rmse
 from ratslam_core import ExperienceMap, ExperienceMapParams, Packet, Pose2, SolverParams
 from ratslam_core.experience_map import relaxation
+from ratslam_core.extensions import exact_solver
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.graduated_trust import contradiction, kept
 
@@ -47,10 +49,14 @@ def corrected(graph: Graph, closures: str) -> ExperienceMap:
         row = map_.transitions.add(i, j, travelled=True)
         map_.transitions.measure(row, Pose2(*move.tolist()), 1.0, map_.transitions.move[row].copy(), 0.0)
     assert (map_.transitions.chain[: len(graph.ends)] == graph.odometry).all()
-    for _ in range(10):
+    correct(map_, 10)
+    return map_
+
+
+def correct(map_: ExperienceMap, times: int) -> None:
+    for _ in range(times):
         map_.steps, map_.closures = map_.steps + 10**9, map_.closures + 1
         map_.correct()
-    return map_
 
 
 @pytest.mark.parametrize("false", [0, 10, 100, 400])
@@ -100,3 +106,37 @@ def test_a_false_closure_is_let_go_when_others_contradict_it() -> None:
 def graph_move(poses: NDArray[np.float64], i: int, j: int) -> tuple[float, float, float]:
     move = Pose2(*poses[i].tolist()).inverse().compose(Pose2(*poses[j].tolist()))
     return move.x, move.y, move.heading_rad
+
+
+def test_a_lie_is_tried_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was given up is no news until it is measured again, or the map agrees with it."""
+    trials: list[int] = []
+
+    def counted(*given: Any) -> tuple[NDArray[np.float64], float]:
+        trials.append(len(given[1]))
+        return kept(*given)
+
+    monkeypatch.setattr(exact_solver, "kept", counted)
+    clean = city(200, 12, 3)
+    lied = clean.with_false(5, 3)
+    map_ = corrected(lied, "graduated")
+    assert len(trials) == 1
+    lie = len(clean.ends)
+    assert map_.transitions.believed[lie] == 0.0
+    map_.transitions.believed[lie] = map_.transitions.weight[lie]  # as a passage that measures it again does
+    correct(map_, 3)
+    assert len(trials) == 2
+    assert map_.transitions.believed[lie] == 0.0
+    i, j = lied.ends[lie].tolist()
+    map_.transitions.move[lie] = graph_move(map_.poses, i, j)
+    correct(map_, 3)
+    assert len(trials) == 3
+    assert map_.transitions.believed[lie] == map_.transitions.weight[lie]
+
+
+def test_trials_that_nothing_new_calls_for_change_nothing() -> None:
+    """Two solutions that fit alike once took turns, since each solve tried all closures from the other one."""
+    map_ = corrected(city(300, 12, 7).with_false(60, 7), "graduated")
+    before = map_.poses.copy()
+    correct(map_, 10)
+    assert np.abs(map_.poses - before).max() < 1e-3
