@@ -24,18 +24,19 @@ Number = TypeVar("Number", int, float)
 
 @njit(cache=True, nogil=True, inline="always")
 def add(x: int, y: int, t: int, flat: int, value: float, cells: Cells, values: Values, n: int, slot: Slot) -> int:
-    """Add activity to one cell; returns the new number of active cells."""
-    at = slot[flat]
-    if at == 0:
-        cells[n, X] = x
-        cells[n, Y] = y
-        cells[n, THETA] = t
-        cells[n, FLAT] = flat
-        values[n] = value
-        slot[flat] = n + 1
-        return n + 1
-    values[at - 1] += value
-    return n
+    """Add activity to one cell; returns the new number of active cells.
+
+    Written without a branch: no processor can foresee whether a cell was active, and to guess wrong takes longer than
+    all the rest.
+    """
+    at = slot[flat] - 1
+    new = at < 0
+    row = n if new else at
+    before = values[row]
+    values[row] = value if new else before + value
+    cells[row, X], cells[row, Y], cells[row, THETA], cells[row, FLAT] = x, y, t, flat
+    slot[flat] = row + 1
+    return n + 1 if new else n
 
 
 @njit(cache=True, nogil=True, inline="always")

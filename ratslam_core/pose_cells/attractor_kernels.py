@@ -21,7 +21,6 @@ from ratslam_core.pose_cells.activity_kernels import (
     add,
     clear,
     offset,
-    wrap,
 )
 
 
@@ -58,8 +57,8 @@ def convolve(
     """
     n_theta, n_y, n_x = shape
     clear(cells, n, slot)
-    taps = weights.size
-    radius = taps // 2
+    radius = weights.size // 2
+    kept = np.empty(box_a.size, np.uint32)
     m = 0
     for c in range(clusters):
         px, py, pt = cells[peaks[c], X], cells[peaks[c], Y], cells[peaks[c], THETA]
@@ -85,21 +84,28 @@ def convolve(
         _pass(box_a, box_b, size, inner, layer, weights)
         alone = bx <= n_x and by <= n_y and bt <= n_theta
         least = np.float32(floor if alone and _apart(c, clusters, cells, peaks, bounds, radius, shape) else 0.0)
-        first_x, to_y, to_t = (px + low_x) % n_x, (py + low_y) % n_y, (pt + low_t) % n_theta
-        at = 0
-        for _t in range(bt):
-            for _y in range(by):
-                row = (to_t * n_y + to_y) * n_x
-                to_x = first_x
-                for _x in range(bx):
-                    if box_b[at] > least:
-                        m = add(to_x, to_y, to_t, row + to_x, box_b[at], out_cells, out_values, m, slot)
-                    at += 1
-                    to_x = wrap(to_x + 1, n_x)
-                to_y = wrap(to_y + 1, n_y)
-            to_y = (py + low_y) % n_y
-            to_t = wrap(to_t + 1, n_theta)
+        # Which cells stay is noted first without a branch, since no processor can foresee them; then they are added.
+        stay = 0
+        for at in range(size):
+            kept[stay] = at
+            stay += box_b[at] > least
+        xs, ys, ts = _ring(px + low_x, bx, n_x), _ring(py + low_y, by, n_y), _ring(pt + low_t, bt, n_theta)
+        width, depth = np.uint32(bx), np.uint32(by)
+        for k in range(stay):
+            at = kept[k]
+            row = at // width
+            x, y, t = xs[at % width], ys[row % depth], ts[row // depth]
+            m = add(x, y, t, (t * n_y + y) * n_x + x, box_b[at], out_cells, out_values, m, slot)
     return m
+
+
+@njit(cache=True, nogil=True)
+def _ring(first: int, count: int, size: int) -> NDArray[np.int64]:
+    """The coordinates of so many successive cells on a ring of this size."""
+    at = np.empty(count, np.int64)
+    for k in range(count):
+        at[k] = (first + k) % size
+    return at
 
 
 @njit(cache=True, nogil=True)
