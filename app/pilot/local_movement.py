@@ -125,7 +125,7 @@ def _place(echoes: _Array, start: int, ranges: NDArray[np.float32], angles: _Arr
 def _best_arc(echoes: _Array, x: float, y: float, p: _Choice) -> tuple[float, float]:
     """Speed and yaw rate of the cheapest arc that keeps clear of all echoes; a turn on the spot is always clear."""
     best, best_v, best_w = np.inf, 0.0, 0.0
-    echoes = _within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m)  # generously
+    near = _within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m, p)  # generously
     facing = _facing(p)
     for share in (1.0, p.medium, p.slow, 0.0):
         v = p.speed * share
@@ -135,7 +135,7 @@ def _best_arc(echoes: _Array, x: float, y: float, p: _Choice) -> tuple[float, fl
             w = p.turn_rate * wi / p.arcs
             px, py, nearest, free = 0.0, 0.0, np.inf, True
             if v > 0.0:
-                px, py, nearest, free = _along(echoes, v * (p.arc_s / p.steps), facing[wi + p.arcs], p)
+                px, py, nearest, free = _along(near, v * (p.arc_s / p.steps), facing[wi + p.arcs], p)
             if free:
                 cost = _cost(x, y, px, py, w * (p.arc_s if v > 0.0 else p.spot_s), nearest, p)
                 if cost < best:
@@ -144,21 +144,28 @@ def _best_arc(echoes: _Array, x: float, y: float, p: _Choice) -> tuple[float, fl
 
 
 @njit(cache=True, nogil=True)
-def _along(echoes: _Array, step: float, facing: _Array, p: _Choice) -> tuple[float, float, float, bool]:
-    """The end (m) of an arc, the squared distance (m²) of the nearest echo, and whether it keeps clear of all."""
+def _along(near: _Array, step: float, facing: _Array, p: _Choice) -> tuple[float, float, float, bool]:
+    """The end (m) of an arc, the squared distance (m²) of the nearest echo, and whether it keeps clear of all.
+
+    near: from `_within`. All echoes are compared at once, without a branch, so that the compiler can vectorise.
+    """
     px = py = 0.0
-    nearest = np.inf
+    x, y, may_come, least = near[0], near[1], near[2], near[3]
+    least[:] = np.inf
     for k in range(p.steps):
         px += step * facing[k, 0]
         py += step * facing[k, 1]
-        for e in range(echoes.shape[0]):
-            ex, ey = echoes[e, 0] - px, echoes[e, 1] - py
+        too_close = 0
+        for e in range(x.size):
+            ex, ey = x[e] - px, y[e] - py
             d = ex * ex + ey * ey
-            # an echo that is already too close does not forbid an arc that leads away from it
-            if d < p.clearance * p.clearance and d < echoes[e, 0] ** 2 + echoes[e, 1] ** 2 - p.escape_m2:
-                return px, py, nearest, False
-            if d < nearest:
-                nearest = d
+            too_close += (d < p.clearance * p.clearance) & (d < may_come[e])
+            least[e] = d if d < least[e] else least[e]
+        if too_close > 0:
+            return px, py, np.inf, False
+    nearest = np.inf
+    for d in least:
+        nearest = min(nearest, d)
     return px, py, nearest, True
 
 
@@ -184,15 +191,21 @@ def _facing(p: _Choice) -> _Array:
 
 
 @njit(cache=True, nogil=True)
-def _within(echoes: _Array, reach: float) -> _Array:
-    """The echoes within `reach`, in their order; no other can matter to an arc."""
-    out = np.empty_like(echoes)
+def _within(echoes: _Array, reach: float, p: _Choice) -> _Array:
+    """The echoes within `reach`, in their order; no other can matter to an arc.
+
+    (4, n): x, y, how near (m²) an arc may not come, since one that is already too close does not forbid an arc that leads
+    away from it, and a row for `_along`.
+    """
+    out = np.empty((4, len(echoes)))
     n = 0
     for e in range(echoes.shape[0]):
-        if echoes[e, 0] * echoes[e, 0] + echoes[e, 1] * echoes[e, 1] <= reach * reach:
-            out[n, 0], out[n, 1] = echoes[e, 0], echoes[e, 1]
+        away = echoes[e, 0] * echoes[e, 0] + echoes[e, 1] * echoes[e, 1]
+        if away <= reach * reach:
+            out[0, n], out[1, n] = echoes[e, 0], echoes[e, 1]
+            out[2, n] = away - p.escape_m2
             n += 1
-    return out[:n]
+    return out[:, :n].copy()
 
 
 @njit(cache=True, nogil=True)
