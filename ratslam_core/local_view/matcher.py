@@ -84,6 +84,15 @@ def turned_apart(new: Features, last: Features, shift: float, columns: int, rows
 
 
 @njit(cache=True, nogil=True)
+def least_difference(new: Features, stored: Features, most: int, columns: int, rows: int) -> float:
+    """The least `difference` under shifts from -most to most columns."""
+    least = np.inf
+    for shift in range(-most, most + 1):
+        least = min(least, difference(new, stored, shift, columns, rows))
+    return least
+
+
+@njit(cache=True, nogil=True)
 def _nearest(
     known: NDArray[np.uint8],
     new: Features,

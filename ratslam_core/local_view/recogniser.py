@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.local_view.echo_matcher import EchoMatcher, heard_apart
 from ratslam_core.local_view.front_ends import FrontEnd, named_front_end
-from ratslam_core.local_view.matcher import Features, Matcher, difference, turned_apart
+from ratslam_core.local_view.matcher import Features, Matcher, difference, least_difference, turned_apart
 from ratslam_core.params import LocalViewParams
 from ratslam_core.types import Recognition, nothing_seen
 
@@ -73,7 +73,7 @@ class LocalView:
         """How far one known view is from what was seen last, as `Recognition.difference` counts it."""
         most = self.params.shift if self.front_end.shifts else 0
         stored = self.stored(view)
-        apart = min(self._apart(self.features, stored, shift) for shift in range(-most, most + 1))
+        apart = self._least_apart(self.features, stored, most)
         return self._levels(apart + self._heard_apart(self.features, stored), self.features)
 
     def nearest_of(self, views: NDArray[np.int64]) -> Recognition:
@@ -180,6 +180,9 @@ class LocalView:
 
     def _apart(self, new: Features, stored: Features, shift: int) -> float:
         return difference(new, stored, shift, self.front_end.columns, self.front_end.rows)
+
+    def _least_apart(self, new: Features, stored: Features, most: int) -> float:
+        return least_difference(new, stored, most, self.front_end.columns, self.front_end.rows)
 
     def _recruit(self, features: Features) -> int:
         if self.faded >= 0:

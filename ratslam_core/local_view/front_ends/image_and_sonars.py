@@ -62,9 +62,8 @@ class ImageAndSonars(FrontEnd):
 
         Floors and ceilings alone look alike everywhere. test_image_and_sonars.py::test_what_tells_little_is_doubted.
         """
-        plain = max(0.0, 1.0 - along_rows(features) / params.full_pattern)
-        silent, deaf = (int(np.count_nonzero(features[SIZE:] == code)) / ECHOES for code in (255, 0))
-        return params.plain_doubt * plain + params.silent_doubt * silent + params.deaf_doubt * deaf
+        p = params
+        return _doubt(features, p.full_pattern, p.plain_doubt, p.silent_doubt, p.deaf_doubt)
 
     def threshold(self, params: LocalViewParams) -> float:
         return params.composite_threshold
@@ -123,3 +122,13 @@ def along_rows(features: Features) -> float:
             square += value * value
         total += square - mean * mean / COLUMNS
     return (max(total, 0.0) / SIZE) ** 0.5
+
+
+@njit(cache=True, nogil=True)
+def _doubt(features: Features, full: float, plain_doubt: float, silent_doubt: float, deaf_doubt: float) -> float:
+    silent = deaf = 0
+    for code in features[SIZE:]:
+        silent += code == 255
+        deaf += code == 0
+    plain = max(0.0, 1.0 - along_rows(features) / full)
+    return plain_doubt * plain + silent_doubt * (silent / ECHOES) + deaf_doubt * (deaf / ECHOES)
