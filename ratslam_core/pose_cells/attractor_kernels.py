@@ -20,6 +20,7 @@ from ratslam_core.pose_cells.activity_kernels import (
     Y,
     add,
     clear,
+    cluster,
     offset,
 )
 
@@ -29,6 +30,35 @@ def gaussian(sigma: float, radius: int) -> NDArray[np.float32]:
     at = np.arange(-radius, radius + 1)
     weights = np.exp(-0.5 * (at / sigma) ** 2)
     return (weights / weights.sum()).astype(np.float32)
+
+
+@njit(cache=True, nogil=True)
+def excite(
+    cells: Cells,
+    values: Values,
+    n: int,
+    owner: NDArray[np.int32],
+    peaks: NDArray[np.int32],
+    bounds: NDArray[np.int8],
+    out_cells: Cells,
+    out_values: Values,
+    slot: Slot,
+    shape: Shape,
+    window: int,
+    weights: NDArray[np.float32],
+    floor: float | np.float32,
+    box_a: NDArray[np.float32],
+    box_b: NDArray[np.float32],
+) -> tuple[int, int]:
+    """Cluster and convolve. Returns how many cells are active then, and how many the output must have room for; if it has
+    not, nothing has changed, and the first is -1."""
+    clusters, room = cluster(cells, values, n, shape, window, weights.size // 2, owner, peaks, bounds)
+    if min(room, slot.size) > len(out_cells):
+        return -1, room
+    m = convolve(
+        cells, values, n, owner, peaks, bounds, clusters, out_cells, out_values, slot, shape, weights, floor, box_a, box_b
+    )
+    return m, room
 
 
 @njit(cache=True, nogil=True)

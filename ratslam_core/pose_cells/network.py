@@ -219,12 +219,13 @@ class PoseCells:
         self._box_a, self._box_b = np.zeros(side**3, np.float32), np.zeros(side**3, np.float32)
 
     def _convolve(self, weights: NDArray[np.float32], floor: np.float32) -> None:
-        clusters, room = self._cluster(weights.size // 2)
-        self._make_room(room)
-        m = attractor.convolve(
-            self._cells, self._values, self._n, self._owner, self._peaks, self._bounds, clusters, self._spare_cells,
-            self._spare_values, self._slot, self.shape, weights, floor, self._box_a, self._box_b,
-        )  # fmt: skip
+        m = -1
+        while m < 0:
+            m, room = attractor.excite(
+                self._cells, self._values, self._n, self._owner, self._peaks, self._bounds, self._spare_cells,
+                self._spare_values, self._slot, self.shape, self.params.window, weights, floor, self._box_a, self._box_b,
+            )  # fmt: skip
+            self._make_room(room)
         self._swap(m)
 
     def _weigh(self, sign: float) -> None:
@@ -232,12 +233,6 @@ class PoseCells:
         if self.params.carry:
             reach = 2 * self.params.window
             packet_kernels.weigh(self._cells, self._values, self._n, self.shape, reach, self._rows, self._found, sign)
-
-    def _cluster(self, radius: int) -> tuple[int, int]:
-        return kernels.cluster(
-            self._cells, self._values, self._n, self.shape, self.params.window, radius, self._owner, self._peaks,
-            self._bounds,
-        )  # fmt: skip
 
     def _inhibit_locally(self) -> None:
         excited = self._cells[: self._n].copy(), self._values[: self._n].copy()
@@ -273,20 +268,17 @@ class PoseCells:
 
     def _find(self) -> None:
         """Find the packets in the activity as it is now. Each has the id of the one that was expected there."""
-        clusters, _ = self._cluster(0)
-        if clusters > len(self._spare_rows):
-            self._spare_rows = np.zeros((2 * clusters, packet_kernels.ROW))
-            self._spare_ids = np.zeros(2 * clusters, np.int64)
-        if clusters > len(self._moves):  # rows swap with their spares, moves do not: each grows by itself
-            self._moves, self._yaws = np.zeros((2 * clusters, 4)), np.zeros(2 * clusters)
-        cells, values, shape, owner, peaks = self._cells, self._values, self.shape, self._owner, self._peaks
-        packet_kernels.join_flanks(cells, values, self._slot, shape, owner, peaks, clusters)
-        found = packet_kernels.packet_rows(
-            cells, values, self._n, shape, owner, peaks, clusters, self._headings, self._spare_rows
-        )
-        packet_kernels.follow(
-            self._rows, self._ids, self._found, self._spare_rows, self._spare_ids, found, shape, self.params.window
-        )
+        found = -1
+        while found < 0:
+            clusters, found = packet_kernels.find(
+                self._cells, self._values, self._n, self._slot, self.shape, self.params.window, self._owner, self._peaks,
+                self._bounds, self._headings, self._rows, self._ids, self._found, self._spare_rows, self._spare_ids,
+            )  # fmt: skip
+            if clusters > len(self._spare_rows):
+                self._spare_rows = np.zeros((2 * clusters, packet_kernels.ROW))
+                self._spare_ids = np.zeros(2 * clusters, np.int64)
+            if clusters > len(self._moves):  # rows swap with their spares, moves do not: each grows by itself
+                self._moves, self._yaws = np.zeros((2 * clusters, 4)), np.zeros(2 * clusters)
         self._rows, self._spare_rows = self._spare_rows, self._rows
         self._ids, self._spare_ids = self._spare_ids, self._ids
         self._found = found

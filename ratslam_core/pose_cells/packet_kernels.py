@@ -9,10 +9,42 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ratslam_core.pose_cells.activity_kernels import THETA, Cells, Shape, Slot, Values, X, Y, offset
+from ratslam_core.pose_cells.activity_kernels import THETA, Cells, Shape, Slot, Values, X, Y, cluster, offset
 
 MASS, COS, SIN, CARRY = 3, 4, 5, 6  # columns after x, y, theta; CARRY is three columns
 ROW = 9
+
+
+@njit(cache=True, nogil=True)
+def find(
+    cells: Cells,
+    values: Values,
+    n: int,
+    slot: Slot,
+    shape: Shape,
+    window: int,
+    owner: NDArray[np.int32],
+    peaks: NDArray[np.int32],
+    bounds: NDArray[np.int8],
+    headings: NDArray[np.float64],
+    old: NDArray[np.float64],
+    old_ids: NDArray[np.int64],
+    n_old: int,
+    new: NDArray[np.float64],
+    new_ids: NDArray[np.int64],
+) -> tuple[int, int]:
+    """The packets in the activity as it is, written to `new`, each with the id of the one that was expected there.
+
+    Returns how many clusters and how many packets there are. `new` has no row for a packet more than `len(new)` clusters
+    would need: then nothing is written, and there are -1 packets.
+    """
+    clusters, _ = cluster(cells, values, n, shape, window, 0, owner, peaks, bounds)
+    if clusters > len(new):
+        return clusters, -1
+    join_flanks(cells, values, slot, shape, owner, peaks, clusters)
+    found = packet_rows(cells, values, n, shape, owner, peaks, clusters, headings, new)
+    follow(old, old_ids, n_old, new, new_ids, found, shape, window)
+    return clusters, found
 
 
 @njit(cache=True, nogil=True)
