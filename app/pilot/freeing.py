@@ -49,7 +49,7 @@ class Freeing:
 
     def _move_on(self, odometry: Odometry, asked: float, p: FreeingParams) -> None:
         """Update the place by odometry, the grip of the floor, and the time without progress."""
-        x, y, heading = self._place
+        x, y, heading = self._place.tolist()
         heading += odometry.yaw_rate * odometry.dt
         step = odometry.speed * odometry.dt
         self._place[:] = x + step * math.cos(heading), y + step * math.sin(heading), heading
@@ -57,11 +57,11 @@ class Freeing:
             share = min(1.0, max(p.least_grip, odometry.yaw_rate / asked))
             self._grip += min(1.0, odometry.dt / p.grip_s) * (share - self._grip)
         self._still_s += odometry.dt * self._grip
-        if math.hypot(self._place[0], self._place[1]) > p.somewhere_m:
+        if math.hypot(*self._place[:2].tolist()) > p.somewhere_m:
             self._place[:2] = 0.0
-            self._still_s, self._looked_at, self._turns = 0.0, float(heading), 0
+            self._still_s, self._looked_at, self._turns = 0.0, heading, 0
         elif abs(heading - self._looked_at) > p.turned_rad and self._turns < p.most_turns:
-            self._still_s, self._looked_at, self._turns = 0.0, float(heading), self._turns + 1
+            self._still_s, self._looked_at, self._turns = 0.0, heading, self._turns + 1
 
     def begin(self, p: PilotParams) -> None:
         """Back off and turn, from the next tick on."""

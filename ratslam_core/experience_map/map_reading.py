@@ -11,7 +11,7 @@ from ratslam_core.experience_map.temporal_map import TemporalMap
 from ratslam_core.experience_map.transitions import Link, Transitions
 from ratslam_core.extensions.pose_filter import pose_estimate
 from ratslam_core.params import ExperienceMapParams, PoseFilterParams
-from ratslam_core.types import Packet, Pose2
+from ratslam_core.types import Packet, Pose2, pose_of
 
 
 class MapReading:
@@ -41,26 +41,26 @@ class MapReading:
     @property
     def poses(self) -> NDArray[np.float64]:
         """x, y (m), heading (rad) of every experience in the map, shape (n, 3). A view."""
-        return self._experiences.pose[: len(self)]
+        return self._experiences.pose[: self._experiences.count]
 
     @property
     def cell_states(self) -> NDArray[np.float64]:
         """x', y' (cells), theta' (layers) of every experience, shape (n, 3). A view."""
-        return self._experiences.at[: len(self)]
+        return self._experiences.at[: self._experiences.count]
 
     @property
     def views(self) -> NDArray[np.int64]:
         """The scene of every experience, -1 for nothing to see, shape (n,). A view."""
-        return self._experiences.view[: len(self)]
+        return self._experiences.view[: self._experiences.count]
 
     @property
     def island_of(self) -> NDArray[np.int32]:
         """The number of the island that each experience lies on, shape (n,): extensions/islands.py. A view."""
-        return self._experiences.island[: len(self)]
+        return self._experiences.island[: self._experiences.count]
 
     def pose(self, experience: int) -> Pose2:
         """An experience's place in the map."""
-        return Pose2(*self._experiences.pose[self._require(experience)].tolist())
+        return pose_of(*self._experiences.pose[self._require(experience)].tolist())
 
     def cell_state(self, experience: int) -> tuple[float, float, float, int]:
         """x', y' (cells), theta' (layers) and the scene of one experience."""

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from disk import kind
-from ratslam_core.types import IDENTITY, Odometry, Pose2, wrap_angle
+from ratslam_core.types import IDENTITY, Odometry, Pose2, pose_of, wrap_angle
 
 
 @kind("preintegrated odometry/1")
@@ -30,4 +30,4 @@ def moved_by(odometry: Odometry) -> Pose2:
     """One step in the robot's own frame: straight along the heading in the middle of the step."""
     middle = odometry.yaw_rate * odometry.dt / 2
     step = odometry.speed * odometry.dt
-    return Pose2(step * math.cos(middle), step * math.sin(middle), wrap_angle(2 * middle))
+    return pose_of(step * math.cos(middle), step * math.sin(middle), wrap_angle(2 * middle))

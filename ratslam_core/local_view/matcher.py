@@ -93,6 +93,16 @@ def least_difference(new: Features, stored: Features, most: int, columns: int, r
 
 
 @njit(cache=True, nogil=True)
+def sub_column(new: Features, stored: Features, shift: int, columns: int, rows: int) -> float:
+    """The shift to a fraction of a column: where the flanks of the difference on both sides of its minimum meet."""
+    left = difference(new, stored, shift - 1, columns, rows)
+    least = difference(new, stored, shift, columns, rows)
+    right = difference(new, stored, shift + 1, columns, rows)
+    steepest = max(left, right) - least
+    return shift + (left - right) / (2 * steepest) if steepest > 0 else float(shift)
+
+
+@njit(cache=True, nogil=True)
 def _nearest(
     known: NDArray[np.uint8],
     new: Features,

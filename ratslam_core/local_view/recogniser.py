@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.local_view.echo_matcher import EchoMatcher, heard_apart
 from ratslam_core.local_view.front_ends import FrontEnd, named_front_end
-from ratslam_core.local_view.matcher import Features, Matcher, difference, least_difference, turned_apart
+from ratslam_core.local_view.matcher import Features, Matcher, least_difference, sub_column, turned_apart
 from ratslam_core.params import LocalViewParams
 from ratslam_core.types import Recognition, nothing_seen
 
@@ -162,12 +162,11 @@ class LocalView:
         return least / limit
 
     def _sub_column(self, view: int, shift: int) -> float:
-        """The shift to a fraction of a column: where the flanks of the difference on both sides of its minimum meet."""
+        """The shift to a fraction of a column, 0 where no shifts are tried."""
         if self.params.shift == 0:
             return 0.0
-        left, least, right = (self._apart(self.features, self._templates[view], shift + k) for k in (-1, 0, 1))
-        steepest = max(left, right) - least
-        return shift + (left - right) / (2 * steepest) if steepest > 0 else float(shift)
+        end = self.front_end
+        return sub_column(self.features, self._templates[view], shift, end.columns, end.rows)
 
     def _levels(self, apart: float, new: Features) -> float:
         """A mean difference in bytes from the new view in levels."""
@@ -177,9 +176,6 @@ class LocalView:
     def _heard_apart(self, new: Features, stored: Features) -> float:
         end = self.front_end
         return end.echo_weight * heard_apart(new, stored, end.columns * end.rows) if end.echoes else 0.0
-
-    def _apart(self, new: Features, stored: Features, shift: int) -> float:
-        return difference(new, stored, shift, self.front_end.columns, self.front_end.rows)
 
     def _least_apart(self, new: Features, stored: Features, most: int) -> float:
         return least_difference(new, stored, most, self.front_end.columns, self.front_end.rows)

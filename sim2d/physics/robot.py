@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import pymunk
 from numba import njit
@@ -96,8 +97,14 @@ class Robot:
 def _grips(params: SimParams) -> bool:
     """Whether the wheels pass on all that the motors can ask for, on the straight and in a curve."""
     force = params.mass_kg * math.hypot(params.max_acceleration, params.max_speed * params.max_yaw_rate)
-    torque = pymunk.moment_for_circle(params.mass_kg, 0.0, params.robot_radius_m) * params.max_yaw_acceleration
+    torque = _inertia(params.mass_kg, params.robot_radius_m) * params.max_yaw_acceleration
     return force <= params.grip_n and torque <= params.turn_grip_nm
+
+
+@lru_cache(maxsize=1)
+def _inertia(mass_kg: float, radius_m: float) -> float:
+    """Of the disc, kg m²: asked in every tick, and the same as long as nobody changes the robot."""
+    return pymunk.moment_for_circle(mass_kg, 0.0, radius_m)
 
 
 @njit(cache=True, nogil=True)
