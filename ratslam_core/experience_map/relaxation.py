@@ -35,13 +35,12 @@ class Relaxation:
             if p.sweep == "by link":
                 sweep_by_link(poses, t.graph, ends, moves, t.travelled, p.correction)
             else:
-                sweep(poses, t.graph, ends, moves, t.believed, p.correction)
+                sweep(poses, t.graph, moves, t.believed, p.correction)
 
 
 def sweep(
     poses: NDArray[np.float64],
     graph: Adjacency,
-    links: NDArray[np.int64],
     moves: NDArray[np.float64],
     weights: NDArray[np.float64],
     alpha: float,
@@ -51,8 +50,7 @@ def sweep(
     Experiences are moved one after the other (Gauss-Seidel), place and heading together; places use the headings from
     before the sweep. Only rows that are in `graph` count.
     """
-    ends = links.view(np.uint64)[: len(moves)]
-    _sweep(poses, graph.start, graph.used, graph.half, graph.other, ends, moves, weights, 2 * alpha)
+    _sweep(poses, graph.start, graph.used, graph.half, graph.other, moves, weights, 2 * alpha)
 
 
 @njit(cache=True, nogil=True)
@@ -62,25 +60,25 @@ def _sweep(
     used: NDArray[np.uint32],
     halves: NDArray[np.uint32],
     others: NDArray[np.uint32],
-    ends: NDArray[np.uint64],
     moves: NDArray[np.float64],
     weights: NDArray[np.float64],
     gain: float,
 ) -> None:
     """dx_i, dy_i, dth_i = gain times the weighted sum of the links' residuals over the sum of the weights. B eqs. 12-14."""
     n, one = np.uint64(poses.shape[0]), np.uint64(1)
-    turned = _turned(poses, ends, moves)
+    c, s = _facings(poses)
     for i in range(one, n):
         x, y, heading = poses[i, 0], poses[i, 1], poses[i, 2]
         dx = dy = turn = total = 0.0
         block = np.uint64(start[i])
         for at in range(block, block + np.uint64(used[i])):
             half, other = np.uint64(halves[at]), np.uint64(others[at])
-            row = half >> one
-            sign = 1.0 if half & one else -1.0
+            row, ends_here = half >> one, half & one
+            sign, begin = (1.0, other) if ends_here else (-1.0, i)
+            ahead, aside = moves[row, 0], moves[row, 1]
             w = weights[row]
-            dx += w * (poses[other, 0] + (sign * turned[row, 0] - x))
-            dy += w * (poses[other, 1] + (sign * turned[row, 1] - y))
+            dx += w * (poses[other, 0] + (sign * (c[begin] * ahead - s[begin] * aside) - x))
+            dy += w * (poses[other, 1] + (sign * (s[begin] * ahead + c[begin] * aside) - y))
             turn += w * _wrapped(poses[other, 2] + (sign * moves[row, 2] - heading))
             total += w
         if total > 0.0:
@@ -137,18 +135,26 @@ def _sweep_by_link(
 @njit(cache=True, nogil=True, error_model="numpy")
 def _turned(poses: NDArray[np.float64], ends: NDArray[np.uint64], moves: NDArray[np.float64]) -> NDArray[np.float64]:
     """Moves in the map's frame: (dx, dy) of each row turned by the heading of where it begins."""
-    n, m = np.uint64(poses.shape[0]), np.uint64(moves.shape[0])
-    c, s = np.empty(n), np.empty(n)
-    for i in range(n):
-        c[i] = poses[i, 2]
-    for i in range(n):  # a loop of its own, so that the compiler computes four at a time
-        c[i], s[i] = _facing(c[i])
+    c, s = _facings(poses)
+    m = np.uint64(moves.shape[0])
     turned = np.empty((m, 2))
     for row in range(m):
         i = ends[row, 0]
         turned[row, 0] = c[i] * moves[row, 0] - s[i] * moves[row, 1]
         turned[row, 1] = s[i] * moves[row, 0] + c[i] * moves[row, 1]
     return turned
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _facings(poses: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Cosine and sine of every heading."""
+    n = np.uint64(poses.shape[0])
+    c, s = np.empty(n), np.empty(n)
+    for i in range(n):
+        c[i] = poses[i, 2]
+    for i in range(n):  # a loop of its own, so that the compiler computes four at a time
+        c[i], s[i] = _facing(c[i])
+    return c, s
 
 
 @njit(cache=True, nogil=True, inline="always")

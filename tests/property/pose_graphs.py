@@ -36,7 +36,7 @@ class Graph:
     def swept(self, times: int, alpha: float = 0.5) -> np.ndarray:
         poses, adjacency = self.poses.copy(), self.adjacency
         for _ in range(times):
-            sweep(poses, adjacency, self.links, self.moves, self.weights, alpha)
+            sweep(poses, adjacency, self.moves, self.weights, alpha)
         return poses
 
     def solved(self, rounds: int = 2) -> np.ndarray:

@@ -114,7 +114,7 @@ def test_an_experience_without_links_stays(interpreted: bool, monkeypatch: pytes
     for _ in poses:
         adjacency.add_node()
     adjacency.add_link(0, 2, 0)
-    sweep(poses, adjacency, np.array([[0, 2]]), np.array([[1.0, 0.0, 0.5]]), np.ones(1), 0.5)
+    sweep(poses, adjacency, np.array([[1.0, 0.0, 0.5]]), np.ones(1), 0.5)
     assert poses.tolist() == [[0, 0, 0], [5, 5, 1], [1, 0, 0.5]]
 
 
