@@ -19,7 +19,7 @@ from ratslam_core.params import RatSlamParams
 from ratslam_core.parts import ExperienceMapPart, KidnapDetectorPart, LocalViewPart, Optimiser, PoseCellsPart
 from ratslam_core.pose_cells.network import PoseCells
 from ratslam_core.standard_parts import StandardParts
-from ratslam_core.types import Estimate, Odometry, Recognition, nothing_seen
+from ratslam_core.types import Estimate, Odometry, Packet, Recognition, nothing_seen
 from ratslam_core.visual_association import VisualAssociation
 
 # The stages of `RatSlam.step`. In the papers the second and the third change places (`pose_cells.move_first` off).
@@ -113,7 +113,7 @@ class RatSlam:
         watch("experience")
         self.experience_map.correct()
         watch("correction")
-        self._remember(odometry, scan, relocalised)
+        self._remember(odometry, scan, packet, relocalised)
         watch("memories")
         active, robot = self.experience_map.active, self.experience_map.robot
         return Estimate(active, created, robot, packet, seen, relocalised)
@@ -191,7 +191,9 @@ class RatSlam:
         strength = self.local_view.strength(seen) if seen.view != NOTHING else 0.0
         self.association.step(seen, strength, odometry.dt, self.pose_cells, self.lost)
 
-    def _remember(self, odometry: Odometry, scan: NDArray[np.float64] | None, relocalised: bool) -> None:
+    def _remember(
+        self, odometry: Odometry, scan: NDArray[np.float64] | None, packet: Packet, relocalised: bool
+    ) -> None:
         """Goal memory learns while the robot drives, the occupancy pictures always.
 
         [ours] The robot did not drive where the packet jumped, so nothing is linked across the jump.
@@ -203,7 +205,7 @@ class RatSlam:
             self._under_way_s += odometry.dt
             self.goal_memory.learn(*self.pose_cells.active, self._under_way_s)
         if scan is not None and self.occupancy is not None and self.map_grid is not None:
-            self.occupancy.update(self.pose_cells.winner, scan)
+            self.occupancy.update(packet, scan)
             self.map_grid.add(self.experience_map.active, self.experience_map.local_pose, scan)
 
     def _require_sonars(self, ranges_m: NDArray[np.floating]) -> NDArray[np.float64]:

@@ -179,7 +179,7 @@ class RouteFollower:
         start = self._start(experiences, local, times, away, p)
         if not np.isfinite(times[start]):
             return
-        self._route = ways.route(start, self.goal, delays)
+        self._route = ways.route_again(start)
         self._age_s, self._at = 0.0, 0
 
     def _start(

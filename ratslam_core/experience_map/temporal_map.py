@@ -63,10 +63,17 @@ class TemporalMap:
     def route(self, start: int, goal: int, delays: NDArray[np.float64] | None = None) -> Route | None:
         """The quickest way, None when there is none. Among equal ways, the one over experiences with lower numbers."""
         self._require(start)
-        asked = self._answer(goal, delays)
+        self._answer(goal, delays)
+        return self.route_again(start)
+
+    def route_again(self, start: int) -> Route | None:
+        """The quickest way to the goal that was asked for last, by the times of then. ValueError when none was."""
+        self._require(start)
+        if self._goal is None or self._asked is None or start >= len(self._times):
+            raise ValueError(f"no times are known for experience {start!r}; ask for `times_to` a goal first")
         if not np.isfinite(self._times[start]):
             return None
-        nodes = dijkstra.trace(start, goal, self._times, asked.links, asked.near)
+        nodes = dijkstra.trace(start, self._goal, self._times, self._asked.links, self._asked.near)
         return Route(nodes, self._times[start] - self._times[nodes])
 
     def _answer(self, goal: int, delays: NDArray[np.float64] | None) -> _Asked:

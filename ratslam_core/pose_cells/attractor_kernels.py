@@ -56,8 +56,8 @@ def excite(
     if min(room, slot.size) > len(out_cells):
         return -1, room
     m = convolve(
-        cells, values, n, owner, peaks, bounds, clusters, out_cells, out_values, slot, shape, weights, floor, box_a, box_b
-    )
+        cells, values, n, owner, peaks, bounds, clusters, out_cells, out_values, slot, shape, weights, floor, box_a, box_b,
+    )  # fmt: skip
     return m, room
 
 
@@ -122,9 +122,11 @@ def convolve(
         xs, ys, ts = _ring(px + low_x, bx, n_x), _ring(py + low_y, by, n_y), _ring(pt + low_t, bt, n_theta)
         width, depth = np.uint32(bx), np.uint32(by)
         for k in range(stay):
-            at = kept[k]
+            at: int = kept[k]
             row = at // width
-            x, y, t = xs[at % width], ys[row % depth], ts[row // depth]
+            x: int = xs[at % width]
+            y: int = ys[row % depth]
+            t: int = ts[row // depth]
             m = add(x, y, t, (t * n_y + y) * n_x + x, box_b[at], out_cells, out_values, m, slot)
     return m
 

@@ -182,7 +182,9 @@ class PoseCells:
         p, n = self.params, self._n
         inhibit = np.float32(p.inhibit)
         kept = self._cells[:n].copy(), self._values[:n].copy()
-        self._weigh(1.0)
+        if p.carry:
+            window = 2 * p.window
+            packet_kernels.weigh(self._cells, self._values, n, self.shape, window, self._rows, self._found, 1.0)
         self._convolve(self._excite, np.float32(0) if p.local_inhibit else inhibit)
         if p.local_inhibit:
             self._inhibit_locally()
@@ -190,8 +192,7 @@ class PoseCells:
         gone = self._n == 0
         if gone:
             self._put(*kept)
-        self._weigh(-1.0)
-        self._find()
+        self._find(moved=p.carry)
         if gone:
             raise ValueError(
                 f"inhibit = {p.inhibit} is above the activity of every cell; take less (nothing was changed)"
@@ -228,12 +229,6 @@ class PoseCells:
             self._make_room(room)
         self._swap(m)
 
-    def _weigh(self, sign: float) -> None:
-        """Add sign times the packets' centres to their carry: + before the attractor and - after it."""
-        if self.params.carry:
-            reach = 2 * self.params.window
-            packet_kernels.weigh(self._cells, self._values, self._n, self.shape, reach, self._rows, self._found, sign)
-
     def _inhibit_locally(self) -> None:
         excited = self._cells[: self._n].copy(), self._values[: self._n].copy()
         self._convolve(self._inhibit, np.float32(0))
@@ -266,13 +261,16 @@ class PoseCells:
         self._spare_cells, self._spare_values = grow(self._spare_cells), grow(self._spare_values)
         self._owner, self._peaks, self._spare_owner = grow(self._owner), grow(self._peaks), grow(self._spare_owner)
 
-    def _find(self) -> None:
-        """Find the packets in the activity as it is now. Each has the id of the one that was expected there."""
+    def _find(self, *, moved: bool = False) -> None:
+        """Find the packets in the activity as it is now. Each has the id of the one that was expected there.
+
+        moved: the attractor has moved them, which is subtracted from their carry.
+        """
         found = -1
         while found < 0:
             clusters, found = packet_kernels.find(
                 self._cells, self._values, self._n, self._slot, self.shape, self.params.window, self._owner, self._peaks,
-                self._bounds, self._headings, self._rows, self._ids, self._found, self._spare_rows, self._spare_ids,
+                self._bounds, self._headings, self._rows, self._ids, self._found, self._spare_rows, self._spare_ids, moved,
             )  # fmt: skip
             if clusters > len(self._spare_rows):
                 self._spare_rows = np.zeros((2 * clusters, packet_kernels.ROW))

@@ -32,15 +32,19 @@ def find(
     n_old: int,
     new: NDArray[np.float64],
     new_ids: NDArray[np.int64],
+    carry: bool,
 ) -> tuple[int, int]:
     """The packets in the activity as it is, written to `new`, each with the id of the one that was expected there.
 
-    Returns how many clusters and how many packets there are. `new` has no row for a packet more than `len(new)` clusters
-    would need: then nothing is written, and there are -1 packets.
+    carry: the attractor has just moved them, and what it moved is subtracted from their carry. Returns how many clusters
+    and how many packets there are; when `new` has not as many rows as there are clusters, nothing is written, and there
+    are -1 packets.
     """
     clusters, _ = cluster(cells, values, n, shape, window, 0, owner, peaks, bounds)
     if clusters > len(new):
         return clusters, -1
+    if carry:
+        weigh(cells, values, n, shape, 2 * window, old, n_old, -1.0)
     join_flanks(cells, values, slot, shape, owner, peaks, clusters)
     found = packet_rows(cells, values, n, shape, owner, peaks, clusters, headings, new)
     follow(old, old_ids, n_old, new, new_ids, found, shape, window)

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 
+from numba import njit
 
+
+@njit(cache=True, nogil=True)
 def scene_number(
     x: float, y: float, heading_rad: float, bounds: tuple[float, float, float, float], cell_m: float, angle_rad: float
 ) -> int:
@@ -15,7 +18,7 @@ def scene_number(
     a whole number of them fits into a turn.
     """
     x_from, y_from, x_to, y_to = bounds
-    columns, rows = (max(1, math.ceil((to - start) / cell_m)) for start, to in ((x_from, x_to), (y_from, y_to)))
+    columns, rows = max(1, math.ceil((x_to - x_from) / cell_m)), max(1, math.ceil((y_to - y_from) / cell_m))
     sectors = math.ceil(2 * math.pi / angle_rad - 1e-9)
     column = min(max(int((x - x_from) // cell_m), 0), columns - 1)
     row = min(max(int((y - y_from) // cell_m), 0), rows - 1)

@@ -101,6 +101,10 @@ def by_scipy(map_: Links, start: int) -> np.ndarray:
 
 def check_route(map_: Links, ways: TemporalMap, start: int, goal: int) -> None:
     route, best, quickest = ways.route(start, goal), relax(map_, goal)[start], map_.quickest
+    again = ways.route_again(start)
+    assert (route is None) == (again is None)
+    if route is not None and again is not None:
+        assert np.array_equal(route.experiences, again.experiences) and np.array_equal(route.arrival_s, again.arrival_s)
     if route is None:
         assert best == math.inf
         return
@@ -285,3 +289,9 @@ def test_unknown_experiences_are_refused(bad: int) -> None:
     for ask in (lambda: ways.times_to(bad), lambda: ways.route(bad, 0), lambda: ways.route(0, bad)):
         with pytest.raises(ValueError, match=message):
             ask()
+
+
+def test_a_route_needs_a_goal_that_was_asked_for() -> None:
+    ways = ways_of(links(3, [(0, 1, 1.0)]))
+    with pytest.raises(ValueError, match="no times are known for experience 0; ask for `times_to` a goal first"):
+        ways.route_again(0)
