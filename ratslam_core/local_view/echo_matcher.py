@@ -11,8 +11,37 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.local_view.matcher import SIZE, Features, Matcher, overlap
 
-ECHOES = 8  # compiled with this number as a constant
 FARTHEST = 1e5  # no two views are that far apart
+
+
+class HeardEchoes:
+    """The echoes of all views once more, echo by echo, so that a processor compares many views at once."""
+
+    def __init__(self, known: NDArray[np.uint8], size: int) -> None:
+        """known: (n, size + echoes), the views."""
+        room = len(known) + len(known) // 2 + 1024
+        self.echoes = np.zeros((known.shape[1] - size, room), np.uint8)
+        self.total, self.kept = np.zeros(room, np.int16), np.zeros(room, np.uint32)  # scratch for the search
+        self._owner, self._size, self._count = _owner(known), size, 0
+
+    def holds(self, known: NDArray[np.uint8]) -> bool:
+        """Whether these are views of the same memory, and perhaps more of them."""
+        return _owner(known) is self._owner and self._count <= len(known) <= self.echoes.shape[1]
+
+    def take(self, known: NDArray[np.uint8]) -> None:
+        """Take in what is new."""
+        self.echoes[:, self._count : len(known)] = known[self._count :, self._size :].T
+        self._count = len(known)
+
+    def replace(self, view: int, new: Features) -> None:
+        """One view is another now."""
+        if view < self._count:
+            self.echoes[:, view] = new[self._size :]
+
+
+def _owner(array: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """The array whose memory this is a part of."""
+    return array.base if isinstance(array.base, np.ndarray) else array
 
 
 @kind("echo matcher/1")
@@ -23,6 +52,8 @@ class EchoMatcher(Matcher):
     test_echo_matcher.py::test_the_nearest_view_is_that_of_the_loops_bit_for_bit.
     """
 
+    __slots__ = ("_heard",)  # no attribute, and so no part of the state: it is made from the views
+
     def __init__(self, columns: int, rows: int, echoes: int, echo_weight: float) -> None:
         super().__init__(columns, rows)
         self.echoes, self.echo_weight = echoes, echo_weight
@@ -32,11 +63,25 @@ class EchoMatcher(Matcher):
         if len(known) == 0:
             return -1, math.inf, 0
         guess = min(self._guess, len(known) - 1)
+        heard = self._heard_in(known)
         found = _nearest(
-            known, new, most, self.columns, self.rows, self.echoes, self.echo_weight, guess, self._shifted, self._masks
-        )
+            known, new, most, self.columns, self.rows, self.echoes, self.echo_weight, guess, self._shifted, self._masks,
+            heard.echoes, heard.total, heard.kept,
+        )  # fmt: skip
         self._guess = found[0]
         return found
+
+    def replaced(self, view: int, new: Features) -> None:
+        heard = getattr(self, "_heard", None)
+        if heard is not None:
+            heard.replace(view, new)
+
+    def _heard_in(self, known: NDArray[np.uint8]) -> HeardEchoes:
+        heard: HeardEchoes | None = getattr(self, "_heard", None)
+        if heard is None or not heard.holds(known):
+            heard = self._heard = HeardEchoes(known, self.columns * self.rows)
+        heard.take(known)
+        return heard
 
 
 @njit(cache=True, nogil=True)
@@ -61,6 +106,9 @@ def _nearest(
     guess: int,
     shifted: NDArray[np.uint8],
     masks: NDArray[np.uint8],
+    echoes_of: NDArray[np.uint8],
+    total: NDArray[np.int16],
+    kept: NDArray[np.uint32],
 ) -> tuple[int, float, int]:
     first = columns - 1 - most
     widths = np.empty(2 * most + 1)
@@ -71,39 +119,67 @@ def _nearest(
             shifted[row, there + k] = new[here + k]
     tried, size = slice(first, columns + most), columns * rows
     views, masked, heard = shifted[tried], masks[tried], new[size:]
-    near = known[guess : guess + 1]
-    if size == SIZE and echoes == ECHOES:  # several times as quick with the sizes as constants
-        _, limit, _ = _search(near, heard, views, masked, widths, weight, SIZE // 2, SIZE, ECHOES, FARTHEST)
-        best, least, by = _search(known, heard, views, masked, widths, weight, SIZE // 2, SIZE, ECHOES, limit)
+    _sum_echoes(echoes_of, heard, len(known), total)
+    kept[0] = guess
+    if size == SIZE:  # several times as quick with the size as a constant
+        _, limit, _ = _search(known, kept[:1], total, echoes, views, masked, widths, weight, SIZE // 2, SIZE, FARTHEST)
+        near = _keep_near(total, len(known), echoes, weight, limit, kept)
+        best, least, by = _search(known, near, total, echoes, views, masked, widths, weight, SIZE // 2, SIZE, limit)
     else:
-        _, limit, _ = _search(near, heard, views, masked, widths, weight, size // 2, size, echoes, FARTHEST)
-        best, least, by = _search(known, heard, views, masked, widths, weight, size // 2, size, echoes, limit)
+        _, limit, _ = _search(known, kept[:1], total, echoes, views, masked, widths, weight, size // 2, size, FARTHEST)
+        near = _keep_near(total, len(known), echoes, weight, limit, kept)
+        best, least, by = _search(known, near, total, echoes, views, masked, widths, weight, size // 2, size, limit)
     return best, least, by - most
+
+
+@njit(cache=True, nogil=True)
+def _sum_echoes(echoes_of: NDArray[np.uint8], heard: NDArray[np.uint8], n: int, total: NDArray[np.int16]) -> None:
+    """The sum of absolute differences of the echoes of each view; one that is unknown (0) counts as equal."""
+    total[:n] = 0
+    for k in range(len(heard)):
+        b = np.int16(heard[k])
+        if b > 0:
+            echo = echoes_of[k]
+            for i in range(n):
+                a = np.int16(echo[i])
+                apart = np.abs(np.subtract(a, b))
+                total[i] = np.add(total[i], apart if a > 0 else np.int16(0))
+
+
+@njit(cache=True, nogil=True)
+def _keep_near(
+    total: NDArray[np.int16], n: int, echoes: int, weight: float, limit: float, kept: NDArray[np.uint32]
+) -> NDArray[np.uint32]:
+    """The views, in their order, whose echoes alone are no farther than the limit. Without a branch, as none can be foreseen."""
+    most = 0
+    while most < 255 * echoes and weight * ((most + 1) / echoes) <= limit:
+        most += 1
+    left = 0
+    for i in range(n):
+        kept[left] = i
+        left += total[i] <= most
+    return kept[:left]
 
 
 @njit(cache=True, nogil=True, inline="always")
 def _search(
     known: NDArray[np.uint8],
-    heard: NDArray[np.uint8],
+    near: NDArray[np.uint32],
+    echo_sums: NDArray[np.int16],
+    echoes: int,
     shifted: NDArray[np.uint8],
     masks: NDArray[np.uint8],
     widths: NDArray[np.float64],
     weight: float,
     half: int,
     size: int,
-    echoes: int,
     limit: float,
 ) -> tuple[int, float, int]:
-    """The nearest view that is no farther than `limit`. Among equals the first shift wins, then the first view."""
+    """Of these views, the nearest that is no farther than `limit`. Among equals the first shift wins, then the first view."""
     best, least, by = -1, limit, len(shifted)
-    for i in range(len(known)):
+    for i in near:
         row = known[i]
-        total = np.int32(0)
-        for k in range(echoes):
-            a, b = np.int32(row[size + k]), np.int32(heard[k])
-            apart = np.abs(np.subtract(a, b))
-            total = np.add(total, apart if a > 0 and b > 0 else np.int32(0))
-        echo = weight * (total / echoes)
+        echo = weight * (echo_sums[i] / echoes)
         if echo > least:
             continue
         for s in range(len(shifted)):
@@ -114,7 +190,7 @@ def _search(
             total = np.add(total, _sum(row, shifted[s], masks[s], half, size))
             mean = total / widths[s] + echo
             if mean < least or (mean == least and s < by):
-                best, least, by = i, mean, s
+                best, least, by = int(i), mean, s
     return best, least, by
 
 

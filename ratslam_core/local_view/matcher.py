@@ -45,6 +45,9 @@ class Matcher:
             return -1, math.inf, 0
         return _nearest(known, new, most, self.columns, self.rows, self._shifted, self._masks, self._least, self._at)
 
+    def replaced(self, view: int, new: Features) -> None:
+        """A stored view is another now."""
+
 
 @njit(cache=True, nogil=True)
 def overlap(shift: int, columns: int, rows: int) -> tuple[int, int, int]:

@@ -183,6 +183,7 @@ class LocalView:
     def _recruit(self, features: Features) -> int:
         if self.faded >= 0:
             self._templates[self.faded] = features
+            self._matcher.replaced(self.faded, features)
             return self.faded
         if self._count == len(self._templates):
             more = np.zeros(

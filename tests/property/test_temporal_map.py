@@ -104,7 +104,8 @@ def check_route(map_: Links, ways: TemporalMap, start: int, goal: int) -> None:
     again = ways.route_again(start)
     assert (route is None) == (again is None)
     if route is not None and again is not None:
-        assert np.array_equal(route.experiences, again.experiences) and np.array_equal(route.arrival_s, again.arrival_s)
+        assert np.array_equal(route.experiences, again.experiences)
+        assert np.array_equal(route.arrival_s, again.arrival_s)
     if route is None:
         assert best == math.inf
         return

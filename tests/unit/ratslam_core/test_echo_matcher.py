@@ -83,3 +83,16 @@ def test_unknown_echoes_leave_the_picture(seed: int) -> None:
     known, new = rng.integers(0, 256, (12, 104)).astype(np.uint8), rng.integers(0, 256, 104).astype(np.uint8)
     new[96:] = 0
     assert EchoMatcher(12, 8, 8, 0.7).nearest(known, new, 2) == Matcher().nearest(known[:, :96].copy(), new[:96], 2)
+
+
+def test_views_that_are_learnt_grow_and_are_replaced_are_found() -> None:
+    rng, matcher = np.random.default_rng(6), EchoMatcher(12, 8, 8, 0.5)
+    memory = rng.integers(0, 256, (3000, 104)).astype(np.uint8)
+    for count in (1, 2, 1500, 2999):
+        view = count - 1
+        assert matcher.nearest(memory[:count], memory[view], 1) == (view, 0.0, 0)
+    memory[7] = rng.integers(0, 256, 104)
+    matcher.replaced(7, memory[7])
+    assert matcher.nearest(memory[:2999], memory[7], 1) == (7, 0.0, 0)
+    other = memory[::-1].copy()
+    assert matcher.nearest(other[:2999], memory[2999], 1) == (0, 0.0, 0)
