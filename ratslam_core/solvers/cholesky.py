@@ -18,27 +18,33 @@ def factor(matrix: NDArray[np.float64]) -> bool:
     A library's factor would be twice as quick, but its last digits depend on how many cores there are.
     """
     n = len(matrix)
+    roots, across = np.empty(BLOCK), np.empty((BLOCK, BLOCK))  # of the block on the diagonal; across: its transpose
     for first in range(0, n, BLOCK):
         end = min(first + BLOCK, n)
-        for j in range(first, end):
-            if not matrix[j, j] > 0.0:
-                return False
-            root = math.sqrt(matrix[j, j])
-            for i in range(j, n):  # loops: an operation on whole arrays would take two seconds more to compile
-                matrix[i, j] /= root
-            for i in range(j + 1, n):
-                for k in range(j + 1, min(end, i + 1)):
-                    matrix[i, k] -= matrix[i, j] * matrix[k, j]
+        for i in range(first, n):  # row by row: a row lies together in memory, a column does not
+            row = matrix[i, first : min(end, i + 1)]
+            for j in range(len(row)):
+                if first + j == i:
+                    if not row[j] > 0.0:
+                        return False
+                    roots[j] = math.sqrt(row[j])
+                row[j] /= roots[j]
+                share, column = row[j], across[j]
+                if i < end:
+                    column[i - first] = share
+                for k in range(j + 1, len(row)):
+                    row[k] -= share * column[k]
         columns = np.empty((end - first, n - end))
         for k in range(end - first):
             for i in range(end, n):
                 columns[k, i - end] = matrix[i, first + k]
-        for i in range(end, n):
-            row = matrix[i, end : i + 1]
-            for k in range(end - first):
-                share, column = matrix[i, first + k], columns[k]
+        for i in range(end, n):  # a block is whole where rows are left below it, so its columns come in fours
+            row, shares = matrix[i, end : i + 1], matrix[i, first:end]
+            for k in range(0, len(shares), 4):
+                s0, s1, s2, s3 = shares[k], shares[k + 1], shares[k + 2], shares[k + 3]
+                c0, c1, c2, c3 = columns[k], columns[k + 1], columns[k + 2], columns[k + 3]
                 for c in range(len(row)):
-                    row[c] -= share * column[c]
+                    row[c] = row[c] - s0 * c0[c] - s1 * c1[c] - s2 * c2[c] - s3 * c3[c]
     return True
 
 
