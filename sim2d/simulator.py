@@ -254,7 +254,7 @@ class Simulator:
 
     def _slowness(self, x: float, y: float) -> float:
         """The share of the wheels' speed that the floor at (x, y) lets through: the least of the zones there, or 1."""
-        if not self.office.slow_zones:
+        if not (self.office.slow_zones and self.world.slow_zones):
             return 1.0
         factors = [z.factor for z in self.world.slow_zones if inside_ring(np.array(z.corners, np.float64), x, y)]
         return min(factors, default=1.0)

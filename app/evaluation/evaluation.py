@@ -134,13 +134,16 @@ class Evaluation:
         return rmse(mapped, truth), rmse(odometry, truth)
 
     def _judge(self, time_s: float, truth: Truth, experiences: ExperienceMap, way_m: float) -> None:
+        revisits = time_s - self._made_at[experiences.active, 3] > REVISIT_AGE_S
+        lost = [kidnap for kidnap in self.kidnaps[-1:] if kidnap.after_s is None]
+        if not (revisits or lost):
+            return
         off = self.belief_off(truth, experiences)
-        if time_s - self._made_at[experiences.active, 3] > REVISIT_AGE_S:
+        if revisits:
             self._revisits += 1
             self._consistent += off[0] <= CONSISTENT_M
-        for kidnap in self.kidnaps[-1:]:
-            if kidnap.after_s is None:
-                kidnap.note(time_s, way_m, self._knows(kidnap, truth, experiences, off))
+        for kidnap in lost:
+            kidnap.note(time_s, way_m, self._knows(kidnap, truth, experiences, off))
 
     def _knows(self, kidnap: Kidnapping, truth: Truth, experiences: ExperienceMap, off: tuple[float, float]) -> bool:
         """Whether place and heading are right. Place alone is not enough: a robot turned on the spot has not moved."""

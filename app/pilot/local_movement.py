@@ -67,8 +67,8 @@ class LocalMovement:
         n = len(self._angles)
         start = self._tick % self._ticks * n
         self._tick += 1
-        _carry(self._echoes, odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
-        _place(self._echoes, start, ranges_m, self._angles, p.echo_range_m)
+        moved, turned = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
+        _sense(self._echoes, moved, turned, start, ranges_m, self._angles, p.echo_range_m)
 
     def towards(self, x: float, y: float, p: DrivingParams) -> tuple[float, float]:
         """Speed and yaw rate of the free arc that costs least on the way to (x, y), metres in the robot's frame."""
@@ -98,6 +98,20 @@ class LocalMovement:
                 p.spot_share, p.spot_s, p.turn_cost, p.bearing_m, p.narrow_m, p.narrow_cost, p.escape_m2,
             )  # fmt: skip
         return self._choice[1]
+
+
+@njit(cache=True, nogil=True)
+def _sense(
+    echoes: _Array,
+    step: float,
+    turn: float,
+    start: int,
+    ranges: NDArray[np.float32],
+    angles: _Array,
+    farthest: float,
+) -> None:
+    _carry(echoes, step, turn)
+    _place(echoes, start, ranges, angles, farthest)
 
 
 @njit(cache=True, nogil=True)

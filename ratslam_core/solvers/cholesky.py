@@ -18,22 +18,10 @@ def factor(matrix: NDArray[np.float64]) -> bool:
     A library's factor would be twice as quick, but its last digits depend on how many cores there are.
     """
     n = len(matrix)
-    roots, across = np.empty(BLOCK), np.empty((BLOCK, BLOCK))  # of the block on the diagonal; across: its transpose
     for first in range(0, n, BLOCK):
         end = min(first + BLOCK, n)
-        for i in range(first, n):  # row by row: a row lies together in memory, a column does not
-            row = matrix[i, first : min(end, i + 1)]
-            for j in range(len(row)):
-                if first + j == i:
-                    if not row[j] > 0.0:
-                        return False
-                    roots[j] = math.sqrt(row[j])
-                row[j] /= roots[j]
-                share, column = row[j], across[j]
-                if i < end:
-                    column[i - first] = share
-                for k in range(j + 1, len(row)):
-                    row[k] -= share * column[k]
+        if not _factor_columns(matrix, first, end):
+            return False
         columns = np.empty((end - first, n - end))
         for k in range(end - first):
             for i in range(end, n):
@@ -45,6 +33,26 @@ def factor(matrix: NDArray[np.float64]) -> bool:
                 c0, c1, c2, c3 = columns[k], columns[k + 1], columns[k + 2], columns[k + 3]
                 for c in range(len(row)):
                     row[c] = row[c] - s0 * c0[c] - s1 * c1[c] - s2 * c2[c] - s3 * c3[c]
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _factor_columns(matrix: NDArray[np.float64], first: int, end: int) -> bool:
+    """Columns `first` to `end` of L, row by row, since a row lies together in memory and a column does not."""
+    roots, across = np.empty(BLOCK), np.empty((BLOCK, BLOCK))  # of the block on the diagonal; across: its transpose
+    for i in range(first, len(matrix)):
+        row = matrix[i, first : min(end, i + 1)]
+        for j in range(len(row)):
+            if first + j == i:
+                if not row[j] > 0.0:
+                    return False
+                roots[j] = math.sqrt(row[j])
+            row[j] /= roots[j]
+            share, column = row[j], across[j]
+            if i < end:
+                column[i - first] = share
+            for k in range(j + 1, len(row)):
+                row[k] -= share * column[k]
     return True
 
 
