@@ -158,13 +158,14 @@ def _best_arc(echoes: _Array, x: float, y: float, p: _Choice) -> tuple[float, fl
 
 
 @njit(cache=True, nogil=True)
-def _along(near: _Array, step: float, facing: _Array, p: _Choice) -> tuple[float, float, float, bool]:
+def _along(near: tuple[_Array, _Array], step: float, facing: _Array, p: _Choice) -> tuple[float, float, float, bool]:
     """The end (m) of an arc, the squared distance (m²) of the nearest echo, and whether it keeps clear of all.
 
     near: from `_within`. All echoes are compared at once, without a branch, so that the compiler can vectorise.
     """
     px = py = 0.0
-    x, y, may_come, least = near[0], near[1], near[2], near[3]
+    places, limits = near
+    x, y, limit, least = places[0], places[1], limits[0], limits[1]
     least[:] = np.inf
     for k in range(p.steps):
         px += step * facing[k, 0]
@@ -173,7 +174,7 @@ def _along(near: _Array, step: float, facing: _Array, p: _Choice) -> tuple[float
         for e in range(x.size):
             ex, ey = x[e] - px, y[e] - py
             d = ex * ex + ey * ey
-            too_close += (d < p.clearance * p.clearance) & (d < may_come[e])
+            too_close += (d < p.clearance * p.clearance) & (d < limit[e])
             least[e] = d if d < least[e] else least[e]
         if too_close > 0:
             return px, py, np.inf, False
@@ -205,21 +206,21 @@ def _facing(p: _Choice) -> _Array:
 
 
 @njit(cache=True, nogil=True)
-def _within(echoes: _Array, reach: float, p: _Choice) -> _Array:
-    """The echoes within `reach`, in their order; no other can matter to an arc.
+def _within(echoes: _Array, reach: float, p: _Choice) -> tuple[_Array, _Array]:
+    """The echoes within `reach`, in their order, (2, n); no other can matter to an arc.
 
-    (4, n): x, y, how near (m²) an arc may not come, since one that is already too close does not forbid an arc that leads
-    away from it, and a row for `_along`.
+    And in (2, n) how near (m²) an arc must come to count as too close, since an echo that is already too close does not
+    forbid an arc that leads away from it, and a row for `_along`.
     """
-    out = np.empty((4, len(echoes)))
+    places, limits = np.empty((2, len(echoes))), np.empty((2, len(echoes)))
     n = 0
     for e in range(echoes.shape[0]):
         away = echoes[e, 0] * echoes[e, 0] + echoes[e, 1] * echoes[e, 1]
         if away <= reach * reach:
-            out[0, n], out[1, n] = echoes[e, 0], echoes[e, 1]
-            out[2, n] = away - p.escape_m2
+            places[0, n], places[1, n] = echoes[e, 0], echoes[e, 1]
+            limits[0, n] = away - p.escape_m2
             n += 1
-    return out[:, :n].copy()
+    return places[:, :n].copy(), limits[:, :n].copy()  # rows without gaps, or the compiler cannot vectorise
 
 
 @njit(cache=True, nogil=True)
