@@ -48,6 +48,7 @@ class LocalView:
         self._templates = np.zeros((1024, size), np.uint8)
         self._count = 0
         self._matcher = matcher_of(end)
+        self._among = matcher_of(end)  # for some of the views; the other one remembers all of them
         self._last: Features | None = None
 
     def __len__(self) -> int:
@@ -82,7 +83,7 @@ class LocalView:
         test_recogniser.py::test_a_view_is_looked_for_among_some.
         """
         most = self.params.shift if self.front_end.shifts else 0
-        best, apart, shift = self._matcher.nearest(self.templates[views], self.features, most)
+        best, apart, shift = self._among.nearest(self.templates[views], self.features, most)
         apart = self._levels(apart, self.features)
         limit = self.front_end.threshold(self.params)
         if self.recognition.view == NOTHING or best < 0 or apart > limit:
