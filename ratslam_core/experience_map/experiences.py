@@ -92,12 +92,7 @@ class Experiences:
 
     def of_view(self, view: int) -> NDArray[np.int64]:
         """The experiences of a view, the newest first."""
-        found: list[int] = []
-        i = self._newest_of_view.get(view, -1)
-        while i >= 0:
-            found.append(i)
-            i = int(self._before_of_view[i])
-        return np.array(found, np.int64)
+        return _chain(self._newest_of_view.get(view, -1), self._before_of_view)
 
     def energy(self, experience: int, packet: Packet, view: int, p: ExperienceMapParams) -> float:
         """ACRA 2006 eqs. 1-4: E = 0 if r > 1 or q > 1 or V != V_i, else 2 - r - q; ACRA 2005 eqs. 4-9: V ((1-r)+ + (1-q)+)."""
@@ -166,6 +161,20 @@ def _energy(
     if old:
         return max(1.0 - r, 0.0) + max(1.0 - q, 0.0)
     return 0.0 if r > 1.0 or q > 1.0 else 2.0 - r - q
+
+
+@njit(cache=True, nogil=True)
+def _chain(newest: int, before: NDArray[np.int64]) -> NDArray[np.int64]:
+    """All members of a chain, the newest first."""
+    count, i = 0, newest
+    while i >= 0:
+        count, i = count + 1, before[i]
+    found = np.empty(count, np.int64)
+    i = newest
+    for k in range(count):
+        found[k] = i
+        i = before[i]
+    return found
 
 
 @njit(cache=True, nogil=True)
