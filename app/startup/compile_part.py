@@ -50,6 +50,7 @@ from ratslam_core import (
     ViewLinks,
     find_places,
 )
+from ratslam_core.experience_map.experiences import Experiences
 from ratslam_core.extensions.familiar_ground import FamiliarGround
 from ratslam_core.extensions.scan_change import ScanChange
 from ratslam_core.pose_cells.activity_kernels import X, Y
@@ -128,6 +129,7 @@ def loops() -> None:
         created = made.step(packet, seen, Odometry(0.3, 0.1, 0.1))
         made.ground.note(made, seen, created, Odometry(0.3, 0.1, 0.1), False)
         made.correct()
+    Experiences(shape).of_view(0)
     made.temporal_map.times_to(0)
     find_places(made)
 
