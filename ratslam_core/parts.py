@@ -99,6 +99,11 @@ class ExperienceMapPart(Protocol):
     @property
     def robot(self) -> Pose2: ...
     @property
+    def views(self) -> NDArray[np.int64]:
+        """The view of each experience, -1 for none, (n,)."""
+        ...
+
+    @property
     def foreign_views(self) -> NDArray[np.int64]:
         """Views of maps that are not yet joined with the one that the robot is in; empty where there is one map."""
         ...

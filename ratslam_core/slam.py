@@ -142,8 +142,10 @@ class RatSlam:
         test_gate.py::test_who_misses_what_it_expects_gives_way_sooner.
         """
         map_, view, seen = self.experience_map, self.local_view, self.local_view.recognition
+        if not map_.gate.sights or seen.view < 0 or seen.recruited:
+            return False
         views = map_.views[map_.ground.near]
-        if not map_.gate.sights or seen.view < 0 or seen.recruited or np.any(views == seen.view):
+        if np.any(views == seen.view):
             return False
         limit = self.params.pose_filter.gate_unlike * view.front_end.threshold(self.params.local_view)
         return len(views) > 0 and all(view.difference_to(int(v)) > limit for v in views if v >= 0)
