@@ -40,13 +40,20 @@ class Explorer:
     def __init__(self, rng: np.random.Generator) -> None:
         self._rng = rng
         self._begin_following()
-        self._way = 0.0
+        self._way = self._far = 0.0  # since it last looked back, m: wandering, and on trips to new ground
         self._back = 0.0  # what is left to drive back while looking, m
         self._cross_in_s = math.inf  # time of wall following until the next crossing; looking back does not reset it
 
     @property
     def doing(self) -> Behaviour:
         return _DOING[self._state]
+
+    def travel(self, way_m: float, p: PilotParams) -> None:
+        """[ours] The robot drove on new ground on a trip of its own; there, too, it turns back to look after a while."""
+        self._far += way_m
+        if self._far > p.far_look_back_m:
+            self._far = 0.0
+            self._begin_looking_back(p)
 
     def begin_crossing(self, p: PilotParams) -> None:
         """Turn to a random direction, then drive straight ahead."""

@@ -15,8 +15,10 @@ from ratslam_core import ExperienceMap
 
 _Array = NDArray[np.float64]
 
+FINE = 4  # cells in the reach of a far opening
 
-@kind("known ground/1")
+
+@kind("known ground/2")
 class KnownGround:
     """Rows belong to the experiences, by number."""
 
@@ -27,7 +29,7 @@ class KnownGround:
         self._last_s = np.zeros(0)  # when the robot was last there
         self._made_s = np.zeros(0)
         self._seen_m = np.zeros((0, len(self._angles)), np.float32)  # sonar ranges where the experience was made
-        self._done: list[tuple[float, float]] = []  # openings that have been tried, m, map frame
+        self._done: list[tuple[int, float, float]] = []  # openings that have been tried: m, in an experience's frame
         self.now_s = self.new_m = 0.0  # time; distance driven since the robot was last on old ground
 
     @property
@@ -74,38 +76,58 @@ class KnownGround:
         near = np.hypot(poses[: self.count, 0] - x, poses[: self.count, 1] - y) < p.place_reach_m
         self.last_s[near] = self.now_s
 
-    def tried(self, x: float, y: float) -> None:
-        """An opening is done with, whether the robot could drive there or not."""
-        self._done.append((x, y))
+    def tried(self, experience: int, x: float, y: float) -> None:
+        """An opening is done with, whether the robot could drive there or not; m, in the frame of the experience."""
+        self._done.append((experience, x, y))
 
     def openings(self, poses: _Array, p: SeekingParams) -> tuple[NDArray[np.int64], _Array]:
         """Experiences (k,) and the places (k, 2), m, map frame, that were seen from there and never driven on."""
-        n = self.count
-        seen = self._seen_m[:n]
-        rows, beams = np.nonzero(seen >= p.opening_m)
+        rows, beams = np.nonzero(self._seen_m[: self.count] >= p.opening_m)
+        away = np.minimum(self._seen_m[rows, beams] - p.opening_gap_m, p.opening_most_m)
+        return self._thin(poses, rows, beams, away, p.thin_m, 1, p.opening_beams)
+
+    def far_openings(self, poses: _Array, p: SeekingParams) -> tuple[NDArray[np.int64], _Array]:
+        """The same, of places that lie far from all experiences: there a new street or hall begins."""
+        rows, beams = np.nonzero(self._seen_m[: self.count] >= p.far_m + p.opening_gap_m)
+        away = self._seen_m[rows, beams].astype(np.float64) - p.opening_gap_m
+        return self._thin(poses, rows, beams, away, p.far_m, FINE, p.opening_beams)
+
+    def _thin(
+        self, poses: _Array, rows: NDArray[np.int64], beams: NDArray[np.int64], away: _Array, reach: float, fine: int,
+        least: int,
+    ) -> tuple[NDArray[np.int64], _Array]:  # fmt: skip
+        """Of the places so far `away` (m) along these beams of these experiences, those that nothing known is near."""
         heading = poses[rows, 2] + self._angles[beams]
-        away = np.minimum(seen[rows, beams] - p.opening_gap_m, p.opening_most_m)
         places = poses[rows, :2] + away[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=1)
-        thin = _far_from(places, np.concatenate([poses[:n, :2], np.array(self._done).reshape(-1, 2)]), p.thin_m)
+        thin = _far_from(places, np.concatenate([poses[: self.count, :2], placed(self._done, poses)]), reach, fine)
         rows, places = rows[thin], places[thin]
-        cells = np.floor(places / p.thin_m).astype(np.int64)
+        cells = np.floor(places / reach).astype(np.int64)
         _, which, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
-        often = count[which.ravel()] >= p.opening_beams  # a single beam may be a false echo
+        often = count[which.ravel()] >= least  # a single beam may be a false echo
         return rows[often].astype(np.int64), places[often]
 
 
-def _far_from(places: _Array, others: _Array, reach: float) -> NDArray[np.bool_]:
-    """Which of the places (k, 2) are farther than about `reach` (1 to 2 times) from all others (n, 2)."""
+def placed(points: list[tuple[int, float, float]], poses: _Array) -> _Array:
+    """The places (n, 2), m, map frame, of points in the frames of experiences."""
+    rows = np.array(points).reshape(-1, 3)
+    x, y, heading = poses[rows[:, 0].astype(np.int64)].T
+    c, s = np.cos(heading), np.sin(heading)
+    return np.stack([x + c * rows[:, 1] - s * rows[:, 2], y + s * rows[:, 1] + c * rows[:, 2]], axis=1)
+
+
+def _far_from(places: _Array, others: _Array, reach: float, fine: int) -> NDArray[np.bool_]:
+    """Which of the places (k, 2) are farther than about `reach` (1 to 1 + 1/fine times) from all others (n, 2)."""
     if not len(places):
         return np.zeros(0, np.bool_)
+    cell = reach / fine
     low = np.minimum(places.min(axis=0), others.min(axis=0)) - 2 * reach
     high = np.maximum(places.max(axis=0), others.max(axis=0)) + 2 * reach
-    size = np.ceil((high - low) / reach).astype(np.int64)
-    taken = np.zeros((int(size[0]), int(size[1])), np.bool_)
-    at = np.floor((others - low) / reach).astype(np.int64)
-    for dx in (-1, 0, 1):
-        for dy in (-1, 0, 1):
-            taken[at[:, 0] + dx, at[:, 1] + dy] = True
-    mine = np.floor((places - low) / reach).astype(np.int64)
-    free: NDArray[np.bool_] = ~taken[mine[:, 0], mine[:, 1]]
+    size = np.ceil((high - low) / cell).astype(np.int64)
+    at = np.floor((others - low) / cell).astype(np.int64)
+    known = np.zeros((int(size[0]), int(size[1])), np.bool_)
+    known[at[:, 0], at[:, 1]] = True
+    for axis in (0, 1):
+        known = np.logical_or.reduce([np.roll(known, shift, axis) for shift in range(-fine, fine + 1)])
+    mine = np.floor((places - low) / cell).astype(np.int64)
+    free: NDArray[np.bool_] = ~known[mine[:, 0], mine[:, 1]]
     return free

@@ -128,7 +128,7 @@ class Pilot:
         drive = (
             self._to_the_goal(self._follower, odometry, experiences)
             if to_goal and self._follower is not None
-            else self._seek(odometry, experiences)
+            else self._seek(ranges_m, odometry, experiences)
         )
         if drive is not None:
             return drive
@@ -136,9 +136,16 @@ class Pilot:
         self.behaviour = self._explorer.doing
         return drive
 
-    def _seek(self, odometry: Odometry, experiences: ExperienceMap) -> tuple[float, float] | None:
-        """The drive on a trip of its own choice. None: it wanders."""
-        target = self._seeker.step(experiences, self._local, odometry, self.params)
+    def _seek(
+        self, ranges_m: NDArray[np.float32], odometry: Odometry, experiences: ExperienceMap
+    ) -> tuple[float, float] | None:
+        """The drive on a trip of its own choice. None: it wanders, or turns back to look."""
+        if self._seeker.into_far:
+            if self._explorer.doing is not Behaviour.LOOKING_BACK:
+                self._explorer.travel(abs(odometry.speed * odometry.dt), self.params)
+            if self._explorer.doing is Behaviour.LOOKING_BACK:
+                return None
+        target = self._seeker.step(experiences, self._local, ranges_m, odometry, self.params)
         if self._seeker.failed:
             self._back_out()
         if target is None:

@@ -1,10 +1,13 @@
 """[ours] Seeking: now and then the robot leaves off wandering and drives somewhere on purpose, over its own map.
 
-Wandering follows walls and crosses at random, as in IROS 2005; nothing in it seeks what the map lacks. So from time to
-time the robot goes where open floor was seen but never driven on; if it has been on new ground for long, it first goes
-back to old ground, so that its error cannot grow without bound; and if nothing is new, it goes to where it has not
-been for longest, which closes loops and shows it each place from the other side. It knows map, sonars and odometry
-only. test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_on_new_ground_for_long_it_goes_back,
+Wandering follows walls and crosses at random, as in IROS 2005; nothing in it seeks what the map lacks. The robot goes,
+in this order: back to old ground, if it has been on new ground for long, so that its error cannot grow without bound
+(it dares twice as far each time it came back, since its wheels are then known better); along known ground that is near
+but far by the links, which closes a loop; where open floor was seen far from all it knows. Only when nothing of that is
+left does it wander, and go by turns into openings near by and to where it has not been for longest. It knows map,
+sonars and odometry only.
+test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_far_openings_are_sought_one_after_the_other,
+test_on_new_ground_for_long_it_goes_back, test_it_dares_twice_as_far_each_time_it_comes_back,
 test_with_nothing_new_it_goes_where_it_has_not_been_for_longest}.
 """
 
@@ -18,6 +21,7 @@ from numpy.typing import NDArray
 from app.pilot.bars import Bars
 from app.pilot.known_ground import KnownGround
 from app.pilot.local_movement import LocalMovement
+from app.pilot.loop_closing import LoopCloser, wrapped
 from app.pilot.params import PilotParams
 from app.pilot.route_following import RouteFollower
 from disk import kind
@@ -25,8 +29,11 @@ from ratslam_core import ExperienceMap, Odometry, Pose2
 
 _Point = tuple[float, float]
 
+SOON_S = 1e-9  # of driving into an opening or along a road: it has begun
+MOST_RETURNS = 30  # after so many it dares no more
 
-@kind("seeker/1")
+
+@kind("seeker/2")
 class Seeker:
     """Decides when and where to drive on purpose, and drives there. `follower` is set on the way."""
 
@@ -36,38 +43,54 @@ class Seeker:
         self.returning = False
         self._bars = bars
         self._opening: Pose2 | None = None  # what to drive into at the end of the trip, in the frame of its experience
+        self._closer = LoopCloser(sonar_angles_rad)
+        self._far = False  # whether that is a far one
+        self._there = False  # whether it has come there
         self._into_s = 0.0  # time of driving into it
         self._trip_s = 0.0
         self._wander_s = 0.0  # time since the last trip
+        self._wait_s = math.inf  # time of wandering before the next; not known before the first
         self._trips = 0
+        self._returns = 0  # how often it came back to old ground
 
     @property
     def failed(self) -> bool:
         """In this tick: the robot could not get on, and should back out."""
         return self.follower is not None and self.follower.failed
 
+    @property
+    def into_far(self) -> bool:
+        """Whether it drives into a far opening, over new ground."""
+        return self.follower is not None and (self._far or bool(self._closer.road)) and self._into_s > 0.0
+
     def stop(self) -> None:
         """Something else is wanted of the robot."""
-        self.follower, self._opening, self._wander_s = None, None, 0.0
+        self.follower, self._opening, self._far, self._wander_s = None, None, False, 0.0
+        self._closer.stop()
 
     def step(
-        self, experiences: ExperienceMap, local: LocalMovement, odometry: Odometry, p: PilotParams
+        self,
+        experiences: ExperienceMap,
+        local: LocalMovement,
+        ranges_m: NDArray[np.float32],
+        odometry: Odometry,
+        p: PilotParams,
     ) -> _Point | None:
-        """The next point to head for, metres in the robot's frame; None: wander."""
+        """The next point to head for, metres in the robot's frame; None: wander. ranges_m: (8,) from left to right."""
         if not p.seek:
             return None
         if self.follower is None:
             self._wander_s += odometry.dt
-            if self._wander_s > p.seek_after_s:
+            if self._wander_s > min(self._wait_s, p.seek_after_s):
                 self._wander_s = 0.0
-                self._choose(experiences, p)
+                self._choose(experiences, local, ranges_m, p)
             if self.follower is None:
                 return None
         self._trip_s += odometry.dt
         aim = self._aim(self.follower, experiences, local, odometry.dt, p)
         if aim is None:
             self._end(experiences, p)
-        return aim
+        return aim if aim is None or not self.into_far else _in_the_middle(aim, ranges_m, p)
 
     def _aim(
         self, follower: RouteFollower, experiences: ExperienceMap, local: LocalMovement, dt: float, p: PilotParams
@@ -79,41 +102,82 @@ class Seeker:
             if aim is not None or follower.state != "arrived" or self._opening is None:
                 return aim
         self._into_s += dt
-        if self._opening is None or self._into_s > p.into_s:
+        if self._into_s > p.into_s:
+            return None
+        if self._closer.road:
+            aim, passed = self._closer.aim(experiences, p)
+            self._into_s = SOON_S if passed else self._into_s
+            return aim
+        if self._opening is None:
             return None
         place = experiences.pose(follower.goal).compose(self._opening)
         here = experiences.robot.inverse().compose(place)
-        there = math.hypot(here.x, here.y) < p.into_reach_m
-        return None if there or local.free_way(math.atan2(here.y, here.x), p) < p.into_free_m else (here.x, here.y)
+        self._there = math.hypot(here.x, here.y) < (p.far_m / 2 if self._far else p.into_reach_m)
+        blocked = local.free_way(math.atan2(here.y, here.x), p) < p.into_free_m
+        return None if self._there or blocked else (here.x, here.y)
 
     def _end(self, experiences: ExperienceMap, p: PilotParams) -> None:
         assert self.follower is not None
+        if self.returning and self.ground.new_m == 0.0:
+            self._returns = min(self._returns + 1, MOST_RETURNS)
         goal = experiences.pose(self.follower.goal)
         self.ground.been_at(goal.x, goal.y, experiences.poses, p)
-        if self._opening is not None:
-            place = goal.compose(self._opening)
-            self.ground.tried(place.x, place.y)
+        if self._opening is not None and not (self._far and self._there):  # beyond a far one there may be more
+            self.ground.tried(self.follower.goal, self._opening.x, self._opening.y)
         self.stop()
 
-    def _choose(self, experiences: ExperienceMap, p: PilotParams) -> None:
-        """Old ground if the robot has been on new ground for long; else by turns an opening near by and the place that
-        was not visited for longest."""
+    def _choose(
+        self, experiences: ExperienceMap, local: LocalMovement, ranges_m: NDArray[np.float32], p: PilotParams
+    ) -> None:
+        """Old ground if the robot has been on new ground for long; else a loop to close; else a far opening; else by turns
+        an opening near by and the place that was not visited for longest."""
         times = experiences.temporal_map.times_to(experiences.active)
-        self._trips += 1
-        self.returning = self.ground.new_m > p.return_after_m
+        self._wait_s, self._trip_s, self._into_s, self._there = 0.0, 0.0, 0.0, False
+        drift_m = experiences.params.odometry_drift * self.ground.new_m
+        self.returning = self.ground.new_m > p.return_after_m * 2**self._returns or drift_m > p.return_sigma_m
         goal = self._old_ground(times, p) if self.returning else None
-        if goal is None and self._trips % p.openings_every == 0:
-            goal = self._nearest_opening(experiences, times, p)
+        self.returning = goal is not None
+        if goal is None and self._closer.choose(experiences, ranges_m, times, self.ground.now_s, p):
+            goal, self._into_s = self._closer.road[0], SOON_S
+        if goal is None:
+            goal = self._best_far_opening(experiences, local, times, p)
+        if goal is None:
+            self._wait_s = p.seek_after_s
+            self._trips += 1
+            if self._trips % p.openings_every == 0:
+                goal = self._nearest_opening(experiences, times, p)
         if goal is None:
             goal = self._long_ago(times, p)
         if goal is not None:
             self.follower = RouteFollower(goal, self._bars)
-            self._trip_s = self._into_s = 0.0
 
     def _old_ground(self, times: NDArray[np.float64], p: PilotParams) -> int | None:
         old = np.flatnonzero(np.isfinite(times) & (self.ground.now_s - self.ground.made_s > p.old_after_s))
         old = old[self.ground.last_s[old] - self.ground.made_s[old] > p.old_after_s] if len(old) else old
         return int(old[np.argmin(times[old])]) if len(old) else None
+
+    def _best_far_opening(
+        self, experiences: ExperienceMap, local: LocalMovement, times: NDArray[np.float64], p: PilotParams
+    ) -> int | None:
+        """The one that costs least: time to get there, and its distance from where the map began, since what is near
+        that closes small loops."""
+        rows, places = self.ground.far_openings(experiences.poses, p)
+        reached = np.isfinite(times[rows])
+        rows, places = rows[reached], places[reached]
+        if not len(rows):
+            return None
+        poses, robot = experiences.poses, experiences.robot
+        home = np.hypot(places[:, 0] - poses[0, 0], places[:, 1] - poses[0, 1])
+        leg = np.hypot(*(places - poses[rows, :2]).T)
+        near = np.hypot(poses[rows, 0] - robot.x, poses[rows, 1] - robot.y) < p.place_reach_m
+        bearing = np.arctan2(places[:, 1] - robot.y, places[:, 0] - robot.x) - robot.heading_rad
+        turn = np.abs(wrapped(bearing))
+        cost = times[rows] * ~near + (leg + p.home_share * home) / p.cruise_speed + near * turn / p.turn_rate
+        best = int(np.argmin(cost))
+        if near[best] and local.free_way(float(bearing[best]), p) > p.into_free_m:
+            self._into_s = SOON_S  # it sees it from here
+        self._far = True
+        return self._into(experiences, int(rows[best]), places[best])
 
     def _nearest_opening(self, experiences: ExperienceMap, times: NDArray[np.float64], p: PilotParams) -> int | None:
         rows, places = self.ground.openings(experiences.poses, p)
@@ -122,9 +186,11 @@ class Seeker:
         if not len(rows):
             return None
         best = int(np.argmin(times[rows]))
-        goal = int(rows[best])
-        place = Pose2(float(places[best, 0]), float(places[best, 1]), 0.0)
-        self._opening = experiences.pose(goal).inverse().compose(place)
+        return self._into(experiences, int(rows[best]), places[best])
+
+    def _into(self, experiences: ExperienceMap, goal: int, place: NDArray[np.float64]) -> int:
+        """Drive into this place (2,), m, map frame, from where it was seen."""
+        self._opening = experiences.pose(goal).inverse().compose(Pose2(float(place[0]), float(place[1]), 0.0))
         return goal
 
     def _long_ago(self, times: NDArray[np.float64], p: PilotParams) -> int | None:
@@ -133,3 +199,11 @@ class Seeker:
             return None
         goal = int(known[np.argmin(self.ground.last_s[known])])
         return goal if self.ground.now_s - self.ground.last_s[goal] > p.long_ago_s else None
+
+
+def _in_the_middle(aim: _Point, ranges_m: NDArray[np.float32], p: PilotParams) -> _Point:
+    """The aim, nearer, and moved towards the side where more is free."""
+    away = math.hypot(*aim)
+    share = min(1.0, p.middle_ahead_m / away) if away > 0 else 1.0
+    aside = (float(ranges_m[0]) - float(ranges_m[-1])) / 2
+    return aim[0] * share, aim[1] * share + max(-p.middle_m, min(p.middle_m, aside))

@@ -16,7 +16,12 @@ class SeekingParams:
         source="ours; off: C IV.D",
     )  # fmt: skip
     seek_after_s: float = param(
-        45.0, unit="s", low=0.0, high=1e5, meaning="time of wandering between two trips", source="ours"
+        45.0,
+        unit="s",
+        low=0.0,
+        high=1e5,
+        meaning="time of wandering between two trips, unless there is more to see far off",
+        source="ours",
     )
     openings_every: int = param(
         2, low=1, high=1000, meaning="of so many trips one goes into an opening, the others to places long not visited",
@@ -27,7 +32,7 @@ class SeekingParams:
     )
     return_after_m: float = param(
         25.0, unit="m", low=1.0, high=1e5,
-        meaning="after so long a way on new ground the robot goes back to old ground",
+        meaning="after so long a way on new ground the robot goes back to old ground; twice as long each time it came back",
         source="ours",
     )  # fmt: skip
     old_after_s: float = param(
@@ -56,8 +61,62 @@ class SeekingParams:
         0.9, unit="m", low=0.1, high=10.0, meaning="the map is thin where no experience is about this near",
         source="ours",
     )  # fmt: skip
+    far_m: float = param(
+        2.8, unit="m", low=0.5, high=20.0,
+        meaning="openings farther than this from all experiences are sought first, one after the other; 20 = there are none",
+        source="ours",
+    )  # fmt: skip
+    home_share: float = param(
+        0.5, low=0.0, high=10.0,
+        meaning="a metre that such an opening is away from where the map began counts as so much of a metre of the way there",
+        source="ours",
+    )  # fmt: skip
+    return_sigma_m: float = param(
+        3.0, unit="m", low=0.01, high=1e3,
+        meaning="it also goes back when odometry may be wrong by this since it left old ground",
+        source="ours",
+    )  # fmt: skip
+    loop_m: float = param(
+        30.0, unit="m", low=1.0, high=1e5,
+        meaning="known ground that is at least this far by the links closes a loop if it is near ...", source="ours",
+    )  # fmt: skip
+    loop_share: float = param(
+        0.1, low=0.0, high=1.0, meaning="... that is, nearer than this share of the way by the links ...", source="ours"
+    )
+    loop_most_m: float = param(
+        150.0, unit="m", low=1.0, high=1e5, meaning="... of which no more counts than this", source="ours"
+    )
+    loop_drive_m: float = param(
+        25.0,
+        unit="m",
+        low=0.5,
+        high=100.0,
+        meaning="... and followed for this far, so that it is recognised",
+        source="ours",
+    )
+    loop_again_s: float = param(
+        300.0,
+        unit="s",
+        low=0.0,
+        high=1e6,
+        meaning="from the same place it is tried again after this time",
+        source="ours",
+    )
+    far_look_back_m: float = param(
+        20.0, unit="m", low=1.0, high=1000.0,
+        meaning="on a trip into far openings: distance driven before it turns back to look; each turn costs heading",
+        source="ours",
+    )  # fmt: skip
+    middle_m: float = param(
+        0.5, unit="m", low=0.0, high=5.0,
+        meaning="on such trips the robot keeps to the middle between left and right, steering aside by at most this ...",
+        source="ours",
+    )  # fmt: skip
+    middle_ahead_m: float = param(
+        1.5, unit="m", low=0.1, high=10.0, meaning="... at a point so far ahead", source="ours"
+    )
     into_s: float = param(
-        15.0, unit="s", low=0.0, high=600.0, meaning="driving into an opening ends after this time at the latest",
+        25.0, unit="s", low=0.0, high=600.0, meaning="driving into an opening ends after this time at the latest",
         source="ours",
     )  # fmt: skip
     into_reach_m: float = param(

@@ -36,10 +36,32 @@ def test_open_floor_that_was_never_driven_on_is_an_opening() -> None:
     assert len(rows) == len(places) > 10
     assert places[:, 1] == pytest.approx(USUAL.opening_most_m)
     assert places[:, 0] == pytest.approx(0.1 * rows)
-    ground.tried(1.5, USUAL.opening_most_m)
+    ground.tried(10, 0.5, USUAL.opening_most_m)  # that is at x = 1.5 m
     _, left = ground.openings(map_.poses, USUAL)
     assert 0 < len(left) < len(places)
     assert np.hypot(left[:, 0] - 1.5, left[:, 1] - USUAL.opening_most_m).min() > USUAL.thin_m
+
+
+def test_a_tried_opening_moves_with_the_map() -> None:
+    ranges = NEAR.copy()
+    ranges[0] = 4.0
+    ground, map_ = driven([(0.1 * k, 0.0) for k in range(60)], ranges)
+    ground.tried(10, 0.5, USUAL.opening_most_m)
+    map_.poses[:, :2] += (7.0, 5.0)
+    _, left = ground.openings(map_.poses, USUAL)
+    assert len(left)
+    assert np.hypot(left[:, 0] - 8.5, left[:, 1] - USUAL.opening_most_m - 5.0).min() > USUAL.thin_m
+
+
+def test_a_far_opening_is_far_from_all_that_is_known() -> None:
+    """Driven along a wall of a hall: what the sonar to the left saw of the hall is far, what it saw of a corridor is not."""
+    for reach, is_far in ((5.0, True), (3.0, False)):
+        ranges = NEAR.copy()
+        ranges[0] = reach
+        ground, map_ = driven([(0.1 * k, 0.0) for k in range(60)], ranges)
+        rows, places = ground.far_openings(map_.poses, USUAL)
+        assert bool(len(rows)) == is_far
+        assert (places[:, 1] > USUAL.far_m).all()
 
 
 def test_what_was_driven_on_is_no_opening() -> None:

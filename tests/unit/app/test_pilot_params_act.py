@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import cache
 
 import numpy as np
@@ -12,12 +13,14 @@ import pytest
 from app.pilot import Pilot, PilotParams
 from app.pilot.bars import Bars
 from app.pilot.local_movement import LocalMovement
+from app.pilot.loop_closing import LoopCloser
 from app.pilot.params import DrivingParams, ExploringParams, FreeingParams, RouteParams, SeekingParams
 from app.pilot.route_following import RouteFollower
 from ratslam_core import Odometry, Pose2
 from sim2d import Simulator
 
 from .pilots import ANGLES, DT, FAR, STILL, Run, follow
+from .test_loop_closing import almost_round
 from .test_routes import two_ways
 from .worlds import EXACT, HandMadeMap, chain, room
 
@@ -40,6 +43,8 @@ OTHER: dict[str, float] = {
     "seek": False, "seek_after_s": 20.0, "openings_every": 1, "trip_most_s": 10.0, "return_after_m": 10.0,
     "old_after_s": 5.0, "long_ago_s": 900.0, "place_reach_m": 6.0, "opening_m": 4.9, "opening_gap_m": 1.2,
     "opening_most_m": 1.2, "opening_beams": 30, "thin_m": 0.4, "into_s": 2.0, "into_reach_m": 1.0, "into_free_m": 3.0,
+    "far_m": 20.0, "home_share": 0.0, "return_sigma_m": 0.3, "loop_m": 200.0, "loop_share": 0.0, "loop_most_m": 20.0,
+    "loop_drive_m": 5.0, "loop_again_s": 10.0, "far_look_back_m": 2.0, "middle_m": 0.0, "middle_ahead_m": 0.5,
     "stuck_s": 3.0, "bumped_s": 2.0, "somewhere_m": 0.2, "turned_rad": 0.5, "most_turns": 0, "grip_yaw_rate": 1.0,
     "least_grip": 0.8, "grip_s": 0.5, "back_off_s": 2.0, "back_off_speed": 0.1, "free_turn_s": 0.5, "free_turn_share": 1.0,
 }  # fmt: skip
@@ -153,6 +158,38 @@ def on_trips(p: PilotParams) -> Trace:
             yield run.truth
 
 
+def on_near_trips(p: PilotParams) -> Trace:
+    """The same, where nothing is far."""
+    yield from on_trips(replace(p, far_m=20.0, loop_share=0.0))
+
+
+def along_a_corridor(p: PilotParams) -> Trace:
+    """Of which the robot knows the first metres only, and these are not in its middle."""
+    walls = [(0.0, 0.0, 20.0, 0.0), (0.0, 3.0, 20.0, 3.0)]
+    map_ = HandMadeMap(*chain((0.5, 1.2), (3.0, 1.2)))
+    run = Run(
+        Simulator(room(*walls, side=20.0, start=(3.0, 1.2, 0.0)), EXACT, 1),
+        Pilot(p, ANGLES, np.random.default_rng(1)),
+        map_,
+    )
+    run.tick()
+    run.pilot._seeker.ground._seen_m[:] = 1.0
+    for _ in range(300):
+        if math.dist(run.truth, map_.poses[-1, :2]) > 0.25:
+            map_.make(*run.truth, run.simulator.truth.heading_rad)
+        run.tick()
+        yield run.truth
+
+
+def at_a_loop(p: PilotParams) -> Trace:
+    """Again and again at the same place, before ground that is far by the links."""
+    map_, closer = almost_round(), LoopCloser(ANGLES)
+    times = map_.temporal_map.times_to(map_.active)
+    for now_s in (1000.0, 1100.0, 1500.0):
+        yield closer.choose(map_, FAR, times, now_s, p), closer.road  # type: ignore[arg-type]
+        closer.stop()
+
+
 def getting_nowhere(p: PilotParams) -> Trace:
     """Bumped and still, then turning slower than asked for, then spinning, then creeping: over and over."""
     pilot, map_ = Pilot(p, ANGLES, np.random.default_rng(3)), HandMadeMap([(0.0, 0.0)], [])
@@ -169,7 +206,7 @@ SITUATIONS: dict[type, tuple[Callable[[PilotParams], Trace], ...]] = {
     ExploringParams: (exploring,),
     RouteParams: (past_a_shut_door, at_a_wall, standing, side_by_side, failing_again),
     FreeingParams: (getting_nowhere,),
-    SeekingParams: (on_trips,),
+    SeekingParams: (on_trips, on_near_trips, along_a_corridor, at_a_loop),
 }
 
 

@@ -13,6 +13,7 @@ from sim2d import Simulator
 from .pilots import EXPLORING, Run, a_pilot
 from .worlds import EXACT, HandMadeMap, chain, room
 
+NEAR_ONLY = {"far_m": 20.0, "loop_share": 0.0}  # no far openings, no loops
 TRIPS = {"going where the map is thin", "going back to known ground"}
 
 
@@ -32,7 +33,7 @@ def test_without_seeking_it_only_wanders() -> None:
 def test_it_goes_where_open_floor_was_seen() -> None:
     """All experiences lie on one side of the room; those in the middle have seen far to the other side."""
     map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0)))
-    run = a_run(map_, seek_after_s=5.0, openings_every=1)
+    run = a_run(map_, seek_after_s=5.0, openings_every=1, **NEAR_ONLY)
     ground = run.pilot._seeker.ground
     ground._seen_m[: ground.count] = 1.0
     ground._seen_m[10:14, 3:5] = 5.0  # ahead, that is along x
@@ -50,9 +51,78 @@ def test_it_goes_where_open_floor_was_seen() -> None:
     assert len(ground.openings(map_.poses, run.pilot.params)[0]) == 0  # it does not go there twice
 
 
+def test_far_openings_are_sought_one_after_the_other() -> None:
+    """In a long corridor, of which it knows the first metres, it goes on and on, in the middle, and does not wander."""
+    map_ = HandMadeMap(*chain((0.5, 1.2), (3.0, 1.2)))
+    walls = [(0.0, 0.0, 20.0, 0.0), (0.0, 3.0, 20.0, 3.0)]
+    world = room(*walls, side=20.0, start=(3.0, 1.2, 0.0))
+    run = Run(Simulator(world, EXACT, 1), a_pilot(1, seek_after_s=1.0, far_look_back_m=1000.0), map_)
+    run.tick()
+    run.pilot._seeker.ground._seen_m[:] = 1.0
+    for _ in range(450):
+        here = run.truth
+        if math.dist(here, map_.poses[-1, :2]) > 0.25:
+            map_.make(*here, run.simulator.truth.heading_rad)
+        run.tick()
+    assert run.truth[0] > 9.0
+    assert run.doing["going where the map is thin"] > 400
+    assert all(abs(y - 1.5) < 0.5 for x, y in run.track if x > 6.0)
+
+
+def test_near_openings_and_old_places_come_after_the_far_ones() -> None:
+    map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0)))
+    run = a_run(map_, seek_after_s=1.0)
+    ground = run.pilot._seeker.ground
+    ground._seen_m[: ground.count] = 1.0
+    ground._seen_m[4:8, 3:5] = 2.5  # a near opening
+    ground._seen_m[18:22, 3:5] = 5.0  # a far one
+    run.run(3.0)
+    assert run.pilot._seeker.follower is not None
+    assert run.pilot._seeker.follower.goal in range(18, 22)
+
+
+def test_the_one_near_home_is_preferred() -> None:
+    """Two far openings about as far from the robot: it takes that nearer to where the map began."""
+    for home_share, expected in ((2.0, range(4, 8)), (0.0, range(17, 21))):
+        map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0)))
+        run = Run(
+            Simulator(room(side=8.0, start=(1.0, 4.3, 0.0)), EXACT, 1),
+            a_pilot(1, seek_after_s=0.5, home_share=home_share),
+            map_,
+        )
+        run.tick()
+        ground = run.pilot._seeker.ground
+        ground._seen_m[: ground.count] = 1.0
+        ground._seen_m[4:8, 3:5] = ground._seen_m[17:21, 3:5] = 5.0
+        while run.pilot._seeker.follower is None:
+            run.tick()
+            assert len(run.track) < 100
+        assert run.pilot._seeker.follower.goal in expected
+
+
+def test_it_dares_twice_as_far_each_time_it_comes_back() -> None:
+    map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
+    for returns, new_m, goes_back in (
+        (0, 26.0, True),
+        (0, 24.0, False),
+        (2, 99.0, False),
+        (2, 101.0, True),
+        (9, 101.0, True),
+    ):
+        run = a_run(map_, seek_after_s=1.0)
+        seeker = run.pilot._seeker
+        seeker.ground.now_s, seeker.ground.new_m, seeker._returns = 1000.0, new_m, returns
+        seeker.ground._made_s[:], seeker.ground._last_s[:] = 990.0, 999.0
+        seeker.ground._made_s[:12], seeker.ground._last_s[:12] = 0.0, 800.0
+        times = map_.temporal_map.times_to(map_.active)
+        assert np.isfinite(times).all()
+        seeker._choose(map_, run.pilot._local, run.frame.ranges_m, run.pilot.params)  # type: ignore[arg-type]
+        assert seeker.returning == goes_back
+
+
 def test_on_new_ground_for_long_it_goes_back() -> None:
     map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
-    run = a_run(map_, seek_after_s=5.0, return_after_m=10.0)
+    run = a_run(map_, seek_after_s=5.0, return_after_m=10.0, **NEAR_ONLY)
     ground = run.pilot._seeker.ground
     ground.now_s, ground.new_m = 1000.0, 50.0
     ground._made_s[:] = 990.0
@@ -71,7 +141,7 @@ def test_on_new_ground_for_long_it_goes_back() -> None:
 
 def test_with_nothing_new_it_goes_where_it_has_not_been_for_longest() -> None:
     map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
-    run = a_run(map_, seek_after_s=5.0, openings_every=2)
+    run = a_run(map_, seek_after_s=5.0, openings_every=2, **NEAR_ONLY)
     ground = run.pilot._seeker.ground
     ground.now_s = 1000.0
     ground._last_s[: ground.count] = 900.0
@@ -91,7 +161,7 @@ def test_with_nothing_new_it_goes_where_it_has_not_been_for_longest() -> None:
 @pytest.mark.parametrize("order", ["goal", "hand"])
 def test_an_order_ends_the_trip(order: str) -> None:
     map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
-    run = a_run(map_, seek_after_s=5.0, long_ago_s=0.0)
+    run = a_run(map_, seek_after_s=5.0, long_ago_s=0.0, **NEAR_ONLY)
     while run.pilot.doing not in TRIPS:
         run.tick()
         assert len(run.track) < 200

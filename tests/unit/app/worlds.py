@@ -47,6 +47,13 @@ class HandMadeMap:
         self.links, self.link_times = self.links[keep], self.link_times[keep]
         return True
 
+    def make(self, x: float, y: float, heading_rad: float) -> None:
+        """One more node, linked to the last."""
+        n, last = len(self), self.poses[-1]
+        self.poses = np.concatenate([self.poses, [(x, y, heading_rad)]])
+        self.links = np.concatenate([self.links, [(n - 1, n)]])
+        self.link_times = np.append(self.link_times, math.dist((x, y), last[:2]) / 0.3)
+
     def __len__(self) -> int:
         return len(self.poses)
 

@@ -1,0 +1,118 @@
+"""[ours] Closing loops: known ground that lies near on the map, but far by the links, is driven to and along.
+
+A view is recognised where it was seen before, from the same side. So the robot drives along the old road in the
+direction in which it drove there before, in the middle between the walls, until it is recognised or the road ends. The
+map may be off by metres there: the direction of the road counts more than its place.
+test_loop_closing.py::{test_known_ground_that_is_far_by_the_links_is_driven_along,
+test_it_is_not_tried_again_at_once, test_what_the_sonars_do_not_see_is_no_loop}.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.pilot.known_ground import placed
+from app.pilot.params import PilotParams
+from disk import kind
+from ratslam_core import ExperienceMap, Pose2
+
+_Array = NDArray[np.float64]
+
+CANDIDATES = 30  # so many experiences are considered
+
+
+@kind("loop closer/1")
+class LoopCloser:
+    """The known road that the robot drives along, and where it has tried to close a loop."""
+
+    def __init__(self, sonar_angles_rad: _Array) -> None:
+        """sonar_angles_rad: (8,), positive to the left."""
+        self._angles = np.array(sonar_angles_rad, np.float64)
+        self.road: list[int] = []  # experiences to come to, one after the other
+        self._there = False  # whether it has come to the first
+        self._tried: list[tuple[int, float, float]] = []  # where it set out: m, in the frame of an experience
+        self._tried_s: list[float] = []  # and when
+
+    def stop(self) -> None:
+        """Something else is wanted of the robot."""
+        self.road, self._there = [], False
+
+    def choose(
+        self, experiences: ExperienceMap, ranges_m: NDArray[np.float32], times: _Array, now_s: float, p: PilotParams
+    ) -> bool:
+        """Whether there is a loop to close; then `road` is set. times: (n,) s, to each experience by the links."""
+        poses, robot = experiences.poses, experiences.robot
+        if self._tried_near(robot, experiences, now_s, p):
+            return False
+        dx, dy = poses[:, 0] - robot.x, poses[:, 1] - robot.y
+        away, way = np.hypot(dx, dy), times * p.cruise_speed
+        near = np.flatnonzero((away < p.loop_share * np.minimum(way, p.loop_most_m)) & (way > p.loop_m))
+        turn = np.abs(wrapped(poses[near, 2] - robot.heading_rad))
+        near = near[np.argsort(away[near] / p.cruise_speed + turn / p.turn_rate, kind="stable")]
+        for row in near[:CANDIDATES].tolist():
+            bearing = float(wrapped(np.arctan2(dy[row], dx[row]) - robot.heading_rad))
+            beam = int(np.argmin(np.abs(self._angles - bearing)))
+            seen = ranges_m[beam] >= min(away[row], p.far_m + p.opening_gap_m)
+            road = _road(poses, row, p) if seen and abs(bearing) <= abs(self._angles[0]) else []
+            if len(road) > 1:
+                here = experiences.pose(experiences.active).inverse().compose(robot)
+                self._tried.append((experiences.active, here.x, here.y))
+                self._tried_s.append(now_s)
+                self.road, self._there = road, False
+                return True
+        return False
+
+    def _tried_near(self, robot: Pose2, experiences: ExperienceMap, now_s: float, p: PilotParams) -> bool:
+        """Whether it was tried near here, and not long ago."""
+        if self._tried and max(row for row, _, _ in self._tried) >= len(experiences):  # another map
+            self._tried, self._tried_s = [], []
+        x, y = placed(self._tried[bisect(self._tried_s, now_s - p.loop_again_s) :], experiences.poses).T
+        return bool(np.any(np.hypot(x - robot.x, y - robot.y) < p.far_m))
+
+    def aim(self, experiences: ExperienceMap, p: PilotParams) -> tuple[tuple[float, float] | None, bool]:
+        """The next point to head for, m, robot's frame, None at the end of the road or when the loop is closed; and
+        whether the robot has just come to the next experience of the road."""
+        pose, passed = experiences.pose(self.road[0]), False
+        here = pose.inverse().compose(experiences.robot)
+        if not self._there:
+            self._there = math.hypot(here.x, here.y) < p.far_m
+        elif here.x > -p.far_m / 2:
+            del self.road[0]
+            if not self.road or self._closed(experiences, p):
+                return None, False
+            pose, passed = experiences.pose(self.road[0]), True
+            here = pose.inverse().compose(experiences.robot)
+        aside = here.y - max(-p.middle_m, min(p.middle_m, here.y)) if self._there else 0.0
+        ahead = max(here.x + p.middle_ahead_m, 0.0) if self._there else 0.0
+        point = experiences.robot.inverse().compose(pose.compose(Pose2(ahead, aside, 0.0)))
+        return (point.x, point.y), passed
+
+    def _closed(self, experiences: ExperienceMap, p: PilotParams) -> bool:
+        """Whether links lead to the road by now."""
+        times = experiences.temporal_map.times_to(experiences.active)
+        return bool(times[self.road[0]] * p.cruise_speed < p.loop_m)
+
+
+def _road(poses: _Array, start: int, p: PilotParams) -> list[int]:
+    """Experiences from this one on in the direction it faces, some metres apart, as far as `loop_drive_m`."""
+    road, way = [start], 0.0
+    while way < p.loop_drive_m:
+        x, y, heading = poses[road[-1]]
+        c, s = math.cos(heading), math.sin(heading)
+        ahead, aside = c * (poses[:, 0] - x) + s * (poses[:, 1] - y), -s * (poses[:, 0] - x) + c * (poses[:, 1] - y)
+        on = (ahead > p.far_m) & (ahead < 2 * p.far_m) & (np.abs(aside) < p.far_m / 2)
+        on = np.flatnonzero(on & (np.abs(wrapped(poses[:, 2] - heading)) < math.pi / 4))
+        if not len(on):
+            break
+        road.append(int(on[np.argmin(np.abs(aside[on]))]))
+        way += float(ahead[road[-1]])
+    return road
+
+
+def wrapped(angles: _Array) -> _Array:
+    """Angles (rad) between -pi and pi."""
+    return np.remainder(angles + math.pi, 2 * math.pi) - math.pi
