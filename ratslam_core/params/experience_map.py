@@ -101,7 +101,7 @@ class ExperienceMapParams:
         source="ours",
     )
     join_views: int = param(
-        3,
+        8,
         unit="views",
         low=1,
         high=1000,
