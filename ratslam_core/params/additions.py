@@ -132,10 +132,28 @@ ADDITIONS = (
         {"pose_filter.gate": False},
     ),
     Addition(
+        "surprise",
+        "a look that is held back counts eighteen times where the robot knows the place it believes in and that looks different",
+        "who was carried unnoticed would take minutes to believe what it sees; in a twin, the place looks alike",
+        {"pose_filter.gate_surprise": 1},
+    ),
+    Addition(
         "islands",
         "a robot that was carried away begins a map of its own, which many looks that agree join to the other",
         "a single look that is believed while lost ties places together that are far apart",
         {"experience_map.islands": False},
+    ),
+    Addition(
+        "different views for an island",
+        "eight different views must agree before an island is joined",
+        "one view, seen for a second, joins rooms that look alike",
+        {"experience_map.join_views": 1},
+    ),
+    Addition(
+        "doubtful alarms",
+        "if the image alone does not say that the robot was carried, an island is joined far from odometry by many sights only",
+        "a false alarm in one of two twins would join its island in the other",
+        {"experience_map.doubtful_sights": 1},
     ),
     Addition(
         "kidnap detector",
