@@ -15,8 +15,6 @@ from ratslam_core import ExperienceMap
 
 _Array = NDArray[np.float64]
 
-FINE = 4  # cells in the reach of a far opening
-
 
 @kind("known ground/2")
 class KnownGround:
@@ -90,7 +88,7 @@ class KnownGround:
         """The same, of places that lie far from all experiences: there a new street or hall begins."""
         rows, beams = np.nonzero(self._seen_m[: self.count] >= p.far_m + p.opening_gap_m)
         away = self._seen_m[rows, beams].astype(np.float64) - p.opening_gap_m
-        return self._thin(poses, rows, beams, away, p.far_m, FINE, p.opening_beams)
+        return self._thin(poses, rows, beams, away, p.far_m, p.far_fine, p.opening_beams)
 
     def _thin(
         self, poses: _Array, rows: NDArray[np.int64], beams: NDArray[np.int64], away: _Array, reach: float, fine: int,
@@ -109,7 +107,9 @@ class KnownGround:
 
 def placed(points: list[tuple[int, float, float]], poses: _Array) -> _Array:
     """The places (n, 2), m, map frame, of points in the frames of experiences."""
-    rows = np.array(points).reshape(-1, 3)
+    if not points:
+        return np.zeros((0, 2))
+    rows = np.array(points)
     x, y, heading = poses[rows[:, 0].astype(np.int64)].T
     c, s = np.cos(heading), np.sin(heading)
     return np.stack([x + c * rows[:, 1] - s * rows[:, 2], y + s * rows[:, 1] + c * rows[:, 2]], axis=1)

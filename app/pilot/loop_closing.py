@@ -22,8 +22,6 @@ from ratslam_core import ExperienceMap, Pose2
 
 _Array = NDArray[np.float64]
 
-CANDIDATES = 30  # so many experiences are considered
-
 
 @kind("loop closer/1")
 class LoopCloser:
@@ -53,11 +51,11 @@ class LoopCloser:
         near = np.flatnonzero((away < p.loop_share * np.minimum(way, p.loop_most_m)) & (way > p.loop_m))
         turn = np.abs(wrapped(poses[near, 2] - robot.heading_rad))
         near = near[np.argsort(away[near] / p.cruise_speed + turn / p.turn_rate, kind="stable")]
-        for row in near[:CANDIDATES].tolist():
-            bearing = float(wrapped(np.arctan2(dy[row], dx[row]) - robot.heading_rad))
-            beam = int(np.argmin(np.abs(self._angles - bearing)))
-            seen = ranges_m[beam] >= min(away[row], p.far_m + p.opening_gap_m)
-            road = _road(poses, row, p) if seen and abs(bearing) <= abs(self._angles[0]) else []
+        bearing = wrapped(np.arctan2(dy[near], dx[near]) - robot.heading_rad)
+        beams = np.argmin(np.abs(self._angles - bearing[:, None]), axis=1)
+        seen = ranges_m[beams] >= np.minimum(away[near], p.far_m + p.opening_gap_m)
+        for row in near[seen & (np.abs(bearing) <= abs(self._angles[0]))].tolist():
+            road = _road(poses, row, p)
             if len(road) > 1:
                 here = experiences.pose(experiences.active).inverse().compose(robot)
                 self._tried.append((experiences.active, here.x, here.y))
@@ -105,7 +103,8 @@ def _road(poses: _Array, start: int, p: PilotParams) -> list[int]:
         c, s = math.cos(heading), math.sin(heading)
         ahead, aside = c * (poses[:, 0] - x) + s * (poses[:, 1] - y), -s * (poses[:, 0] - x) + c * (poses[:, 1] - y)
         on = (ahead > p.far_m) & (ahead < 2 * p.far_m) & (np.abs(aside) < p.far_m / 2)
-        on = np.flatnonzero(on & (np.abs(wrapped(poses[:, 2] - heading)) < math.pi / 4))
+        turn = poses[:, 2] - heading  # on the road is what faces along it rather than across
+        on = np.flatnonzero(on & (np.cos(turn) > np.abs(np.sin(turn))))
         if not len(on):
             break
         road.append(int(on[np.argmin(np.abs(aside[on]))]))

@@ -29,11 +29,8 @@ from ratslam_core import ExperienceMap, Odometry, Pose2
 
 _Point = tuple[float, float]
 
-SOON_S = 1e-9  # of driving into an opening or along a road: it has begun
-MOST_RETURNS = 30  # after so many it dares no more
 
-
-@kind("seeker/2")
+@kind("seeker/3")
 class Seeker:
     """Decides when and where to drive on purpose, and drives there. `follower` is set on the way."""
 
@@ -46,12 +43,12 @@ class Seeker:
         self._closer = LoopCloser(sonar_angles_rad)
         self._far = False  # whether that is a far one
         self._there = False  # whether it has come there
-        self._into_s = 0.0  # time of driving into it
+        self._into_s = -1.0  # time of driving into it, below 0 on the way there
         self._trip_s = 0.0
         self._wander_s = 0.0  # time since the last trip
         self._wait_s = math.inf  # time of wandering before the next; not known before the first
         self._trips = 0
-        self._returns = 0  # how often it came back to old ground
+        self._dares = 1.0  # so many times as far on new ground as at first; twice as far each time it comes back
 
     @property
     def failed(self) -> bool:
@@ -61,7 +58,7 @@ class Seeker:
     @property
     def into_far(self) -> bool:
         """Whether it drives into a far opening, over new ground."""
-        return self.follower is not None and (self._far or bool(self._closer.road)) and self._into_s > 0.0
+        return self.follower is not None and (self._far or bool(self._closer.road)) and self._into_s >= 0.0
 
     def stop(self) -> None:
         """Something else is wanted of the robot."""
@@ -97,7 +94,7 @@ class Seeker:
     ) -> _Point | None:
         if self._trip_s > p.trip_most_s or (self.returning and self.ground.new_m == 0.0):
             return None
-        if self._into_s == 0.0:
+        if self._into_s < 0.0:
             aim = follower.step(experiences, local, dt, p)
             if aim is not None or follower.state != "arrived" or self._opening is None:
                 return aim
@@ -106,7 +103,7 @@ class Seeker:
             return None
         if self._closer.road:
             aim, passed = self._closer.aim(experiences, p)
-            self._into_s = SOON_S if passed else self._into_s
+            self._into_s = 0.0 if passed else self._into_s
             return aim
         if self._opening is None:
             return None
@@ -119,7 +116,7 @@ class Seeker:
     def _end(self, experiences: ExperienceMap, p: PilotParams) -> None:
         assert self.follower is not None
         if self.returning and self.ground.new_m == 0.0:
-            self._returns = min(self._returns + 1, MOST_RETURNS)
+            self._dares *= 2
         goal = experiences.pose(self.follower.goal)
         self.ground.been_at(goal.x, goal.y, experiences.poses, p)
         if self._opening is not None and not (self._far and self._there):  # beyond a far one there may be more
@@ -132,13 +129,13 @@ class Seeker:
         """Old ground if the robot has been on new ground for long; else a loop to close; else a far opening; else by turns
         an opening near by and the place that was not visited for longest."""
         times = experiences.temporal_map.times_to(experiences.active)
-        self._wait_s, self._trip_s, self._into_s, self._there = 0.0, 0.0, 0.0, False
+        self._wait_s, self._trip_s, self._into_s, self._there = 0.0, 0.0, -1.0, False
         drift_m = experiences.params.odometry_drift * self.ground.new_m
-        self.returning = self.ground.new_m > p.return_after_m * 2**self._returns or drift_m > p.return_sigma_m
+        self.returning = self.ground.new_m > p.return_after_m * self._dares or drift_m > p.return_sigma_m
         goal = self._old_ground(times, p) if self.returning else None
         self.returning = goal is not None
         if goal is None and self._closer.choose(experiences, ranges_m, times, self.ground.now_s, p):
-            goal, self._into_s = self._closer.road[0], SOON_S
+            goal, self._into_s = self._closer.road[0], 0.0
         if goal is None:
             goal = self._best_far_opening(experiences, local, times, p)
         if goal is None:
@@ -175,7 +172,7 @@ class Seeker:
         cost = times[rows] * ~near + (leg + p.home_share * home) / p.cruise_speed + near * turn / p.turn_rate
         best = int(np.argmin(cost))
         if near[best] and local.free_way(float(bearing[best]), p) > p.into_free_m:
-            self._into_s = SOON_S  # it sees it from here
+            self._into_s = 0.0  # it sees it from here
         self._far = True
         return self._into(experiences, int(rows[best]), places[best])
 

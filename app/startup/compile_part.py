@@ -34,7 +34,9 @@ import sim2d.geometry.connected_cells
 import sim2d.sensors.ranges
 from app.config import Config
 from app.pilot import Pilot
+from app.pilot.bars import Bars
 from app.pilot.local_movement import LocalMovement
+from app.pilot.route_following import RouteFollower
 from ratslam_core import (
     ExperienceMap,
     GoalMemory,
@@ -70,6 +72,8 @@ def office() -> None:
     frame = simulator.observe()
     local = LocalMovement(ANGLES, config.pilot.echo_ticks)
     local.free_way(0.0, config.pilot)
+    local.sense(np.full(len(ANGLES), 0.2, np.float32), Odometry(0.0, 0.0, 0.1), config.pilot)
+    local.gap_towards(1.0, 0.2, config.pilot)
     for _ in range(50):
         odometry = Odometry(frame.odometry_speed, frame.odometry_yaw_rate, frame.dt)
         frame = simulator.step(Drive(*pilot.step(frame.ranges_m, frame.bumped, odometry, nowhere)))
@@ -131,6 +135,10 @@ def loops() -> None:
         made.correct()
     Experiences(shape).of_view(0)
     made.temporal_map.times_to(0)
+    made.step(Packet(30.0, 30.0, 0.0, 1.0), Recognition(99, True, -1, 2.0), Odometry(0.3, 0.1, 0.1))
+    made.temporal_map.times_to(0)  # is mended now
+    local = LocalMovement(ANGLES, config.pilot.echo_ticks)
+    RouteFollower(0, Bars()).step(made, local, 0.1, config.pilot)
     find_places(made)
 
 

@@ -66,6 +66,13 @@ class SeekingParams:
         meaning="openings farther than this from all experiences are sought first, one after the other; 20 = there are none",
         source="ours",
     )  # fmt: skip
+    far_fine: int = param(
+        4,
+        low=1,
+        high=100,
+        meaning="what is near an experience is marked in cells of this part of that distance",
+        source="ours",
+    )
     home_share: float = param(
         0.5, low=0.0, high=10.0,
         meaning="a metre that such an opening is away from where the map began counts as so much of a metre of the way there",

@@ -44,6 +44,7 @@ OTHER: dict[str, float] = {
     "old_after_s": 5.0, "long_ago_s": 900.0, "place_reach_m": 6.0, "opening_m": 4.9, "opening_gap_m": 1.2,
     "opening_most_m": 1.2, "opening_beams": 30, "thin_m": 0.4, "into_s": 2.0, "into_reach_m": 1.0, "into_free_m": 3.0,
     "far_m": 20.0, "home_share": 0.0, "return_sigma_m": 0.3, "loop_m": 200.0, "loop_share": 0.0, "loop_most_m": 20.0,
+    "far_fine": 1,
     "loop_drive_m": 5.0, "loop_again_s": 10.0, "far_look_back_m": 2.0, "middle_m": 0.0, "middle_ahead_m": 0.5,
     "stuck_s": 3.0, "bumped_s": 2.0, "somewhere_m": 0.2, "turned_rad": 0.5, "most_turns": 0, "grip_yaw_rate": 1.0,
     "least_grip": 0.8, "grip_s": 0.5, "back_off_s": 2.0, "back_off_speed": 0.1, "free_turn_s": 0.5, "free_turn_share": 1.0,
