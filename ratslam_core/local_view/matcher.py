@@ -69,7 +69,7 @@ def difference(new: Features, stored: Features, shift: int, columns: int, rows: 
 def turned_apart(new: Features, last: Features, shift: float, columns: int, rows: int) -> float:
     """Mean absolute difference of an image and the last one moved `shift` columns to the right, over those that both show.
 
-    Between two columns, the last image is interpolated. 0 if the two show nothing in common.
+    Between two columns, the last image is interpolated. Infinite if the two show nothing in common.
     """
     total, seen = 0.0, 0
     for c in range(columns):
@@ -83,7 +83,7 @@ def turned_apart(new: Features, last: Features, shift: float, columns: int, rows
             before = (1.0 - share) * last[left * rows + r] + share * last[right * rows + r]
             total += abs(new[c * rows + r] - before)
         seen += 1
-    return total / (seen * rows) if seen else 0.0
+    return total / (seen * rows) if seen else np.inf
 
 
 @njit(cache=True, nogil=True)

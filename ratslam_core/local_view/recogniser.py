@@ -149,14 +149,17 @@ class LocalView:
     def _jump(self, features: Features, turned_rad: float) -> float:
         """By how much the last image, turned as the wheels say, differs from this one, over the limit.
 
-        Wheels that slip turn nothing, so the image as it was explains this one as well.
+        Wheels are wrong by a share of the turn, and when they slip, nothing turns: such turns explain it as well.
         test_recogniser.py::test_a_turn_that_the_wheels_tell_of_is_no_jump.
         """
         limit = self.front_end.surprise(self.params)
         if self._last is None or not self.params.enabled or math.isinf(limit):
             return 0.0
         end = self.front_end
-        shifts = {0.0, turned_rad * end.columns / self.params.field_of_view} if end.shifts else {0.0}
+        told, slack = turned_rad * end.columns / self.params.field_of_view, self.params.turn_slack
+        if end.shifts and abs(told) > end.columns - 1:
+            return 0.0  # nothing of what it saw can still be seen
+        shifts = {0.0, told * (1 - slack), told, told * (1 + slack)} if end.shifts else {0.0}
         least = end.scale * min(turned_apart(features, self._last, shift, end.columns, end.rows) for shift in shifts)
         if limit == 0:
             return math.inf if least > 0 else 0.0

@@ -133,6 +133,13 @@ class LocalViewParams:
     colour_surprise: float = param(
         20.0, unit="levels", low=0.0, high=255.0, meaning="as `surprise`, for hue and saturation", source="ours"
     )
+    turn_slack: float = param(
+        0.3,
+        low=0.0,
+        high=1.0,
+        meaning="share of the turn by which the wheels may be wrong about it in a tick",
+        source="ours",
+    )
     range_surprise: float = param(
         2.0,
         low=0.0,

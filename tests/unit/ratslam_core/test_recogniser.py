@@ -116,6 +116,16 @@ def test_a_turn_of_a_part_of_a_column_is_no_jump(columns: float) -> None:
     assert local_view.image_change <= 2 * 0.5 / 4 + 1e-9  # the rounding
 
 
+@pytest.mark.parametrize(("error", "explained"), [(-0.3, True), (-0.15, False), (0.3, True), (0.6, False)])
+def test_wheels_may_be_wrong_by_a_share_of_the_turn(error: float, explained: bool) -> None:
+    """The right turn is tried, what they tell, and what they tell give or take a share."""
+    scene = np.random.default_rng(1).integers(60, 200, 50).astype(np.uint8)
+    local_view = LocalView(LocalViewParams(turn_slack=0.3), front_end=AsItIs())
+    local_view.observe(scene[20:32])
+    local_view.observe(scene[22:34], turned_rad=-2 * FOV / 12 / (1 + error))
+    assert (local_view.image_change < 0.1) is explained
+
+
 def test_wheels_that_slip_make_no_jump() -> None:
     scene = np.random.default_rng(1).integers(60, 200, 12).astype(np.uint8)
     local_view = LocalView(LocalViewParams(), front_end=AsItIs())
