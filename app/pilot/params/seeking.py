@@ -62,7 +62,7 @@ class SeekingParams:
         source="ours",
     )  # fmt: skip
     far_m: float = param(
-        2.8, unit="m", low=0.5, high=20.0,
+        20.0, unit="m", low=0.5, high=20.0,
         meaning="openings farther than this from all experiences are sought first, one after the other; 20 = there are none",
         source="ours",
     )  # fmt: skip
@@ -88,7 +88,7 @@ class SeekingParams:
         meaning="known ground that is at least this far by the links closes a loop if it is near ...", source="ours",
     )  # fmt: skip
     loop_share: float = param(
-        0.1, low=0.0, high=1.0, meaning="... that is, nearer than this share of the way by the links ...", source="ours"
+        0.0, low=0.0, high=1.0, meaning="... that is, nearer than this share of the way by the links ...", source="ours"
     )
     loop_most_m: float = param(
         150.0, unit="m", low=1.0, high=1e5, meaning="... of which no more counts than this", source="ours"

@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 from app.pilot.known_ground import KnownGround
+from app.pilot.params import PilotParams
 from ratslam_core import Pose2
 
-from .pilots import ANGLES, DT, FAR, USUAL
+from .pilots import ANGLES, DT, FAR, OUTWARD
 from .worlds import HandMadeMap
+
+USUAL = PilotParams(**OUTWARD)
 
 NEAR = np.full(8, 1.0, np.float32)
 

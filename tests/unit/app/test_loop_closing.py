@@ -7,10 +7,13 @@ import math
 import numpy as np
 
 from app.pilot.loop_closing import LoopCloser
+from app.pilot.params import PilotParams
 from ratslam_core import Pose2
 
-from .pilots import ANGLES, FAR, USUAL
+from .pilots import ANGLES, FAR, OUTWARD
 from .worlds import HandMadeMap, chain
+
+USUAL = PilotParams(**OUTWARD)
 
 
 class Unrecognised(HandMadeMap):

@@ -19,7 +19,7 @@ from app.pilot.route_following import RouteFollower
 from ratslam_core import Odometry, Pose2
 from sim2d import Simulator
 
-from .pilots import ANGLES, DT, FAR, STILL, Run, follow
+from .pilots import ANGLES, DT, FAR, OUTWARD, STILL, Run, follow
 from .test_loop_closing import almost_round
 from .test_routes import two_ways
 from .worlds import EXACT, HandMadeMap, chain, room
@@ -212,7 +212,7 @@ SITUATIONS: dict[type, tuple[Callable[[PilotParams], Trace], ...]] = {
 
 
 def usual(**changes: float) -> PilotParams:
-    return PilotParams(**({"look_back_after_m": 4.0, "cross_after_s": 6.0, "seek_after_s": 8.0} | changes))
+    return PilotParams(**({"look_back_after_m": 4.0, "cross_after_s": 6.0, "seek_after_s": 8.0, **OUTWARD} | changes))
 
 
 @cache

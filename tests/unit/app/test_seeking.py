@@ -10,7 +10,7 @@ import pytest
 from app.pilot import PilotParams
 from sim2d import Simulator
 
-from .pilots import EXPLORING, Run, a_pilot
+from .pilots import EXPLORING, OUTWARD, Run, a_pilot
 from .worlds import EXACT, HandMadeMap, chain, room
 
 NEAR_ONLY = {"far_m": 20.0, "loop_share": 0.0}  # no far openings, no loops
@@ -19,7 +19,7 @@ TRIPS = {"going where the map is thin", "going back to known ground"}
 
 def a_run(map_: HandMadeMap, *walls: tuple[float, float, float, float], **params: float) -> Run:
     world = room(*walls, side=8.0, start=(*map_.poses[-1, :2], 0.0))
-    run = Run(Simulator(world, EXACT, 1), a_pilot(1, **params), map_)
+    run = Run(Simulator(world, EXACT, 1), a_pilot(1, **(OUTWARD | params)), map_)
     run.tick()
     return run
 
@@ -56,7 +56,7 @@ def test_far_openings_are_sought_one_after_the_other() -> None:
     map_ = HandMadeMap(*chain((0.5, 1.2), (3.0, 1.2)))
     walls = [(0.0, 0.0, 20.0, 0.0), (0.0, 3.0, 20.0, 3.0)]
     world = room(*walls, side=20.0, start=(3.0, 1.2, 0.0))
-    run = Run(Simulator(world, EXACT, 1), a_pilot(1, seek_after_s=1.0, far_look_back_m=1000.0), map_)
+    run = Run(Simulator(world, EXACT, 1), a_pilot(1, seek_after_s=1.0, far_look_back_m=1000.0, **OUTWARD), map_)
     run.tick()
     run.pilot._seeker.ground._seen_m[:] = 1.0
     for _ in range(450):
@@ -87,7 +87,7 @@ def test_the_one_near_home_is_preferred() -> None:
         map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0)))
         run = Run(
             Simulator(room(side=8.0, start=(1.0, 4.3, 0.0)), EXACT, 1),
-            a_pilot(1, seek_after_s=0.5, home_share=home_share),
+            a_pilot(1, seek_after_s=0.5, home_share=home_share, **OUTWARD),
             map_,
         )
         run.tick()
