@@ -61,7 +61,7 @@ class ExperienceMapParams:
         0.01, unit="m", low=1e-4, high=1.0, meaning="odometry error of a transition of one step", source="ours"
     )
     odometry_drift: float = param(
-        0.03,
+        0.05,
         unit="m/m",
         low=0.0,
         high=1.0,
