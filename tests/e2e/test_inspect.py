@@ -20,7 +20,9 @@ from web.viewer.plates.pose_cell_plate import ORIGIN as CELLS_ORIGIN
 @pytest.fixture(scope="module")
 def walked(program) -> Program:
     """A minute and a half of exploring, paused."""
+    tick = program.state()["tick"]
     program.command("step", ticks=900)
+    program.wait(lambda state: state["tick"] >= tick + 900)
     return program
 
 

@@ -102,14 +102,16 @@ def test_the_one_near_home_is_preferred() -> None:
 
 def test_it_dares_twice_as_far_each_time_it_comes_back() -> None:
     map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
-    for dares, new_m, goes_back in (
-        (1.0, 26.0, True),
-        (1.0, 24.0, False),
-        (4.0, 99.0, False),
-        (4.0, 101.0, True),
-        (512.0, 101.0, True),
+    drift = map_.params.odometry_drift
+    for dares, most_m, new_m, goes_back in (
+        (1.0, 1e4, 26.0, True),
+        (1.0, 1e4, 24.0, False),
+        (4.0, 1e4, 99.0, False),
+        (4.0, 1e4, 101.0, True),
+        (512.0, 100.0, 101.0, True),
+        (512.0, 100.0, 99.0, False),
     ):
-        run = a_run(map_, seek_after_s=1.0)
+        run = a_run(map_, seek_after_s=1.0, return_sigma_m=most_m * drift)
         seeker = run.pilot._seeker
         seeker.ground.now_s, seeker.ground.new_m, seeker._dares = 1000.0, new_m, dares
         seeker.ground._made_s[:], seeker.ground._last_s[:] = 990.0, 999.0
