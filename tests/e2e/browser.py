@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from playwright.sync_api import Browser, Page, Playwright, WebSocket, expect
+from playwright.sync_api import Browser, FloatRect, Locator, Page, Playwright, WebSocket, expect
 
 from tests.patience import PATIENCE_S
 from web.viewer.camera_views import View, camera_for
@@ -95,6 +95,15 @@ def told(page: Page, words: str) -> None:
     until(page, "(words) => [...toasted].some((said) => said.includes(words))", argument=words)
 
 
+def box_of(locator: Locator) -> FloatRect:
+    """Where it is on the page. While the page draws it anew it is nowhere for a moment, so ask until it is there."""
+    end = time.monotonic() + PATIENCE_S
+    while (box := locator.bounding_box()) is None:
+        assert time.monotonic() < end, f"nowhere on the page within {PATIENCE_S:g} s: {locator}"
+        locator.page.wait_for_timeout(30)
+    return box
+
+
 def _hear_camera(page: Page, socket: WebSocket) -> None:
     """Keep the newest camera that viser's client has reported."""
 
@@ -150,8 +159,7 @@ def turn_theme(page: Page) -> None:
 
 def on_screen(page: Page, view: View, at: tuple[float, float, float]) -> tuple[float, float]:
     """Where a point of the scene is on the page when the camera is at a view."""
-    canvas = page.frame_locator("#stage").locator("canvas").first.bounding_box()
-    assert canvas is not None
+    canvas = box_of(page.frame_locator("#stage").locator("canvas").first)
     camera = camera_for(view, canvas["width"] / canvas["height"])
     forward = camera.look_at - camera.position
     forward /= np.linalg.norm(forward)

@@ -9,7 +9,7 @@ import pytest
 
 from sim2d import load_world
 from tests import patience
-from tests.e2e.browser import eye_of, on_screen, open_page, show, told, until
+from tests.e2e.browser import box_of, eye_of, on_screen, open_page, show, told, until
 from tests.e2e.program import Program
 from web.viewer.fits.map_fit import MapFit, refit
 from web.viewer.fits.office_fit import OfficeFit
@@ -151,8 +151,7 @@ def test_the_robot_stops_when_the_page_cannot_hold_it(program, browser, end):
 def test_the_pad_drives_while_it_is_held(program, browser):
     program.command("resume")
     with open_page(browser, program.url, 390, 844, stage=False) as page:
-        pad = page.locator("[data-drive=left]").bounding_box()
-        assert pad is not None
+        pad = box_of(page.locator("[data-drive=left]"))
         assert min(pad["width"], pad["height"]) >= 52
         before = program.state()["robot"]["heading_rad"]
         page.mouse.move(pad["x"] + 26, pad["y"] + 26)

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.browser import on_screen, open_page, until
+from tests.e2e.browser import box_of, on_screen, open_page, until
 from tests.e2e.fake_engine import FakeEngine, fake_program
 from tests.fake_snapshots import SNAP_EVERY, fake_snapshot
 from web.panel.panel import TABS
@@ -149,8 +149,7 @@ def test_all_tabs_of_the_panel_stand_on_one_row_in_full(fake, browser, size) -> 
 
 def test_the_hints_go_where_the_pose_cells_need_their_place(fake, browser) -> None:
     with open_page(browser, fake[1], stage=False) as page:
-        hints = page.locator(".hints").bounding_box()
-        assert hints is not None
+        hints = box_of(page.locator(".hints"))
         assert hints["x"] + hints["width"] <= on_screen(page, "all", (-SHEET[0] / 2, ORIGIN[1], 0.0))[0]
         page.set_viewport_size({"width": 1024, "height": 768})
         expect(page.locator(".hints")).to_be_hidden()

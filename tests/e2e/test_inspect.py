@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.browser import on_screen, open_page, show, told, until
+from tests.e2e.browser import box_of, on_screen, open_page, show, told, until
 from tests.e2e.program import Program
 from tests.e2e.test_dashboard import node_on_stage
 from web.messages import Packet
@@ -76,8 +76,7 @@ def test_a_click_on_a_view_shows_it_beside_what_is_seen_now(walked, browser):
         selected(page, "Inspect")
         says(page, "as it is stored")
         open_tab(page, "Senses")
-        strip = page.get_by_role("slider", name="Local view cells").bounding_box()
-        assert strip is not None
+        strip = box_of(page.get_by_role("slider", name="Local view cells"))
         page.mouse.click(strip["x"] + 3, strip["y"] + 3)
         selected(page, "Inspect")
         says(page, re.compile(r"^#0$"))

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 import app
 from sim2d import load_world
-from tests.e2e.browser import on_screen, open_page, show, told, until
+from tests.e2e.browser import box_of, on_screen, open_page, show, told, until
 from tests.e2e.fake_engine import FakeEngine, fake_program
 from web.viewer.fits.office_fit import OfficeFit
 from web.viewer.plates.map_plate import NODE_Z
@@ -93,8 +94,7 @@ def test_a_toast_stands_beneath_the_plates(fake, browser, size) -> None:
     with open_page(browser, fake[1], *size, stage=False) as page:
         page.evaluate("() => document.querySelectorAll('.toast').forEach((toast) => toast.remove())")
         page.evaluate(SAY, ["No graphics card in use: the stage moves slowly.", {"notice": True, "stays": True}])
-        toast = page.locator(".toast").bounding_box()
-        assert toast is not None
+        toast = box_of(page.locator(".toast"))
         front = MAP_ORIGIN[1] + MAP_SHEET[2] - MAP_SHEET[1] / 2
         assert toast["y"] >= on_screen(page, "all", (0.0, front, 0.0))[1]
 
@@ -149,6 +149,7 @@ def test_what_the_stage_refuses_is_told_to_whoever_did_it(program, browser) -> N
         one.mouse.up()
         told(one, "The robot stays where it is")
         assert program.state()["robot"] == robot
+        expect(one.locator(".toast", has_text="The robot stays where it is")).to_have_count(0)  # a click would hit it
         show(one, "map")
         one.mouse.click(*on_screen(one, "map", (MAP_ORIGIN[0], MAP_ORIGIN[1] - 4.4, MAP_ORIGIN[2] + NODE_Z)))
         told(one, "No goal set: that is beside the map")
@@ -221,8 +222,7 @@ def test_a_mark_says_what_happened(fake, browser, size) -> None:
             page.mouse.move(*where)
         page.wait_for_timeout(1200)  # the timeline is drawn anew twice meanwhile
         assert page.inner_text("#event-tip") == "1:02:03 recovered: knows where it is 4.2 s after the kidnap"
-        tip = page.locator("#event-tip").bounding_box()
-        assert tip is not None
+        tip = box_of(page.locator("#event-tip"))
         assert tip["x"] >= 0
         assert tip["x"] + tip["width"] <= size[0]
         page.mouse.move(200, 100)

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Page
 
 from sim2d import load_world, world_from_json, world_to_json
-from tests.e2e.browser import calm, open_page, turn_theme, until
+from tests.e2e.browser import box_of, calm, open_page, turn_theme, until
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
 from tests.e2e.test_world_editor import edit, walls_are, world
@@ -188,7 +188,7 @@ def test_the_editor_s_bar_is_one_row_saved_or_not(program, browser, size) -> Non
         places = []
         for unsaved in ("false", "true"):
             page.evaluate(f"() => {{ document.getElementById('edit-unsaved').hidden = !{unsaved}; }}")
-            places.append([page.locator(part).bounding_box() for part in ("#edit-undo", "#edit-close", "#editor .bar")])
+            places.append([box_of(page.locator(part)) for part in ("#edit-undo", "#edit-close", "#editor .bar")])
         for undo, close, bar in places:
             assert undo["y"] < close["y"] + close["height"] / 2 < undo["y"] + undo["height"]
             assert close["x"] + close["width"] <= bar["x"] + bar["width"]

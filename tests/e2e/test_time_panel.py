@@ -9,7 +9,7 @@ import orjson
 import pytest
 from playwright.sync_api import Locator, Page
 
-from tests.e2e.browser import calm, open_page, turn_theme, until
+from tests.e2e.browser import box_of, calm, open_page, turn_theme, until
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
 from tests.e2e.test_world_editor import edit, says, world
@@ -153,7 +153,7 @@ def test_lines_follow_the_thing_that_they_are_about(program, browser):
             add_line(page, when, "Door shuts", "lab")
             says(page, f"at 0:0{when}")
         page.click("#time-close")
-        box = page.locator("#plan .sill").bounding_box()
+        box = box_of(page.locator("#plan .sill"))
         page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
         page.fill("#fields [data-key=name]", "kitchen")
         page.press("#fields [data-key=name]", "Enter")

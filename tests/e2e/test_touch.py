@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Page
 
 from sim2d import load_world
-from tests.e2e.browser import eye_of, on_screen, open_page, show, until
+from tests.e2e.browser import box_of, eye_of, on_screen, open_page, show, until
 from tests.e2e.test_dashboard import robot_on_stage
 from tests.patience import PATIENCE_S
 from web.viewer.fits.map_fit import MapFit, refit
@@ -72,7 +72,7 @@ def test_a_tap_on_the_map_sets_a_goal(driven, phone):
 def test_a_drag_looks_around_and_sets_no_goal(driven, phone):
     page = phone
     before = eye_of(page)
-    canvas = page.frame_locator("#stage").locator("canvas").first.bounding_box()
+    canvas = box_of(page.frame_locator("#stage").locator("canvas").first)
     middle = canvas["x"] + canvas["width"] / 2, canvas["y"] + canvas["height"] / 2
     drag(page, middle, (middle[0] + 90, middle[1] + 10))
     await_(page, lambda: bool(np.linalg.norm(eye_of(page) - before) > 1.0))
