@@ -1,7 +1,8 @@
 """[ours] What the robot remembers of the ground it drove on: when it was last at each experience, and how far its
 sonars saw from there. Where they saw open floor that it never drove on, the map is thin.
 
-test_known_ground.py::{test_open_floor_that_was_never_driven_on_is_an_opening, test_what_was_driven_on_is_no_opening}.
+test_known_ground.py::{test_open_floor_that_was_never_driven_on_is_an_opening, test_what_was_driven_on_is_no_opening,
+test_what_lies_on_another_island_hides_no_opening}.
 """
 
 from __future__ import annotations
@@ -78,30 +79,38 @@ class KnownGround:
         """An opening is done with, whether the robot could drive there or not; m, in the frame of the experience."""
         self._done.append((experience, x, y))
 
-    def openings(self, poses: _Array, p: SeekingParams) -> tuple[NDArray[np.int64], _Array]:
-        """Experiences (k,) and the places (k, 2), m, map frame, that were seen from there and never driven on."""
+    def openings(self, experiences: ExperienceMap, p: SeekingParams, least: int) -> tuple[NDArray[np.int64], _Array]:
+        """Experiences (k,) and the places (k, 2), m, map frame, that were seen from there and never driven on.
+
+        least: so many beams must have seen an opening; a single one may be a false echo. Only what lies on the robot's own
+        island counts: where the others lie to it is unknown.
+        """
         rows, beams = np.nonzero(self._seen_m[: self.count] >= p.opening_m)
         away = np.minimum(self._seen_m[rows, beams] - p.opening_gap_m, p.opening_most_m)
-        return self._thin(poses, rows, beams, away, p.thin_m, 1, p.opening_beams)
+        return self._thin(experiences, rows, beams, away, p.thin_m, 1, least)
 
-    def far_openings(self, poses: _Array, p: SeekingParams) -> tuple[NDArray[np.int64], _Array]:
+    def far_openings(self, experiences: ExperienceMap, p: SeekingParams) -> tuple[NDArray[np.int64], _Array]:
         """The same, of places that lie far from all experiences: there a new street or hall begins."""
         rows, beams = np.nonzero(self._seen_m[: self.count] >= p.far_m + p.opening_gap_m)
         away = self._seen_m[rows, beams].astype(np.float64) - p.opening_gap_m
-        return self._thin(poses, rows, beams, away, p.far_m, p.far_fine, p.opening_beams)
+        return self._thin(experiences, rows, beams, away, p.far_m, p.far_fine, p.opening_beams)
 
     def _thin(
-        self, poses: _Array, rows: NDArray[np.int64], beams: NDArray[np.int64], away: _Array, reach: float, fine: int,
-        least: int,
+        self, experiences: ExperienceMap, rows: NDArray[np.int64], beams: NDArray[np.int64], away: _Array, reach: float,
+        fine: int, least: int,
     ) -> tuple[NDArray[np.int64], _Array]:  # fmt: skip
         """Of the places so far `away` (m) along these beams of these experiences, those that nothing known is near."""
+        poses, islands = experiences.poses[: self.count], experiences.island_of[: self.count]
+        own = islands == islands[experiences.active]
+        rows, beams, away = rows[own[rows]], beams[own[rows]], away[own[rows]]
+        done = [tried for tried in self._done if own[tried[0]]]
         heading = poses[rows, 2] + self._angles[beams]
         places = poses[rows, :2] + away[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=1)
-        thin = _far_from(places, np.concatenate([poses[: self.count, :2], placed(self._done, poses)]), reach, fine)
+        thin = _far_from(places, np.concatenate([poses[own, :2], placed(done, poses)]), reach, fine)
         rows, places = rows[thin], places[thin]
         cells = np.floor(places / reach).astype(np.int64)
         _, which, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
-        often = count[which.ravel()] >= least  # a single beam may be a false echo
+        often = count[which.ravel()] >= least
         return rows[often].astype(np.int64), places[often]
 
 

@@ -3,12 +3,12 @@
 Wandering follows walls and crosses at random, as in IROS 2005; nothing in it seeks what the map lacks. The robot goes,
 in this order: back to old ground, if it has been on new ground for long, so that its error cannot grow without bound
 (it dares twice as far each time it came back, since its wheels are then known better); along known ground that is near
-but far by the links, which closes a loop; where open floor was seen far from all it knows. Only when nothing of that is
-left does it wander, and go by turns into openings near by and to where it has not been for longest. It knows map,
-sonars and odometry only.
+but far by the links, which closes a loop, if `loop_share` is set. Only when nothing of that is left does it wander, and
+go by turns into openings near by and to where it has not been for longest. On an island, as after a kidnap, it looks for
+the rest of its map: it does not go back, but into one opening after the other. It knows map, sonars and odometry only.
 test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_far_openings_are_sought_one_after_the_other,
 test_on_new_ground_for_long_it_goes_back, test_it_dares_twice_as_far_each_time_it_comes_back,
-test_with_nothing_new_it_goes_where_it_has_not_been_for_longest}.
+test_with_nothing_new_it_goes_where_it_has_not_been_for_longest, test_on_an_island_it_goes_into_every_opening}.
 """
 
 from __future__ import annotations
@@ -110,8 +110,9 @@ class Seeker:
         place = experiences.pose(follower.goal).compose(self._opening)
         here = experiences.robot.inverse().compose(place)
         self._there = math.hypot(here.x, here.y) < (p.far_m / 2 if self._far else p.into_reach_m)
-        blocked = local.free_way(math.atan2(here.y, here.x), p) < p.into_free_m
-        return None if self._there or blocked else (here.x, here.y)
+        x, y = local.gap_towards(here.x, here.y, p)
+        blocked = local.free_way(math.atan2(y, x), p) < p.into_free_m
+        return None if self._there or blocked else (x, y)
 
     def _end(self, experiences: ExperienceMap, p: PilotParams) -> None:
         assert self.follower is not None
@@ -131,19 +132,22 @@ class Seeker:
         times = experiences.temporal_map.times_to(experiences.active)
         self._wait_s, self._trip_s, self._into_s, self._there = 0.0, 0.0, -1.0, False
         drift_m = experiences.params.odometry_drift * self.ground.new_m
-        self.returning = self.ground.new_m > p.return_after_m * self._dares or drift_m > p.return_sigma_m
+        searching = p.search and _apart(experiences, p)
+        far = self.ground.new_m > p.return_after_m * self._dares or drift_m > p.return_sigma_m
+        self.returning = far and not searching
         goal = self._old_ground(times, p) if self.returning else None
         self.returning = goal is not None
         if goal is None and self._closer.choose(experiences, ranges_m, times, self.ground.now_s, p):
             goal, self._into_s = self._closer.road[0], 0.0
-        if goal is None:
+        if goal is None and p.far_openings and not searching:
             goal = self._best_far_opening(experiences, local, times, p)
         if goal is None:
-            self._wait_s = p.seek_after_s
             self._trips += 1
-            if self._trips % p.openings_every == 0:
-                goal = self._nearest_opening(experiences, times, p)
-        if goal is None:
+            if searching or self._trips % p.openings_every == 0:
+                goal = self._nearest_opening(experiences, times, p, p.search_beams if searching else p.opening_beams)
+            if goal is None or not searching:
+                self._wait_s = p.seek_after_s
+        if goal is None and not searching:
             goal = self._long_ago(times, p)
         if goal is not None:
             self.follower = RouteFollower(goal, self._bars)
@@ -158,7 +162,7 @@ class Seeker:
     ) -> int | None:
         """The one that costs least: time to get there, and its distance from where the map began, since what is near
         that closes small loops."""
-        rows, places = self.ground.far_openings(experiences.poses, p)
+        rows, places = self.ground.far_openings(experiences, p)
         reached = np.isfinite(times[rows])
         rows, places = rows[reached], places[reached]
         if not len(rows):
@@ -176,8 +180,10 @@ class Seeker:
         self._far = True
         return self._into(experiences, int(rows[best]), places[best])
 
-    def _nearest_opening(self, experiences: ExperienceMap, times: NDArray[np.float64], p: PilotParams) -> int | None:
-        rows, places = self.ground.openings(experiences.poses, p)
+    def _nearest_opening(
+        self, experiences: ExperienceMap, times: NDArray[np.float64], p: PilotParams, least: int
+    ) -> int | None:
+        rows, places = self.ground.openings(experiences, p, least)
         reached = np.isfinite(times[rows])
         rows, places = rows[reached], places[reached]
         if not len(rows):
@@ -196,6 +202,13 @@ class Seeker:
             return None
         goal = int(known[np.argmin(self.ground.last_s[known])])
         return goal if self.ground.now_s - self.ground.last_s[goal] > p.long_ago_s else None
+
+
+def _apart(experiences: ExperienceMap, p: PilotParams) -> bool:
+    """Whether there is another island, no smaller than `search_share` of the one that the robot is on."""
+    sizes = np.bincount(experiences.island_of)
+    own = int(experiences.island_of[experiences.active])
+    return bool(np.delete(sizes, own).max(initial=0) > p.search_share * sizes[own])
 
 
 def _in_the_middle(aim: _Point, ranges_m: NDArray[np.float32], p: PilotParams) -> _Point:

@@ -27,6 +27,17 @@ class SeekingParams:
         2, low=1, high=1000, meaning="of so many trips one goes into an opening, the others to places long not visited",
         source="ours",
     )  # fmt: skip
+    search: bool = param(
+        True, meaning="on an island, as after a kidnap, it only goes on to new ground, so that it meets the rest of its map",
+        source="ours",
+    )  # fmt: skip
+    search_share: float = param(
+        0.1, low=0.0, high=1.0, meaning="... while there is another island, no smaller than this share of its own",
+        source="ours",
+    )  # fmt: skip
+    search_beams: int = param(
+        1, low=1, high=100, meaning="... where so many beams must have seen an opening", source="ours"
+    )
     trip_most_s: float = param(
         150.0, unit="s", low=1.0, high=1e4, meaning="a trip is given up after this time", source="ours"
     )
@@ -61,9 +72,9 @@ class SeekingParams:
         0.9, unit="m", low=0.1, high=10.0, meaning="the map is thin where no experience is about this near",
         source="ours",
     )  # fmt: skip
+    far_openings: bool = param(False, meaning="far openings are sought first, one after the other", source="ours")
     far_m: float = param(
-        20.0, unit="m", low=0.5, high=20.0,
-        meaning="openings farther than this from all experiences are sought first, one after the other; 20 = there are none",
+        2.8, unit="m", low=0.5, high=20.0, meaning="an opening is far when it is so far from all experiences",
         source="ours",
     )  # fmt: skip
     far_fine: int = param(

@@ -18,7 +18,7 @@ DT = 0.1
 
 
 USUAL, NEAR = PilotParams(), PilotParams(clearance=0.2)
-OUTWARD = {"far_m": 2.8, "loop_share": 0.1}  # it seeks far openings first, and loops to close
+OUTWARD = {"far_openings": True, "loop_share": 0.1}  # it seeks far openings first, and loops to close
 
 
 ANGLES = np.array(SONAR_ANGLES_RAD)

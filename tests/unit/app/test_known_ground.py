@@ -35,12 +35,12 @@ def test_open_floor_that_was_never_driven_on_is_an_opening() -> None:
     ranges = NEAR.copy()
     ranges[0] = 4.0  # the sonar to the left
     ground, map_ = driven([(0.1 * k, 0.0) for k in range(30)], ranges)
-    rows, places = ground.openings(map_.poses, USUAL)
+    rows, places = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
     assert len(rows) == len(places) > 10
     assert places[:, 1] == pytest.approx(USUAL.opening_most_m)
     assert places[:, 0] == pytest.approx(0.1 * rows)
     ground.tried(10, 0.5, USUAL.opening_most_m)  # that is at x = 1.5 m
-    _, left = ground.openings(map_.poses, USUAL)
+    _, left = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
     assert 0 < len(left) < len(places)
     assert np.hypot(left[:, 0] - 1.5, left[:, 1] - USUAL.opening_most_m).min() > USUAL.thin_m
 
@@ -51,9 +51,24 @@ def test_a_tried_opening_moves_with_the_map() -> None:
     ground, map_ = driven([(0.1 * k, 0.0) for k in range(60)], ranges)
     ground.tried(10, 0.5, USUAL.opening_most_m)
     map_.poses[:, :2] += (7.0, 5.0)
-    _, left = ground.openings(map_.poses, USUAL)
+    _, left = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
     assert len(left)
     assert np.hypot(left[:, 0] - 8.5, left[:, 1] - USUAL.opening_most_m - 5.0).min() > USUAL.thin_m
+
+
+def test_what_lies_on_another_island_hides_no_opening() -> None:
+    """The robot was carried to where, for all it knows, the rest of its map might be."""
+    ranges = NEAR.copy()
+    ranges[0] = 4.0
+    ground, map_ = driven([(0.1 * k, 2.5) for k in range(30)] + [(0.1 * k, 0.0) for k in range(30)], ranges)
+    map_.robot = Pose2(1.0, 0.0, 0.0)
+    assert map_.active >= 30
+    rows, _ = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
+    assert (rows < 30).all()
+    map_.landed = 30
+    rows, _ = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
+    assert len(rows)
+    assert (rows >= 30).all()
 
 
 def test_a_far_opening_is_far_from_all_that_is_known() -> None:
@@ -62,7 +77,7 @@ def test_a_far_opening_is_far_from_all_that_is_known() -> None:
         ranges = NEAR.copy()
         ranges[0] = reach
         ground, map_ = driven([(0.1 * k, 0.0) for k in range(60)], ranges)
-        rows, places = ground.far_openings(map_.poses, USUAL)
+        rows, places = ground.far_openings(map_, USUAL)  # type: ignore[arg-type]
         assert bool(len(rows)) == is_far
         assert (places[:, 1] > USUAL.far_m).all()
 
@@ -70,12 +85,12 @@ def test_a_far_opening_is_far_from_all_that_is_known() -> None:
 def test_what_was_driven_on_is_no_opening() -> None:
     square = [(0.4 * i, 0.4 * j) for i in range(15) for j in range(15)]
     ground, map_ = driven(square, FAR)
-    _, places = ground.openings(map_.poses, USUAL)
+    _, places = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
     assert len(places)
     for place in places:  # outside of the square only
         assert min(math.dist(place, known) for known in square) > USUAL.thin_m
     ground, map_ = driven(square, NEAR)
-    assert not len(ground.openings(map_.poses, USUAL)[0])
+    assert not len(ground.openings(map_, USUAL, 3)[0])  # type: ignore[arg-type]
 
 
 def test_new_ground_is_counted_until_old_ground_is_met() -> None:

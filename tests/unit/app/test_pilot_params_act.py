@@ -43,7 +43,8 @@ OTHER: dict[str, float] = {
     "seek": False, "seek_after_s": 20.0, "openings_every": 1, "trip_most_s": 10.0, "return_after_m": 10.0,
     "old_after_s": 5.0, "long_ago_s": 900.0, "place_reach_m": 6.0, "opening_m": 4.9, "opening_gap_m": 1.2,
     "opening_most_m": 1.2, "opening_beams": 30, "thin_m": 0.4, "into_s": 2.0, "into_reach_m": 1.0, "into_free_m": 3.0,
-    "far_m": 20.0, "home_share": 0.0, "return_sigma_m": 0.3, "loop_m": 200.0, "loop_share": 0.0, "loop_most_m": 20.0,
+    "far_openings": False, "far_m": 4.0, "search": False, "search_share": 1.0, "search_beams": 30,
+    "home_share": 0.0, "return_sigma_m": 0.3, "loop_m": 200.0, "loop_share": 0.0, "loop_most_m": 20.0,
     "far_fine": 1,
     "loop_drive_m": 5.0, "loop_again_s": 10.0, "far_look_back_m": 2.0, "middle_m": 0.0, "middle_ahead_m": 0.5,
     "stuck_s": 3.0, "bumped_s": 2.0, "somewhere_m": 0.2, "turned_rad": 0.5, "most_turns": 0, "grip_yaw_rate": 1.0,
@@ -142,9 +143,10 @@ def failing_again(p: PilotParams) -> Trace:
         yield None if delays is None else delays.tolist()
 
 
-def on_trips(p: PilotParams) -> Trace:
+def on_trips(p: PilotParams, landed: int = 10**9) -> Trace:
     """In a room with a map of two of its walls, from which the sonars saw far, after a long time."""
     map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
+    map_.landed = landed
     world = room(side=8.0, start=(7.0, 7.0, 0.0))
     for new_m in (5.0, 20.0, 50.0):
         run = Run(Simulator(world, EXACT, 1), Pilot(p, ANGLES, np.random.default_rng(1)), map_)
@@ -161,7 +163,12 @@ def on_trips(p: PilotParams) -> Trace:
 
 def on_near_trips(p: PilotParams) -> Trace:
     """The same, where nothing is far."""
-    yield from on_trips(replace(p, far_m=20.0, loop_share=0.0))
+    yield from on_trips(replace(p, far_openings=False, loop_share=0.0))
+
+
+def on_an_island(p: PilotParams) -> Trace:
+    """The same, where it was carried to the second wall, and another island is smaller than its own."""
+    yield from on_trips(replace(p, far_openings=False, loop_share=0.0), landed=20)
 
 
 def along_a_corridor(p: PilotParams) -> Trace:
@@ -207,7 +214,7 @@ SITUATIONS: dict[type, tuple[Callable[[PilotParams], Trace], ...]] = {
     ExploringParams: (exploring,),
     RouteParams: (past_a_shut_door, at_a_wall, standing, side_by_side, failing_again),
     FreeingParams: (getting_nowhere,),
-    SeekingParams: (on_trips, on_near_trips, along_a_corridor, at_a_loop),
+    SeekingParams: (on_trips, on_near_trips, on_an_island, along_a_corridor, at_a_loop),
 }
 
 

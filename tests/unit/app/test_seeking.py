@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from app.pilot import PilotParams
+from app.pilot.route_following import RouteFollower
+from ratslam_core import Pose2
 from sim2d import Simulator
 
 from .pilots import EXPLORING, OUTWARD, Run, a_pilot
 from .worlds import EXACT, HandMadeMap, chain, room
 
-NEAR_ONLY = {"far_m": 20.0, "loop_share": 0.0}  # no far openings, no loops
+NEAR_ONLY = {"far_openings": False, "loop_share": 0.0}  # no far openings, no loops
 TRIPS = {"going where the map is thin", "going back to known ground"}
 
 
@@ -48,7 +50,22 @@ def test_it_goes_where_open_floor_was_seen() -> None:
     x, y = run.truth
     assert x > 2.5
     assert abs(y - (1.0 + 11.5 * 0.25)) < 1.5
-    assert len(ground.openings(map_.poses, run.pilot.params)[0]) == 0  # it does not go there twice
+    assert len(ground.openings(map_, run.pilot.params, 3)[0]) == 0  # it does not go there twice
+
+
+def test_a_door_post_in_the_way_is_driven_round() -> None:
+    """A beam passes a door where the robot would touch its post. Such trips used to end in the door, for good."""
+    map_ = HandMadeMap(*chain((2.3, 1.0), (2.3, 2.0)))
+    run = a_run(map_, (3.0, 0.0, 3.0, 2.4), (3.0, 3.6, 3.0, 8.0), **NEAR_ONLY)
+    seeker = run.pilot._seeker
+    seeker._choose(map_, run.pilot._local, run.frame.ranges_m, run.pilot.params)  # type: ignore[arg-type]
+    seeker.follower = RouteFollower(len(map_) - 1, run.pilot._bars)
+    seeker._opening = Pose2(2.2, 0.95, 0.0)
+    for _ in range(250):
+        run.tick()
+        if seeker.follower is None:
+            break
+    assert math.dist(run.truth, (4.5, 2.95)) < 0.6
 
 
 def test_far_openings_are_sought_one_after_the_other() -> None:
@@ -158,6 +175,27 @@ def test_with_nothing_new_it_goes_where_it_has_not_been_for_longest() -> None:
     assert ground.last_s[7] > 1000.0
     near = np.hypot(*(map_.poses[:, :2] - map_.poses[7, :2]).T) < PilotParams().place_reach_m
     assert (ground.last_s[near] > 1000.0).all()  # all experiences of the place, whichever way they face
+
+
+@pytest.mark.parametrize("search", [True, False])
+def test_on_an_island_it_goes_into_every_opening(search: bool) -> None:
+    """It has been on new ground for long, and this is a trip to an old place; but it has lost the rest of its map."""
+    map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
+    run = a_run(map_, seek_after_s=1.0, openings_every=2, search=search, **NEAR_ONLY)
+    seeker = run.pilot._seeker
+    ground = seeker.ground
+    ground.now_s, ground.new_m = 1000.0, 100.0
+    ground._made_s[:] = ground._last_s[:] = 0.0
+    ground._last_s[: ground.count] = 990.0
+    ground._seen_m[: ground.count] = 1.0
+    ground._seen_m[35:39, 6:8] = 5.0  # to the right
+    for landed, goes_into in ((30, search), (2, False), (10**9, False)):  # beside a large island, a tiny one, none
+        map_.landed = landed
+        seeker.stop()
+        seeker._trips = 0
+        seeker._choose(map_, run.pilot._local, run.frame.ranges_m, run.pilot.params)  # type: ignore[arg-type]
+        assert (seeker._opening is not None) == goes_into
+        assert seeker.returning == (not goes_into)
 
 
 @pytest.mark.parametrize("order", ["goal", "hand"])

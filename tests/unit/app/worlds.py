@@ -6,6 +6,7 @@ import math
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ratslam_core import ExperienceMapParams, Pose2, TemporalMap
 from ratslam_core.experience_map.transitions import Transitions
@@ -38,6 +39,7 @@ class HandMadeMap:
         self.params = ExperienceMapParams()
         self.pace = 0.0  # links take as long as `link_times` says, whatever their length
         self.trials: list[tuple[int, int, bool]] = []
+        self.landed = 10**9  # experiences from this one on lie on an island of their own
 
     def tried(self, i: int, j: int, reached: bool) -> bool:
         self.trials.append((i, j, reached))
@@ -56,6 +58,10 @@ class HandMadeMap:
 
     def __len__(self) -> int:
         return len(self.poses)
+
+    @property
+    def island_of(self) -> NDArray[np.int32]:
+        return np.where(np.arange(len(self)) < self.landed, 0, 1).astype(np.int32)
 
     @property
     def transitions(self) -> Transitions:
