@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from app.evaluation import backbone, looks, loops_closed
+from app.evaluation import Coverage, backbone, looks, loops_closed
 from app.session import Session
 
 # Keys that tell of the machine; all others are the same whenever the same run is made.
 MACHINE = ("wall_s", "real_time_factor", "real_time_factors", "rss_mb")
-NEAR_M = 1.0  # the robot has covered the floor from which it is no farther than this to its path
 ISLAND_M2 = 4.0  # a loop leads round an island that is at least this large; desks are none
 
 
@@ -53,7 +52,7 @@ def judged(session: Session) -> dict[str, Any]:
             "false_believed": int((found.false & found.believed).sum()),
             "odometry_false": int(backbone(map_, births).false.sum()),
         },
-        "coverage": round(floor.share_near(evaluation.path, NEAR_M), 4),
+        "coverage": round(Coverage().follow(floor, evaluation.path), 4),
         "loops": {
             "closed": loops_closed(true, births, evaluation.path, islands, session.frame.dt),
             "of": len(islands),

@@ -31,8 +31,10 @@ import ratslam_core.solvers.dijkstra
 import ratslam_core.solvers.laplacian
 import sim2d.camera.painting
 import sim2d.geometry.connected_cells
+import sim2d.geometry.spreading
 import sim2d.sensors.ranges
 from app.config import Config
+from app.evaluation import Coverage
 from app.pilot import Pilot
 from app.pilot.bars import Bars
 from app.pilot.local_movement import LocalMovement
@@ -70,6 +72,7 @@ def office() -> None:
     cells = config.pose_cells
     nowhere = ExperienceMap((cells.n_theta, cells.n_y, cells.n_x), cells.cell_m, config.experience_map)
     frame = simulator.observe()
+    Coverage().follow(simulator.free_space, np.zeros((1, 2)))
     local = LocalMovement(ANGLES, config.pilot.echo_ticks)
     local.free_way(0.0, config.pilot)
     local.sense(np.full(len(ANGLES), 0.2, np.float32), Odometry(0.0, 0.0, 0.1), config.pilot)
@@ -144,7 +147,8 @@ def loops() -> None:
 
 # With each part, the modules whose kernels it compiles last: once these are on disk, the whole part is.
 PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
-    "office": (office, (sim2d.geometry.connected_cells, sim2d.camera.painting, sim2d.sensors.ranges, app.pilot.local_movement)),
+    "office": (office, (sim2d.geometry.connected_cells, sim2d.geometry.spreading, sim2d.camera.painting, sim2d.sensors.ranges,
+                        app.pilot.local_movement)),
     "cells": (cells, (ratslam_core.pose_cells.activity_kernels, ratslam_core.pose_cells.attractor_kernels,
                       ratslam_core.pose_cells.packet_kernels,
                       ratslam_core.local_view.front_ends.image_and_sonars, ratslam_core.local_view.echo_matcher,

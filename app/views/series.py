@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.evaluation import Coverage
 from app.session import Session
 from app.views.arrays import frozen
 from app.views.map_turn import map_turn
@@ -20,7 +21,8 @@ class RunSeries:
         self._session = session
         self._samples: list[tuple[float, ...]] = []
         self._sample_every_s = 1.0
-        self.error_map_m = self.error_odometry_m = 0.0
+        self.error_map_m = self.error_odometry_m = self.coverage = 0.0
+        self._covered = Coverage()
         self.map_turn_rad = self._turn(None)
         self.series = Series(*(np.zeros(0) for _ in range(7)))
         self._sample()
@@ -38,6 +40,7 @@ class RunSeries:
         session, brain = self._session, self._session.brain
         every = max(1, session.tick_count // ERROR_POINTS)
         self.error_map_m, self.error_odometry_m = session.evaluation.errors(brain.experience_map, every)
+        self.coverage = self._covered.follow(session.simulator.free_space, session.evaluation.path)
         self.map_turn_rad = self._turn(self.map_turn_rad)
         views, experiences = len(brain.local_view), len(brain.experience_map)
         metres, radians = brain.experience_map.residual

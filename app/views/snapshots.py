@@ -80,6 +80,7 @@ class Snapshots:
             links=brain.experience_map.link_count,
             relocalisations=brain.relocalisations,
             map_turn_rad=history.series.map_turn_rad,
+            coverage=history.series.coverage,
             error_map_m=history.series.error_map_m,
             error_odometry_m=history.series.error_odometry_m,
             revisit_consistency=session.evaluation.revisit_consistency,

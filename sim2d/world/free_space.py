@@ -16,6 +16,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from sim2d.geometry.connected_cells import connected
 from sim2d.geometry.segments import differing, free_cells, inside_ring, nearest_segment
+from sim2d.geometry.spreading import spread
 from sim2d.world.world import World
 
 CELL_M = 0.05
@@ -23,6 +24,8 @@ MOST_CELLS = 4_000_000  # a larger floor is given larger cells
 _MOST_CHANGES = 64  # if more walls differ, the whole floor is measured anew
 # Eight neighbours and eight knight's moves; of each pair of opposite moves one is listed.
 _MOVES = ((1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (1, 2), (2, -1), (1, -2))
+_BOTH_WAYS = np.concatenate([np.array(_MOVES)[:, ::-1], -np.array(_MOVES)[:, ::-1]])  # rows, columns
+_PIECE = 32  # so many cells of a path are spread from at once
 
 
 class FreeSpace:
@@ -133,18 +136,29 @@ class FreeSpace:
         metres = dijkstra(graph, directed=False, indices=nodes[start])[nodes[goal]]
         return max(straight, float(metres))
 
-    def share_near(self, places: NDArray[np.float64], metres: float) -> float:
-        """The share of this floor from which the robot can drive to one of `places`, (n, 2), in at most so many metres."""
-        x0, y0 = self.world.bounds[:2]
-        columns, rows = np.floor((places - (x0, y0)) / self._cell).astype(np.int64).T
-        nodes, graph = self._graph
-        inside = (columns >= 0) & (rows >= 0) & (columns < nodes.shape[1]) & (rows < nodes.shape[0])
-        been = np.unique(nodes[rows[inside], columns[inside]])
-        been = been[been >= 0]
-        if been.size == 0:
-            return 0.0
-        away = dijkstra(graph, directed=False, indices=been, limit=metres, min_only=True)
-        return float(np.mean(np.isfinite(away)))
+    def cover(self, covered: NDArray[np.bool_], places: NDArray[np.float64], metres: float) -> int:
+        """Mark in `covered`, (n_y, n_x), from where the robot can drive to one of `places`, (n, 2), in at most so many
+        metres; how many cells are new. `floor_cells` says how many there are."""
+        columns, rows = np.floor((places - self.world.bounds[:2]) / self._cell).astype(np.int64).T
+        inside = (columns >= 0) & (rows >= 0) & (columns < len(self._xs)) & (rows < len(self._ys))
+        cells = np.stack([rows[inside], columns[inside]], axis=1)
+        if not len(cells):
+            return 0
+        cells = cells[
+            np.append(True, np.any(cells[1:] != cells[:-1], axis=1))
+        ]  # the path stays in a cell for some time
+        pieces = (cells[k : k + _PIECE] for k in range(0, len(cells), _PIECE))
+        return sum(int(spread(self._reachable, covered, piece, metres / self._cell, _BOTH_WAYS)) for piece in pieces)
+
+    @property
+    def grid(self) -> tuple[int, int]:
+        """The rows and columns of cells."""
+        return len(self._ys), len(self._xs)
+
+    @cached_property
+    def floor_cells(self) -> int:
+        """How many cells can be reached."""
+        return int(np.count_nonzero(self._reachable))
 
     def islands(self, least_m2: float) -> NDArray[np.float64]:
         """A point in each part of the world that this floor surrounds and that is no smaller than this, (n, 2).

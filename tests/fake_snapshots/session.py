@@ -55,6 +55,7 @@ def fake_snapshot(tick: int, goal: bool = True, *, nodes: int = NODES, run: int 
         experiences=nodes,
         links=len(fresh.links),
         relocalisations=snap_count,
+        coverage=min(1.0, time_s / 600),
         error_map_m=0.21 + 0.03 * math.sin(time_s / 20),
         error_odometry_m=0.2 + time_s * 0.005,
         revisit_consistency=0.97 if tick > 50 else None,

@@ -103,6 +103,7 @@ class Snapshot:
     experiences: int
     links: int
     relocalisations: int
+    coverage: float  # share of the floor from which the robot can drive to its path within a metre
     error_map_m: float
     error_odometry_m: float
     revisit_consistency: float | None  # share of revisits within half a metre
