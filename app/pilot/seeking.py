@@ -5,7 +5,8 @@ in this order: back to old ground, if it has been on new ground for long, so tha
 (it dares twice as far each time it came back, since its wheels are then known better); along known ground that is near
 but far by the links, which closes a loop, if `loop_share` is set. Only when nothing of that is left does it wander, and
 go by turns into openings near by and to where it has not been for longest. On an island, as after a kidnap, it looks for
-the rest of its map: it does not go back, but into one opening after the other. It knows map, sonars and odometry only.
+the rest of its map: it does not go back, but into one opening after the other, and round the posts of doors. It knows
+map, sonars and odometry only.
 test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_far_openings_are_sought_one_after_the_other,
 test_on_new_ground_for_long_it_goes_back, test_it_dares_twice_as_far_each_time_it_comes_back,
 test_with_nothing_new_it_goes_where_it_has_not_been_for_longest, test_on_an_island_it_goes_into_every_opening}.
@@ -110,7 +111,7 @@ class Seeker:
         place = experiences.pose(follower.goal).compose(self._opening)
         here = experiences.robot.inverse().compose(place)
         self._there = math.hypot(here.x, here.y) < (p.far_m / 2 if self._far else p.into_reach_m)
-        x, y = local.gap_towards(here.x, here.y, p)
+        x, y = local.gap_towards(here.x, here.y, p) if _searching(experiences, p) else (here.x, here.y)
         blocked = local.free_way(math.atan2(y, x), p) < p.into_free_m
         return None if self._there or blocked else (x, y)
 
@@ -132,7 +133,7 @@ class Seeker:
         times = experiences.temporal_map.times_to(experiences.active)
         self._wait_s, self._trip_s, self._into_s, self._there = 0.0, 0.0, -1.0, False
         drift_m = experiences.params.odometry_drift * self.ground.new_m
-        searching = p.search and _apart(experiences, p)
+        searching = _searching(experiences, p)
         far = self.ground.new_m > p.return_after_m * self._dares or drift_m > p.return_sigma_m
         self.returning = far and not searching
         goal = self._old_ground(times, p) if self.returning else None
@@ -204,8 +205,10 @@ class Seeker:
         return goal if self.ground.now_s - self.ground.last_s[goal] > p.long_ago_s else None
 
 
-def _apart(experiences: ExperienceMap, p: PilotParams) -> bool:
-    """Whether there is another island, no smaller than `search_share` of the one that the robot is on."""
+def _searching(experiences: ExperienceMap, p: PilotParams) -> bool:
+    """Whether the robot looks for the rest of its map: another island, no smaller than `search_share` of its own."""
+    if not p.search:
+        return False
     sizes = np.bincount(experiences.island_of)
     own = int(experiences.island_of[experiences.active])
     return bool(np.delete(sizes, own).max(initial=0) > p.search_share * sizes[own])

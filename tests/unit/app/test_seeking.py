@@ -56,6 +56,7 @@ def test_it_goes_where_open_floor_was_seen() -> None:
 def test_a_door_post_in_the_way_is_driven_round() -> None:
     """A beam passes a door where the robot would touch its post. Such trips used to end in the door, for good."""
     map_ = HandMadeMap(*chain((2.3, 1.0), (2.3, 2.0)))
+    map_.landed = 2
     run = a_run(map_, (3.0, 0.0, 3.0, 2.4), (3.0, 3.6, 3.0, 8.0), **NEAR_ONLY)
     seeker = run.pilot._seeker
     seeker._choose(map_, run.pilot._local, run.frame.ranges_m, run.pilot.params)  # type: ignore[arg-type]
