@@ -1,0 +1,287 @@
+"""A session taken through a protocol, step by step, and what the experimenter writes down on the way.
+
+The experimenter sees where the robot truly is; the robot is given nothing but drives, goals and new surroundings.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from app.session import Session
+from app.trials.steps import Door, Drive, Explore, Kidnap, Move, Repeat, Set, Step, Tag, Visit, Wait, Where
+
+REACHED_M = 0.25  # a driven robot has come to a point of its path
+PATIENCE_S = 60.0  # a point of the path that takes longer is left out: somebody stands there
+AIM_S = 0.5  # the driver corrects the heading within this time
+MOST_TURN = 1.0  # rad/s, of a driven robot
+SHARP_RAD = 0.6  # it turns on the spot if its next point lies farther aside than this
+_TRIES = 200  # random places tried to find one that is far enough away
+_STANDING = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """Something that happened in a trial. ok: whether it went as it should; None if it is neither good nor bad."""
+
+    time_s: float
+    words: str
+    ok: bool | None = None
+
+
+@dataclass(slots=True)
+class Tagged:
+    """A place that is tagged when the robot comes near it: the experience at the nearest point of the first good approach.
+
+    An approach is good if it comes within half of `within_m`; until there was one, the nearest so far counts.
+    """
+
+    x: float
+    y: float
+    within_m: float
+    experience: int | None = None
+    away_m: float = math.inf
+    passed: bool = False
+
+    def note(self, here: tuple[float, float], experience: int) -> bool:
+        """The robot is here. Whether the first approach is over now."""
+        away = math.dist(here, (self.x, self.y))
+        if self.passed:
+            return False
+        if away > self.within_m:
+            self.passed = self.away_m <= self.within_m / 2
+            return self.passed
+        if away < self.away_m:
+            self.away_m, self.experience = away, experience
+        return False
+
+
+@dataclass(frozen=True, slots=True)
+class Visited:
+    """How a visit ended. why: empty if the goal was reached."""
+
+    name: str
+    reached: bool
+    began_s: float
+    time_s: float
+    path_m: float
+    miss_m: float
+    why: str
+
+
+class Course:
+    """Take `ticks()` one by one, and run one tick of the session after each."""
+
+    def __init__(self, session: Session, steps: Sequence[Step]) -> None:
+        """ValueError names a place, door or parameter that does not exist."""
+        self.session, self.steps = session, tuple(steps)
+        self.tags: dict[str, Tagged] = {}
+        self.visits: list[Visited] = []
+        self.moments: list[Moment] = []
+        self._check(self.steps)
+
+    def ticks(self) -> Iterator[str]:
+        """What is being done, before each tick."""
+        yield from self._all(self.steps)
+        self.note("the end")
+
+    def note(self, words: str, ok: bool | None = None) -> None:
+        """Write down that something happens now."""
+        self.moments.append(Moment(self.session.time_s, words, ok))
+
+    @property
+    def deciding(self) -> Moment:
+        """The moment that decided the trial: what failed first, else what succeeded last, else the end."""
+        failed = [moment for moment in self.moments if moment.ok is False]
+        succeeded = [moment for moment in self.moments if moment.ok]
+        return failed[0] if failed else (succeeded or self.moments)[-1]
+
+    # ------------------------------------------------------------ the steps
+
+    def _all(self, steps: Sequence[Step]) -> Iterator[str]:
+        for step in steps:
+            yield from self._carry_out(step)
+
+    def _carry_out(self, step: Step) -> Iterator[str]:
+        match step:
+            case Explore():
+                yield from self._explore(step)
+            case Drive():
+                yield from self._drive(step)
+            case Move():
+                yield from self._move(step)
+            case Visit():
+                for name in step.places:
+                    yield from self._visit(name, step)
+            case Wait():
+                self.session.pilot.drive(*_STANDING)
+                yield from self._for(step.seconds, "waiting")
+            case Repeat():
+                for _ in range(step.times):
+                    yield from self._all(step.steps)
+            case _:
+                self._do_at_once(step)
+
+    def _do_at_once(self, step: Step) -> None:
+        match step:
+            case Tag():
+                for name in step.places:
+                    self.tags[name] = Tagged(*self._place(name), step.within_m)
+            case Kidnap():
+                self._kidnap(step)
+            case Set():
+                self.session.set_parameters(step.values)
+                self.note(", ".join(f"{name} = {value}" for name, value in step.values.items()))
+            case Door():
+                self.session.simulator.set_door(step.name, step.open)
+                self.note(f"{step.name} {'opens' if step.open else 'shuts'}")
+            case _:
+                raise TypeError(f"nobody carries out {step.do}")
+
+    def _tick(self, what: str) -> Iterator[str]:
+        yield what
+        for name, tag in self.tags.items():
+            if tag.note(self._here, self.session.brain.experience_map.active):
+                self.note(f"{name} is tagged, {tag.away_m:.2f} m from it")
+
+    def _for(self, seconds: float, what: str) -> Iterator[str]:
+        for _ in range(max(1, round(seconds / self.session.frame.dt))):
+            yield from self._tick(what)
+
+    def _explore(self, step: Explore) -> Iterator[str]:
+        session = self.session
+        session.set_mode("explore")
+        for _ in range(max(1, round(step.minutes * 60 / session.frame.dt))):
+            yield from self._tick("exploring")
+            kidnaps = session.evaluation.kidnaps
+            if step.until == "recovered" and (not kidnaps or kidnaps[-1].after_s is not None):
+                break
+        if step.until == "recovered" and session.evaluation.kidnaps:
+            self._judge_kidnap()
+
+    def _judge_kidnap(self) -> None:
+        kidnap = self.session.evaluation.kidnaps[-1]
+        if kidnap.after_s is None:
+            self.note("not recovered from the kidnap", False)
+        else:
+            self.note(f"recovered {kidnap.after_s:.1f} s and {kidnap.after_m or 0:.1f} m after the kidnap", True)
+
+    def _drive(self, step: Drive) -> Iterator[str]:
+        for lap in range(step.laps):
+            for where in step.path:
+                yield from self._drive_to(self._place(where), step.speed, f"driven, lap {lap + 1} of {step.laps}")
+        self.session.pilot.drive(*_STANDING)
+
+    def _drive_to(self, place: tuple[float, float], speed: float, what: str) -> Iterator[str]:
+        session, began_s = self.session, self.session.time_s
+        while math.dist(self._here, place) > REACHED_M:
+            if session.time_s - began_s > PATIENCE_S:
+                self.note(f"({place[0]:g}, {place[1]:g}) could not be driven to, and is left out")
+                return
+            truth = session.simulator.truth
+            aside = math.remainder(math.atan2(place[1] - truth.y, place[0] - truth.x) - truth.heading_rad, math.tau)
+            turn = max(-MOST_TURN, min(MOST_TURN, aside / max(AIM_S, session.frame.dt)))
+            session.pilot.drive(speed * math.cos(aside) if abs(aside) < SHARP_RAD else 0.0, turn)
+            yield from self._tick(what)
+
+    def _move(self, step: Move) -> Iterator[str]:
+        for _ in range(step.times):
+            for speed, turn_deg, seconds in step.moves:
+                self.session.pilot.drive(speed, math.radians(turn_deg))
+                yield from self._for(seconds, "moved")
+        self.session.pilot.drive(*_STANDING)
+
+    def _visit(self, name: str, step: Visit) -> Iterator[str]:
+        session, tag = self.session, self.tags[name]
+        began_s, began_m = session.time_s, session.evaluation.path_m
+        if tag.experience is None:
+            self._visited(name, step, "never approached while exploring", began_s, began_m)
+            return
+        session.pilot.set_goal(tag.experience)
+        while session.pilot.goal_state != (tag.experience, "arrived"):
+            if session.time_s - began_s >= step.timeout_s - 1e-9:
+                self._visited(name, step, f"not reached in {step.timeout_s:g} s", began_s, began_m)
+                return
+            yield from self._tick(f"on the way to {name}")
+        miss_m = self._away(name)
+        why = "" if miss_m <= step.near_m else f"arrived {miss_m:.2f} m away"
+        self._visited(name, step, why, began_s, began_m)
+
+    def _visited(self, name: str, step: Visit, why: str, began_s: float, began_m: float) -> None:
+        session = self.session
+        self.visits.append(
+            Visited(
+                name, not why, began_s, session.time_s - began_s, session.evaluation.path_m - began_m, self._away(name), why
+            )
+        )  # fmt: skip
+        self.note(f"{name}: {why or 'reached'}", not why)
+
+    def _kidnap(self, step: Kidnap) -> None:
+        session, truth = self.session, self.session.simulator.truth
+        heading = None if step.heading_deg is None else math.radians(step.heading_deg)
+        if step.turn_deg is not None:
+            session.kidnap(truth.x, truth.y, truth.heading_rad + math.radians(step.turn_deg))
+        elif step.place is not None:
+            session.kidnap(*self._place(step.place), heading)
+        else:
+            x, y, by_chance = self._far_away(step.least_m)
+            session.kidnap(x, y, by_chance if heading is None else heading)
+        self.note("kidnapped")
+
+    def _far_away(self, least_m: float) -> tuple[float, float, float]:
+        for _ in range(_TRIES):
+            x, y, heading = self.session.simulator.random_free_pose()
+            if math.dist((x, y), self._here) >= least_m:
+                return x, y, heading
+        raise ValueError(f"least_m = {least_m:g}: no free place so far from the robot in {self.session.world.name}")
+
+    # ------------------------------------------------------------ where things are
+
+    @property
+    def _here(self) -> tuple[float, float]:
+        truth = self.session.simulator.truth
+        return truth.x, truth.y
+
+    def _away(self, name: str) -> float:
+        tag = self.tags[name]
+        return math.dist(self._here, (tag.x, tag.y))
+
+    def _place(self, where: Where) -> tuple[float, float]:
+        if not isinstance(where, str):
+            return where
+        world = self.session.world
+        for place in (*world.places, *world.starts):
+            if place.name == where:
+                return place.x, place.y
+        names = ", ".join(place.name for place in (*world.places, *world.starts))
+        raise ValueError(f"{world.name} has no place {where!r}; expected one of: {names}, or [x, y] in metres")
+
+    # ------------------------------------------------------------ before it begins
+
+    def _check(self, steps: Sequence[Step], tagged: frozenset[str] = frozenset()) -> None:
+        for step in steps:
+            match step:
+                case Tag():
+                    for name in step.places:
+                        self._place(name)
+                    tagged |= set(step.places)
+                case Visit():
+                    missing = [name for name in step.places if name not in tagged]
+                    if missing:
+                        raise ValueError(f"visit {missing[0]!r}: nothing is tagged so before; tag it first")
+                case Drive():
+                    for where in step.path:
+                        self._place(where)
+                case Kidnap(place=where) if where is not None:
+                    self._place(where)
+                case Set():
+                    self.session.config.with_values(step.values)
+                case Door():
+                    names = [door.name for door in self.session.world.doors]
+                    if step.name not in names:
+                        raise ValueError(f"no door {step.name!r}; expected one of: {', '.join(names) or 'there are none'}")
+                case Repeat():
+                    self._check(step.steps, tagged)
+                case _:
+                    pass

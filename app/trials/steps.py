@@ -1,0 +1,114 @@
+"""The steps that protocols are made of, as they stand in an experiment's file. docs/experiments.md tells how to use them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Seconds = Annotated[float, Field(gt=0, le=1e6)]
+Metres = Annotated[float, Field(gt=0, le=1e4)]
+Where = str | tuple[float, float]  # a place of the world by name, or (x, y) in metres, office frame
+Values = dict[str, float | int | bool | str]  # parameters by dotted names
+
+
+class _Step(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Explore(_Step):
+    """The robot explores by itself for so long, or until it has found itself again after a kidnap."""
+
+    do: Literal["explore"]
+    minutes: Annotated[float, Field(gt=0, le=1e5)]
+    until: Literal["the end", "recovered"] = "the end"
+
+
+class Drive(_Step):
+    """Somebody drives the robot along a path, from place to place, seeing where it truly is."""
+
+    do: Literal["drive"]
+    path: Annotated[list[Where], Field(min_length=1)]
+    laps: Annotated[int, Field(ge=1, le=10_000)] = 1
+    speed: Annotated[float, Field(gt=0, le=2)] = 0.3  # m/s
+
+
+class Move(_Step):
+    """The wheels are given these speeds: m/s forwards, degrees/s counter-clockwise, seconds."""
+
+    do: Literal["move"]
+    moves: Annotated[list[tuple[float, float, Seconds]], Field(min_length=1)]
+    times: Annotated[int, Field(ge=1, le=10_000)] = 1
+
+
+class Kidnap(_Step):
+    """The robot is put elsewhere, or only turned, and is not told.
+
+    place: where to; without one, by chance at least `least_m` away. heading_deg: which way it then faces; without one, by
+    chance at a place by chance, else as before. turn_deg: it stays where it is and is turned so far.
+    """
+
+    do: Literal["kidnap"]
+    place: Where | None = None
+    heading_deg: float | None = None
+    turn_deg: float | None = None
+    least_m: Annotated[float, Field(ge=0, le=1e4)] = 0.0
+
+    @model_validator(mode="after")
+    def _one_of(self) -> Kidnap:
+        if self.turn_deg is not None and (self.place is not None or self.heading_deg is not None or self.least_m):
+            raise ValueError("turn_deg turns the robot where it is; leave out place, heading_deg and least_m")
+        return self
+
+
+class Tag(_Step):
+    """From now on: the first time that the robot comes near each of these places, what it experiences there is tagged."""
+
+    do: Literal["tag"]
+    places: Annotated[list[str], Field(min_length=1)]
+    within_m: Metres = 1.0
+
+
+class Visit(_Step):
+    """The robot is sent to these tagged places, one after the other. It has reached one if it says so and truly is near."""
+
+    do: Literal["visit"]
+    places: Annotated[list[str], Field(min_length=1)]
+    timeout_s: Seconds = 180.0
+    near_m: Metres = 1.0
+
+
+class Wait(_Step):
+    """The robot stands still."""
+
+    do: Literal["wait"]
+    seconds: Seconds
+
+
+class Set(_Step):
+    """Parameters change while the robot runs."""
+
+    do: Literal["set"]
+    values: Values
+
+
+class Door(_Step):
+    """A door of the office is opened or shut."""
+
+    do: Literal["door"]
+    name: str
+    open: bool
+
+
+class Repeat(_Step):
+    """These steps so many times."""
+
+    do: Literal["repeat"]
+    times: Annotated[int, Field(ge=1, le=10_000)]
+    steps: Annotated[list[Step], Field(min_length=1)]
+
+
+Step = Annotated[
+    Explore | Drive | Move | Kidnap | Tag | Visit | Wait | Set | Door | Repeat, Field(discriminator="do")
+]
+Repeat.model_rebuild()
