@@ -280,7 +280,9 @@ class Course:
                 case Door():
                     names = [door.name for door in self.session.world.doors]
                     if step.name not in names:
-                        raise ValueError(f"no door {step.name!r}; expected one of: {', '.join(names) or 'there are none'}")
+                        raise ValueError(
+                            f"no door {step.name!r}; expected one of: {', '.join(names) or 'there are none'}"
+                        )
                 case Repeat():
                     self._check(step.steps, tagged)
                 case _:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-import numpy as np
-
 from app.trials.course import Course
 
 
@@ -37,17 +35,4 @@ class Packets:
         return {"packets_at_most": float(self._most), "rival_s": self._rival_s}
 
 
-class Places:
-    """Places with several experiences, and pose cells that stand for several places, at the end."""
-
-    def __init__(self, course: Course) -> None:
-        self._session = course.session
-
-    def note(self) -> None: ...
-
-    def scores(self) -> dict[str, float]:
-        return {}
-
-
 MEASURES: dict[str, Callable[[Course], Measure]] = {"packets": Packets}
-_ = np

@@ -108,7 +108,5 @@ class Repeat(_Step):
     steps: Annotated[list[Step], Field(min_length=1)]
 
 
-Step = Annotated[
-    Explore | Drive | Move | Kidnap | Tag | Visit | Wait | Set | Door | Repeat, Field(discriminator="do")
-]
+Step = Annotated[Explore | Drive | Move | Kidnap | Tag | Visit | Wait | Set | Door | Repeat, Field(discriminator="do")]
 Repeat.model_rebuild()

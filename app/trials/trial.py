@@ -16,8 +16,8 @@ from app.trials.course import Course, Moment
 from app.trials.measures import MEASURES, Measure
 from app.trials.scores import scores_of
 from app.trials.steps import Step, Values
-from sim2d.importers import open_world
 from sim2d import World, WorldText
+from sim2d.importers import open_world
 
 _STEPS: TypeAdapter[tuple[Step, ...]] = TypeAdapter(tuple[Step, ...])
 TELL_AFTER = 100  # ticks between two words about how far it is
@@ -82,9 +82,7 @@ def run_trial(trial: Trial, tell: Callable[[float, str], None] | None = None) ->
     return Result(trial.id, scores, course.deciding, session.time_s, wall_s, session.state_hash()), course
 
 
-def watched(
-    course: Course, measures: list[Measure], tell: Callable[[float, str], None] | None = None
-) -> None:
+def watched(course: Course, measures: list[Measure], tell: Callable[[float, str], None] | None = None) -> None:
     """Take a course to its end, and show each of its ticks to everybody who measures."""
     session, since_s = course.session, course.session.time_s
     for what in course.ticks():

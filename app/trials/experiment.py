@@ -1,0 +1,253 @@
+"""An experiment as a file: world, robot, engines, protocol, axes, scores, figures. docs/experiments.md tells how to write one."""
+
+from __future__ import annotations
+
+import itertools
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from app.config import Config
+from app.config.presets import values_of
+from app.trials.code_version import code_version
+from app.trials.measures import MEASURES
+from app.trials.steps import Drive, Explore, Move, Repeat, Step, Values, Visit, Wait
+from app.trials.trial import Trial, text_of
+from sim2d.importers import open_world
+
+EngineName = Literal["paper", "ours"]
+_CATALOGUE = Path(__file__).with_name("catalogue")
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class EngineSpec(_Part):
+    """An engine: a preset, and what is set over it."""
+
+    preset: str = "ours"
+    set: Values = {}
+
+
+class Level(_Part):
+    """One setting on an axis."""
+
+    label: str
+    set: Values = {}
+
+
+class Axis(_Part):
+    """Something that is varied. Every level of each axis meets every level of the others."""
+
+    name: str
+    levels: Annotated[list[Level], Field(min_length=1)]
+
+
+class Score(_Part):
+    """A column of the table: a number of each trial, or a rate, such as goals reached of all goals."""
+
+    label: str
+    score: str | None = None
+    rate: tuple[str, str] | None = None
+    unit: str = ""
+
+    @model_validator(mode="after")
+    def _one_of(self) -> Score:
+        if (self.score is None) == (self.rate is None):
+            raise ValueError(f"score {self.label!r}: give either score = NAME or rate = [HOW MANY, OF HOW MANY]")
+        return self
+
+
+class Original(_Part):
+    """What the paper found, to be drawn beside ours: the value of a score at these levels."""
+
+    score: str  # its label
+    levels: list[str] = []
+    value: float
+    source: str
+
+
+class FigureSpec(_Part):
+    """A figure. What each kind shows, and its options: figures/."""
+
+    kind: str
+    title: str = ""
+    options: dict[str, Any] = {}
+
+
+class Quick(_Part):
+    """The same experiment made short, to see that it works: so many trials, and this share of every duration."""
+
+    trials: Annotated[int, Field(ge=1)] = 1
+    share: Annotated[float, Field(gt=0, le=1)] = 0.05
+    levels: Annotated[int, Field(ge=1)] = 1  # of each axis, the first and, if more than one, the last
+
+
+class Experiment(_Part):
+    """An experiment. `trials` makes its trials."""
+
+    name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,39}$")]
+    title: str
+    paper: str  # and figure, table or section
+    asks: str  # what the experiment asks, in a sentence
+    found: str  # what the paper found, in a sentence
+    world: str = "office"
+    trials: Annotated[int, Field(ge=1, le=100_000)] = 5
+    seed: Annotated[int, Field(ge=0, lt=2**31)] = 1  # of the first trial; the next one has the next
+    set: Values = {}  # for every engine
+    engines: dict[EngineName, EngineSpec]
+    axes: list[Axis] = []
+    protocol: Annotated[list[Step], Field(min_length=1)]
+    measures: list[str] = []
+    scores: Annotated[list[Score], Field(min_length=1)]
+    original: list[Original] = []
+    figures: list[FigureSpec] = []
+    quick: Quick = Quick()
+    watch: list[str] = []  # the levels at which "Watch it" begins; left out: the first of each axis
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Experiment:
+        unknown = [name for name in self.measures if name not in MEASURES]
+        if unknown:
+            raise ValueError(f"measures: unknown {unknown[0]!r}; expected one of: {', '.join(sorted(MEASURES))}")
+        if not self.engines:
+            raise ValueError("engines: give [engines.paper], [engines.ours] or both")
+        for original in self.original:
+            if original.score not in {score.label for score in self.scores}:
+                raise ValueError(f"original: there is no score labelled {original.score!r}")
+        return self
+
+    def cells(self, quick: bool = False) -> list[tuple[Level, ...]]:
+        """Every combination of levels."""
+        return list(itertools.product(*(self._levels(axis, quick) for axis in self.axes)))
+
+    def _levels(self, axis: Axis, quick: bool) -> list[Level]:
+        if not quick or len(axis.levels) <= self.quick.levels:
+            return axis.levels
+        return [axis.levels[0], *axis.levels[len(axis.levels) - self.quick.levels + 1 :]][: self.quick.levels]
+
+    def make_trials(
+        self, engines: list[EngineName] | None = None, trials: int | None = None, quick: bool = False
+    ) -> list[Trial]:
+        """All trials, seed by seed, so that every cell has some as early as possible.
+
+        engines: all by default. trials: in each cell.
+        """
+        count = trials or (self.quick.trials if quick else self.trials)
+        protocol = tuple(shortened(step, self.quick.share) if quick else step for step in self.protocol)
+        config = Config().with_values(self.set)
+        world_text = text_of(open_world(self.world, robot_radius_m=config.robot.robot_radius_m))
+        return [
+            Trial(
+                self.name, engine, tuple(level.label for level in cell), self.seed + number, self.world, world_text,
+                self.values(engine, cell), protocol, tuple(self.measures), code_version(), quick,
+            )
+            for number in range(count)
+            for cell in self.cells(quick)
+            for engine in engines or list(self.engines)
+        ]  # fmt: skip
+
+    def values(self, engine: EngineName, cell: tuple[Level, ...]) -> Values:
+        """The parameters of an engine in a cell; ValueError if the experiment has no such engine."""
+        if engine not in self.engines:
+            raise ValueError(f"{self.name} has no engine {engine!r}; it has: {', '.join(self.engines)}")
+        spec = self.engines[engine]
+        values: Values = {**values_of(spec.preset), **self.set, **spec.set}
+        for level in cell:
+            values.update(level.set)
+        return values
+
+    def check(self) -> None:
+        """ValueError says what does not fit together: a parameter, a place, a world."""
+        for trial in self.make_trials(trials=1):
+            trial.begin()
+
+    def seconds(self, quick: bool = False) -> float:
+        """About how long one trial is, in simulated seconds."""
+        return sum(duration_s(shortened(step, self.quick.share) if quick else step) for step in self.protocol)
+
+
+def shortened(step: Step, share: float) -> Step:
+    """A step that takes this share of its time."""
+    match step:
+        case Explore():
+            return step.model_copy(update={"minutes": step.minutes * share})
+        case Drive():
+            return step.model_copy(update={"laps": max(1, round(step.laps * share))})
+        case Move():
+            return step.model_copy(update={"times": max(1, round(step.times * share))})
+        case Visit():
+            return step.model_copy(update={"timeout_s": step.timeout_s * share})
+        case Wait():
+            return step.model_copy(update={"seconds": step.seconds * share})
+        case Repeat():
+            steps = [shortened(each, share) for each in step.steps]
+            return step.model_copy(update={"steps": steps, "times": max(1, round(step.times * share))})
+        case _:
+            return step
+
+
+def duration_s(step: Step) -> float:
+    """About how long a step takes, in simulated seconds."""
+    match step:
+        case Explore():
+            return step.minutes * 60 * (1.0 if step.until == "the end" else 0.5)
+        case Drive():
+            return 15.0 * len(step.path) * step.laps
+        case Move():
+            return step.times * sum(seconds for _, _, seconds in step.moves)
+        case Visit():
+            return 40.0 * len(step.places)
+        case Wait():
+            return step.seconds
+        case Repeat():
+            return step.times * sum(map(duration_s, step.steps))
+        case _:
+            return 0.0
+
+
+# ------------------------------------------------------------ files
+
+
+def read_experiment(path: Path) -> Experiment:
+    """An experiment from its file. ValueError names the file, the line of the tree, and what is wrong there."""
+    try:
+        tree = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror or error}") from None
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ValueError(f"{path}: not valid TOML: {error}") from None
+    try:
+        return Experiment.model_validate(tree)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"]) or "the file"
+        raise ValueError(f"{path}: {where}: {first['msg'].removeprefix('Value error, ')}") from None
+
+
+def names() -> list[str]:
+    """The experiments that come with the program, in the order in which they are to be read."""
+    return [experiment.name for experiment in catalogue()]
+
+
+def catalogue() -> Iterator[Experiment]:
+    """The experiments that come with the program, in the order of the papers."""
+    for path in sorted(_CATALOGUE.glob("*.toml")):
+        yield read_experiment(path)
+
+
+def find_experiment(name: str) -> Experiment:
+    """An experiment by name, or from a file. ValueError lists the names there are."""
+    if name.endswith(".toml"):
+        return read_experiment(Path(name))
+    for path in _CATALOGUE.glob(f"*-{name}.toml"):
+        experiment = read_experiment(path)
+        if experiment.name == name:
+            return experiment
+    raise ValueError(
+        f"unknown experiment {name!r}; expected a file that ends in .toml, or one of: {', '.join(names())}"
+    )
