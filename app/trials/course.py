@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from app.session import Session
+from app.trials.checking import check_steps, place_of
 from app.trials.steps import Door, Drive, Explore, Kidnap, Move, Repeat, Set, Step, Tag, Visit, Wait, Where
 
 REACHED_M = 0.25  # a driven robot has come to a point of its path
@@ -79,7 +80,7 @@ class Course:
         self.tags: dict[str, Tagged] = {}
         self.visits: list[Visited] = []
         self.moments: list[Moment] = []
-        self._check(self.steps)
+        check_steps(session, self.steps)
 
     def ticks(self) -> Iterator[str]:
         """What is being done, before each tick."""
@@ -194,21 +195,22 @@ class Course:
 
     def _visit(self, name: str, step: Visit) -> Iterator[str]:
         session, tag = self.session, self.tags[name]
+        tag.passed = True  # what stands for a place does not change once the robot is sent there
         began_s, began_m = session.time_s, session.evaluation.path_m
         if tag.experience is None:
-            self._visited(name, step, "never approached while exploring", began_s, began_m)
+            self._visited(name, "never approached while exploring", began_s, began_m)
             return
         session.pilot.set_goal(tag.experience)
         while session.pilot.goal_state != (tag.experience, "arrived"):
             if session.time_s - began_s >= step.timeout_s - 1e-9:
-                self._visited(name, step, f"not reached in {step.timeout_s:g} s", began_s, began_m)
+                self._visited(name, f"not reached in {step.timeout_s:g} s", began_s, began_m)
                 return
             yield from self._tick(f"on the way to {name}")
         miss_m = self._away(name)
         why = "" if miss_m <= step.near_m else f"arrived {miss_m:.2f} m away"
-        self._visited(name, step, why, began_s, began_m)
+        self._visited(name, why, began_s, began_m)
 
-    def _visited(self, name: str, step: Visit, why: str, began_s: float, began_m: float) -> None:
+    def _visited(self, name: str, why: str, began_s: float, began_m: float) -> None:
         session = self.session
         self.visits.append(
             Visited(
@@ -248,42 +250,4 @@ class Course:
         return math.dist(self._here, (tag.x, tag.y))
 
     def _place(self, where: Where) -> tuple[float, float]:
-        if not isinstance(where, str):
-            return where
-        world = self.session.world
-        for place in (*world.places, *world.starts):
-            if place.name == where:
-                return place.x, place.y
-        names = ", ".join(place.name for place in (*world.places, *world.starts))
-        raise ValueError(f"{world.name} has no place {where!r}; expected one of: {names}, or [x, y] in metres")
-
-    # ------------------------------------------------------------ before it begins
-
-    def _check(self, steps: Sequence[Step], tagged: frozenset[str] = frozenset()) -> None:
-        for step in steps:
-            match step:
-                case Tag():
-                    for name in step.places:
-                        self._place(name)
-                    tagged |= set(step.places)
-                case Visit():
-                    missing = [name for name in step.places if name not in tagged]
-                    if missing:
-                        raise ValueError(f"visit {missing[0]!r}: nothing is tagged so before; tag it first")
-                case Drive():
-                    for where in step.path:
-                        self._place(where)
-                case Kidnap(place=where) if where is not None:
-                    self._place(where)
-                case Set():
-                    self.session.config.with_values(step.values)
-                case Door():
-                    names = [door.name for door in self.session.world.doors]
-                    if step.name not in names:
-                        raise ValueError(
-                            f"no door {step.name!r}; expected one of: {', '.join(names) or 'there are none'}"
-                        )
-                case Repeat():
-                    self._check(step.steps, tagged)
-                case _:
-                    pass
+        return place_of(self.session.world, where)

@@ -91,6 +91,9 @@ class _Recorder:
             path, mapped, _ = session.evaluation.trajectories(map_, every=10)
             self.errors.append((session.time_s, rmse(mapped, path)))
 
+    def scores(self) -> dict[str, float]:
+        return {}
+
 
 def trace_of(trial: Trial) -> Trace:
     """Run a trial again and write it down. The run is the same, bit for bit, as without."""

@@ -24,7 +24,7 @@ class SeekingParams:
         source="ours",
     )
     openings_every: int = param(
-        2, low=1, high=1000, meaning="of so many trips one goes into an opening, the others to places long not visited",
+        1, low=1, high=1000, meaning="of so many trips one goes into an opening, the others to places long not visited",
         source="ours",
     )  # fmt: skip
     search: bool = param(
@@ -69,7 +69,7 @@ class SeekingParams:
     )
     opening_beams: int = param(3, low=1, high=100, meaning="so many beams must have seen an opening", source="ours")
     thin_m: float = param(
-        0.9, unit="m", low=0.1, high=10.0, meaning="the map is thin where no experience is about this near",
+        0.8, unit="m", low=0.1, high=10.0, meaning="the map is thin where no experience is about this near",
         source="ours",
     )  # fmt: skip
     far_openings: bool = param(False, meaning="far openings are sought first, one after the other", source="ours")
