@@ -2,7 +2,7 @@
 sonars saw from there. Where they saw open floor that it never drove on, the map is thin.
 
 test_known_ground.py::{test_open_floor_that_was_never_driven_on_is_an_opening, test_what_was_driven_on_is_no_opening,
-test_what_lies_on_another_island_hides_no_opening}.
+test_an_opening_is_tried_again_later, test_what_lies_on_another_island_hides_no_opening}.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ratslam_core import ExperienceMap
 _Array = NDArray[np.float64]
 
 
-@kind("known ground/2")
+@kind("known ground/3")
 class KnownGround:
     """Rows belong to the experiences, by number."""
 
@@ -28,7 +28,8 @@ class KnownGround:
         self._last_s = np.zeros(0)  # when the robot was last there
         self._made_s = np.zeros(0)
         self._seen_m = np.zeros((0, len(self._angles)), np.float32)  # sonar ranges where the experience was made
-        self._done: list[tuple[int, float, float]] = []  # openings that have been tried: m, in an experience's frame
+        # Openings that have been tried: m, in an experience's frame; and until when they are left alone, s.
+        self._done: list[tuple[int, float, float, float]] = []
         self.now_s = self.new_m = 0.0  # time; distance driven since the robot was last on old ground
 
     @property
@@ -75,9 +76,14 @@ class KnownGround:
         near = np.hypot(poses[: self.count, 0] - x, poses[: self.count, 1] - y) < p.place_reach_m
         self.last_s[near] = self.now_s
 
-    def tried(self, experience: int, x: float, y: float) -> None:
-        """An opening is done with, whether the robot could drive there or not; m, in the frame of the experience."""
-        self._done.append((experience, x, y))
+    def tried(self, experience: int, x: float, y: float, poses: _Array, p: SeekingParams) -> None:
+        """The robot tried to drive into an opening; m, in the frame of the experience.
+
+        It may have been turned away by somebody who stood there, so it may try again, after twice as long each time.
+        """
+        here = placed([(experience, x, y)], poses)
+        before = np.hypot(*(placed([done[:3] for done in self._done], poses) - here).T) < p.thin_m
+        self._done.append((experience, x, y, self.now_s + p.opening_again_s * 2.0 ** int(before.sum())))
 
     def openings(self, experiences: ExperienceMap, p: SeekingParams, least: int) -> tuple[NDArray[np.int64], _Array]:
         """Experiences (k,) and the places (k, 2), m, map frame, that were seen from there and never driven on.
@@ -103,7 +109,7 @@ class KnownGround:
         poses, islands = experiences.poses[: self.count], experiences.island_of[: self.count]
         own = islands == islands[experiences.active]
         rows, beams, away = rows[own[rows]], beams[own[rows]], away[own[rows]]
-        done = [tried for tried in self._done if own[tried[0]]]
+        done = [tried[:3] for tried in self._done if own[tried[0]] and tried[3] > self.now_s]
         heading = poses[rows, 2] + self._angles[beams]
         places = poses[rows, :2] + away[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=1)
         thin = _far_from(places, np.concatenate([poses[own, :2], placed(done, poses)]), reach, fine)

@@ -122,7 +122,7 @@ class Seeker:
         goal = experiences.pose(self.follower.goal)
         self.ground.been_at(goal.x, goal.y, experiences.poses, p)
         if self._opening is not None and not (self._far and self._there):  # beyond a far one there may be more
-            self.ground.tried(self.follower.goal, self._opening.x, self._opening.y)
+            self.ground.tried(self.follower.goal, self._opening.x, self._opening.y, experiences.poses, p)
         self.stop()
 
     def _choose(

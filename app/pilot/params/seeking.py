@@ -68,6 +68,11 @@ class SeekingParams:
         2.5, unit="m", low=0.1, high=10.0, meaning="... and at most so far away", source="ours"
     )
     opening_beams: int = param(3, low=1, high=100, meaning="so many beams must have seen an opening", source="ours")
+    opening_again_s: float = param(
+        120.0, unit="s", low=0.0, high=1e6,
+        meaning="an opening that has been tried is tried again after this time, after twice as long the next time",
+        source="ours",
+    )  # fmt: skip
     thin_m: float = param(
         0.8, unit="m", low=0.1, high=10.0, meaning="the map is thin where no experience is about this near",
         source="ours",

@@ -39,7 +39,7 @@ def test_open_floor_that_was_never_driven_on_is_an_opening() -> None:
     assert len(rows) == len(places) > 10
     assert places[:, 1] == pytest.approx(USUAL.opening_most_m)
     assert places[:, 0] == pytest.approx(0.1 * rows)
-    ground.tried(10, 0.5, USUAL.opening_most_m)  # that is at x = 1.5 m
+    ground.tried(10, 0.5, USUAL.opening_most_m, map_.poses, USUAL)  # that is at x = 1.5 m
     _, left = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
     assert 0 < len(left) < len(places)
     assert np.hypot(left[:, 0] - 1.5, left[:, 1] - USUAL.opening_most_m).min() > USUAL.thin_m
@@ -49,11 +49,29 @@ def test_a_tried_opening_moves_with_the_map() -> None:
     ranges = NEAR.copy()
     ranges[0] = 4.0
     ground, map_ = driven([(0.1 * k, 0.0) for k in range(60)], ranges)
-    ground.tried(10, 0.5, USUAL.opening_most_m)
+    ground.tried(10, 0.5, USUAL.opening_most_m, map_.poses, USUAL)
     map_.poses[:, :2] += (7.0, 5.0)
     _, left = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
     assert len(left)
     assert np.hypot(left[:, 0] - 8.5, left[:, 1] - USUAL.opening_most_m - 5.0).min() > USUAL.thin_m
+
+
+def test_an_opening_is_tried_again_later() -> None:
+    """Somebody stood in the way, perhaps. After each trial it is left alone for twice as long."""
+    ranges = NEAR.copy()
+    ranges[0] = 4.0
+    ground, map_ = driven([(0.1 * k, 0.0) for k in range(30)], ranges)
+
+    def seen() -> int:
+        return len(ground.openings(map_, USUAL, 3)[0])  # type: ignore[arg-type]
+
+    before = seen()
+    for wait_s in (USUAL.opening_again_s, 2 * USUAL.opening_again_s, 4 * USUAL.opening_again_s):
+        ground.tried(10, 0.5, USUAL.opening_most_m, map_.poses, USUAL)
+        ground.now_s += wait_s - 1.0
+        assert seen() < before
+        ground.now_s += 2.0
+        assert seen() == before
 
 
 def test_what_lies_on_another_island_hides_no_opening() -> None:
