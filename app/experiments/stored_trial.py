@@ -19,3 +19,5 @@ class StoredTrial:
     simulated_s: float = 0.0
     wall_s: float = 0.0
     error: str = ""
+    version: str = ""  # of the code
+    quick: bool = False
