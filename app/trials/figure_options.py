@@ -13,8 +13,12 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 if TYPE_CHECKING:
     from app.trials.experiment import Experiment, FigureSpec
 
-Shown = Literal["experience map", "pose cells", "path", "occupancy", "cells occupancy", "representations", "temporal map", "goal memory"]  # fmt: skip
-Channel = Literal["packets", "off_m", "error_m", "residual", "views", "experiences", "active", "x", "y", "heading"]
+Shown = Literal[
+    "experience map", "pose cells", "path", "occupancy", "cells occupancy", "representations", "temporal map", "goal memory"
+]  # fmt: skip
+Channel = Literal[
+    "packets", "off_m", "error_m", "residual", "views", "experiences", "active", "x", "y", "heading"
+]  # fmt: skip
 Each = str  # an axis by name, "engine" or "seed"
 
 

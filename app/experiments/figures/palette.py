@@ -1,0 +1,14 @@
+"""The colours and words that all figures share."""
+
+from __future__ import annotations
+
+INK, SOFT, WALL, FAINT, PAPER = "#1f2328", "#5b626a", "#8a9199", "#d9dde1", "#ffffff"
+BLUE, VERMILION, GREEN, PURPLE = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
+ORANGE, SKY, BLACK = "#e69f00", "#56b4e9", "#000000"
+
+CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, SOFT)
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+ENGINE_COLOUR = {"paper": BLUE, "ours": VERMILION}
+ENGINE_WORDS = {"paper": "the paper's rules", "ours": "our rules"}
+# What the page gives other colours in the dark.
+THEMED = {INK: "ink", SOFT: "soft", WALL: "wall", FAINT: "faint", PAPER: "paper"}
