@@ -16,6 +16,7 @@ from app.trials.trace import Trace
 
 _Array = NDArray[np.float64]
 MARGIN_M = 0.4
+MANY_LINKS = 6000  # more are drawn as a picture
 FEW_SNAPS = 12  # so many are lettered
 _FREE, _TAKEN = to_rgb(SKY), to_rgb(SOFT)
 
@@ -44,8 +45,11 @@ def goals(panel: Axes, trace: Trace) -> None:
 
 
 def _links(panel: Axes, trace: Trace, colour: str, width: float = 0.7) -> None:
+    """One line with gaps, since a file with a path for each link would be ten times as large."""
     ends = trace.map.poses[trace.map.links, :2]
-    panel.add_collection(LineCollection(list(ends), colors=colour, linewidths=width, zorder=2))
+    gaps = np.full((len(ends), 1, 2), np.nan)
+    line = np.concatenate([ends, gaps], axis=1).reshape(-1, 2)
+    panel.plot(*line.T, color=colour, lw=width, zorder=2, rasterized=len(ends) > MANY_LINKS)
 
 
 def experience_map(panel: Axes, trace: Trace, options: Maps) -> None:

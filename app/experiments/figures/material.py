@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 from matplotlib.figure import Figure
 
 from app.experiments.figures.palette import ENGINE_WORDS
-from app.experiments.summary import CellSummary, StoredTrial, summaries, value_of
+from app.experiments.stored_trial import StoredTrial
+from app.experiments.summary import CellSummary, summarise
+from app.trials.code_version import code_version
 from app.trials.experiment import Experiment, FigureSpec, Original, Score
 from app.trials.figure_options import OneTrial, Options
 from app.trials.trace import Trace
@@ -48,7 +50,8 @@ class Material:
     cells: list[CellSummary] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.cells = summaries(self.experiment, self.trials)
+        self.trials = [trial for trial in self.trials if not trial.error]
+        self.cells = summarise(self.experiment, self.trials)
 
     # ------------------------------------------------------------ engines and levels
 
@@ -137,22 +140,20 @@ class Material:
     def caption(self, says: str, *, options: Options, picks: list[Pick] | None = None, score: str = "") -> str:
         """The paper's figure, what is drawn, the seeds, how many, the version, and the original's numbers."""
         parts = [f"{self.experiment.paper}.", says]
-        fixed = [] if picks is not None and not self.experiment.axes else self._fixed_words(options, picks)
-        parts += fixed
+        parts += self._fixed_words(picks or [])
         parts.append(f"{_seeds([p.trial for p in picks] if picks else self.trials)};")
         if picks is None:
             parts.append(f"{self._count()};")
         elif isinstance(options, OneTrial):
             parts.append("each the first seed of its cell;" if options.pick == "first" else f"each the median by {options.score};")
-        parts.append(f"version {self.trials[0].version}.")
+        parts.append(f"version {code_version()}.")
         found = [o for o in self.experiment.original if o.score == score]
         if found:
             parts.append("Original: " + "; ".join(self._original(o) for o in found) + ".")
         return " ".join(parts)
 
-    def _fixed_words(self, options: Options, picks: list[Pick] | None) -> list[str]:
-        trials = [p.trial for p in picks] if picks else []
-        words: list[str] = []
+    def _fixed_words(self, picks: list[Pick]) -> list[str]:
+        trials, words = [pick.trial for pick in picks], list[str]()
         for number, axis in enumerate(self.experiment.axes):
             shown = {trial.levels[number] for trial in trials}
             if len(shown) == 1 and len(axis.levels) > 1:
@@ -160,7 +161,7 @@ class Material:
         return [f"At {', '.join(words)}."] if words else []
 
     def _count(self) -> str:
-        counts = sorted({cell.trials for cell in self.cells})
+        counts = sorted({cell.n for cell in self.cells})
         if counts[0] == counts[-1]:
             return f"n = {counts[0]} in each cell"
         return f"n = {counts[0]} to {counts[-1]} in a cell"
@@ -168,6 +169,14 @@ class Material:
     def _original(self, original: Original) -> str:
         where = f" at {', '.join(original.levels)}" if original.levels else ""
         return f"{words_of(self.score(original.score), original.value)}{where} ({original.source})"
+
+
+def value_of(score: Score, trial: StoredTrial) -> float | None:
+    """The score of one trial; None where it has none."""
+    if score.rate is None:
+        return trial.scores.get(str(score.score))
+    good, of = (trial.scores.get(name) for name in score.rate)
+    return (good or 0.0) / of if of else None
 
 
 def words_of(score: Score, value: float) -> str:
