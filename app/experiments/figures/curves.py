@@ -6,6 +6,8 @@ import re
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
 from app.experiments.figures.canvas import WIDTH_IN, grid_lines, panels
@@ -36,8 +38,12 @@ def draw(spec: FigureSpec, options: Curves, material: Material) -> Drawn:
         panel.set_xlabel(options.along)
     finish_score(list(axes[0]), score, options.log)
     _legend(figure, axes[0, 0], options)
-    says = f"{score.label.capitalize()} against {options.along}" + (f", by {options.lines}" if options.lines else "") + "."
-    caption = material.caption(f"{says} {interval_words(score)}", options=options, score=options.score)
+    says = (
+        f"{score.label.capitalize()} against {options.along}" + (f", by {options.lines}" if options.lines else "") + "."
+    )
+    caption = material.caption(
+        f"{says} {interval_words(score)}", options=options, score=options.score, varied=[options.along, options.lines]
+    )
     return Drawn(spec, figure, caption)
 
 
@@ -48,7 +54,9 @@ def positions(labels: list[str], spacing: str) -> list[float]:
     found = [_NUMBER.search(label) for label in labels]
     missing = [label for label, number in zip(labels, found, strict=True) if number is None]
     if missing:
-        raise ValueError(f"spacing = {spacing!r}: there is no number in the level {missing[0]!r}; expected spacing = 'even'")
+        raise ValueError(
+            f"spacing = {spacing!r}: there is no number in the level {missing[0]!r}; expected spacing = 'even'"
+        )
     return [float(number.group()) for number in found if number is not None]
 
 
@@ -74,7 +82,11 @@ def _line(
     x = [place for place, _ in drawn]
     estimates = [cell.values[options.score] for _, cell in drawn if cell is not None]
     y = [e.value for e in estimates]
-    panel.plot(x, y, marker + "-", color=colour, label=line or None, zorder=3)
+    panel.plot(x, y, "-", color=colour, zorder=3)
+    for (place, cell), value in zip(drawn, y, strict=True):
+        gid = f"cell-{material.cells.index(cell)}" if cell is not None else None
+        panel.plot(place, value, marker, color=colour, zorder=4, gid=gid)
+    panel.plot([], [], marker + "-", color=colour, label=line or None)
     panel.vlines(x, [e.low for e in estimates], [e.high for e in estimates], color=colour, lw=1.0, alpha=0.75, zorder=2)
     for place, each in zip(places, levels, strict=True):
         for original in material.originals(options.score, each):
@@ -112,10 +124,10 @@ def interval_words(score: Score) -> str:
     return "Bars: 95 % intervals (Wilson)." if score.rate is not None else "Medians; bars: 95 % intervals (bootstrap)."
 
 
-def _legend(figure: object, panel: Axes, options: Curves) -> None:
+def _legend(figure: Figure, panel: Axes, options: Curves) -> None:
     handles, labels = panel.get_legend_handles_labels()
-    original = panel.plot([], [], "D", ms=6, mfc="none", mec=INK, mew=1.1, label="the paper")
-    figure.legend(  # type: ignore[attr-defined]
-        [*handles, *original], [*labels, "the paper's"], loc="outside lower center", ncols=len(labels) + 1, title=options.lines or None,
-        title_fontsize=7.5,
+    paper = Line2D([], [], ls="none", marker="D", ms=6, mfc="none", mec=INK, mew=1.1)
+    figure.legend(
+        [*handles, paper], [*labels, "the paper's"], loc="outside lower center", ncols=len(labels) + 1,
+        title=options.lines or None, title_fontsize=7.5,
     )  # fmt: skip

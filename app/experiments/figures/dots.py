@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from app.experiments.figures.canvas import WIDTH_IN, grid_lines, panels
 from app.experiments.figures.curves import finish_score, has, interval_words
-from app.experiments.figures.material import Drawn, Material, value_of
+from app.experiments.figures.material import Drawn, Material, trial_gid, value_of
 from app.experiments.figures.palette import ENGINE_COLOUR, ENGINE_WORDS, INK
 from app.experiments.stored_trial import StoredTrial
 from app.trials.experiment import FigureSpec
@@ -18,7 +18,9 @@ from app.trials.figure_options import Dots
 
 _HIGH_IN = 3.0
 _SPREAD = 0.26  # of the room of a group: dots lie beside each other so far
-_GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples, without their whole parts, fill a stretch evenly, however many there are
+_GOLDEN = (
+    math.sqrt(5) - 1
+) / 2  # its multiples, without their whole parts, fill a stretch evenly, however many there are
 _MIDDLE = 0.36  # how far to the right of its dots an interval stands
 
 
@@ -37,7 +39,9 @@ def draw(spec: FigureSpec, options: Dots, material: Material) -> Drawn:
     finish_score([panel], score, options.log)
     _legend(figure, engines)
     says = f"{score.label.capitalize()} of each trial" + (f", by {options.by}" if options.by else "") + "."
-    caption = material.caption(f"{says} {interval_words(score)}", options=options, score=options.score)
+    caption = material.caption(
+        f"{says} {interval_words(score)}", options=options, score=options.score, varied=[options.by]
+    )
     return Drawn(spec, figure, caption)
 
 
@@ -59,7 +63,7 @@ def _group(panel: Axes, options: Dots, material: Material, engine: str, label: s
 
 def dot(panel: Axes, x: float, y: float, colour: str, trial: StoredTrial) -> None:
     """A dot that knows its trial: the page finds it by this id."""
-    panel.plot(x, y, "o", ms=4.2, mfc=colour, mec="none", alpha=0.65, zorder=3, gid=f"trial-{trial.id}")
+    panel.plot(x, y, "o", ms=4.2, mfc=colour, mec="none", alpha=0.65, zorder=3, gid=trial_gid(trial))
 
 
 def _beside(number: int) -> float:

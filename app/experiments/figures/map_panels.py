@@ -23,7 +23,9 @@ _FREE, _TAKEN = to_rgb(SKY), to_rgb(SOFT)
 
 def plan(panel: Axes, trace: Trace) -> None:
     """Walls and boxes; the panel is as large as the office."""
-    panel.add_collection(LineCollection(list(trace.plan.walls.reshape(-1, 2, 2)), colors=WALL, linewidths=0.8, zorder=1))
+    panel.add_collection(
+        LineCollection(list(trace.plan.walls.reshape(-1, 2, 2)), colors=WALL, linewidths=0.8, zorder=1)
+    )
     panel.add_collection(PolyCollection(list(trace.plan.boxes), facecolors="none", edgecolors=WALL, linewidths=0.5))
     x1, y1, x2, y2 = trace.plan.bounds
     panel.set(xlim=(x1 - MARGIN_M, x2 + MARGIN_M), ylim=(y1 - MARGIN_M, y2 + MARGIN_M), aspect="equal")
@@ -41,7 +43,9 @@ def goals(panel: Axes, trace: Trace) -> None:
         if goal.experience is not None:
             x, y, _ = trace.map.poses[goal.experience]
             panel.plot([goal.x, x], [goal.y, y], "-", color=colour, lw=0.6, zorder=5)
-            panel.plot(x, y, "o", ms=5, mfc="none", mec=colour, mew=0.9, ls="none", zorder=6, label="its place in the map")
+            panel.plot(
+                x, y, "o", ms=5, mfc="none", mec=colour, mew=0.9, ls="none", zorder=6, label="its place in the map"
+            )
 
 
 def _links(panel: Axes, trace: Trace, colour: str, width: float = 0.7) -> None:
@@ -65,7 +69,7 @@ def paths(panel: Axes, trace: Trace, options: Maps) -> None:
     plan(panel, trace)
     panel.plot(*trace.odometry_path.T, color=ORANGE, lw=0.7, zorder=2, label="odometry alone")
     panel.plot(*trace.true_path.T, color=INK, lw=1.4, zorder=3, label="truth")
-    panel.plot(*trace.mapped_path.T, color=ENGINE_COLOUR[trace.trial.engine], lw=0.7, zorder=4, label="by the map")
+    panel.plot(*trace.mapped_path.T, color=BLUE, lw=0.7, zorder=4, label="as the map tells it")
     low, high = trace.odometry_path.min(axis=0), trace.odometry_path.max(axis=0)
     x1, y1, x2, y2 = trace.plan.bounds
     panel.set(xlim=(min(x1, low[0]) - MARGIN_M, max(x2, high[0]) + MARGIN_M),
@@ -79,7 +83,12 @@ def paths(panel: Axes, trace: Trace, options: Maps) -> None:
 
 def cells_frame(panel: Axes, trace: Trace) -> None:
     _, n_y, n_x = trace.cells_shape
-    panel.set(xlim=(0, n_x), ylim=(0, n_y), aspect="equal", xlabel=f"{n_x} x {n_y} cells of {trace.cell_m:g} m")
+    panel.set(
+        xlim=(-0.5, n_x - 0.5),
+        ylim=(-0.5, n_y - 0.5),
+        aspect="equal",
+        xlabel=f"{n_x} x {n_y} cells of {trace.cell_m:g} m",
+    )
 
 
 def pose_cells(panel: Axes, trace: Trace, options: Maps) -> None:
@@ -87,7 +96,7 @@ def pose_cells(panel: Axes, trace: Trace, options: Maps) -> None:
     cells_frame(panel, trace)
     path = broken_path(trace)
     panel.plot(*path.T, color=ENGINE_COLOUR[trace.trial.engine], lw=0.8, zorder=3)
-    before, after = trace.snaps[:, 1:3], trace.snaps[:, 4:6]
+    before, after = _in_faces(trace.snaps[:, 1:3], trace), _in_faces(trace.snaps[:, 4:6], trace)
     few = len(before) <= FEW_SNAPS
     jumps = np.stack([before, after], axis=1)
     lines = LineCollection(list(jumps), colors=SOFT, linewidths=0.5 if few else 0.3, linestyles=(0, (3, 2)), zorder=2,
@@ -101,11 +110,17 @@ def pose_cells(panel: Axes, trace: Trace, options: Maps) -> None:
 
 def broken_path(trace: Trace) -> _Array:
     """x, y of the winning packet in each row, with a row of NaN wherever the line must not be drawn."""
-    path = trace.cells[:, :2]
     _, n_y, n_x = trace.cells_shape
+    path = _in_faces(trace.cells[:, :2], trace)
     far = (np.abs(np.diff(path, axis=0)) > np.array([n_x, n_y]) / 2).any(axis=1)
     snapped = np.diff(np.searchsorted(trace.snaps[:, 0], trace.time_s + 1e-9, side="right")) > 0
     return np.insert(path, np.flatnonzero(far | snapped) + 1, np.nan, axis=0)
+
+
+def _in_faces(points: _Array, trace: Trace) -> _Array:
+    """The middle of the first cell is at 0, so the network reaches from half a cell before it."""
+    _, n_y, n_x = trace.cells_shape
+    return (points + 0.5) % (n_x, n_y) - 0.5
 
 
 # ------------------------------------------------------------ pictures
@@ -177,10 +192,13 @@ def representations(panel: Axes, trace: Trace, options: Maps) -> None:
     plan(panel, trace)
     _links(panel, trace, FAINT)
     panel.plot(*trace.map.poses[:, :2].T, ".", ms=1.2, color=WALL, zorder=3)
-    groups = (trace.map.multiple, "multiple representation", "o", BLUE), (trace.map.collisions, "hash collision", "s", PURPLE)
+    groups = (
+        (trace.map.multiple, "multiple representation", "o", BLUE),
+        (trace.map.collisions, "hash collision", "s", PURPLE),
+    )
     for found, words, marker, colour in groups:
         for group in found:
             x, y, _ = trace.map.poses[list(group)].T
-            panel.plot(x, y, marker + ":", ms=5, mfc="none", color=colour, lw=0.5, mew=0.9, zorder=4,
+            panel.plot(x, y, marker + ":", ms=4, mfc="none", color=colour, lw=0.4, mew=0.8, zorder=4,
                        label=f"{words}s" if options.marks else None)  # fmt: skip
-    panel.set_title(f"{len(trace.map.multiple)} and {len(trace.map.collisions)}", loc="right", fontsize=7, fontweight="normal")
+    panel.set_xlabel(f"{len(trace.map.multiple)} multiple, {len(trace.map.collisions)} collisions", color=SOFT)

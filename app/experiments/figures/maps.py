@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from app.experiments.figures import map_panels
 from app.experiments.figures.canvas import WIDTH_IN, frame, panels
-from app.experiments.figures.material import Drawn, Material, Pick
+from app.experiments.figures.material import Drawn, Material, Pick, trial_gid
 from app.experiments.figures.palette import ENGINE_WORDS, SOFT
 from app.trials.experiment import FigureSpec
 from app.trials.figure_options import Maps
@@ -35,8 +35,12 @@ _SAYS = {
     "temporal map": "Seconds from each experience to the goal, over the links of the experience map",
     "goal memory": "Seconds from each pose cell to the goal, as the goal memory has learnt them",
 }
-_ROOM_IN = 0.32  # for a heading over a row of panels
+_HEADING_IN, _BETWEEN_IN, _LEGEND_IN = 0.25, 0.1, 0.3  # room over the first row, under each, and under the last
+_BELOW_IN = 0.2  # under a panel that tells the size of its pose cells
+_BAR = 0.8  # a colour bar leaves this share of the width to its panel
+_WITH_BAR = {"temporal map", "goal memory"}
 _MOST_HIGH_IN = 8.5
+_BEYOND = 0.3  # of the office's size: where odometry leads farther out, it is cut off
 
 
 def wanted(options: Maps, material: Material) -> list[Pick]:
@@ -52,11 +56,14 @@ def draw(spec: FigureSpec, options: Maps, material: Material) -> Drawn:
         panel: Axes = axes[pick.row, pick.column]
         trace = material.trace(pick)
         _SHOW[options.show](panel, trace, options)
-        heading = ", ".join(filter(None, (pick.column_words if pick.row == 0 or columns == 1 else "", "")))
-        panel.set_title(heading)
+        if pick.row == 0:
+            panel.set_title(pick.column_words)
+        panel.patch.set_gid(trial_gid(pick.trial))
         if pick.column == 0 and rows > 1:
             panel.set_ylabel(ENGINE_WORDS[pick.engine], color=SOFT)
         frame(panel)
+    if options.show == "path":
+        _share_limits([axes[p.row, p.column] for p in picks], material.trace(picks[0]))
     _legend(figure, axes)
     return Drawn(spec, figure, material.caption(_SAYS[options.show] + ".", picks=picks, options=options))
 
@@ -70,10 +77,22 @@ def _figure(options: Maps, traces: list[Trace], rows: int, columns: int) -> tupl
         shape = float(np.max((y2 - y1) / (x2 - x1)))
     most = {1: 4.6, 2: 6.4}.get(columns, WIDTH_IN)
     width = options.width or most
-    height = rows * (width / columns * shape + _ROOM_IN) + _ROOM_IN
+    panel = width / columns * shape * (_BAR if options.show in _WITH_BAR else 1.0)
+    below = _BETWEEN_IN + (_BELOW_IN if options.show in _IN_CELLS else 0.0) + _BETWEEN_IN
+    height = rows * (panel + below) + _HEADING_IN + _LEGEND_IN
     if height > _MOST_HIGH_IN:
         width, height = width * _MOST_HIGH_IN / height, _MOST_HIGH_IN
     return panels(rows, columns, width, height)
+
+
+def _share_limits(used: list[Axes], trace: Trace) -> None:
+    """All panels show the same stretch, so that odometry can be compared."""
+    x1, y1, x2, y2 = trace.plan.bounds
+    beyond = _BEYOND * max(x2 - x1, y2 - y1)
+    x, y = np.array([panel.get_xlim() for panel in used]), np.array([panel.get_ylim() for panel in used])
+    for panel in used:
+        panel.set_xlim(max(x[:, 0].min(), x1 - beyond), min(x[:, 1].max(), x2 + beyond))
+        panel.set_ylim(max(y[:, 0].min(), y1 - beyond), min(y[:, 1].max(), y2 + beyond))
 
 
 def _legend(figure: Figure, axes: np.ndarray) -> None:
@@ -86,4 +105,6 @@ def _legend(figure: Figure, axes: np.ndarray) -> None:
         if not panel.has_data():
             panel.set_axis_off()
     if known:
-        figure.legend(known.values(), known.keys(), loc="outside lower center", ncols=min(5, len(known)))
+        figure.legend(
+            known.values(), known.keys(), loc="outside lower center", ncols=min(3 + (axes.shape[1] > 2) * 2, len(known))
+        )

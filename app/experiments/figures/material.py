@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import statistics
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from matplotlib.figure import Figure
@@ -137,15 +138,30 @@ class Material:
 
     # ------------------------------------------------------------ words
 
-    def caption(self, says: str, *, options: Options, picks: list[Pick] | None = None, score: str = "") -> str:
-        """The paper's figure, what is drawn, the seeds, how many, the version, and the original's numbers."""
+    def caption(
+        self,
+        says: str,
+        *,
+        options: Options,
+        picks: list[Pick] | None = None,
+        score: str = "",
+        varied: Sequence[str] = (),
+    ) -> str:
+        """The paper's figure, what is drawn, the seeds, how many, the version, and the original's numbers.
+
+        picks: of a figure of single trials; varied: the axes along which a figure of scores goes.
+        """
         parts = [f"{self.experiment.paper}.", says]
-        parts += self._fixed_words(picks or [])
+        parts += self._fixed_words(picks) if picks else self._at_words(self.fixed(options, *varied))
         parts.append(f"{_seeds([p.trial for p in picks] if picks else self.trials)};")
         if picks is None:
             parts.append(f"{self._count()};")
         elif isinstance(options, OneTrial):
-            parts.append("each the first seed of its cell;" if options.pick == "first" else f"each the median by {options.score};")
+            parts.append(
+                "each the first seed of its cell;"
+                if options.pick == "first"
+                else f"each the median by {options.score};"
+            )
         parts.append(f"version {code_version()}.")
         found = [o for o in self.experiment.original if o.score == score]
         if found:
@@ -160,6 +176,10 @@ class Material:
                 words.append(f"{axis.name} {shown.pop()}")
         return [f"At {', '.join(words)}."] if words else []
 
+    def _at_words(self, levels: dict[int, str]) -> list[str]:
+        words = [f"{self.experiment.axes[at].name} {label}" for at, label in levels.items()]
+        return [f"At {', '.join(words)}."] if words else []
+
     def _count(self) -> str:
         counts = sorted({cell.n for cell in self.cells})
         if counts[0] == counts[-1]:
@@ -169,6 +189,11 @@ class Material:
     def _original(self, original: Original) -> str:
         where = f" at {', '.join(original.levels)}" if original.levels else ""
         return f"{words_of(self.score(original.score), original.value)}{where} ({original.source})"
+
+
+def trial_gid(trial: StoredTrial) -> str:
+    """The id of what stands for one trial in a figure: the page finds it by this."""
+    return f"trial-{trial.id}"
 
 
 def value_of(score: Score, trial: StoredTrial) -> float | None:

@@ -10,5 +10,8 @@ CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, SOFT)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 ENGINE_COLOUR = {"paper": BLUE, "ours": VERMILION}
 ENGINE_WORDS = {"paper": "the paper's rules", "ours": "our rules"}
-# What the page gives other colours in the dark.
-THEMED = {INK: "ink", SOFT: "soft", WALL: "wall", FAINT: "faint", PAPER: "paper"}
+# The page has its own shade of each, for light and dark.
+THEMED = {
+    INK: "ink", SOFT: "soft", WALL: "wall", FAINT: "faint", PAPER: "paper", BLACK: "ink",
+    BLUE: "blue", VERMILION: "vermilion", GREEN: "green", PURPLE: "purple", ORANGE: "orange", SKY: "sky",
+}  # fmt: skip

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from app.experiments.figures.canvas import WIDTH_IN, grid_lines, panels
-from app.experiments.figures.material import Drawn, Material, Pick
+from app.experiments.figures.material import Drawn, Material, Pick, trial_gid
 from app.experiments.figures.palette import BLUE, CYCLE, ENGINE_COLOUR, FAINT, INK, SOFT, VERMILION
 from app.trials.course import Moment
 from app.trials.experiment import FigureSpec
@@ -67,6 +67,8 @@ def draw(spec: FigureSpec, options: Series, material: Material) -> Drawn:
             panel.set_xlim(clock.least, clock.most)
             grid_lines(panel)
             _mark(panel, trace, clock, words=row == 0)
+            if row == 0:
+                panel.patch.set_gid(trial_gid(pick.trial))
             if column == 0:
                 panel.set_ylabel(_WORDS[channel])
         axes[0, column].set_title(_heading(pick, picks), pad=_words_room(trace, clock))
@@ -163,25 +165,29 @@ def _mark(panel: Axes, trace: Trace, clock: _Clock, *, words: bool) -> None:
         panel.axvline(at, color=colour if words or moment.ok is False else FAINT, lw=0.6, zorder=1)
         if words and at - written >= _APART * span:
             written = at
-            short = _short(moment.words)
+            short = _short(moment)
             panel.annotate(
                 short, (at, 1.0), xytext=(0, 2), xycoords=panel.get_xaxis_transform(), textcoords="offset points",
-                rotation=40, rotation_mode="anchor", ha="left", va="bottom", fontsize=6, color=colour, annotation_clip=False,
-            )  # fmt: skip
+                rotation=90, ha="center", va="bottom", fontsize=6, color=colour, annotation_clip=False,
+            ).set_in_layout(False)  # fmt: skip
 
 
-def _short(words: str) -> str:
-    """The words without their numbers, which a caption or the page tells."""
-    for long, short in (("recovered", "recovered"), ("not recovered", "not recovered"), ("kidnapped", "kidnapped")):
-        if words.startswith(long):
-            return short
-    return words.partition(",")[0].replace(" is tagged", " tagged").partition(": not reached")[0]
+def _short(moment: Moment) -> str:
+    """The words without their numbers, which the page tells."""
+    words = moment.words
+    for beginning in ("recovered", "not recovered"):
+        if words.startswith(beginning):
+            return beginning
+    name, colon, _ = words.partition(": ")
+    if colon:
+        return f"{name} {'reached' if moment.ok else 'not reached'}"
+    return words.partition(",")[0].replace(" is tagged", " tagged")
 
 
 def _words_room(trace: Trace, clock: _Clock) -> float:
     """Points between the panel and its heading, so that the words fit between."""
-    longest = max((len(_short(m.words)) for m in shown_moments(trace, clock)), default=0)
-    return 6 + 2.3 * longest
+    longest = max((len(_short(m)) for m in shown_moments(trace, clock)), default=0)
+    return 8 + 3.4 * longest
 
 
 def _heading(pick: Pick, picks: list[Pick]) -> str:

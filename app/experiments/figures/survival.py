@@ -36,7 +36,9 @@ def draw(spec: FigureSpec, options: Survival, material: Material) -> Drawn:
     panel.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0, symbol=" %"))
     figure.legend(loc="outside lower center", ncols=1 if len(groups) < 4 else 2)
     says = f"Share of all kidnaps recovered from, against {options.against} since. Bands: 95 % intervals (Wilson)."
-    return Drawn(spec, figure, material.caption(says, options=options, score=_score_label(material)))
+    return Drawn(
+        spec, figure, material.caption(says, options=options, score=_score_label(material), varied=[options.lines])
+    )
 
 
 def recoveries(trials: list[StoredTrial], against: str) -> tuple[_Array, int]:
