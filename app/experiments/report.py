@@ -10,7 +10,7 @@ from app.experiments.figures import draw, wanted
 from app.experiments.figures.canvas import png_of, svg_of
 from app.experiments.figures.material import Drawn, Material
 from app.experiments.page.page import Entry, index_of, page_of, picture_of
-from app.experiments.page.sentences import found
+from app.experiments.sentences import found
 from app.experiments.stored_trial import StoredTrial
 from app.trials.experiment import Experiment
 from app.trials.trace import Trace
@@ -54,7 +54,7 @@ def write_report_page(
     page = out / f"{experiment.name}.html"
     page.write_text(page_of(material, drawn, command, [t for t in trials if t.error]), encoding="utf-8")
     picture = picture_of(drawn[0], experiment.name) if drawn else ""
-    return Report(page, written, Entry(experiment, page.name, found(material), picture, len(good)))
+    return Report(page, written, Entry(experiment, page.name, found(experiment, material.cells), picture, len(good)))
 
 
 def write_index(reports: list[Report], out: Path, command: str) -> Path:

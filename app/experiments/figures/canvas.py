@@ -1,9 +1,12 @@
 """A figure as files. The same figure is the same SVG, byte for byte: no date, no version, one salt for its ids."""
 
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -24,7 +27,7 @@ _SAYS_NOTHING: dict[str, None] = dict.fromkeys(("Creator", "Date", "Format", "Ty
 
 
 @contextmanager
-def style() -> Iterator[None]:
+def style() -> Generator[None]:
     """Within it, figures are drawn in the one style, whatever the reader's own settings are."""
     with mpl.rc_context():
         mpl.rcdefaults()

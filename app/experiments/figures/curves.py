@@ -1,5 +1,8 @@
 """A score along an axis: a line for each level of another axis, a panel for each engine, the paper's values as open diamonds."""
 
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
 from __future__ import annotations
 
 import re
@@ -12,8 +15,9 @@ from matplotlib.ticker import PercentFormatter
 
 from app.experiments.figures.canvas import WIDTH_IN, grid_lines, panels
 from app.experiments.figures.material import Drawn, Material
-from app.experiments.figures.palette import CYCLE, ENGINE_WORDS, INK, MARKERS
+from app.experiments.figures.palette import CYCLE, INK, MARKERS
 from app.experiments.summary import CellSummary
+from app.experiments.words import ENGINE_WORDS
 from app.trials.experiment import FigureSpec, Score
 from app.trials.figure_options import Curves
 
@@ -37,7 +41,7 @@ def draw(spec: FigureSpec, options: Curves, material: Material) -> Drawn:
         panel.set_title(ENGINE_WORDS[engine])
         panel.set_xlabel(options.along)
     finish_score(list(axes[0]), score, options.log)
-    _legend(figure, axes[0, 0], options)
+    _legend(figure, axes[0, 0], options, material)
     says = (
         f"{score.label.capitalize()} against {options.along}" + (f", by {options.lines}" if options.lines else "") + "."
     )
@@ -124,10 +128,14 @@ def interval_words(score: Score) -> str:
     return "Bars: 95 % intervals (Wilson)." if score.rate is not None else "Medians; bars: 95 % intervals (bootstrap)."
 
 
-def _legend(figure: Figure, panel: Axes, options: Curves) -> None:
+def _legend(figure: Figure, panel: Axes, options: Curves, material: Material) -> None:
     handles, labels = panel.get_legend_handles_labels()
-    paper = Line2D([], [], ls="none", marker="D", ms=6, mfc="none", mec=INK, mew=1.1)
+    if any(original.score == options.score for original in material.experiment.original):
+        handles.append(Line2D([], [], ls="none", marker="D", ms=6, mfc="none", mec=INK, mew=1.1))
+        labels.append("the paper's")
+    if not labels:
+        return
     figure.legend(
-        [*handles, paper], [*labels, "the paper's"], loc="outside lower center", ncols=len(labels) + 1,
+        handles, labels, loc="outside lower center", ncols=len(labels),
         title=options.lines or None, title_fontsize=7.5,
     )  # fmt: skip

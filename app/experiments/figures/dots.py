@@ -1,5 +1,8 @@
 """Each trial a dot, by level and engine; beside them the median, or the rate, with its interval."""
 
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
 from __future__ import annotations
 
 import math
@@ -10,9 +13,10 @@ from matplotlib.lines import Line2D
 
 from app.experiments.figures.canvas import WIDTH_IN, grid_lines, panels
 from app.experiments.figures.curves import finish_score, has, interval_words
-from app.experiments.figures.material import Drawn, Material, trial_gid, value_of
-from app.experiments.figures.palette import ENGINE_COLOUR, ENGINE_WORDS, INK
+from app.experiments.figures.material import Drawn, Material, trial_gid
+from app.experiments.figures.palette import ENGINE_COLOUR, INK
 from app.experiments.stored_trial import StoredTrial
+from app.experiments.words import ENGINE_WORDS, value_of
 from app.trials.experiment import FigureSpec
 from app.trials.figure_options import Dots
 
@@ -34,10 +38,10 @@ def draw(spec: FigureSpec, options: Dots, material: Material) -> Drawn:
     grid_lines(panel)
     for place, (label, engine) in enumerate(groups):
         _group(panel, options, material, engine, label, float(place))
-    _originals(panel, options, material, labels, len(engines))
+    drawn = _originals(panel, options, material, labels, len(engines))
     _ticks(panel, options, labels, engines)
     finish_score([panel], score, options.log)
-    _legend(figure, engines)
+    _legend(figure, engines, originals=drawn)
     says = f"{score.label.capitalize()} of each trial" + (f", by {options.by}" if options.by else "") + "."
     caption = material.caption(
         f"{says} {interval_words(score)}", options=options, score=options.score, varied=[options.by]
@@ -70,14 +74,18 @@ def _beside(number: int) -> float:
     return (number * _GOLDEN % 1.0 - 0.5) * 2 * _SPREAD
 
 
-def _originals(panel: Axes, options: Dots, material: Material, labels: list[str], engines: int) -> None:
+def _originals(panel: Axes, options: Dots, material: Material, labels: list[str], engines: int) -> bool:
+    """Open diamonds; whether there are any."""
+    drawn = False
     for number, label in enumerate(labels):
         levels = material.fixed(options, options.by)
         if options.by:
             levels[material.axis(options.by)] = label
         for original in material.originals(options.score, levels):
             x = number * engines + (engines - 1) / 2
-            panel.plot(x, original.value, "D", ms=8, mfc="none", mec=INK, mew=1.1, zorder=6, label="the paper's")
+            panel.plot(x, original.value, "D", ms=8, mfc="none", mec=INK, mew=1.1, zorder=6)
+            drawn = True
+    return drawn
 
 
 def _ticks(panel: Axes, options: Dots, labels: list[str], engines: list[str]) -> None:
@@ -93,11 +101,12 @@ def _ticks(panel: Axes, options: Dots, labels: list[str], engines: list[str]) ->
     panel.set_xlim(-0.6, len(labels) * count - 0.3)
 
 
-def _legend(figure: Figure, engines: list[str]) -> None:
+def _legend(figure: Figure, engines: list[str], *, originals: bool) -> None:
     def mark(marker: str, face: str, edge: str, size: float, label: str) -> Line2D:
         return Line2D([], [], ls="none", marker=marker, mfc=face, mec=edge, ms=size, label=label)
 
     marks = [mark("o", ENGINE_COLOUR[engine], "none", 4.5, ENGINE_WORDS[engine]) for engine in engines]
     marks.append(mark("_", INK, INK, 8, "median or rate"))
-    marks.append(mark("D", "none", INK, 5.5, "the paper's"))
+    if originals:
+        marks.append(mark("D", "none", INK, 5.5, "the paper's"))
     figure.legend(handles=marks, loc="outside lower center", ncols=len(marks))

@@ -1,5 +1,8 @@
 """One panel of a map, each kind a function: it draws a trace on axes in metres of the office, or in pose cells."""
 
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
 from __future__ import annotations
 
 import numpy as np

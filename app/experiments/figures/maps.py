@@ -1,5 +1,8 @@
 """Small multiples of what trials have left behind: maps over the plan, paths, pose cells, occupancy."""
 
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
 from __future__ import annotations
 
 import numpy as np
@@ -9,7 +12,8 @@ from matplotlib.figure import Figure
 from app.experiments.figures import map_panels
 from app.experiments.figures.canvas import WIDTH_IN, frame, panels
 from app.experiments.figures.material import Drawn, Material, Pick, trial_gid
-from app.experiments.figures.palette import ENGINE_WORDS, SOFT
+from app.experiments.figures.palette import SOFT
+from app.experiments.words import ENGINE_WORDS
 from app.trials.experiment import FigureSpec
 from app.trials.figure_options import Maps
 from app.trials.trace import Trace

@@ -1,5 +1,8 @@
 """What figures are made of: an experiment, its trials with their scores, the summary of each cell, and some trials run again."""
 
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
 from __future__ import annotations
 
 import statistics
@@ -8,9 +11,9 @@ from dataclasses import dataclass, field
 
 from matplotlib.figure import Figure
 
-from app.experiments.figures.palette import ENGINE_WORDS
 from app.experiments.stored_trial import StoredTrial
 from app.experiments.summary import CellSummary, summarise
+from app.experiments.words import ENGINE_WORDS, value_of, words_of
 from app.trials.code_version import code_version
 from app.trials.experiment import Experiment, FigureSpec, Original, Score
 from app.trials.figure_options import OneTrial, Options
@@ -194,22 +197,6 @@ class Material:
 def trial_gid(trial: StoredTrial) -> str:
     """The id of what stands for one trial in a figure: the page finds it by this."""
     return f"trial-{trial.id}"
-
-
-def value_of(score: Score, trial: StoredTrial) -> float | None:
-    """The score of one trial; None where it has none."""
-    if score.rate is None:
-        return trial.scores.get(str(score.score))
-    good, of = (trial.scores.get(name) for name in score.rate)
-    return (good or 0.0) / of if of else None
-
-
-def words_of(score: Score, value: float) -> str:
-    """A value of a score with its unit."""
-    if score.rate is not None:
-        return f"{100 * value:.0f} %"
-    text = f"{value:.0f}" if abs(value) >= 100 or value == int(value) else f"{value:.3g}"
-    return f"{text} {score.unit}".rstrip()
 
 
 def _seeds(trials: list[StoredTrial]) -> str:

@@ -1,4 +1,4 @@
-"""The colours and words that all figures share."""
+"""The colours that all figures share."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ ORANGE, SKY, BLACK = "#e69f00", "#56b4e9", "#000000"
 CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, SOFT)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 ENGINE_COLOUR = {"paper": BLUE, "ours": VERMILION}
-ENGINE_WORDS = {"paper": "the paper's rules", "ours": "our rules"}
 # The page has its own shade of each, for light and dark.
 THEMED = {
     INK: "ink", SOFT: "soft", WALL: "wall", FAINT: "faint", PAPER: "paper", BLACK: "ink",

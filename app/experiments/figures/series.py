@@ -1,5 +1,8 @@
 """Channels of a run over time, one above the other; thin lines with words mark what happened."""
 
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
 from __future__ import annotations
 
 import math

@@ -1,5 +1,8 @@
 """The share of kidnaps that the robot has recovered from, against the time or the way since, with a Wilson band."""
 
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
 from __future__ import annotations
 
 import numpy as np
@@ -9,9 +12,10 @@ from numpy.typing import NDArray
 
 from app.experiments.figures.canvas import grid_lines, panels
 from app.experiments.figures.material import Drawn, Material
-from app.experiments.figures.palette import CYCLE, ENGINE_COLOUR, ENGINE_WORDS
+from app.experiments.figures.palette import CYCLE, ENGINE_COLOUR
 from app.experiments.intervals import wilson
 from app.experiments.stored_trial import StoredTrial
+from app.experiments.words import ENGINE_WORDS
 from app.trials.experiment import FigureSpec
 from app.trials.figure_options import Survival
 

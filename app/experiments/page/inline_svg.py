@@ -11,6 +11,7 @@ _SVG, _XLINK = "http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"
 _HREF = f"{{{_XLINK}}}href"
 _ADDRESS = re.compile(r"url\(#([^)]+)\)")
 _COLOUR = re.compile("|".join(THEMED))
+_LARGER = 1.2  # than on paper, since a screen is farther away
 _TOLD = re.compile(r"(trial|cell)-([0-9a-f]+)$")
 
 
@@ -25,23 +26,28 @@ def inlined(svg: str, prefix: str, titles: dict[str, str], label: str) -> str:
     root = ET.fromstring(svg)
     for metadata in root.findall(f"{{{_SVG}}}metadata"):
         root.remove(metadata)
+    taken: set[str] = set()
     for element in root.iter():
-        _own(element, prefix, titles)
+        _own(element, prefix, titles, taken)
     width = root.attrib.pop("width", "100%")
     root.attrib.pop("height", None)
-    root.set("style", f"width: {width}")
+    root.set("style", f"width: calc({width} * {_LARGER})")
     root.set("role", "group")
     root.set("aria-label", label)
     return ET.tostring(root, encoding="unicode")
 
 
-def _own(element: ET.Element, prefix: str, titles: dict[str, str]) -> None:
+def _own(element: ET.Element, prefix: str, titles: dict[str, str], taken: set[str]) -> None:
     name = element.attrib.get("id")
     if name is not None:
-        element.set("id", f"{prefix}-{name}")
+        own = f"{prefix}-{name}"
+        while own in taken:  # a trial that two cells share has two dots
+            own += "-again"
+        taken.add(own)
+        element.set("id", own)
         told = _TOLD.match(name)
         if told and name in titles:
-            _tell(element, *told.groups(), titles[name])
+            _tell(element, told[1], told[2], titles[name])
     for key, value in element.attrib.items():
         if key == _HREF and value.startswith("#"):
             element.set(key, f"#{prefix}-{value[1:]}")

@@ -11,12 +11,12 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from app.experiments.figures.canvas import svg_of
-from app.experiments.figures.material import Drawn, Material, value_of, words_of
-from app.experiments.figures.palette import ENGINE_WORDS
+from app.experiments.figures.material import Drawn, Material
 from app.experiments.page.inline_svg import inlined
-from app.experiments.page.sentences import found, place
+from app.experiments.sentences import found
 from app.experiments.stored_trial import StoredTrial
-from app.experiments.summary import words
+from app.experiments.summary import CellSummary, words
+from app.experiments.words import ENGINE_WORDS, value_of, words_of
 from app.trials.code_version import code_version
 from app.trials.experiment import Experiment
 
@@ -48,7 +48,7 @@ def page_of(material: Material, drawn: list[Drawn], command: str, failed: list[S
     ]
     return _template("page.html.j2").render(
         experiment=experiment,
-        says=found(material),
+        says=found(experiment, material.cells),
         figures=figures,
         engines=[engine for engine in experiment.engines if any(c.engine == engine for c in material.cells)],
         engine_words=ENGINE_WORDS,
@@ -99,8 +99,8 @@ def _json(value: Any) -> Markup:
 # ------------------------------------------------------------ what is told of trials
 
 
-def _levels(experiment: Experiment, trial: StoredTrial) -> str:
-    return ", ".join(f"{axis.name} {label}" for axis, label in zip(experiment.axes, trial.levels, strict=True))
+def _levels(experiment: Experiment, of: StoredTrial | CellSummary) -> str:
+    return ", ".join(f"{axis.name} {label}" for axis, label in zip(experiment.axes, of.levels, strict=True))
 
 
 def _scores(material: Material, trial: StoredTrial) -> list[tuple[str, str]]:
@@ -132,7 +132,7 @@ def _cells(material: Material) -> list[dict[str, Any]]:
     return [
         {
             "heading": f"{ENGINE_WORDS[cell.engine].capitalize()}, {cell.n} trials",
-            "levels": place(experiment, cell),
+            "levels": _levels(experiment, cell),
             "scores": [(score.label, words(cell.values[score.label], score)) for score in experiment.scores],
             "trials": [t.id for t in material.trials if t.engine == cell.engine and t.levels == cell.levels],
         }
