@@ -165,7 +165,7 @@ class Material:
                 if options.pick == "first"
                 else f"each the median by {options.score};"
             )
-        parts.append(f"version {code_version()}.")
+        parts.append(f"version {self.trials[0].version or code_version()}.")
         found = [o for o in self.experiment.original if o.score == score]
         if found:
             parts.append("Original: " + "; ".join(self._original(o) for o in found) + ".")
