@@ -8,10 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
-from app.session import Session
+from app.session import Session, spread_goals
 from app.trials.checking import check_steps, place_of
-from app.trials.steps import Door, Drive, Explore, Kidnap, Move, Repeat, Set, Step, Tag, Visit, Wait, Where
+from app.trials.steps import Door, Drive, Explore, Kidnap, Move, Repeat, Set, Step, Tag, Tour, Visit, Wait, Where
+from app.trials.tour import order
 
 REACHED_M = 0.25  # a driven robot has come to a point of its path
 PATIENCE_S = 60.0  # a point of the path that takes longer is left out: somebody stands there
@@ -21,6 +23,8 @@ SHARP_RAD = 0.6  # it turns on the spot if its next point lies farther aside tha
 _TRIES = 200  # random places tried to find one that is far enough away
 _STANDING = (0.0, 0.0)
 
+MomentKind = Literal["tagged", "kidnap", "recovered", "reached", "failed", "step", "end"]
+
 
 @dataclass(frozen=True, slots=True)
 class Moment:
@@ -29,6 +33,7 @@ class Moment:
     time_s: float
     words: str
     ok: bool | None = None
+    kind: MomentKind = "step"
 
 
 @dataclass(slots=True)
@@ -85,11 +90,12 @@ class Course:
     def ticks(self) -> Iterator[str]:
         """What is being done, before each tick."""
         yield from self._all(self.steps)
-        self.note("the end")
+        self.note("the end", kind="end")
 
-    def note(self, words: str, ok: bool | None = None) -> None:
+    def note(self, words: str, ok: bool | None = None, kind: MomentKind | None = None) -> None:
         """Write down that something happens now."""
-        self.moments.append(Moment(self.session.time_s, words, ok))
+        judged: MomentKind = "step" if ok is None else "reached" if ok else "failed"
+        self.moments.append(Moment(self.session.time_s, words, ok, kind or judged))
 
     @property
     def deciding(self) -> Moment:
@@ -115,6 +121,8 @@ class Course:
             case Visit():
                 for name in step.places:
                     yield from self._visit(name, step)
+            case Tour():
+                yield from self._tour(step)
             case Wait():
                 self.session.pilot.drive(*_STANDING)
                 yield from self._for(step.seconds, "waiting")
@@ -144,7 +152,7 @@ class Course:
         yield what
         for name, tag in self.tags.items():
             if tag.note(self._here, self.session.brain.experience_map.active):
-                self.note(f"{name} is tagged, {tag.away_m:.2f} m from it")
+                self.note(f"{name} is tagged, {tag.away_m:.2f} m from it", kind="tagged")
 
     def _for(self, seconds: float, what: str) -> Iterator[str]:
         for _ in range(max(1, round(seconds / self.session.frame.dt))):
@@ -166,7 +174,9 @@ class Course:
         if kidnap.after_s is None:
             self.note("not recovered from the kidnap", False)
         else:
-            self.note(f"recovered {kidnap.after_s:.1f} s and {kidnap.after_m or 0:.1f} m after the kidnap", True)
+            self.note(
+                f"recovered {kidnap.after_s:.1f} s and {kidnap.after_m or 0:.1f} m after the kidnap", True, "recovered"
+            )
 
     def _drive(self, step: Drive) -> Iterator[str]:
         for lap in range(step.laps):
@@ -194,29 +204,44 @@ class Course:
         self.session.pilot.drive(*_STANDING)
 
     def _visit(self, name: str, step: Visit) -> Iterator[str]:
-        session, tag = self.session, self.tags[name]
+        tag = self.tags[name]
         tag.passed = True  # what stands for a place does not change once the robot is sent there
-        began_s, began_m = session.time_s, session.evaluation.path_m
         if tag.experience is None:
-            self._visited(name, "never approached while exploring", began_s, began_m)
+            self._visited(name, (tag.x, tag.y), "never approached while exploring", self._beginning)
             return
-        session.pilot.set_goal(tag.experience)
-        while session.pilot.goal_state != (tag.experience, "arrived"):
-            if session.time_s - began_s >= step.timeout_s - 1e-9:
-                self._visited(name, f"not reached in {step.timeout_s:g} s", began_s, began_m)
+        yield from self._go(name, tag.experience, (tag.x, tag.y), step)
+
+    def _tour(self, step: Tour) -> Iterator[str]:
+        """ValueError: the robot does not know so many places."""
+        session, map_ = self.session, self.session.brain.experience_map
+        goals = spread_goals(session, step.goals)
+        if len(goals) < step.goals:
+            raise ValueError(
+                f"tour: goals = {step.goals}, but the robot knows only {len(goals)} places; explore longer"
+            )
+        places = [session.evaluation.made_at(goal, map_) for goal in goals]
+        for number, goal in enumerate(order(step.goals, step.visits, session.seed), start=1):
+            yield from self._go(f"visit {number} of {step.visits}", goals[goal], places[goal], step)
+
+    def _go(self, name: str, experience: int, place: tuple[float, float], step: Visit | Tour) -> Iterator[str]:
+        session, beginning = self.session, self._beginning
+        session.pilot.set_goal(experience)
+        while session.pilot.goal_state != (experience, "arrived"):
+            if session.time_s - beginning[0] >= step.timeout_s - 1e-9:
+                self._visited(name, place, f"not reached in {step.timeout_s:g} s", beginning)
                 return
             yield from self._tick(f"on the way to {name}")
-        miss_m = self._away(name)
-        why = "" if miss_m <= step.near_m else f"arrived {miss_m:.2f} m away"
-        self._visited(name, why, began_s, began_m)
+        miss_m = math.dist(self._here, place)
+        self._visited(name, place, "" if miss_m <= step.near_m else f"arrived {miss_m:.2f} m away", beginning)
 
-    def _visited(self, name: str, why: str, began_s: float, began_m: float) -> None:
-        session = self.session
-        self.visits.append(
-            Visited(
-                name, not why, began_s, session.time_s - began_s, session.evaluation.path_m - began_m, self._away(name), why
-            )
-        )  # fmt: skip
+    @property
+    def _beginning(self) -> tuple[float, float]:
+        return self.session.time_s, self.session.evaluation.path_m
+
+    def _visited(self, name: str, place: tuple[float, float], why: str, beginning: tuple[float, float]) -> None:
+        session, (began_s, began_m) = self.session, beginning
+        path_m, miss_m = session.evaluation.path_m - began_m, math.dist(self._here, place)
+        self.visits.append(Visited(name, not why, began_s, session.time_s - began_s, path_m, miss_m, why))
         self.note(f"{name}: {why or 'reached'}", not why)
 
     def _kidnap(self, step: Kidnap) -> None:
@@ -229,7 +254,7 @@ class Course:
         else:
             x, y, by_chance = self._far_away(step.least_m)
             session.kidnap(x, y, by_chance if heading is None else heading)
-        self.note("kidnapped")
+        self.note("kidnapped", kind="kidnap")
 
     def _far_away(self, least_m: float) -> tuple[float, float, float]:
         for _ in range(_TRIES):
@@ -244,10 +269,6 @@ class Course:
     def _here(self) -> tuple[float, float]:
         truth = self.session.simulator.truth
         return truth.x, truth.y
-
-    def _away(self, name: str) -> float:
-        tag = self.tags[name]
-        return math.dist(self._here, (tag.x, tag.y))
 
     def _place(self, where: Where) -> tuple[float, float]:
         return place_of(self.session.world, where)

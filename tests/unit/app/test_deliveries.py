@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from app.cli import command_line as cli
 from app.headless import Deliveries, deliveries, visiting
-from app.headless.deliveries import order
+from app.trials.tour import order
 from app.headless.report import MACHINE
 from app.headless.visiting import Visit
 from sim2d import load_world
