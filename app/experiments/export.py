@@ -5,7 +5,9 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from app.experiments.stored_trial import StoredTrial
 from app.trials.experiment import Experiment
@@ -26,9 +28,8 @@ def write_csv(path: Path, experiment: Experiment, trials: Sequence[StoredTrial])
 
 def write_parquet(path: Path, experiment: Experiment, trials: Sequence[StoredTrial]) -> None:
     """OSError names the file. What a trial does not have is null."""
-    import pyarrow
-    from pyarrow import parquet
-
+    pyarrow: Any = import_module("pyarrow")  # it has no types
+    parquet: Any = import_module("pyarrow.parquet")
     columns, rows = table_of(experiment, trials)
     types = {"seed": pyarrow.int64(), "quick": pyarrow.bool_()}
     numbers = {"simulated_s", "wall_s", "moment_s", *_scores(trials)}
@@ -47,7 +48,20 @@ def table_of(experiment: Experiment, trials: Sequence[StoredTrial]) -> tuple[lis
     """Column names and rows. An axis has the column of its name."""
     scores = _scores(trials)
     axes = [axis.name for axis in experiment.axes]
-    columns = ["id", "engine", *axes, "seed", "version", "quick", "simulated_s", "wall_s", "moment_s", "moment", "error", *scores]
+    columns = [
+        "id",
+        "engine",
+        *axes,
+        "seed",
+        "version",
+        "quick",
+        "simulated_s",
+        "wall_s",
+        "moment_s",
+        "moment",
+        "error",
+        *scores,
+    ]
     rows: list[list[Cell]] = [
         [
             trial.id, trial.engine, *_levels(trial, len(axes)), trial.seed, trial.version, trial.quick, trial.simulated_s,
