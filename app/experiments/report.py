@@ -33,15 +33,17 @@ def write_report_page(
     traces: Callable[[list[Trial]], list[Trace]],
     *,
     command: str,
+    quick: bool = False,
 ) -> Report:
     """Write `NAME.html` into `out`, and each figure as SVG and PNG into `out/figures`.
 
-    trials: those of this experiment, in any order; traces: runs some of them again, in the order given. ValueError names
+    trials: those of this experiment, in any order; traces: runs some of them again, in the order given; quick: whether
+    they are those of the shortened experiment. ValueError names
     an experiment and figure whose options do not fit.
     """
     good = sorted((t for t in trials if not t.error), key=lambda t: (t.seed, t.engine, t.levels))
     material = Material(experiment, good)
-    drawn = figures_of(material, traces) if good else []
+    drawn = figures_of(material, traces, quick=quick) if good else []
     folder = out / "figures"
     folder.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
@@ -63,11 +65,11 @@ def write_index(reports: list[Report], out: Path, command: str) -> Path:
     return path
 
 
-def figures_of(material: Material, traces: Callable[[list[Trial]], list[Trace]]) -> list[Drawn]:
+def figures_of(material: Material, traces: Callable[[list[Trial]], list[Trace]], *, quick: bool = False) -> list[Drawn]:
     """All figures of an experiment; the trials that they show are run again, each once."""
     experiment = material.experiment
     ids = list(dict.fromkeys(each for spec in experiment.figures for each in wanted(spec, material)))
-    known = trials_by_id(experiment, material.trials)
+    known = trials_by_id(experiment, material.trials, quick=quick)
     missing = [each for each in ids if each not in known]
     if missing:
         raise ValueError(
@@ -77,10 +79,7 @@ def figures_of(material: Material, traces: Callable[[list[Trial]], list[Trace]])
     return [draw(spec, material) for spec in experiment.figures]
 
 
-def trials_by_id(experiment: Experiment, stored: list[StoredTrial]) -> dict[str, Trial]:
+def trials_by_id(experiment: Experiment, stored: list[StoredTrial], *, quick: bool = False) -> dict[str, Trial]:
     """The trials as they are run, found by the ids of those that are stored."""
     most = max((trial.seed for trial in stored), default=experiment.seed) - experiment.seed + 1
-    return {
-        trial.id: trial
-        for trial in experiment.make_trials(trials=max(most, 1), quick=any(each.quick for each in stored))
-    }
+    return {trial.id: trial for trial in experiment.make_trials(trials=max(most, 1), quick=quick)}

@@ -28,7 +28,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     stored = trials(made)
     traces = {each.id: trace(each, made) for each in stored}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(report, "trials_by_id", lambda *_: {name: each.trial for name, each in traces.items()})
+        patch.setattr(report, "trials_by_id", lambda *_, **__: {name: each.trial for name, each in traces.items()})
         out = tmp_path_factory.mktemp("page")
         return write_report_page(made, stored, out, lambda ts: [traces[t.id] for t in ts], command="ratslam").page
 

@@ -39,6 +39,8 @@ def experiment(**changes: object) -> Experiment:
             Score(label="goals reached", rate=("reached", "goals")),
             Score(label="map error", score="error_m", unit="m"),
             Score(label="recovered", rate=("recovered", "kidnaps")),
+            Score(label="after", score="kidnap_1_s", unit="s"),
+            Score(label="after a way of", score="kidnap_1_m", unit="m"),
         ],
         original=[Original(score="goals reached", levels=["0 %", "8"], value=0.81, source="D figure 9")],
     )

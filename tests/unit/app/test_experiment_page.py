@@ -44,7 +44,7 @@ def written(tmp_path, monkeypatch):
         figures=[
             figure("curves", score="goals reached", along="N_vis", lines="size"),
             figure("dots", score="map error", by="size", at=["2 %"]),
-            figure("maps", show="occupancy", each="size"),
+            figure("maps", show="map grid", each="size"),
         ]
     )
     stored = trials(made)
@@ -56,7 +56,7 @@ def written(tmp_path, monkeypatch):
         return [trace(next(t for t in stored if t.id == each.id), made) for each in wanted]
 
     known = {t.id: trace(t, made).trial for t in stored}
-    monkeypatch.setattr(report, "trials_by_id", lambda *_: known)
+    monkeypatch.setattr(report, "trials_by_id", lambda *_, **__: known)
     made_report = write_report_page(made, stored, tmp_path, traces, command=COMMAND)
     return made_report, stored, asked
 
@@ -167,7 +167,9 @@ def test_sentences_say_the_numbers_of_the_summary():
 
 
 def test_an_experiment_without_trials_has_a_page_that_says_so(tmp_path):
-    made = write_report_page(experiment(figures=[figure("survival")]), [], tmp_path, lambda _: [], command="x")
+    made = write_report_page(
+        experiment(figures=[figure("survival", score="after")]), [], tmp_path, lambda _: [], command="x"
+    )
     assert "Nothing: no trial has been run." in made.page.read_text()
     assert made.figures == []
 

@@ -34,8 +34,9 @@ WRONG = [
     (("maps", {"show": "path", "pick": "median"}), r"score = '': expected one of: 'goals reached'"),
     (("series", {"channels": []}), r"option channels: List should have at least 1 item"),
     (("series", {"channels": ["speed"]}), r"option channels.0: Input should be 'packets', .* got 'speed'"),
-    (("survival", {"lines": "seed"}), r"lines = 'seed': expected one of: 'engine', 'N_vis', 'size'"),
-    (("survival", {"most": -1}), r"option most: Input should be greater than or equal to 0, got -1"),
+    (("survival", {"score": "after", "lines": "seed"}), r"lines = 'seed': expected one of: 'engine', 'N_vis', 'size'"),
+    (("survival", {"score": "recovered"}), r"score = 'recovered': expected one of: 'map error', 'after'"),
+    (("survival", {"score": "after", "most": -1}), r"option most: Input should be greater than or equal to 0, got -1"),
 ]
 
 
@@ -56,7 +57,7 @@ def test_engines_that_an_experiment_lacks_are_refused():
     made = experiment()
     made = made.model_copy(update={"engines": {"ours": made.engines["ours"]}})
     with pytest.raises(ValueError, match="engines = 'paper': expected one of: 'ours'"):
-        options_of(made, figure("survival", engines=["paper"]))
+        options_of(made, figure("survival", score="after", engines=["paper"]))
 
 
 def test_the_figures_of_the_catalogue_can_be_drawn():

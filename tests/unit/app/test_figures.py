@@ -15,9 +15,10 @@ from app.experiments.figures.canvas import png_of, style, svg_of
 from app.experiments.figures.curves import positions
 from app.experiments.figures.map_panels import broken_path
 from app.experiments.figures.palette import CYCLE, ENGINE_COLOUR, THEMED
-from app.experiments.figures.survival import recoveries
+from app.experiments.figures.survival import until
 from app.experiments.intervals import wilson
 from app.experiments.words import value_of
+from app.trials.experiment import Axis, Level
 from app.trials.figure_options import OPTIONS, Shown
 from tests.unit.app.made_trials import RATES, SIZES, experiment, figure, material
 
@@ -29,10 +30,18 @@ SPECS = [
     figure("dots", score="goals reached"),
     *(figure("maps", show=show, each="size") for show in SHOWN),
     figure("maps", show="path", each="seed", most=3),
-    figure("series", channels=["packets", "off_m", "error_m", "residual", "views", "experiences"]),
-    figure("series", channels=["active", "x", "y", "heading"], around_kidnap=[5, 30], pick="median", score="map error"),
-    figure("survival"),
-    figure("survival", against="metres", lines="size", most=30),
+    figure("series", channels=["packets", "off", "map error", "residual", "views", "experiences"]),
+    figure(
+        "series",
+        channels=["active experience", "x", "y", "heading"],
+        after="kidnapped",
+        seconds=30,
+        pick="median",
+        score="map error",
+    ),
+    figure("series", channels=["residual", "map error"], each="N_vis", log=True),
+    figure("survival", score="after"),
+    figure("survival", score="after a way of", lines="size", most=30),
 ]
 NAMES = [f"{n}-{spec.kind}-{spec.options.get('show', '')}" for n, spec in enumerate(SPECS)]
 
@@ -112,7 +121,36 @@ def test_levels_stand_where_their_numbers_are():
         positions(["1", "off"], "linear")
 
 
+def test_levels_with_long_names_lie_one_below_the_other():
+    of = experiment()
+    named = {"0 %": "none at all, never", "2 %": "some", "10 %": "rather many of them"}
+    axis = Axis(name="N_vis", levels=[Level(label=label) for label in named.values()])
+    of = material(of.model_copy(update={"axes": [axis, of.axes[1]], "original": []}))
+    panel = draw(SPECS[0], of).figure.axes[0]
+    assert [label.get_text() for label in panel.get_yticklabels()] == list(named.values())
+    assert panel.yaxis_inverted()
+    assert panel.get_xlabel() == "goals reached"
+    points = {line.get_gid(): line for line in panel.lines if line.get_gid()}
+    assert len(points) == 6
+    for gid, line in points.items():
+        assert list(line.get_xdata()) == [of.cells[int(gid.removeprefix("cell-"))].values["goals reached"].value]
+
+
+def test_only_the_levels_asked_for_are_drawn():
+    asked = figure("curves", score="map error", along="N_vis", lines="size", at=["2 %", "10 %", "16"])
+    panel = draw(asked, material()).figure.axes[0]
+    assert [label.get_text() for label in panel.get_xticklabels()] == ["2 %", "10 %"]
+    assert len([line for line in panel.lines if line.get_linestyle() == "-" and len(line.get_xdata())]) == 1
+
+
 # ------------------------------------------------------------ dots
+
+
+def test_without_an_axis_every_combination_has_its_place():
+    of = material()
+    panel = draw(figure("dots", score="map error"), of).figure.axes[0]
+    assert len([line for line in panel.lines if line.get_gid()]) == len(of.trials)
+    assert len(panel.get_xticklabels()) == len(RATES) * len(SIZES)
 
 
 def test_every_trial_is_a_dot_with_its_id():
@@ -187,29 +225,36 @@ def test_the_path_through_the_pose_cells_is_broken_at_faces_and_snaps():
 
 def test_series_show_the_time_round_the_kidnap():
     of = material(traced=True)
-    axes = draw(figure("series", channels=["off_m", "x"], around_kidnap=[5, 30]), of).figure.axes
+    axes = draw(figure("series", channels=["off", "x"], after="kidnapped", seconds=30), of).figure.axes
     assert axes[0].get_xlim() == pytest.approx((-5, 30))
     marked = [float(line.get_xdata()[0]) for line in axes[0].lines if len(line.get_xdata()) == 2]
     assert marked == pytest.approx([0.0, 13.0])
     assert [text.get_text() for text in axes[0].texts] == ["kidnapped", "recovered"]
 
 
+def test_levels_of_an_axis_are_lines_of_one_panel():
+    of = material(traced=True)
+    axes = draw(figure("series", channels=["residual"], each="N_vis"), of).figure.axes
+    assert [panel.get_title() for panel in axes] == ["the paper's rules", "our rules"]
+    for panel in axes:
+        assert [line.get_label() for line in panel.lines] == list(RATES)
+
+
 # ------------------------------------------------------------ survival
 
 
-def test_the_share_recovered_is_counted_over_all_kidnaps():
+def test_trials_in_which_it_never_came_count_as_well():
     of = material()
     panel = draw(SPECS[-2], of).figure.axes[0]
     for line, engine in zip(panel.lines, ("paper", "ours"), strict=True):
         trials = of.of(engine, {0: "0 %", 1: "8"})
-        times, count = recoveries(trials, "seconds")
-        assert count == 4
+        times = until(trials, of.score("after"))
         assert len(times) == sum(trial.scores["recovered"] for trial in trials)
-        assert float(line.get_ydata()[-1]) == pytest.approx(len(times) / count)
+        assert float(line.get_ydata()[-1]) == pytest.approx(len(times) / 4)
         assert line.get_xdata()[1 : len(times) + 1] == pytest.approx(times)
-        assert line.get_label().endswith(f"{len(times)} of {count}")
+        assert line.get_label().endswith(f"{len(times)} of 4")
     band = panel.collections[0].get_paths()[0].vertices
-    last = wilson(len(recoveries(of.of("paper", {0: "0 %", 1: "8"}), "seconds")[0]), 4)
+    last = wilson(len(until(of.of("paper", {0: "0 %", 1: "8"}), of.score("after"))), 4)
     assert band[:, 1].max() == pytest.approx(last.high)
 
 

@@ -38,7 +38,7 @@ def test_numbers_survive_the_file(tmp_path):
     assert "NaN" not in path.read_text()
     assert "`ratslam experiment made`; seeds 10 to 13, code version v1." in text
     row = next(line for line in text.splitlines() if line.startswith("| 0 % | 8 | 4 | 81 % |"))
-    assert row.count("|") == 1 + 3 + 3 + 2 + 2  # levels and n; goals with the paper's value, error, recovered
+    assert row.count("|") == 1 + 3 + 3 + 2 + 2 + 2 + 2  # levels and n; goals with the paper's value, error, recovered
     write_results([(made, stored)], tmp_path)
     assert markdown.read_text() == text
 
@@ -74,7 +74,7 @@ def test_a_change_of_what_is_run_makes_numbers_outdated():
     assert outdated(data, [experiment(seed=11)]) == ["made"]
     assert outdated(data, [experiment(axes=made.axes[:1])]) == ["made"]
     assert outdated(data, []) == ["made"]
-    assert outdated(data, [experiment(figures=[figure("survival")], asks="Other words?")]) == []
+    assert outdated(data, [experiment(figures=[figure("survival", score="after")], asks="Other words?")]) == []
     assert definition_digest(made) == definition_digest(experiment())
 
 
