@@ -38,8 +38,14 @@ class _Reader(HTMLParser):
         return [attributes[name] for _, attributes in self.elements if name in attributes]
 
 
-@pytest.fixture
-def written(tmp_path, monkeypatch):
+@pytest.fixture(scope="module")
+def out(tmp_path_factory):
+    return tmp_path_factory.mktemp("page")
+
+
+@pytest.fixture(scope="module")
+def written(out):
+    """The report, the trials, and which of them were asked to be run again."""
     made = experiment(
         figures=[
             figure("curves", score="goals reached", along="N_vis", lines="size"),
@@ -49,34 +55,33 @@ def written(tmp_path, monkeypatch):
     )
     stored = trials(made)
     stored.append(replace(stored[0], id="f" * 16, seed=99, scores={}, error="ValueError: no <room>"))
-    asked = []
+    known, asked = {t.id: trace(t, made) for t in stored}, []
 
     def traces(wanted):
         asked.append([each.id for each in wanted])
-        return [trace(next(t for t in stored if t.id == each.id), made) for each in wanted]
+        return [known[each.id] for each in wanted]
 
-    known = {t.id: trace(t, made).trial for t in stored}
-    monkeypatch.setattr(report, "trials_by_id", lambda *_, **__: known)
-    made_report = write_report_page(made, stored, tmp_path, traces, command=COMMAND)
-    return made_report, stored, asked
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(report, "trials_by_id", lambda *_, **__: {name: each.trial for name, each in known.items()})
+        return write_report_page(made, stored, out, traces, command=COMMAND), stored, asked
 
 
-def test_the_page_figures_and_index_are_there(written, tmp_path):
+def test_the_page_figures_and_index_are_there(written, out):
     made, _, asked = written
-    index = write_index([made], tmp_path, "ratslam experiment all")
-    names = sorted(path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file())
+    index = write_index([made], out, "ratslam experiment all")
+    names = sorted(path.relative_to(out).as_posix() for path in out.rglob("*") if path.is_file())
     kinds = ["1-curves", "2-dots", "3-maps"]
     figures = sorted(f"figures/made-{kind}.{ending}" for kind in kinds for ending in ("png", "svg"))
     assert names == [*figures, "index.html", "made.html"]
-    assert [path.relative_to(tmp_path).as_posix() for path in sorted(made.figures)] == figures
+    assert [path.relative_to(out).as_posix() for path in sorted(made.figures)] == figures
     assert "made.html" in _Reader(index.read_text()).having("href")
     assert len(asked) == 1
     assert len(asked[0]) == len(set(asked[0])) == 4
 
 
-def test_the_page_loads_nothing(written, tmp_path):
+def test_the_page_loads_nothing(written, out):
     made, *_ = written
-    for path in (made.page, write_index([made], tmp_path, "x")):
+    for path in (made.page, write_index([made], out, "x")):
         text = path.read_text()
         page = _Reader(text)
         assert "default-src 'none'" in text
