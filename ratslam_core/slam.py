@@ -206,10 +206,15 @@ class RatSlam:
         """
         if (relocalised or self.lost) and not self.params.goal_memory.over_jumps:
             self.goal_memory.interrupt()
-        if odometry.speed != 0 or odometry.yaw_rate != 0:
+        if self.params.goal_memory.enabled and (odometry.speed != 0 or odometry.yaw_rate != 0):
             self._under_way_s += odometry.dt
             self.goal_memory.learn(*self.pose_cells.active, self._under_way_s)
-        if scan is not None and self.occupancy is not None and self.map_grid is not None:
+        if (
+            self.params.occupancy.enabled
+            and scan is not None
+            and self.occupancy is not None
+            and self.map_grid is not None
+        ):
             self.occupancy.update(packet, scan)
             self.map_grid.add(self.experience_map.active, self.experience_map.local_pose, scan)
 
