@@ -6,7 +6,8 @@ import argparse
 import os
 import sys
 import webbrowser
-from dataclasses import asdict
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -15,12 +16,36 @@ from app.config import Config
 from app.startup.compiling import Compiling
 from app.startup.waking import Waking
 from ratslam_core import RatSlam, load_brain
-from sim2d import World, own_worlds
+from sim2d import DEFAULT_WORLD, World, own_worlds
 
 if TYPE_CHECKING:
+    from app.engine.engine import Engine
     from app.kept_brains.files import KeptBrain
+    from app.trials.trial import Trial
 
 ENGINE_PATIENCE_S = 2.0  # how long leaving waits for a tick that hangs
+_NOT_WITH_EXPERIMENT = ("scale", "brain", "preset", "config", "set", "resume_brain")
+
+
+@dataclass(frozen=True, slots=True)
+class Serving:
+    """How the dashboard is served. speed: simulated seconds per second, 0 = as fast as possible."""
+
+    port: int = 8000
+    browser: bool = True  # open the page where there is a screen
+    speed: float = 1.0
+    running: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class First:
+    """What the session begins with. begin: begins the first run otherwise."""
+
+    world: World
+    seed: int
+    config: Config
+    brain: RatSlam | None = None
+    begin: Callable[[Engine], object] | None = None
 
 
 def add_run(commands: Verbs) -> None:
@@ -35,7 +60,10 @@ def add_run(commands: Verbs) -> None:
     run.add_argument(
         "--resume-brain", action="store_true", help="go on with the brain kept last, in its world and with its seed"
     )
-    run.set_defaults(do=_run)
+    run.add_argument("--experiment", metavar="NAME|FILE", help="watch a trial of this experiment (--seed: this one)")
+    run.add_argument("--engine", choices=("ours", "paper"), help="with --experiment: our rules or the paper's")
+    run.add_argument("--levels", nargs="+", metavar="LEVEL", help="with --experiment: one level of each of its axes")
+    run.set_defaults(do=_run, seed=None)
 
 
 def _port(text: str) -> int:
@@ -50,37 +78,86 @@ def _run(args: argparse.Namespace) -> int:
 
     if not is_speed(args.speed):
         raise ValueError(f"--speed must be {SPEEDS}, got {args.speed:g}")
+    serving = Serving(args.port, not args.no_browser, args.speed, not args.paused)
+    if args.experiment is not None:
+        return _run_experiment(args, serving)
+    for name in ("engine", "levels"):
+        if getattr(args, name) is not None:
+            raise ValueError(f"--{name} is for a trial; give --experiment NAME with it")
+    args.seed = 1 if args.seed is None else args.seed
     own_worlds.tidy()
     kept = _resume(args)
     world, config, brain = session_of(args)
+    return _compiling(lambda compiling: _serve(serving, First(world, args.seed, config, brain), compiling, kept))
+
+
+def _run_experiment(args: argparse.Namespace, serving: Serving) -> int:
+    from app.trials.chosen import chosen_trial
+    from app.trials.experiment import find_experiment
+
+    for name in _NOT_WITH_EXPERIMENT:
+        if getattr(args, name):
+            raise ValueError(
+                f"--{name.replace('_', '-')} does not go with --experiment, which has its own world and parameters"
+            )
+    if args.world != DEFAULT_WORLD:
+        raise ValueError(f"--world {args.world} does not go with --experiment, which has its own world and parameters")
+    experiment = find_experiment(args.experiment)
+    trial = chosen_trial(experiment, args.engine, args.levels, args.seed)
+    return run_with_trial(trial, None, title=experiment.title, serving=serving)
+
+
+def run_with_trial(trial: Trial, moment_s: float | None, *, title: str = "", serving: Serving | None = None) -> int:
+    """Open the dashboard on a trial of an experiment. The exit code.
+
+    moment_s: simulated time of the moment that is to be seen: the trial is run ahead, as fast as possible, to shortly
+    before it, and plays from there. None: it plays from its beginning. title: of the experiment.
+    """
+    serving = serving or Serving()
+    course = trial.begin()  # ValueError now rather than in the engine's thread
+    session = course.session
+
+    def begin(engine: Engine) -> None:
+        engine.begin_trial(trial, title or trial.experiment, moment_s)
+        engine.running = serving.running or engine.runs_ahead
+
+    own_worlds.tidy()
+    first = First(session.world, trial.seed, session.config, begin=begin)
+    return _compiling(lambda compiling: _serve(serving, first, compiling, None))
+
+
+def _compiling(serve: Callable[[Compiling], int]) -> int:
     compiling = Compiling()  # runs in the background while the rest is loaded
     try:
-        return _serve(args, (world, config, brain), compiling, kept)
+        return serve(compiling)
     finally:
         compiling.stop()
 
 
-def _serve(
-    args: argparse.Namespace, begin: tuple[World, Config, RatSlam | None], compiling: Compiling, kept: KeptBrain | None
-) -> int:
+def _serve(serving: Serving, first: First, compiling: Compiling, kept: KeptBrain | None) -> int:
     from app.engine_thread import EngineThread
+    from app.gallery.gallery import StoredGallery
     from app.kept_brains.keeper import BrainKeeper
     from web.http.kept_offer import Offered
     from web.http.server import CannotListen, Dashboard
     from web.viewer.viewers import Viewers
 
-    world, config, brain = begin
-    engine = EngineThread(world, args.seed, config, speed=args.speed, running=not args.paused, brain=brain)
+    engine = EngineThread(
+        first.world, first.seed, first.config, speed=serving.speed, running=serving.running, brain=first.brain,
+        first=first.begin,
+    )  # fmt: skip
     viewers = Viewers(engine.latest, engine.submit)
     offered = kept and Offered(**asdict(kept.about), read=partial(load_brain, kept.path))
-    dashboard = Dashboard(engine.latest, engine.submit, viewers, port=args.port, offered=offered)
+    dashboard = Dashboard(
+        engine.latest, engine.submit, viewers, port=serving.port, offered=offered, experiments=StoredGallery()
+    )
     try:
         dashboard.bind()
     except CannotListen as error:
         raise ValueError(str(error)) from None
 
     waking, keeper = Waking(engine, compiling), BrainKeeper(engine.latest, engine.submit)
-    dashboard.on_ready, engine.on_stillborn = partial(_tell, args), dashboard.stop
+    dashboard.on_ready, engine.on_stillborn = partial(_tell, serving), dashboard.stop
     waking.start()
     keeper.start()
     try:
@@ -93,9 +170,9 @@ def _serve(
     return 0
 
 
-def _tell(args: argparse.Namespace, url: str) -> None:
+def _tell(serving: Serving, url: str) -> None:
     print(f"RatSLAM is alive at {url}  (Ctrl+C ends it)", flush=True)
-    if not args.no_browser and _has_screen():
+    if serving.browser and _has_screen():
         webbrowser.open(url)
 
 

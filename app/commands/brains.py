@@ -24,7 +24,7 @@ def use_brain(engine: Engine, request: m.UseBrain) -> Outcome:
             world = engine.library.read(request.world)
         if not isinstance(brain, RatSlam):
             raise TypeError(f"it is a {type(brain).__name__}")
-        new = engine.begin(world, seed, session.config.with_engine(brain.params), brain)
+        new = engine.begin(world, seed, engine.next_config.with_engine(brain.params), brain)
     except Exception as error:
         return m.Refused("brain", None, f"this brain cannot be used here: {error}")
     new.event_log.note("brain", f"woke up with {len(brain.experience_map)} experiences")

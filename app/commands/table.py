@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from app.commands import brains, editing, looking, office, parameters, robot, transport, worlds
+from app.commands.experiments import after_order, watch_experiment
 from app.commands.inject_packet import inject_packet
 from app.commands.outcome import Later, Outcome
 from app.engine.engine import Engine
@@ -36,6 +37,7 @@ COMMANDS: dict[type, Handler] = {
     m.RedoEdit: editing.redo_edit,
     m.Inspect: looking.inspect,
     m.InjectPacket: inject_packet,
+    m.WatchExperiment: watch_experiment,
 }
 REQUESTS: dict[type, Handler] = {
     m.ReadExperience: looking.read_experience,
@@ -69,6 +71,7 @@ def _commanded(engine: Engine, handler: Handler, command: object) -> Outcome:
     outcome = handler(engine, command)
     if outcome is None:
         run.snapshots.refresh()
+        after_order(engine, command)
     for words in run.session.config.warnings:
         if words not in before:
             run.event_log.note("warning", words)

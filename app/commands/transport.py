@@ -53,7 +53,7 @@ def reset(engine: Engine, command: m.Reset) -> Outcome:
     try:
         if name is not None and name != world.name:
             world = engine.library.world(name)
-        engine.begin(world, session.seed if command.seed is None else command.seed, session.config)
+        engine.begin(world, session.seed if command.seed is None else command.seed, engine.next_config)
     except ValueError as error:
         return m.Refused("world", name or world.name, str(error))
     return None

@@ -22,7 +22,7 @@ def open_world(engine: Engine, request: m.OpenWorld) -> Outcome:
     world = engine.library.named(request.world)
     session = engine.run.session
     try:
-        new = engine.begin(world, session.seed, session.config)
+        new = engine.begin(world, session.seed, engine.next_config)
     except ValueError as error:
         return m.Refused("world", world.name, str(error))
     if not request.filed:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import time
 import traceback
 from collections.abc import Callable
 
@@ -14,6 +15,9 @@ from app.engine.pace import Pace
 from app.engine.run import Run
 from app.engine.steps import Steps
 from app.engine.watchdog import Watchdog
+from app.engine.watched_trial import WatchedTrial
+from app.session import Session
+from app.trials.trial import Trial
 from app.views.tick_stages import TickRecorder
 from app.world_editor import WorldEditor
 from ratslam_core import RatSlam
@@ -50,7 +54,32 @@ class Engine:
         """Begin another run. If that fails, the old run is left as it is. ValueError says why."""
         old = self._run
         before = None if old is None or self.fault is not None else old.session  # after a fault it may be half changed
-        run = Run(old.number + 1 if old else 1, world, seed, config, self.library.titles, brain, before)
+        run = self._make_run(Session(world, seed, config, brain, before))
+        if brain is not None:  # a foreign brain must be one that can be shown: try it before it is accepted
+            run.require_showable()
+        return self._change_to(run, world)
+
+    def begin_trial(self, trial: Trial, title: str, moment_s: float | None = None) -> Run:
+        """Begin a run that carries out the trial of an experiment, and play it.
+
+        title: of the experiment. moment_s: simulated time of a moment; the trial is first run ahead to shortly before it.
+        If that fails, the old run is left as it is. ValueError says why.
+        """
+        course = trial.begin()
+        run = self._make_run(course.session)
+        run.trial = WatchedTrial(trial, title, course, run.event_log, moment_s)
+        run.config_before = None if self._run is None else self.next_config
+        world = course.session.world
+        if world.name not in dict(self.library.titles):
+            self.library.add(world)
+        self._change_to(run, world)
+        self.running = True
+        return run
+
+    def _make_run(self, session: Session) -> Run:
+        return Run(self._run.number + 1 if self._run else 1, session, self.library.titles)
+
+    def _change_to(self, run: Run, world: World) -> Run:
         self.break_off()
         self.library.close(world.name)
         run.snapshots.worlds = self.library.titles
@@ -67,6 +96,7 @@ class Engine:
 
         An exception pauses the session and is shown as a fault. A tick that hung but ended is noted in the event log.
         """
+        playing = self.trial_plays
         self._watchdog.begin()
         try:
             self.run.tick(recorder)
@@ -74,10 +104,11 @@ class Engine:
             self._watchdog.end()
             self.fail(error)
             return True
+        self._pause_after_trial(playing)
         hung = self._watchdog.end()
         if hung:
             self.run.event_log.note("fault", f"a tick took more than {self._watchdog.limit_s:g} s")
-        return hung
+        return hung or self.trial_plays != playing
 
     def step(self) -> bool:
         """Run one of the ticks that were asked for. Returns the same as `tick`."""
@@ -89,10 +120,51 @@ class Engine:
     def break_off(self) -> None:
         """Drop the remaining ticks. Whoever waits for them is answered with the tick that was reached."""
         self._accept(self.steps.end())
+        if self._run is not None and self._run.trial is not None:
+            self._run.trial.stop_running_ahead()
 
     def _accept(self, requests: list[m.Request]) -> None:
         for request in requests:
             self._answer(request, m.Accepted(self.run.session.tick_count))
+
+    # ------------------------------------------------------------ trials
+
+    @property
+    def next_config(self) -> Config:
+        """For the next run: the parameters as they are now, or as they were before a trial set them."""
+        return self.run.config_before or self.run.session.config
+
+    @property
+    def trial_plays(self) -> bool:
+        """Whether the run carries out a trial that is not over."""
+        return self.run.trial is not None and self.run.trial.state == "running"
+
+    @property
+    def runs_ahead(self) -> bool:
+        """Whether a trial is to be run, as fast as possible, to shortly before its moment."""
+        return self.run.trial is not None and self.run.trial.runs_ahead
+
+    def run_ahead(self, for_s: float) -> bool:
+        """Run ticks for so long (wall time), or until the trial is where it is to be seen; from there it plays in real time.
+
+        True if something has to be shown at once.
+        """
+        until_s, to_show = time.perf_counter() + for_s, False
+        while self.runs_ahead and not to_show and time.perf_counter() < until_s:
+            to_show = self.tick()
+        if self.runs_ahead:
+            return to_show
+        self.pace.speed = 1.0
+        self.pace.hurry()
+        self.run.snapshots.refresh()
+        return True
+
+    def _pause_after_trial(self, played: bool) -> None:
+        """A trial that has just come to its end is looked at in peace; whoever presses play goes on from there."""
+        trial = self.run.trial
+        if played and trial is not None and trial.state == "over":
+            self.running = False
+            self.break_off()
 
     # ------------------------------------------------------------ stopping
 
@@ -101,6 +173,8 @@ class Engine:
         if self.fault is not None:
             return m.Refused("type", kind, f"the session stopped at a fault ({self.fault}); reset it")
         self.running = False
+        if self.run.trial is not None:
+            self.run.trial.stop_running_ahead()
         return None
 
     def fail(self, error: BaseException) -> None:
@@ -121,6 +195,7 @@ class Engine:
         run, speed = self.run, self.pace.speed if self.pace.speed > 0 else math.inf
         self.editor.follow(run.session.simulator.world)
         run.snapshots.office = self.editor.edition
+        run.snapshots.trial = None if run.trial is None else run.trial.view()
         return run.snapshots.build(
             running=self.running, speed=speed, real_time_factor=self.pace.factor, fault=self.fault
         )

@@ -6,6 +6,8 @@ import math
 import time
 
 PUBLISH_EVERY_S = 1 / 20
+PROGRESS_EVERY_S = 1 / 4  # while a trial is run ahead: each look costs the time of some ticks
+SLICE_S = 0.05  # of running ahead; commands come in between
 HAND_EXPIRES_S = 0.3  # wall time: whoever lets go of a key expects the robot to stop, at any simulated speed
 MOST_BEHIND_S = 0.25
 LONGEST_WAIT_S = 0.5
@@ -68,6 +70,10 @@ class Pace:
 
     def published(self) -> None:
         self._published = time.perf_counter()
+
+    @property
+    def progress_due(self) -> bool:
+        return time.perf_counter() - self._published >= PROGRESS_EVERY_S
 
     @property
     def publishing_due(self) -> bool:

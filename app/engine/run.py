@@ -4,31 +4,26 @@ from __future__ import annotations
 
 from app.config import Config
 from app.engine.faults import require_finite
+from app.engine.watched_trial import WatchedTrial
 from app.session import Session
 from app.views.event_log import EventLog
 from app.views.history import History
 from app.views.snapshots import Snapshots
 from app.views.tick_stages import TickRecorder
 from app.views.visits import VisitLog
-from ratslam_core import RatSlam
-from sim2d import World
 
 
 class Run:
-    """A session with its history and snapshots. ValueError says why it cannot begin."""
+    """A session with its history and snapshots."""
 
-    def __init__(
-        self, number: int, world: World, seed: int, config: Config, titles: tuple[tuple[str, str], ...],
-        brain: RatSlam | None = None, before: Session | None = None,
-    ) -> None:  # fmt: skip
-        """titles: names and titles of all worlds. brain, before: as in Session."""
-        self.number = number
-        self.session = Session(world, seed, config, brain, before)
+    def __init__(self, number: int, session: Session, titles: tuple[tuple[str, str], ...]) -> None:
+        """titles: names and titles of all worlds."""
+        self.number, self.session = number, session
+        self.trial: WatchedTrial | None = None
+        self.config_before: Config | None = None  # a trial's settings go with it
         self.history = History(self.session)
         self.snapshots = Snapshots(self.session, self.history, number, titles)
-        if brain is not None:  # a foreign brain must be one that can be shown: try it before it is accepted
-            self.snapshots.build(running=False, speed=1.0, real_time_factor=0.0, fault=None)
-        for words in config.warnings:
+        for words in session.config.warnings:
             self.event_log.note("warning", words)
 
     @property
@@ -45,6 +40,12 @@ class Run:
         self.session.tick(recorder)
         require_finite(self.session)
         self.history.watch()
+        if self.trial is not None:
+            self.trial.advance()
+
+    def require_showable(self) -> None:
+        """Build a snapshot, to raise what would be raised later."""
+        self.snapshots.build(running=False, speed=1.0, real_time_factor=0.0, fault=None)
 
     def walk(self, back: bool) -> bool:
         """Show the next stage of the recorded tick, or the previous one. False if there is none."""

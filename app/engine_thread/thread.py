@@ -16,7 +16,7 @@ from app.commands import Later, carry_out
 from app.config import Config
 from app.engine.engine import Engine
 from app.engine.faults import words_of
-from app.engine.pace import LONGEST_WAIT_S, Pace
+from app.engine.pace import LONGEST_WAIT_S, SLICE_S, Pace
 from app.engine.watchdog import Watchdog
 from app.engine_thread.inbox import Inbox
 from app.session import Session
@@ -33,14 +33,17 @@ class EngineThread:
 
     def __init__(
         self, world: World, seed: int, config: Config, *, speed: float = 1.0, running: bool = True,
-        brain: RatSlam | None = None, stall_s: float = STALL_S,
+        brain: RatSlam | None = None, first: Callable[[Engine], object] | None = None, stall_s: float = STALL_S,
     ) -> None:  # fmt: skip
-        """brain: one that already knows places. stall_s: a tick that takes longer than this is shown as a fault."""
+        """brain: one that already knows places. first: begins the first run, instead of one in this world with this seed.
+
+        stall_s: a tick that takes longer than this is shown as a fault.
+        """
         self.latest: Latest[m.Snapshot] = Latest()
         self.stillborn: str | None = None  # why the engine could not begin; then the thread has ended ...
         self.on_stillborn: Callable[[], object] = lambda: None  # ... and calls this
         self.pace = Pace(speed)
-        self._first = (world, seed, config, brain)
+        self._first = first or (lambda engine: engine.begin(world, seed, config, brain))
         self._inbox = Inbox()
         self._watchdog = Watchdog(stall_s, self._tell_stall)
         self._engine = Engine(world, self.pace, self._watchdog, running=running, answer=self._inbox.answer)
@@ -86,7 +89,7 @@ class EngineThread:
         """Begin the first run. False if that fails."""
         try:
             self._watchdog.start()
-            self._engine.begin(*self._first)
+            self._first(self._engine)
             self._publish()
             if self.latest.get()[1] is None:
                 raise RuntimeError(self._engine.fault)
@@ -108,10 +111,13 @@ class EngineThread:
             session.pilot.drive(0.0, 0.0)
         if engine.steps:
             self._step()
+        elif engine.runs_ahead:
+            if engine.run_ahead(SLICE_S) or pace.progress_due:
+                self._publish()
         elif engine.running and pace.due(session.frame.dt) and engine.tick():
             self._publish()
         pace.measure(session.time_s)
-        if (engine.running or engine.steps) and pace.publishing_due:
+        if (engine.running or engine.steps) and not engine.runs_ahead and pace.publishing_due:
             self._publish()
 
     def _step(self) -> None:
@@ -125,7 +131,7 @@ class EngineThread:
         """Carry out all commands that wait. If there are none, sleep until the next tick is due or a command comes."""
         wait = self.pace.wait_s() if self._engine.running else LONGEST_WAIT_S
         while True:
-            idle = not self._inbox.has_answers and not self._engine.steps
+            idle = not (self._inbox.has_answers or self._engine.steps or self._engine.runs_ahead)
             request = self._inbox.take(min(wait, LONGEST_WAIT_S) if idle else 0.0)
             if request is None:
                 return

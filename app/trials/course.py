@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from app.session import Session, spread_goals
 from app.trials.checking import check_steps, place_of
@@ -22,6 +23,8 @@ SHARP_RAD = 0.6  # it turns on the spot if its next point lies farther aside tha
 _TRIES = 200  # random places tried to find one that is far enough away
 _STANDING = (0.0, 0.0)
 
+MomentKind = Literal["tagged", "kidnap", "recovered", "reached", "failed", "step", "end"]
+
 
 @dataclass(frozen=True, slots=True)
 class Moment:
@@ -30,6 +33,7 @@ class Moment:
     time_s: float
     words: str
     ok: bool | None = None
+    kind: MomentKind = "step"
 
 
 @dataclass(slots=True)
@@ -86,11 +90,12 @@ class Course:
     def ticks(self) -> Iterator[str]:
         """What is being done, before each tick."""
         yield from self._all(self.steps)
-        self.note("the end")
+        self.note("the end", kind="end")
 
-    def note(self, words: str, ok: bool | None = None) -> None:
+    def note(self, words: str, ok: bool | None = None, kind: MomentKind | None = None) -> None:
         """Write down that something happens now."""
-        self.moments.append(Moment(self.session.time_s, words, ok))
+        judged: MomentKind = "step" if ok is None else "reached" if ok else "failed"
+        self.moments.append(Moment(self.session.time_s, words, ok, kind or judged))
 
     @property
     def deciding(self) -> Moment:
@@ -147,7 +152,7 @@ class Course:
         yield what
         for name, tag in self.tags.items():
             if tag.note(self._here, self.session.brain.experience_map.active):
-                self.note(f"{name} is tagged, {tag.away_m:.2f} m from it")
+                self.note(f"{name} is tagged, {tag.away_m:.2f} m from it", kind="tagged")
 
     def _for(self, seconds: float, what: str) -> Iterator[str]:
         for _ in range(max(1, round(seconds / self.session.frame.dt))):
@@ -169,7 +174,9 @@ class Course:
         if kidnap.after_s is None:
             self.note("not recovered from the kidnap", False)
         else:
-            self.note(f"recovered {kidnap.after_s:.1f} s and {kidnap.after_m or 0:.1f} m after the kidnap", True)
+            self.note(
+                f"recovered {kidnap.after_s:.1f} s and {kidnap.after_m or 0:.1f} m after the kidnap", True, "recovered"
+            )
 
     def _drive(self, step: Drive) -> Iterator[str]:
         for lap in range(step.laps):
@@ -247,7 +254,7 @@ class Course:
         else:
             x, y, by_chance = self._far_away(step.least_m)
             session.kidnap(x, y, by_chance if heading is None else heading)
-        self.note("kidnapped")
+        self.note("kidnapped", kind="kidnap")
 
     def _far_away(self, least_m: float) -> tuple[float, float, float]:
         for _ in range(_TRIES):

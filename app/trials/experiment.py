@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from app.config import Config
 from app.config.presets import values_of
 from app.trials.code_version import code_version
+from app.trials.figure_options import check_figures
 from app.trials.measures import MEASURES
 from app.trials.steps import Drive, Explore, Move, Repeat, Step, Tour, Values, Visit, Wait
 from app.trials.trial import Trial, text_of
@@ -73,7 +74,7 @@ class Original(_Part):
 
 
 class FigureSpec(_Part):
-    """A figure. What each kind shows, and its options: figures/."""
+    """A figure. What each kind shows, and its options: figure_options.py."""
 
     kind: str
     title: str = ""
@@ -169,7 +170,8 @@ class Experiment(_Part):
         return values
 
     def check(self) -> None:
-        """ValueError says what does not fit together: a parameter, a place, a world."""
+        """ValueError says what does not fit together: a parameter, a place, a world, a figure."""
+        check_figures(self)
         for trial in self.make_trials(trials=1):
             trial.begin()
 

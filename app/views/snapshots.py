@@ -20,7 +20,7 @@ from app.views.senses import senses_of
 from app.views.throttle import Slow
 from app.views.tick_stages import Walk
 from app.views.world_drawing import DrawnWorld
-from web.messages import Inspect, OfficeEdition, Pose, Snapshot, Timing
+from web.messages import Inspect, OfficeEdition, Pose, Snapshot, Timing, TrialView
 
 OCCUPANCY_EVERY_S = 2.0  # of wall time
 GOAL_MEMORY_EVERY_S = 0.5
@@ -34,6 +34,7 @@ class Snapshots:
     def __init__(self, session: Session, history: History, run: int, worlds: tuple[tuple[str, str], ...]) -> None:
         self._session, self._history, self._run, self.worlds = session, history, run, worlds
         self.office: OfficeEdition | None = None
+        self.trial: TrialView | None = None
         self.inspected = Inspect(type="inspect")  # at first nothing
         self.walk: Walk | None = None  # through the stages of the last tick
         self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), ParameterRows()
@@ -98,6 +99,7 @@ class Snapshots:
             presets=_PRESETS,
             preset=preset,
             office=self.office,
+            trial=self.trial,
             no_room=session.simulator.fit.refusal,
         )
 

@@ -21,6 +21,7 @@ from web.http.bodies import body_of, json_response
 from web.http.brain_download import BrainDownload
 from web.http.brain_files import unpacked
 from web.http.commands import READER, CommandAccepted, Declined, Malformed, Problem, check, problem, read_object, wrong
+from web.http.experiments import Gallery, add_experiments
 from web.http.kept_offer import Offered, add_kept_offer
 from web.http.proxy import PAGE_ID, Cameras, ViewersLike, ViserProxy, spoken
 from web.http.security import MAX_BRAIN_BYTES, Guard, Limits
@@ -44,9 +45,13 @@ _ERRORS: dict[int | str, dict[str, Any]] = {
 
 
 def create_app(
-    latest: Latest[Snapshot], submit: Submit, viewers: ViewersLike, port: int, offered: Offered | None = None
-) -> ASGIApp:
-    """The whole application behind its guard. `port`: the one that Host and Origin must name; `offered`: a kept brain."""
+    latest: Latest[Snapshot], submit: Submit, viewers: ViewersLike, port: int, offered: Offered | None = None,
+    experiments: Gallery | None = None,
+) -> ASGIApp:  # fmt: skip
+    """The whole application behind its guard.
+
+    port: the one that Host and Origin must name. offered: a kept brain. experiments: those of the page's gallery.
+    """
     cameras, themes = Cameras(), Themes()
     stream = Stream(latest, submit, cameras, themes, viewers.switches)
 
@@ -71,6 +76,7 @@ def create_app(
     add_kept_offer(app, offered, latest, submit)
     _add_commands(app, submit)
     add_worlds(app, latest, submit)
+    add_experiments(app, experiments)
     _add_stream(app, stream)
     _add_viser(app, ViserProxy(viewers, cameras, themes))
     _add_pages(app)

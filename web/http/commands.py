@@ -108,6 +108,8 @@ def _explain(document: dict[str, Any], error: ValidationError) -> list[dict[str,
         elif field == "steps" and len(where) > 2:
             path = "steps" + "".join(f"[{part}]" if part.isdigit() else f".{part}" for part in where[2:])
             reason = f"{path} is wrong: {item['msg'][0].lower()}{item['msg'][1:]}, got {_shown(value)}"
+        elif field == "levels" and len(where) > 2:
+            reason = f"levels must be a list of texts of at most 64 characters, got {_shown(value)}"
         elif len(where) > 2:  # a field that may be of several types
             reason = f"{field} must be a number, true, false or text of at most 64 characters, got {_shown(value)}"
         else:

@@ -15,6 +15,7 @@ from types import FrameType
 import uvicorn
 
 from web.http.api import create_app
+from web.http.experiments import Gallery
 from web.http.handshake import MAX_HEADER_BYTES, WebSocketProtocol
 from web.http.kept_offer import Offered
 from web.http.proxy import ViewersLike
@@ -42,15 +43,16 @@ class Dashboard:
         port: int = 8000,
         on_ready: Callable[[str], None] | None = None,
         offered: Offered | None = None,
+        experiments: Gallery | None = None,
     ) -> None:
-        """offered: the brain of an earlier program, for whoever opens the page."""
+        """offered: the brain of an earlier program, for whoever opens the page. experiments: for the page's gallery."""
         self._latest = latest
         self._submit = submit
         self._viewers = viewers
         self._host = host
         self._port = port
         self.on_ready = on_ready
-        self._offered = offered
+        self._offered, self._experiments = offered, experiments
         self._socket: socket.socket | None = None
         self._server: _Server | None = None
         self._ended = False
@@ -96,7 +98,7 @@ class Dashboard:
 
     def _config(self) -> uvicorn.Config:
         return uvicorn.Config(
-            create_app(self._latest, self._submit, self._viewers, self._port, self._offered),
+            create_app(self._latest, self._submit, self._viewers, self._port, self._offered, self._experiments),
             ws=WebSocketProtocol,
             h11_max_incomplete_event_size=MAX_HEADER_BYTES,
             ws_max_size=MAX_FRAME_BYTES,

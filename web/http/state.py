@@ -23,6 +23,7 @@ from web.messages import (
     Report,
     Snapshot,
     TickWalk,
+    TrialView,
     ViewReport,
 )
 
@@ -55,6 +56,7 @@ def state(snapshot: Snapshot) -> dict[str, Any]:
         "goal": None if snapshot.goal is None else _goal(snapshot.goal),
         "error_m": {"map": snapshot.error_map_m, "odometry": snapshot.error_odometry_m},
         "living": None if snapshot.living is None else _living(snapshot.living),
+        "trial": None if snapshot.trial is None else trial_fields(snapshot.trial),
     }
 
 
@@ -83,6 +85,23 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
 
 def office_fields(office: OfficeEdition) -> dict[str, Any]:
     return {"edition": office.number, "undo": office.undo, "redo": office.redo, "saved": office.saved}
+
+
+def trial_fields(trial: TrialView) -> dict[str, Any]:
+    return {
+        "experiment": trial.experiment,
+        "title": trial.title,
+        "engine": trial.engine,
+        "levels": trial.levels,
+        "seed": trial.seed,
+        "id": trial.id,
+        "state": trial.state,
+        "doing": trial.doing,
+        "about_s": trial.about_s,
+        "ahead": trial.ahead,
+        "altered": trial.altered,
+        "outcome": trial.outcome,
+    }
 
 
 def _inspected(report: Report) -> str:

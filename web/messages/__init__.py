@@ -45,6 +45,7 @@ from web.messages.commands import (
     StepStage,
     UndoEdit,
     UsePreset,
+    WatchExperiment,
 )
 from web.messages.engine_requests import (
     Accepted,
@@ -74,6 +75,7 @@ from web.messages.reports import (
 )
 from web.messages.snapshot import Event, EventKind, Parameter, Series, Snapshot
 from web.messages.tick import TickStage, TickWalk, Timing
+from web.messages.trial import TrialState, TrialView
 
 __all__ = [
     "Accepted",
@@ -141,11 +143,14 @@ __all__ = [
     "Times",
     "TimesLayer",
     "Timing",
+    "TrialState",
+    "TrialView",
     "UndoEdit",
     "UseBrain",
     "UsePreset",
     "ViewReport",
     "Warn",
+    "WatchExperiment",
     "WorldDeleted",
     "WorldDrawing",
     "WorldRestored",

@@ -177,6 +177,26 @@ class Inspect(_Command):
     y: Annotated[int, Field(ge=0)] | None = None
 
 
+_Label = Annotated[str, Field(max_length=64)]
+
+
+class WatchExperiment(_Command):
+    """Begin a trial of an experiment and watch it. What is left out is as the experiment's file says.
+
+    levels: one label of each axis. trial: the id of a trial that was run, to be told if it would not be the same run today.
+    moment_s: the trial is first run ahead, as fast as possible, to ten seconds before this simulated time.
+    """
+
+    type: Literal["watch_experiment"]
+    experiment: _Label
+    engine: Literal["paper", "ours"] | None = None
+    levels: Annotated[list[_Label], Field(max_length=8)] | None = None
+    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] | None = None
+    quick: bool = False  # the shortened trial
+    trial: _Label | None = None
+    moment_s: Annotated[float, Field(ge=0, le=1e7)] | None = None
+
+
 OfficeList = Literal[
     "walls", "starts", "places", "doors", "lamps", "boxes", "people", "slow_zones", "script", "daylight"
 ]  # fmt: skip
@@ -232,6 +252,7 @@ Command = Annotated[
     | SetParameter
     | OfficeOrder
     | EditOrder
-    | LookOrder,
+    | LookOrder
+    | WatchExperiment,
     Field(discriminator="type"),
 ]

@@ -29,10 +29,11 @@ from web.messages.brain import (
 from web.messages.office import LivingLayer, OfficeEdition, WorldDrawing
 from web.messages.reports import Report
 from web.messages.tick import TickWalk, Timing
+from web.messages.trial import TrialView
 
 EventKind = Literal[
     "kidnap", "lost", "recovered", "snap", "goal", "arrived", "unreachable", "packet", "brain", "office", "parameter",
-    "link", "place", "false", "warning", "fault",
+    "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed",
 ]  # fmt: skip
 
 
@@ -123,4 +124,5 @@ class Snapshot:
     preset: str = ""  # the preset whose values are all set; empty: none
     office: OfficeEdition | None = None
     belief: Belief | None = None  # None: there is no experience map
+    trial: TrialView | None = None  # None: no trial of an experiment was begun in this run
     map_turn_rad: float = 0.0  # turns the map, for the eye only, so that it lies as the office does

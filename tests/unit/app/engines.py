@@ -21,7 +21,7 @@ def an_engine(world: World, seed: int = 3, config: Config | None = None) -> Engi
     return engine
 
 
-def tell(engine: Engine, **fields: object) -> str:
+def tell(engine: Engine, /, **fields: object) -> str:
     """Give a command; returns the words on the timeline. ValueError when it is refused."""
     outcome = carry_out(engine, READER.validate_python(fields))
     if isinstance(outcome, m.Refused):

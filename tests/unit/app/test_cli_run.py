@@ -74,7 +74,17 @@ class EngineDouble:
 class DashboardDouble:
     on_ready: Callable[[str], None] | None = None
 
-    def __init__(self, doubles: Doubles, latest: object, submit: object, stage: object, *, port: int, offered: object):  # noqa: ARG002
+    def __init__(
+        self,
+        doubles: Doubles,
+        latest: object,
+        submit: object,
+        stage: object,
+        *,
+        port: int,
+        offered: object,
+        experiments: object,
+    ):  # noqa: ARG002
         self._doubles = doubles
         doubles.made["dashboard"] = (latest, submit, stage, port)
 
@@ -104,7 +114,7 @@ def test_run_binds_first_then_starts_and_stops(
         "bound", "engine starts", "serving", "opens http://127.0.0.1:8000/", "compiling ends", "engine stops", "compiling ends",
     ]  # fmt: skip
     name, seed, config, options = doubles.made["engine"]
-    assert (name, seed, options) == ("loop", 9, {"speed": 3.0, "running": False, "brain": None})
+    assert (name, seed, options) == ("loop", 9, {"speed": 3.0, "running": False, "brain": None, "first": None})
     assert config == Config().with_value("robot.light", 0.8)
     assert doubles.made["dashboard"][1:] == ("submit", "viewers", 0)
     assert "RatSLAM is alive at http://127.0.0.1:8000/" in capsys.readouterr().out

@@ -61,7 +61,7 @@ test("no two marks of a kind in five pixels, and those that count most on top", 
     marks.map(({ kind }) => weightOf(kind)),
     marks.map(({ kind }) => weightOf(kind)).sort((a, b) => a - b),
   );
-  assert.equal(marksOf(many, (time_s) => 20 * time_s).length, many.length);
+  assert.equal(marksOf(many, (time_s) => 2000 * time_s).length, many.length);
 });
 
 test("names are within the timeline and none lies over another; what counts most has its name", () => {

@@ -23,7 +23,7 @@ def test_has_the_fields_of_the_contract_and_no_others(snapshot):
     fields = orjson.loads(to_json(state(snapshot)))
     assert list(fields) == [
         "tick", "time_s", "mode", "running", "speed", "world", "seed", "robot", "estimate", "pose_cells", "views",
-        "experiences", "links", "relocalisations", "goal", "error_m", "living",
+        "experiences", "links", "relocalisations", "goal", "error_m", "living", "trial",
     ]  # fmt: skip
     assert list(fields["robot"]) == list(fields["estimate"]) == ["x", "y", "heading_rad"]
     assert list(fields["pose_cells"]) == ["shape", "packets"]

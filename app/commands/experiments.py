@@ -1,0 +1,69 @@
+"""Watching a trial of an experiment, and what becomes of it when somebody gives orders of their own."""
+
+from __future__ import annotations
+
+from app.commands.outcome import Outcome
+from app.engine.engine import Engine
+from app.trials.chosen import check_levels, chosen_trial
+from app.trials.experiment import Experiment, catalogue
+from web import messages as m
+
+ENDS: dict[type, str] = {  # the robot can have one master only
+    m.SetGoal: "somebody gave the robot a goal",
+    m.CancelGoal: "somebody cancelled the robot's goal",
+    m.SetMode: "somebody told the robot what to do",
+    m.Drive: "somebody drove the robot by hand",
+    m.Kidnap: "somebody carried the robot away",
+}
+ALTERS = (
+    m.SetParameter, m.UsePreset, m.SetDoor, m.SetLamp, m.PutBox, m.RemoveBox, m.EditWorld, m.UndoEdit, m.RedoEdit,
+    m.InjectPacket,
+)  # fmt: skip
+
+
+def watch_experiment(engine: Engine, command: m.WatchExperiment) -> Outcome:
+    """Begin the trial in a new run, and play it."""
+    known = {experiment.name: experiment for experiment in catalogue()}
+    experiment = known.get(command.experiment)
+    if experiment is None:
+        reason = f"there is no experiment {command.experiment!r}; expected one of: {', '.join(known)}"
+        return m.Refused("experiment", command.experiment, reason)
+    wrong = _wrong(experiment, command)
+    if wrong is not None:
+        return wrong
+    try:
+        trial = chosen_trial(experiment, command.engine, command.levels, command.seed, command.quick)
+        engine.begin_trial(trial, experiment.title, command.moment_s)
+    except ValueError as error:
+        return m.Refused("experiment", command.experiment, str(error))
+    if command.trial is not None and command.trial != trial.id:
+        words = "the program has changed since this trial was run: what it does today may differ from its scores"
+        engine.run.event_log.note("warning", words)
+    return None
+
+
+def after_order(engine: Engine, command: object) -> None:
+    """An order has been carried out: a trial that is being watched may end by it, or become another run."""
+    trial = engine.run.trial
+    if trial is None:
+        return
+    if isinstance(command, (m.SetParameter, m.UsePreset)):
+        engine.run.config_before = None  # somebody wants them like this
+    if type(command) in ENDS:
+        trial.end(ENDS[type(command)])
+    elif isinstance(command, ALTERS):
+        trial.alter()
+
+
+def _wrong(experiment: Experiment, command: m.WatchExperiment) -> m.Refused | None:
+    if command.engine is not None and command.engine not in experiment.engines:
+        engines = ", ".join(experiment.engines)
+        return m.Refused(
+            "engine", command.engine, f"{experiment.name} has no engine {command.engine!r}; it has: {engines}"
+        )
+    if command.levels is not None:
+        try:
+            check_levels(experiment, command.levels)
+        except ValueError as error:
+            return m.Refused("levels", command.levels, str(error))
+    return None

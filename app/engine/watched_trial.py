@@ -1,0 +1,96 @@
+"""The trial of an experiment that a run carries out, step by step, until it is over or somebody gives the robot orders."""
+
+from __future__ import annotations
+
+from app.trials.chosen import seconds_of
+from app.trials.course import Course
+from app.trials.trial import Trial
+from app.views.event_log import EventLog
+from web.messages import TrialState, TrialView
+
+BEFORE_S = 10.0  # a trial that is run ahead to a moment stops so long before it
+_UNTOLD = ("recovered", "end")  # the log tells of the first anyway, and of the second together with the outcome
+
+
+class WatchedTrial:
+    """Call `advance` after each tick. The run is the same, bit for bit, as that of the trial by itself."""
+
+    def __init__(self, trial: Trial, title: str, course: Course, log: EventLog, moment_s: float | None = None) -> None:
+        """title: of the experiment. moment_s: simulated time of the moment that is to be seen."""
+        self.trial, self.title, self.course = trial, title, course
+        self.state: TrialState = "running"
+        self.doing = self.outcome = ""
+        self.altered = False
+        self._log, self._told = log, 0
+        self._about_s = seconds_of(trial)
+        self._ahead_s = None if moment_s is None or moment_s <= BEFORE_S else moment_s - BEFORE_S
+        self._ticks = course.ticks()
+        where = ", ".join([trial.engine, *trial.levels, f"seed {trial.seed}"])
+        log.note("trial", f"{trial.experiment} begins: {where}")
+        self.advance()  # what it does first: its tags, its first order
+
+    @property
+    def runs_ahead(self) -> bool:
+        """Whether it still has to be run, as fast as possible, to shortly before its moment."""
+        return self._ahead_s is not None
+
+    def advance(self) -> None:
+        """Give the robot its orders for the next tick, and note what has happened."""
+        if self.state != "running":
+            return
+        try:
+            self.doing = next(self._ticks)
+        except StopIteration:
+            self._over()
+        except ValueError as error:  # what it needs is no longer there
+            self.end(f"it cannot go on: {error}")
+        self._note_moments()
+        if self.state == "over":
+            self._log.note("trial", f"{self.trial.experiment} is over: {self.outcome}")
+        if self._ahead_s is not None and self.course.session.time_s >= self._ahead_s - 1e-9:
+            self._ahead_s = None
+
+    def stop_running_ahead(self) -> None:
+        self._ahead_s = None
+
+    def end(self, why: str) -> None:
+        """End it before it is over; the robot goes on."""
+        if self.state == "running":
+            self.state, self.outcome = "ended", why
+            self._ahead_s = None
+            self._log.note("trial", f"{self.trial.experiment} ends: {why}")
+
+    def alter(self) -> None:
+        """Somebody has changed something else than the robot's orders: it goes on, but is no longer the trial that it was."""
+        if self.state == "running" and not self.altered:
+            self.altered = True
+            self._log.note("trial", f"{self.trial.experiment} was changed by hand: from here on it is another run")
+
+    def view(self) -> TrialView:
+        trial, ahead = self.trial, None
+        if self._ahead_s is not None:
+            ahead = min(1.0, self.course.session.time_s / self._ahead_s)
+        return TrialView(
+            trial.experiment, self.title, trial.engine, trial.levels, trial.seed, trial.id, self.state, self.doing,
+            self._about_s, ahead, self.altered, self.outcome,
+        )  # fmt: skip
+
+    def _over(self) -> None:
+        self.state, self.outcome, self._ahead_s = "over", outcome_of(self.course), None
+
+    def _note_moments(self) -> None:
+        for moment in self.course.moments[self._told :]:
+            if moment.kind == "step":
+                self._log.note("trial", moment.words)
+            elif moment.kind not in _UNTOLD:
+                self._log.note(moment.kind, moment.words)
+        self._told = len(self.course.moments)
+
+
+def outcome_of(course: Course) -> str:
+    """What came of a trial, in words."""
+    if course.visits:
+        reached, goals = sum(visit.reached for visit in course.visits), len(course.visits)
+        return f"{reached} of {goals} {'goal' if goals == 1 else 'goals'} reached"
+    judged = [moment for moment in course.moments if moment.ok is not None]
+    return judged[-1].words if judged else f"{course.session.time_s / 60:.1f} minutes were driven"

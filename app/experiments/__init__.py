@@ -1,0 +1,1 @@
+"""Many trials: run beside each other, kept in one file, and summed up with intervals."""

@@ -1,0 +1,114 @@
+"""The workers that run trials: some on this machine, or those of a Dask cluster that exists."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import signal
+from collections.abc import Generator
+from typing import Any
+
+from app.trials.code_version import code_version
+
+HERE = "127.0.0.1"
+FIND_S = 20.0  # how long to look for a scheduler
+JOIN_S = 60.0  # how long to wait for its first worker
+END_S = 5.0
+_ONE_THREAD = {"NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+_CONFIG: dict[str, Any] = {
+    "distributed.scheduler.http.routes": [],  # nothing is served to browsers
+    "distributed.worker.http.routes": [],
+    "distributed.nanny.pre-spawn-environ": _ONE_THREAD,
+    "distributed.admin.low-level-log-length": 100,
+}
+
+
+@contextlib.contextmanager
+def connected_to(scheduler: str | None, workers: int | None) -> Generator[Any]:
+    """A Dask client. scheduler: its address; without one, `workers` processes on this machine, by default one a core.
+
+    ValueError: nobody answers there, or the workers run another version of this program.
+    """
+    if scheduler is not None:
+        with _cluster_that_exists(scheduler) as client:
+            yield client
+    else:
+        with _cluster_of_our_own(workers or cores()) as client:
+            yield client
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextlib.contextmanager
+def _cluster_of_our_own(workers: int) -> Generator[Any]:
+    import dask.config
+    from distributed import Client, LocalCluster
+
+    with dask.config.set(_CONFIG):
+        cluster: Any = LocalCluster(
+            n_workers=workers, threads_per_worker=1, processes=True, host=HERE, memory_limit=0,
+            dashboard_address=f"{HERE}:0", scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL,
+            preload=["app.experiments.batch"],
+        )  # fmt: skip
+        try:
+            client: Any = Client(cluster, set_as_default=False)
+            try:
+                yield client
+            finally:
+                with contextlib.suppress(TimeoutError, OSError):
+                    cluster.sync(_end_workers, list(cluster.workers.values()))
+                    client.close(timeout=END_S)
+        finally:
+            with contextlib.suppress(TimeoutError, OSError):
+                cluster.close(timeout=END_S)
+
+
+async def _end_workers(nannies: list[Any]) -> None:
+    """What they are doing is not waited for, and nobody starts them again."""
+    for nanny in nannies:
+        nanny.close_gracefully(reason="the client ends")
+        if nanny.pid:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(nanny.pid, signal.SIGKILL)
+
+
+@contextlib.contextmanager
+def _cluster_that_exists(address: str) -> Generator[Any]:
+    from distributed import Client
+
+    try:
+        client: Any = Client(address, timeout=FIND_S, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        raise ValueError(
+            f"--scheduler {address}: no Dask scheduler answers ({error}); expected such as tcp://{HERE}:8786"
+        ) from None
+    try:
+        try:
+            client.wait_for_workers(1, timeout=JOIN_S)
+        except TimeoutError:
+            raise ValueError(
+                f"--scheduler {address}: it has no workers; start some there with `dask worker {address}`"
+            ) from None
+        _check_versions(client, address)
+        yield client
+    finally:
+        client.close(timeout=END_S)
+
+
+def _check_versions(client: Any, address: str) -> None:
+    here = code_version()
+    try:
+        versions: dict[str, str] = client.run(code_version)
+    except Exception as error:
+        raise ValueError(
+            f"--scheduler {address}: its workers do not know this program ({error}); install it there, in the same version"
+        ) from None
+    for worker, version in versions.items():
+        if version != here:
+            raise ValueError(
+                f"--scheduler {address}: {worker} runs version {version} of this program, not {here}; make them equal"
+            )

@@ -1,0 +1,83 @@
+"""The tables of the file in which trials are kept."""
+
+from __future__ import annotations
+
+import sqlite3
+from pathlib import Path
+
+VERSION = 1  # of these tables, kept as the file's user_version
+BUSY_S = 60.0  # how long a command waits for another that is writing
+
+_TABLES = """
+CREATE TABLE definitions (
+    digest TEXT PRIMARY KEY,    -- of the text; the trials of a cell share it
+    text TEXT NOT NULL          -- JSON: all of a trial but its seed
+) WITHOUT ROWID;
+CREATE TABLE trials (
+    id TEXT PRIMARY KEY,        -- hash of version, protocol, world, config, seed and what is measured
+    experiment TEXT NOT NULL,
+    engine TEXT NOT NULL,
+    levels TEXT NOT NULL,       -- JSON: of each axis, by label
+    seed INTEGER NOT NULL,
+    version TEXT NOT NULL,      -- of the code
+    quick INTEGER NOT NULL,
+    world TEXT NOT NULL,
+    definition TEXT NOT NULL REFERENCES definitions (digest),
+    simulated_s REAL NOT NULL,
+    wall_s REAL NOT NULL,
+    state_hash TEXT NOT NULL,
+    moment_s REAL NOT NULL,     -- when it was decided, simulated
+    moment TEXT NOT NULL,       -- and by what
+    error TEXT NOT NULL,        -- empty, or why the trial failed; it then has no scores and is run again
+    made_at TEXT NOT NULL       -- UTC
+) WITHOUT ROWID;
+CREATE INDEX trials_by_experiment ON trials (experiment);
+CREATE TABLE scores (
+    trial TEXT NOT NULL REFERENCES trials (id) ON DELETE CASCADE,
+    name TEXT NOT NULL,
+    value REAL NOT NULL,
+    PRIMARY KEY (trial, name)
+) WITHOUT ROWID;
+"""
+
+
+def connected(path: Path) -> sqlite3.Connection:
+    """The file, made if it does not exist. ValueError if it is something else, or of a newer program."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        connection = sqlite3.connect(path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
+    except (OSError, sqlite3.OperationalError) as error:
+        raise ValueError(f"--store {path}: {getattr(error, 'strerror', None) or error}") from None
+    try:
+        connection.execute("PRAGMA journal_mode = WAL")
+        connection.execute(
+            "PRAGMA synchronous = NORMAL"
+        )  # a killed process loses nothing; a power cut the last moments
+        connection.execute("PRAGMA foreign_keys = ON")
+        _make_tables(connection, path)
+    except sqlite3.Error as error:
+        connection.close()
+        raise ValueError(
+            f"--store {path}: {error}; name a file that `ratslam experiment` has made, or a new one"
+        ) from None
+    except ValueError:
+        connection.close()
+        raise
+    return connection
+
+
+def _make_tables(connection: sqlite3.Connection, path: Path) -> None:
+    connection.execute("BEGIN IMMEDIATE")  # two commands may begin at once
+    found = connection.execute("PRAGMA user_version").fetchone()[0]
+    empty = not connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+    if found == 0 and empty:
+        for statement in _TABLES.split(";\n"):
+            connection.execute(statement)
+        connection.execute(f"PRAGMA user_version = {VERSION}")
+    connection.execute("COMMIT")
+    if found == 0 and not empty:
+        raise ValueError(f"--store {path}: this is another program's database; name a new file")
+    if found > VERSION:
+        raise ValueError(
+            f"--store {path}: its tables have version {found}, this program knows {VERSION}; use a newer program, or a new file"
+        )
