@@ -187,7 +187,10 @@ class RatSlam:
         return stages if self.params.pose_cells.move_first else stages[::-1]
 
     def _integrate(self, _seen: Recognition, odometry: Odometry) -> None:
-        self.pose_cells.integrate(odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt)
+        """With `yaw_bias`, the cells turn too far and the map does not: ACRA 2005 5.2, figures 8 to 10. test_biased_loop.py."""
+        moves = odometry.speed != 0 or odometry.yaw_rate != 0
+        yaw_rate = odometry.yaw_rate + (self.params.pose_cells.yaw_bias if moves else 0.0)
+        self.pose_cells.integrate(odometry.speed * odometry.dt, yaw_rate * odometry.dt)
 
     def _associate(self, seen: Recognition, odometry: Odometry) -> None:
         strength = self.local_view.strength(seen) if seen.view != NOTHING else 0.0

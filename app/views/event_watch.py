@@ -9,6 +9,7 @@ from web.messages import Packet, Snap
 
 FALSE_EVERY_S = 5.0  # false positives are marked no more often
 PLACES_EVERY_S = 10.0
+DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
 class EventWatch:
@@ -24,6 +25,7 @@ class EventWatch:
         self._recovered = self._multiple = self._collisions = 0
         self._dropped = len(session.brain.experience_map.dropped_links)
         self._places_due_s = session.time_s + PLACES_EVERY_S
+        self._diverged, self._diverged_due_s = False, 0.0
 
     def watch(self) -> None:
         self._watch_snaps()
@@ -33,6 +35,7 @@ class EventWatch:
         self._watch_false_positives()
         self._watch_links()
         self._watch_places()
+        self._watch_correction()
 
     def _watch_snaps(self) -> None:
         session = self._session
@@ -108,3 +111,11 @@ class EventWatch:
         if collisions > self._collisions:
             self._log.note("place", f"states of the pose cells that stand for several places: {collisions}")
         self._multiple, self._collisions = max(multiple, self._multiple), max(collisions, self._collisions)
+
+    def _watch_correction(self) -> None:
+        """Marks that the papers' literal correction has thrown the map apart."""
+        session, was, self._diverged = self._session, self._diverged, self._session.brain.experience_map.diverged
+        if self._diverged and not was and session.time_s >= self._diverged_due_s:
+            rate = session.config.experience_map.correction
+            self._log.note("warning", f"the map has diverged: a correction rate of {rate:g} is too high for all links at once")
+            self._diverged_due_s = session.time_s + DIVERGED_EVERY_S
