@@ -117,5 +117,7 @@ class EventWatch:
         session, was, self._diverged = self._session, self._diverged, self._session.brain.experience_map.diverged
         if self._diverged and not was and session.time_s >= self._diverged_due_s:
             rate = session.config.experience_map.correction
-            self._log.note("warning", f"the map has diverged: a correction rate of {rate:g} is too high for all links at once")
+            self._log.note(
+                "warning", f"the map has diverged: a correction rate of {rate:g} is too high for all links at once"
+            )
             self._diverged_due_s = session.time_s + DIVERGED_EVERY_S

@@ -62,7 +62,7 @@ from web.messages.engine_requests import (
     WorldRestored,
     WorldSaved,
 )
-from web.messages.office import LivingLayer, OfficeEdition, WorldDrawing
+from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
 from web.messages.reports import (
     CellReport,
     ExperienceReport,
@@ -101,6 +101,7 @@ __all__ = [
     "LivingLayer",
     "LookOrder",
     "MapLayer",
+    "Movements",
     "OccupancyLayer",
     "OccupancyPicture",
     "OfficeEdition",
