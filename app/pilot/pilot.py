@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from app.pilot.bars import Bars
 from app.pilot.behaviours import Behaviour
+from app.pilot.candidates import Candidates, candidates
 from app.pilot.explore import Explorer
 from app.pilot.freeing import Freeing
 from app.pilot.local_movement import LocalMovement
@@ -63,6 +65,11 @@ class Pilot:
     def doing(self) -> str:
         """The current behaviour in words."""
         return self.behaviour.words
+
+    def look_at_choice(self) -> Callable[[], Candidates] | None:
+        """How to find out, at any time, among which arcs the robot chose in this tick; None: it chose none."""
+        asked = self._local.asked
+        return None if asked is None else lambda: candidates(*asked)
 
     def progress(self, experiences: ExperienceMap) -> Progress | None:
         return self._follower.progress(experiences) if self._follower else None

@@ -13,6 +13,7 @@ from app.views.goal_view import goal_view
 from app.views.history import History
 from app.views.inspection import inspect
 from app.views.map_layers import MapLayers
+from app.views.movements import movements_of
 from app.views.occupancy_layer import occupancy_layer
 from app.views.parameter_rows import ParameterRows
 from app.views.pose_cell_layer import pose_cell_layer
@@ -91,6 +92,7 @@ class Snapshots:
             parameters=parameters,
             occupancy=self._occupancy.part(session.tick_count),
             goal_memory=self._goal_memory.part(session.tick_count),
+            movements=movements_of(session),
             living=self._actors.look(session.simulator),
             switches=self._actors.switches(session.simulator.world),
             inspected=self._inspection.part(session.tick_count),

@@ -63,7 +63,7 @@ from web.messages.engine_requests import (
     WorldRestored,
     WorldSaved,
 )
-from web.messages.office import LivingLayer, OfficeEdition, WorldDrawing
+from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
 from web.messages.reports import (
     CellReport,
     ExperienceReport,
@@ -103,6 +103,7 @@ __all__ = [
     "LivingLayer",
     "LookOrder",
     "MapLayer",
+    "Movements",
     "OccupancyLayer",
     "OccupancyPicture",
     "OfficeEdition",

@@ -123,12 +123,14 @@ class Viewer:
         offer, cells = self._layers, snapshot.pose_cells
         with self.server.atomic():
             if offer["world"].offer(now_s, snapshot.world):
-                self._forget("robot", "trail", "living")
+                self._forget("robot", "trail", "living", "movements")
             offer["living"].offer(now_s, snapshot.living)
             if self._pointer.dragging:
                 self._forget("robot")  # when it is let go, it goes back to its true place
             else:
                 offer["robot"].offer(now_s, snapshot.truth, snapshot.senses)
+            tried = None if self._pointer.dragging or not self._switches.is_on("movements") else snapshot.movements
+            offer["movements"].offer(now_s, tried)
             offer["trail"].offer(now_s, snapshot.trail)
             self._draw_overlays(snapshot, now_s)
             offer["cells"].offer(now_s, cells)
@@ -190,6 +192,7 @@ class Viewer:
         self._layers: dict[str, Throttle] = {
             "world": Throttle(5, office.set_world),
             "robot": Throttle(15, office.set_robot),
+            "movements": Throttle(10, office.set_movements),
             "trail": Throttle(2, office.set_trail),
             "living": Throttle(12, office.set_living),
             "cells": Throttle(6, cells.set_cells),
