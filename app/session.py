@@ -14,6 +14,7 @@ import numpy as np
 from app.config import Config, Value
 from app.evaluation import Evaluation
 from app.pilot import Mode, Pilot
+from app.pilot.goal_place import at_place
 from app.stopwatch import Stopwatch
 from disk import encode, kind
 from ratslam_core import Estimate, Odometry, RatSlam
@@ -98,17 +99,10 @@ class Session:
     # ------------------------------------------------------------ orders; ValueError says why one cannot be carried out
 
     def set_goal(self, x: float, y: float) -> int:
-        """Go to the experience nearest to (x, y), metres in the map's frame. Returns that experience."""
-        poses = self.brain.experience_map.poses
-        away = np.hypot(poses[:, 0] - x, poses[:, 1] - y)
-        nearest = int(np.argmin(away))
-        reach = self.pilot.params.goal_reach_m
-        if not away[nearest] <= reach:  # written so that NaN is refused, too
-            raise ValueError(
-                f"({x:g}, {y:g}) is off the map: the nearest experience is {away[nearest]:.1f} m away, "
-                f"at ({poses[nearest, 0]:.1f}, {poses[nearest, 1]:.1f}); choose a place within {reach:g} m of one"
-            )
-        self.pilot.set_goal(nearest)
+        """Go to the place (x, y), metres in the map's frame: to the quickest of all experiences that stand for it. Returns
+        the one nearest to it."""
+        nearest, *others = at_place(self.brain.experience_map, x, y, self.pilot.params)
+        self.pilot.set_goal(nearest, others)
         return nearest
 
     def set_mode(self, mode: Mode) -> None:

@@ -19,4 +19,5 @@ def goal_view(session: Session) -> Goal | None:
     return Goal(
         progress.experience, goal.x, goal.y, progress.state, progress.eta_s, progress.remaining_m,
         frozen(xy.astype(np.float32)), frozen(progress.arrival_s.astype(np.float32)),
+        frozen(experiences.poses[list(session.pilot.goals), :2].astype(np.float32)),
     )  # fmt: skip

@@ -16,7 +16,7 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class SetGoal(_Command):
-    """Go to the experience nearest to this place of the map (metres, map frame)."""
+    """Go to this place of the map (metres, map frame): to the quickest of all experiences that stand for it."""
 
     type: Literal["set_goal"]
     x: Finite

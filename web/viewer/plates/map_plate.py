@@ -170,7 +170,7 @@ class MapPlate(Plate):
             self._flag.hide()
             return
         at = self.fit.to_plate(np.array([[goal.x, goal.y]]))[0]
-        self._flag.show(at, _promise(goal))
+        self._flag.show(at, _promise(goal), meshes.stepped(self.fit.to_plate(goal.places_xy)))
         self._route.show(self.fit.to_plate(goal.route_xy), goal.route_arrival_s, at)
 
     def show_click(self, place: tuple[float, float] | None) -> None:
