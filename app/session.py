@@ -21,10 +21,11 @@ from ratslam_core import Estimate, Odometry, RatSlam
 from ratslam_core.slam import STAGES
 from sim2d import SONAR_ANGLES_RAD, Drive, SensorFrame, Simulator, World, WorldText
 
+MOST_TAGS = 24
 PARTS = ("pilot", "office and senses", *STAGES, "judging")  # of a tick; "judging" compares the estimate with the truth
 
 
-@kind("session/1")
+@kind("session/2")
 class Session:
     """One robot in one world with one brain."""
 
@@ -52,6 +53,7 @@ class Session:
         self.brain = brain
         self.pilot = Pilot(self.config.pilot, np.array(SONAR_ANGLES_RAD), np.random.default_rng(pilot_seed))
         self.evaluation = Evaluation(len(brain.experience_map))
+        self.tags: dict[str, int] = {}  # name -> the experience that was active when somebody gave it
         self._look()
         self.odometry = self._odometry()  # what the brain was told in its last step
         self.estimate: Estimate = self._think(self.stopwatch.lap)
@@ -105,6 +107,31 @@ class Session:
         self.pilot.set_goal(nearest, others)
         return nearest
 
+    def tag(self, name: str) -> int:
+        """Name the place where the robot believes itself to be, as "the kitchen", to send it there later. A name that is
+        given again moves. Returns the active experience. IROS 2005 IV."""
+        name = name.strip()
+        if not name or not name.isprintable():
+            raise ValueError(f"a tag needs a name that can be printed, got {name!r}")
+        if name not in self.tags and len(self.tags) >= MOST_TAGS:
+            raise ValueError(f"{name!r} would be tag number {MOST_TAGS + 1}; {MOST_TAGS} are enough, remove one first")
+        self.tags[name] = self.brain.experience_map.active
+        return self.tags[name]
+
+    def untag(self, name: str) -> None:
+        del self.tags[self._tagged(name)]
+
+    def go_to_tag(self, name: str) -> int:
+        """Go to the place of this name, as after a click there. Returns its experience."""
+        place = self.brain.experience_map.pose(self.tags[self._tagged(name)])
+        return self.set_goal(place.x, place.y)
+
+    def _tagged(self, name: str) -> str:
+        if name not in self.tags:
+            known = f"one of: {', '.join(self.tags)}" if self.tags else "given first; there is none yet"
+            raise ValueError(f"there is no tag {name!r}; it must be {known}")
+        return name
+
     def set_mode(self, mode: Mode) -> None:
         self.pilot.set_mode(mode)
 
@@ -149,7 +176,16 @@ class Session:
 
     def state_hash(self) -> str:
         """A digest of everything that decides the future, and of the evaluation. Equal runs have equal hashes."""
-        parts = self.world_text, self.seed, self.config, self.simulator, self.pilot, self.brain, self.evaluation
+        parts = (
+            self.world_text,
+            self.seed,
+            self.config,
+            self.simulator,
+            self.pilot,
+            self.brain,
+            self.evaluation,
+            self.tags,
+        )
         return hashlib.sha256("".join(encode(part).digest() for part in parts).encode()).hexdigest()
 
     @property

@@ -138,6 +138,16 @@ class Belief:
     forgotten: int  # links of views to pose cells
 
 
+@dataclass(frozen=True, slots=True)
+class TaggedPlace:
+    """A place that somebody has named. Map frame."""
+
+    name: str
+    experience: int
+    x: float
+    y: float
+
+
 GoalState = Literal["tracking", "coasting", "exploring", "arrived", "unreachable"]
 
 

@@ -24,6 +24,7 @@ from web.messages.brain import (
     Pose,
     PoseCellLayer,
     Senses,
+    TaggedPlace,
     TimesLayer,
 )
 from web.messages.office import LivingLayer, OfficeEdition, WorldDrawing
@@ -123,4 +124,5 @@ class Snapshot:
     preset: str = ""  # the preset whose values are all set; empty: none
     office: OfficeEdition | None = None
     belief: Belief | None = None  # None: there is no experience map
+    tags: tuple[TaggedPlace, ...] = ()  # in the order in which they were given
     map_turn_rad: float = 0.0  # turns the map, for the eye only, so that it lies as the office does
