@@ -14,7 +14,7 @@ import numpy as np
 from app.config import Config, Value
 from app.evaluation import Evaluation
 from app.pilot import Mode, Pilot
-from app.pilot.goal_place import at_place
+from app.pilot.goal_place import nearest_to, of_its_place
 from app.stopwatch import Stopwatch
 from disk import encode, kind
 from ratslam_core import Estimate, Odometry, RatSlam
@@ -103,9 +103,7 @@ class Session:
     def set_goal(self, x: float, y: float) -> int:
         """Go to the place (x, y), metres in the map's frame: to the quickest of all experiences that stand for it. Returns
         the one nearest to it."""
-        nearest, *others = at_place(self.brain.experience_map, x, y, self.pilot.params)
-        self.pilot.set_goal(nearest, others)
-        return nearest
+        return self._go_to(nearest_to(self.brain.experience_map, x, y, self.pilot.params))
 
     def tag(self, name: str) -> int:
         """Name the place where the robot believes itself to be, as "the kitchen", to send it there later. A name that is
@@ -123,8 +121,13 @@ class Session:
 
     def go_to_tag(self, name: str) -> int:
         """Go to the place of this name, as after a click there. Returns its experience."""
-        place = self.brain.experience_map.pose(self.tags[self._tagged(name)])
-        return self.set_goal(place.x, place.y)
+        return self._go_to(self.tags[self._tagged(name)])
+
+    def _go_to(self, experience: int) -> int:
+        """Go to this experience or another of its place. Returns the first of them."""
+        first, *others = of_its_place(self.brain.experience_map, experience, self.pilot.params)
+        self.pilot.set_goal(first, others)
+        return first
 
     def _tagged(self, name: str) -> str:
         if name not in self.tags:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.pilot import Pilot
-from app.pilot.goal_place import at_place
+from app.pilot.goal_place import nearest_to, of_its_place
 from app.pilot.params import PilotParams
 from app.pilot.route_following import RouteFollower
 from ratslam_core import Pose2
@@ -31,7 +31,7 @@ def twice_along() -> HandMadeMap:
 
 
 def goals_at(map_: HandMadeMap, x: float, y: float, p: PilotParams = USUAL) -> tuple[int, ...]:
-    return at_place(map_, x, y, p)  # type: ignore[arg-type]
+    return of_its_place(map_, nearest_to(map_, x, y, p), p)  # type: ignore[arg-type]
 
 
 def test_whichever_way_they_face() -> None:
@@ -61,6 +61,14 @@ def test_a_place_of_another_island_alone_is_a_goal() -> None:
     map_.landed = 13
     map_.poses[13:, 1] = 2.0
     assert goals_at(map_, 1.0, 2.1, PilotParams(goal_place_m=0.26)) == (15, 14, 16)
+
+
+def test_who_is_asked_for_comes_first() -> None:
+    """Also where several lie at exactly the same place, as after a turn on the spot."""
+    map_ = twice_along()
+    map_.poses[13:, 1] = 0.6
+    assert of_its_place(map_, 15, PilotParams(goal_place_m=0.1)) == (15, 2)  # type: ignore[arg-type]
+    assert of_its_place(map_, 2, PilotParams(goal_place_m=0.1)) == (2, 15)  # type: ignore[arg-type]
 
 
 def test_the_route_leads_to_the_quickest() -> None:
