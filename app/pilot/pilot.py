@@ -50,7 +50,7 @@ class Pilot:
     @property
     def goals(self) -> tuple[int, ...]:
         """All experiences that stand for the goal, `goal` first; none without a goal."""
-        return self._follower.goals if self._follower else ()
+        return tuple(self._follower.goals) if self._follower else ()
 
     @property
     def goal_state(self) -> tuple[int, str] | None:

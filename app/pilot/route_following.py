@@ -40,7 +40,7 @@ class RouteFollower:
 
     def __init__(self, goal: int, bars: Bars | None = None, others: Sequence[int] = ()) -> None:
         """bars: what was in the robot's way so far. others: experiences that stand for the goal's place, too."""
-        self.goals = (goal, *others)
+        self.goals = [goal, *others]
         self.state: GoalState = "tracking"
         self.failed = False  # in this tick: the robot could not get on, and should back out
         self._route: Route | None = None
