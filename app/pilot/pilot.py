@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Literal
 
 import numpy as np
@@ -49,6 +49,11 @@ class Pilot:
         return self._follower.goal if self._follower else None
 
     @property
+    def goals(self) -> tuple[int, ...]:
+        """All experiences that stand for the goal, `goal` first; none without a goal."""
+        return tuple(self._follower.goals) if self._follower else ()
+
+    @property
     def goal_state(self) -> tuple[int, str] | None:
         return (self._follower.goal, self._follower.state) if self._follower else None
 
@@ -74,9 +79,10 @@ class Pilot:
     def progress(self, experiences: ExperienceMap) -> Progress | None:
         return self._follower.progress(experiences) if self._follower else None
 
-    def set_goal(self, experience: int) -> None:
+    def set_goal(self, experience: int, others: Sequence[int] = ()) -> None:
+        """others: experiences that stand for the same place; to come to one of them is to arrive."""
         self._bars.forget()  # they may lie wrong by now: the map is bent, doors move
-        self._follower = RouteFollower(experience, self._bars)
+        self._follower = RouteFollower(experience, self._bars, others)
         self._seeker.stop()
         self.mode = "goal"
 

@@ -64,7 +64,9 @@ def _explorer(explorer: Explorer) -> None:
 def _follower(follower: RouteFollower, experiences: int) -> None:
     true(isinstance(follower, RouteFollower), "who follows a route must be a RouteFollower")
     same_kind("route follower", follower, RouteFollower(0))
-    whole("the goal", follower.goal, 0, experiences - 1)
+    true(isinstance(follower.goals, list) and len(follower.goals) > 0, "a route must lead to a goal")
+    for goal in follower.goals:
+        whole("the goal", goal, 0, experiences - 1)
     true(follower.state in get_args(GoalState), f"the way to a goal cannot be {follower.state!r}")
     if follower._route is not None:
         true(isinstance(follower._route, Route), "the route must be one")

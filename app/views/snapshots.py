@@ -9,7 +9,7 @@ from app.session import Session
 from app.views.actors import ActorsView
 from app.views.belief import belief_of
 from app.views.goal_memory_layer import goal_memory_layer
-from app.views.goal_view import goal_view
+from app.views.goal_view import goal_view, tags_view
 from app.views.history import History
 from app.views.inspection import inspect
 from app.views.map_layers import MapLayers
@@ -76,6 +76,7 @@ class Snapshots:
             map=parts["map"],
             times=parts["times"],
             goal=goal_view(session),
+            tags=tags_view(session),
             belief=belief_of(session),
             views=len(brain.local_view),
             experiences=len(brain.experience_map),

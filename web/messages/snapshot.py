@@ -24,6 +24,7 @@ from web.messages.brain import (
     Pose,
     PoseCellLayer,
     Senses,
+    TaggedPlace,
     TimesLayer,
 )
 from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
@@ -126,4 +127,5 @@ class Snapshot:
     office: OfficeEdition | None = None
     belief: Belief | None = None  # None: there is no experience map
     trial: TrialView | None = None  # None: no trial of an experiment was begun in this run
+    tags: tuple[TaggedPlace, ...] = ()  # in the order in which they were given
     map_turn_rad: float = 0.0  # turns the map, for the eye only, so that it lies as the office does

@@ -141,11 +141,12 @@ class Viewer:
             offer["estimate"].offer(now_s, snapshot.estimate)
             offer["other"].offer(now_s, snapshot.belief.other if snapshot.belief else None)
             offer["goal"].offer(now_s, snapshot.goal)
+            offer["tags"].offer(now_s, snapshot.tags)
             self._pointer.settle(snapshot, self._scenery.map, now_s)
 
     def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
         if self._scenery.map.set_map(layer, turn_rad):
-            self._forget("times", "estimate", "other", "goal", "inspected")
+            self._forget("times", "estimate", "other", "goal", "tags", "inspected")
             self._pointer.moved(self._scenery.map)
 
     def _draw_overlays(self, snapshot: Snapshot, now_s: float) -> None:
@@ -203,6 +204,7 @@ class Viewer:
             "estimate": Throttle(15, map_plate.set_robot),
             "other": Throttle(6, map_plate.set_other),
             "goal": Throttle(3, map_plate.set_goal),
+            "tags": Throttle(2, map_plate.set_tags),
             "cell_floor": Throttle(2, cells.set_floor),
             "zone": Throttle(4, cells.set_inspected),
             "inspected": Throttle(4, map_plate.set_inspected),

@@ -236,7 +236,7 @@ def of(name: str) -> type:
 
 
 def test_every_parameter_has_another_value() -> None:
-    assert {item.name for item in fields(PilotParams)} == {*OTHER, "goal_reach_m"}  # that is in test_session.py
+    assert {item.name for item in fields(PilotParams)} == {*OTHER, "goal_reach_m", "goal_place_m"}  # test_session.py
 
 
 @pytest.mark.parametrize("name", OTHER)
