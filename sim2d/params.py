@@ -181,7 +181,7 @@ class SimParams:
         0.5,
         "sigma_o",
         "1",
-        "standard deviation of the relative error of speed and yaw rate in a tick",
+        "standard deviation of the relative error of speed and yaw rate in 0.1 s; it adds up like noise",
         live=True,
     )
     odometry_scale_error: float = _number(

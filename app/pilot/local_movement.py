@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from app.pilot.params import DrivingParams, PilotParams
 from disk import kind
 from ratslam_core import Odometry
+from ratslam_core.beats import BEAT_S, Beats
 
 _Array = NDArray[np.float64]  # (n, 2): points in the robot's frame, m
 
@@ -46,12 +47,15 @@ class LocalMovement:
 
     CACHES = ("_choice", "_asked")
 
-    def __init__(self, sonar_angles_rad: NDArray[np.float64], ticks: int) -> None:
-        """sonar_angles_rad: (8,) from left to right, positive to the left. ticks: how long echoes are remembered."""
+    def __init__(self, sonar_angles_rad: NDArray[np.float64], echo_s: float) -> None:
+        """sonar_angles_rad: (8,) from left to right, positive to the left. echo_s: how long echoes are remembered, s.
+
+        One scan of each beat is remembered, its last.
+        """
         self._angles = np.asarray(sonar_angles_rad, np.float64)
-        self._ticks = ticks
-        self._echoes = np.full((ticks * len(self._angles), 2), np.inf)  # in the robot's frame now
-        self._tick = 0
+        self._scans = max(1, round(echo_s / BEAT_S))
+        self._echoes = np.full((self._scans * len(self._angles), 2), np.inf)  # in the robot's frame now
+        self._beats, self._beat = Beats(), -1
         self._choice: tuple[DrivingParams, Choice] | None = None
         self._asked: tuple[float, float, Choice] | None = None  # since it last sensed, for people who look
 
@@ -65,9 +69,13 @@ class LocalMovement:
 
     def sense(self, ranges_m: NDArray[np.float32], odometry: Odometry, p: DrivingParams) -> None:
         """Move the old echoes into the robot's new frame and add the new ones. ranges_m: (8,) from its middle."""
-        n = len(self._angles)
-        start = self._tick % self._ticks * n
-        self._tick, self._asked = self._tick + 1, None
+        n, (passed, _) = len(self._angles), self._beats.take(odometry)
+        for beat in range(self._beat + 1, self._beat + min(passed, self._scans)):
+            start = beat % self._scans * n
+            self._echoes[start : start + n] = np.inf  # no scan was made in it
+        self._beat += passed
+        start = self._beat % self._scans * n
+        self._asked = None
         moved, turned = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
         _sense(self._echoes, moved, turned, start, ranges_m, self._angles, p.echo_range_m)
 

@@ -32,7 +32,7 @@ class Pilot:
         self.mode: Mode = "explore"
         self._behaviour = Behaviour.STARTING.name
         self._explorer = Explorer(rng)
-        self._local = LocalMovement(sonar_angles_rad, params.echo_ticks)
+        self._local = LocalMovement(sonar_angles_rad, params.echo_s)
         self._rng = rng
         self._follower: RouteFollower | None = None
         self._hand = (0.0, 0.0)  # speed, yaw rate

@@ -17,6 +17,7 @@ from app.pilot.known_ground import KnownGround
 from app.pilot.route_following import RouteFollower
 from app.pilot.seeking import Seeker
 from ratslam_core import Route
+from ratslam_core.laws.beats import beats
 from ratslam_core.laws.kinds import same_kind
 from ratslam_core.laws.measures import FAR_M, array, number, true, whole, within
 from sim2d import SONAR_ANGLES_RAD
@@ -37,10 +38,11 @@ def pilot(pilot: Pilot, experiences: int) -> None:
     within("the pilot's place", place, -MOST_TURNED, MOST_TURNED)
     local = pilot._local
     true(np.array_equal(local._angles, SONAR_ANGLES_RAD), "the pilot must know the robot's sonars")
-    ticks = whole("ticks that echoes are remembered", local._ticks, 1, 10**6)
-    echoes = array("echoes", local._echoes, np.float64, (ticks * len(SONAR_ANGLES_RAD), 2))
+    scans = whole("scans that are remembered", local._scans, 1, 10**6)
+    echoes = array("echoes", local._echoes, np.float64, (scans * len(SONAR_ANGLES_RAD), 2))
     true(not np.isnan(echoes).any(), "echoes must be places, or none")
-    whole("the echoes' tick", local._tick)
+    whole("the echoes' beat", local._beat, -1)
+    beats(local._beats)
     _explorer(pilot._explorer)
     one = pilot._explorer._rng is pilot._rng is pilot._freeing._rng
     true(one, "all parts of the pilot must draw from one generator")
