@@ -90,7 +90,7 @@ def _ticks(panel: Axes, options: Dots, labels: list[str], engines: list[str]) ->
     if len(labels) > 1 or options.by:
         middles = [number * count + (count - 1) / 2 for number in range(len(labels))]
         panel.set_xticks(middles, labels)
-        panel.set_xlabel(options.by or None)
+        panel.set_xlabel(options.by)
     else:
         panel.set_xticks(range(count), [ENGINE_WORDS[engine] for engine in engines])
     for edge in range(1, len(labels)):

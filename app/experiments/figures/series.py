@@ -119,7 +119,7 @@ class _Clock:
             self.zero, self.words = since[0].time_s, f"time after: {since[0].words}"
             begin = self.zero - options.before
         if options.seconds:
-            end = self.zero + options.seconds
+            end = min(end, self.zero + options.seconds)
         self.unit = _SECONDS_PER_MINUTE if end - begin > _LONG_S else 1.0
         self.words += " (min)" if self.unit > 1 else " (s)"
         self.least, self.most = (float(self.of(np.array(t))) for t in (begin, max(end, begin + 1.0)))

@@ -5,13 +5,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import PercentFormatter
-from numpy.typing import NDArray
 
 from app.experiments.figures.canvas import grid_lines, panels
-from app.experiments.figures.material import Drawn, Material
+from app.experiments.figures.material import Drawn, Material, trial_gid
 from app.experiments.figures.palette import CYCLE, ENGINE_COLOUR
 from app.experiments.intervals import wilson
 from app.experiments.stored_trial import StoredTrial
@@ -19,7 +17,7 @@ from app.experiments.words import ENGINE_WORDS, value_of
 from app.trials.experiment import FigureSpec, Score
 from app.trials.figure_options import Survival
 
-_Array = NDArray[np.float64]
+_SHADE = 0.1  # four bands over each other are still told apart
 _STYLES = ("-", "--", ":", "-.")
 
 
@@ -30,7 +28,7 @@ def draw(spec: FigureSpec, options: Survival, material: Material) -> Drawn:
     groups = _groups(options, material)
     score = material.score(options.score)
     taken = {words: until(trials, score) for words, trials, _, _ in groups}
-    known = [values[-1] for values in taken.values() if len(values)]
+    known = [values[-1][0] for values in taken.values() if values]
     end = options.most or 1.05 * max(known, default=1.0)
     for words, trials, colour, line in groups:
         if trials:
@@ -45,16 +43,17 @@ def draw(spec: FigureSpec, options: Survival, material: Material) -> Drawn:
     )
     panel.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0, symbol=" %"))
     figure.legend(loc="outside lower center", ncols=1 if len(groups) < 4 else 2)
-    says = f"Share of all trials, by {score.label}; those in which it never came count as well."
+    says = f'Share of all trials for which "{score.label}" is at most so much; those that have no such number count as well.'
     caption = material.caption(
         f"{says} Bands: 95 % intervals (Wilson).", options=options, score=options.score, varied=[options.lines]
     )
     return Drawn(spec, figure, caption)
 
 
-def until(trials: list[StoredTrial], score: Score) -> _Array:
-    """The values of those trials that have one, sorted."""
-    return np.sort(np.array([value for each in trials if (value := value_of(score, each)) is not None], np.float64))
+def until(trials: list[StoredTrial], score: Score) -> list[tuple[float, StoredTrial]]:
+    """The values of those trials that have one, in order, each with its trial."""
+    known = [(value, each) for each in trials if (value := value_of(score, each)) is not None]
+    return sorted(known, key=lambda pair: (pair[0], pair[1].id))
 
 
 def _groups(options: Survival, material: Material) -> list[tuple[str, list[StoredTrial], str, str]]:
@@ -72,10 +71,16 @@ def _groups(options: Survival, material: Material) -> list[tuple[str, list[Store
     ]  # fmt: skip
 
 
-def _curve(panel: Axes, times: _Array, count: int, end: float, colour: str, line: str, words: str) -> None:
-    x = np.concatenate([[0.0], times, [max(end, times[-1] if len(times) else end)]])
-    done = np.concatenate([np.arange(len(times) + 1), [len(times)]])
-    bands = [wilson(int(k), count) for k in done]
-    panel.step(x, done / count, where="post", color=colour, ls=line, label=words, zorder=3)
+def _curve(
+    panel: Axes, known: list[tuple[float, StoredTrial]], count: int, end: float, colour: str, line: str, words: str
+) -> None:
+    """A step for each trial, with a dot that knows it."""
+    values = [value for value, _ in known]
+    x = [0.0, *values, max([end, *values[-1:]])]
+    done = [*range(len(known) + 1), len(known)]
+    bands = [wilson(each, count) for each in done]
+    panel.step(x, [band.value for band in bands], where="post", color=colour, ls=line, label=words, zorder=3)
     low, high = [band.low for band in bands], [band.high for band in bands]
-    panel.fill_between(x, low, high, step="post", color=colour, alpha=0.14, lw=0, zorder=2)
+    panel.fill_between(x, low, high, step="post", color=colour, alpha=_SHADE, lw=0, zorder=2)
+    for number, (value, trial) in enumerate(known, start=1):
+        panel.plot(value, number / count, "o", ms=3, color=colour, zorder=4, gid=trial_gid(trial))

@@ -253,13 +253,18 @@ def test_levels_of_an_axis_are_lines_of_one_panel():
 def test_trials_in_which_it_never_came_count_as_well():
     of = material()
     panel = draw(SPECS[-2], of).figure.axes[0]
-    for line, engine in zip(panel.lines, ("paper", "ours"), strict=True):
+    steps = [line for line in panel.lines if line.get_gid() is None]
+    dots = {line.get_gid(): line for line in panel.lines if line.get_gid()}
+    for line, engine in zip(steps, ("paper", "ours"), strict=True):
         trials = of.of(engine, {0: "0 %", 1: "8"})
-        times = until(trials, of.score("after"))
-        assert len(times) == sum(trial.scores["recovered"] for trial in trials)
-        assert float(line.get_ydata()[-1]) == pytest.approx(len(times) / 4)
-        assert line.get_xdata()[1 : len(times) + 1] == pytest.approx(times)
-        assert line.get_label().endswith(f"{len(times)} of 4")
+        known = until(trials, of.score("after"))
+        assert len(known) == sum(trial.scores["recovered"] for trial in trials)
+        assert float(line.get_ydata()[-1]) == pytest.approx(len(known) / 4)
+        assert line.get_xdata()[1 : len(known) + 1] == pytest.approx([seconds for seconds, _ in known])
+        assert line.get_label().endswith(f"{len(known)} of 4")
+        for number, (seconds, trial) in enumerate(known, start=1):
+            assert dots.pop(f"trial-{trial.id}").get_xydata().tolist() == [[seconds, number / 4]]
+    assert not dots
     band = panel.collections[0].get_paths()[0].vertices
     last = wilson(len(until(of.of("paper", {0: "0 %", 1: "8"}), of.score("after"))), 4)
     assert band[:, 1].max() == pytest.approx(last.high)
