@@ -113,12 +113,17 @@ def run_with_trial(trial: Trial, moment_s: float | None, *, title: str = "", ser
     moment_s: simulated time of the moment that is to be seen: the trial is run ahead, as fast as possible, to shortly
     before it, and plays from there. None: it plays from its beginning. title: of the experiment.
     """
+    from app.engine.watched_trial import CHANGED
+    from app.trials.code_version import code_version
+
     serving = serving or Serving()
     course = trial.begin()  # ValueError now rather than in the engine's thread
     session = course.session
 
     def begin(engine: Engine) -> None:
-        engine.begin_trial(trial, title or trial.experiment, moment_s)
+        run = engine.begin_trial(trial, title or trial.experiment, moment_s)
+        if trial.version != code_version():
+            run.event_log.note("warning", CHANGED)
         engine.running = serving.running or engine.runs_ahead
 
     own_worlds.tidy()
