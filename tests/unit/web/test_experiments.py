@@ -9,12 +9,11 @@ import pytest
 from starlette.testclient import TestClient
 
 from tests.fake_snapshots import fake_snapshot
+from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers, house
 from web.http.api import create_app
 from web.http.experiments import Axis, Card, Cell, Detail, Dot, Plan, Results
 from web.latest import Latest
 from web.messages import Refused, Snapshot, WatchExperiment
-
-from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers, house
 
 PLAN = Plan(width=2, depth=1, left=0, bottom=0, walls="M0 0L2 0", way="", places=[(1.0, 0.5)])
 CARD = Card(
