@@ -9,6 +9,7 @@ from app.views.event_log import EventLog
 from web.messages import TrialState, TrialView
 
 BEFORE_S = 10.0  # a trial that is run ahead to a moment stops so long before it
+CHANGED = "the program has changed since this trial was run: what it does today may differ from its scores"
 _UNTOLD = ("recovered", "end")  # the log tells of the first anyway, and of the second together with the outcome
 
 

@@ -20,7 +20,7 @@ export function cardOf(card, { watch, trials }) {
   const more = make("button", { type: "button", className: "trials", textContent: "Trials" });
   more.ariaLabel = `Trials of ${card.title}`;
   more.addEventListener("click", () => trials(chosen()));
-  const row = make("div", { className: "row" }, go, more, ...(card.engines.length > 1 ? [engine] : []));
+  const row = make("div", { className: "row" }, ...(card.engines.length > 1 ? [engine] : []), go, more);
   const made = make(
     "li",
     { className: "card" },

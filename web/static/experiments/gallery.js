@@ -81,7 +81,7 @@ export class Gallery {
     this.dialog.close();
     const title = this.cards.find(({ name }) => name === wish.experiment)?.title ?? wish.experiment;
     toast(
-      wish.moment_s === undefined ? `Watching: ${title}.` : `Going to the moment that decided trial ${wish.trial}.`,
+      wish.moment_s === undefined ? `Watching: ${title}.` : `Seed ${wish.seed}: going to the moment that decided it.`,
     );
   }
 

@@ -51,6 +51,6 @@ function say(place, words) {
 }
 
 /** @param {Trial} trial @returns {WatchExperiment} */
-function wishOf({ experiment, engine, levels, seed }) {
-  return { type: "watch_experiment", experiment, engine, levels, seed };
+function wishOf({ experiment, id }) {
+  return { type: "watch_experiment", experiment, trial: id };
 }
