@@ -64,7 +64,9 @@ def test_trust_falls_with_contradiction(near: float, far: float, turn: float, ch
     links, weights = np.array([[0, 1]]), np.array([0.5])
     poses = np.zeros((2, 3))
     trusts = [
-        robust_weights.trust(poses, links, np.array([[d, 0.0, turn]]), weights, np.array([chain]), 0.01, SolverParams())[0]
+        robust_weights.trust(
+            poses, links, np.array([[d, 0.0, turn]]), weights, np.array([chain]), 0.01, SolverParams()
+        )[0]
         for d in (near, far)
     ]
     assert 0 < trusts[1] <= trusts[0] <= 1

@@ -84,7 +84,7 @@ class DashboardDouble:
         port: int,
         offered: object,
         experiments: object,
-    ):  # noqa: ARG002
+    ):
         self._doubles = doubles
         doubles.made["dashboard"] = (latest, submit, stage, port)
 
