@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import multiprocessing
 import os
 import signal
 from collections.abc import Generator
@@ -21,6 +22,7 @@ _CONFIG: dict[str, Any] = {
     "distributed.worker.http.routes": [],
     "distributed.nanny.pre-spawn-environ": _ONE_THREAD,
     "distributed.admin.low-level-log-length": 100,
+    "distributed.deploy.lost-worker-timeout": "1 day",  # a nanny starts its worker again, however slow the machine is
 }
 
 
@@ -49,6 +51,7 @@ def _cluster_of_our_own(workers: int) -> Generator[Any]:
     from distributed import Client, LocalCluster
 
     with dask.config.set(_CONFIG):
+        _fork_ready_workers()
         cluster: Any = LocalCluster(
             n_workers=workers, threads_per_worker=1, processes=True, host=HERE, memory_limit=0,
             dashboard_address=f"{HERE}:0", scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL,
@@ -65,6 +68,19 @@ def _cluster_of_our_own(workers: int) -> Generator[Any]:
         finally:
             with contextlib.suppress(TimeoutError, OSError):
                 cluster.close(timeout=END_S)
+
+
+def _fork_ready_workers() -> None:
+    """Workers are forked, where that is possible, from one process that has imported all they need: the first starts
+    as soon, the others at once, also those that replace one that died."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return
+    import dask.config
+    from distributed.utils import get_mp_context
+
+    dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"})
+    context: Any = get_mp_context()
+    context.set_forkserver_preload(["distributed", "app.experiments.batch"])
 
 
 async def _end_workers(nannies: list[Any]) -> None:
@@ -99,8 +115,12 @@ def _cluster_that_exists(address: str) -> Generator[Any]:
         client.close(timeout=END_S)
 
 
+def _here() -> str:
+    return code_version()
+
+
 def _check_versions(client: Any, address: str) -> None:
-    here = code_version()
+    here = _here()
     try:
         versions: dict[str, str] = client.run(code_version)
     except Exception as error:

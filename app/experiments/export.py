@@ -13,6 +13,9 @@ from app.experiments.stored_trial import StoredTrial
 from app.trials.experiment import Experiment
 from disk import whole_file, write_whole
 
+_FIRST = ["id", "engine"]
+_LAST = ["seed", "version", "quick", "simulated_s", "wall_s", "moment_s", "moment", "error"]
+
 Cell = str | int | float | bool | None
 
 
@@ -32,7 +35,7 @@ def write_parquet(path: Path, experiment: Experiment, trials: Sequence[StoredTri
     parquet: Any = import_module("pyarrow.parquet")
     columns, rows = table_of(experiment, trials)
     types = {"seed": pyarrow.int64(), "quick": pyarrow.bool_()}
-    numbers = {"simulated_s", "wall_s", "moment_s", *_scores(trials)}
+    numbers = {"simulated_s", "wall_s", "moment_s", *columns[len(columns) - len(_scores(trials)) :]}
     arrays = {
         column: pyarrow.array(
             [row[at] for row in rows],
@@ -48,20 +51,8 @@ def table_of(experiment: Experiment, trials: Sequence[StoredTrial]) -> tuple[lis
     """Column names and rows. An axis has the column of its name."""
     scores = _scores(trials)
     axes = [axis.name for axis in experiment.axes]
-    columns = [
-        "id",
-        "engine",
-        *axes,
-        "seed",
-        "version",
-        "quick",
-        "simulated_s",
-        "wall_s",
-        "moment_s",
-        "moment",
-        "error",
-        *scores,
-    ]
+    columns = [*_FIRST, *(_free(axis, _FIRST + _LAST, "axis") for axis in axes), *_LAST]
+    columns += [_free(score, columns, "score") for score in scores]
     rows: list[list[Cell]] = [
         [
             trial.id, trial.engine, *_levels(trial, len(axes)), trial.seed, trial.version, trial.quick, trial.simulated_s,
@@ -70,6 +61,11 @@ def table_of(experiment: Experiment, trials: Sequence[StoredTrial]) -> tuple[lis
         for trial in trials
     ]  # fmt: skip
     return columns, rows
+
+
+def _free(name: str, taken: Sequence[str], kind: str) -> str:
+    """A name for a column: no two have the same."""
+    return f"{name} ({kind})" if name in taken else name
 
 
 def _levels(trial: StoredTrial, axes: int) -> list[str | None]:

@@ -6,6 +6,7 @@ import math
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import CancelledError
 from typing import Any
 
 from app.experiments.batch import RunOne, run_batch, run_stored
@@ -64,6 +65,9 @@ class _Running:
         self._hand_out(coming)
         try:
             for future in coming:
+                if future.status in ("pending", "lost"):  # its worker died with the result, and it is run again
+                    coming.add(future)
+                    continue
                 ended = self._taken(future, self._air.pop(future))
                 self._hand_out(coming)
                 if ended:
@@ -73,20 +77,24 @@ class _Running:
                 self._client.cancel(list(self._air), force=True)
 
     def _taken(self, future: Any, batch: list[Trial]) -> list[tuple[Trial, Outcome]]:
-        if future.status == "finished":
-            outcomes = {outcome.trial_id: outcome for outcome in future.result()}
-            self._learn(list(outcomes.values()))
-            return [(trial, outcomes[trial.id]) for trial in batch]
-        if future.status != "error":
-            raise ValueError("the cluster has gone; the same command goes on where this one stopped")
-        error = future.exception()
+        try:
+            outcomes: dict[str, Outcome] = {outcome.trial_id: outcome for outcome in future.result()}
+        except CancelledError:
+            raise ValueError("the cluster has gone; the same command goes on where this one stopped") from None
+        except Exception as error:
+            return self._tried(batch, f"{type(error).__name__}: {error}")
+        self._learn(list(outcomes.values()))
+        return [(trial, outcomes[trial.id]) for trial in batch]
+
+    def _tried(self, batch: list[Trial], error: str) -> list[tuple[Trial, Outcome]]:
+        """Their worker died, or could not be given them."""
         failed: list[tuple[Trial, Outcome]] = []
         for trial in batch:
             self._tries[trial.id] += 1
             if self._tries[trial.id] < TRIES:
                 self._suspects.append(trial)
             else:
-                failed.append((trial, Outcome(trial.id, error=f"{type(error).__name__}: {error}")))
+                failed.append((trial, Outcome(trial.id, error=error)))
         return failed
 
     def _learn(self, outcomes: list[Outcome]) -> None:

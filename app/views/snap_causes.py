@@ -88,4 +88,5 @@ def words_of(causes: tuple[SnapCause, ...]) -> str:
     first, more = causes[0], len(causes) - 1
     looks = "1 look" if first.looks == 1 else f"{first.looks} looks"
     others = f" and {more} more" if more else ""
-    return f"by view {first.view} ({looks}, {first.share:.2f} of the injected activity, learnt {first.age_s:.0f} s before){others}"
+    about = f"{looks}, {first.share:.2f} of the injected activity, learnt {first.age_s:.0f} s before"
+    return f"by view {first.view} ({about}){others}"
