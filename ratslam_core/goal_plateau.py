@@ -63,4 +63,4 @@ def _parting(a: NDArray[np.int64], b: NDArray[np.int64], n_x: int, n_y: int) -> 
 
 def _offset(a: NDArray[np.int64], b: NDArray[np.int64], size: int) -> NDArray[np.float64]:
     """Cells from a to b, the shorter way round."""
-    return (b - a + size / 2) % size - size / 2
+    return ((b - a + size / 2) % size - size / 2).astype(np.float64)
