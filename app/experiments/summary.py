@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from app.experiments.intervals import Estimate, bootstrap_median, wilson
 from app.experiments.stored_trial import StoredTrial
 from app.trials.experiment import Experiment, Score
+
+CellKey = tuple[str, tuple[str, ...]]  # engine, and levels by label
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,16 +25,19 @@ class CellSummary:
 
 def summarise(experiment: Experiment, trials: Iterable[StoredTrial]) -> list[CellSummary]:
     """A row for every cell and engine that has a trial, in the experiment's order. It does not depend on the trials' order."""
-    groups: dict[tuple[str, tuple[str, ...]], list[StoredTrial]] = {}
+    groups: dict[CellKey, list[StoredTrial]] = {}
     for trial in sorted(trials, key=lambda trial: (trial.seed, trial.id)):
         groups.setdefault((trial.engine, trial.levels), []).append(trial)
+    return [_summary(experiment, *key, groups[key]) for key in sorted(groups, key=place_in(experiment))]
+
+
+def place_in(experiment: Experiment) -> Callable[[CellKey], tuple[tuple[int, int], CellKey]]:
+    """By what to sort engines and levels, so that they are in the order of the experiment's cells."""
     engines = list(experiment.engines)
     cells = [tuple(level.label for level in cell) for cell in experiment.cells()]
     order = {(engine, cell): (at, engines.index(engine)) for at, cell in enumerate(cells) for engine in engines}
     last = len(cells), len(engines)
-    return [
-        _summary(experiment, *key, groups[key]) for key in sorted(groups, key=lambda key: (order.get(key, last), key))
-    ]
+    return lambda key: (order.get(key, last), key)
 
 
 def estimate(score: Score, trials: Iterable[StoredTrial]) -> Estimate:

@@ -6,11 +6,8 @@ Milford, Wyeth, "Persistent Navigation and Mapping using a Biologically Inspired
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
-
-import numpy as np
 
 from app.config import Config
 from app.headless.growth import EVERY_S, Sample
@@ -18,11 +15,11 @@ from app.headless.loop import Loop, Progress, silent
 from app.headless.report import counts, judged
 from app.headless.visiting import Visit, visit
 from app.session import Session, spread_goals
+from app.trials.tour import order
 from ratslam_core import RatSlam
 from sim2d import World
 
 HOUR_S = 3600.0
-_STREAM = 2  # of the run's seed; session.py and kidnap_times.py use others
 
 
 @dataclass(slots=True)
@@ -120,18 +117,6 @@ class Deliveries:
                 "view_links": sample.view_links, "rss_mb": sample.rss_mb, "real_time_factor": speed,
             })  # fmt: skip
         return rows
-
-
-def order(goals: int, deliveries: int, seed: int) -> Iterator[int]:
-    """The goal of each delivery: every round visits all goals in a new order, never the same twice in a row."""
-    rng = np.random.default_rng([seed, _STREAM])
-    last = -1
-    for first in range(0, deliveries, goals):
-        round_ = [int(goal) for goal in rng.permutation(goals)]
-        if round_[0] == last:
-            round_ = [*round_[1:], last]
-        last = round_[-1]
-        yield from round_[: deliveries - first]
 
 
 def _told(visit: Visit) -> dict[str, Any]:

@@ -10,9 +10,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from app.session import Session
+from app.session import Session, spread_goals
 from app.trials.checking import check_steps, place_of
-from app.trials.steps import Door, Drive, Explore, Kidnap, Move, Repeat, Set, Step, Tag, Visit, Wait, Where
+from app.trials.steps import Door, Drive, Explore, Kidnap, Move, Repeat, Set, Step, Tag, Tour, Visit, Wait, Where
+from app.trials.tour import order
 
 REACHED_M = 0.25  # a driven robot has come to a point of its path
 PATIENCE_S = 60.0  # a point of the path that takes longer is left out: somebody stands there
@@ -120,6 +121,8 @@ class Course:
             case Visit():
                 for name in step.places:
                     yield from self._visit(name, step)
+            case Tour():
+                yield from self._tour(step)
             case Wait():
                 self.session.pilot.drive(*_STANDING)
                 yield from self._for(step.seconds, "waiting")
@@ -201,29 +204,44 @@ class Course:
         self.session.pilot.drive(*_STANDING)
 
     def _visit(self, name: str, step: Visit) -> Iterator[str]:
-        session, tag = self.session, self.tags[name]
+        tag = self.tags[name]
         tag.passed = True  # what stands for a place does not change once the robot is sent there
-        began_s, began_m = session.time_s, session.evaluation.path_m
         if tag.experience is None:
-            self._visited(name, "never approached while exploring", began_s, began_m)
+            self._visited(name, (tag.x, tag.y), "never approached while exploring", self._beginning)
             return
-        session.pilot.set_goal(tag.experience)
-        while session.pilot.goal_state != (tag.experience, "arrived"):
-            if session.time_s - began_s >= step.timeout_s - 1e-9:
-                self._visited(name, f"not reached in {step.timeout_s:g} s", began_s, began_m)
+        yield from self._go(name, tag.experience, (tag.x, tag.y), step)
+
+    def _tour(self, step: Tour) -> Iterator[str]:
+        """ValueError: the robot does not know so many places."""
+        session, map_ = self.session, self.session.brain.experience_map
+        goals = spread_goals(session, step.goals)
+        if len(goals) < step.goals:
+            raise ValueError(
+                f"tour: goals = {step.goals}, but the robot knows only {len(goals)} places; explore longer"
+            )
+        places = [session.evaluation.made_at(goal, map_) for goal in goals]
+        for number, goal in enumerate(order(step.goals, step.visits, session.seed), start=1):
+            yield from self._go(f"visit {number} of {step.visits}", goals[goal], places[goal], step)
+
+    def _go(self, name: str, experience: int, place: tuple[float, float], step: Visit | Tour) -> Iterator[str]:
+        session, beginning = self.session, self._beginning
+        session.pilot.set_goal(experience)
+        while session.pilot.goal_state != (experience, "arrived"):
+            if session.time_s - beginning[0] >= step.timeout_s - 1e-9:
+                self._visited(name, place, f"not reached in {step.timeout_s:g} s", beginning)
                 return
             yield from self._tick(f"on the way to {name}")
-        miss_m = self._away(name)
-        why = "" if miss_m <= step.near_m else f"arrived {miss_m:.2f} m away"
-        self._visited(name, why, began_s, began_m)
+        miss_m = math.dist(self._here, place)
+        self._visited(name, place, "" if miss_m <= step.near_m else f"arrived {miss_m:.2f} m away", beginning)
 
-    def _visited(self, name: str, why: str, began_s: float, began_m: float) -> None:
-        session = self.session
-        self.visits.append(
-            Visited(
-                name, not why, began_s, session.time_s - began_s, session.evaluation.path_m - began_m, self._away(name), why
-            )
-        )  # fmt: skip
+    @property
+    def _beginning(self) -> tuple[float, float]:
+        return self.session.time_s, self.session.evaluation.path_m
+
+    def _visited(self, name: str, place: tuple[float, float], why: str, beginning: tuple[float, float]) -> None:
+        session, (began_s, began_m) = self.session, beginning
+        path_m, miss_m = session.evaluation.path_m - began_m, math.dist(self._here, place)
+        self.visits.append(Visited(name, not why, began_s, session.time_s - began_s, path_m, miss_m, why))
         self.note(f"{name}: {why or 'reached'}", not why)
 
     def _kidnap(self, step: Kidnap) -> None:
@@ -251,10 +269,6 @@ class Course:
     def _here(self) -> tuple[float, float]:
         truth = self.session.simulator.truth
         return truth.x, truth.y
-
-    def _away(self, name: str) -> float:
-        tag = self.tags[name]
-        return math.dist(self._here, (tag.x, tag.y))
 
     def _place(self, where: Where) -> tuple[float, float]:
         return place_of(self.session.world, where)

@@ -13,8 +13,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from app.config import Config
 from app.config.presets import values_of
 from app.trials.code_version import code_version
+from app.trials.figure_options import check_figures
 from app.trials.measures import MEASURES
-from app.trials.steps import Drive, Explore, Move, Repeat, Step, Values, Visit, Wait
+from app.trials.steps import Drive, Explore, Move, Repeat, Step, Tour, Values, Visit, Wait
 from app.trials.trial import Trial, text_of
 from sim2d.importers import open_world
 
@@ -38,6 +39,7 @@ class Level(_Part):
 
     label: str
     set: Values = {}
+    world: str | None = None  # instead of the experiment's
 
 
 class Axis(_Part):
@@ -72,7 +74,7 @@ class Original(_Part):
 
 
 class FigureSpec(_Part):
-    """A figure. What each kind shows, and its options: figures/."""
+    """A figure. What each kind shows, and its options: figure_options.py."""
 
     kind: str
     title: str = ""
@@ -139,17 +141,23 @@ class Experiment(_Part):
         """
         count = trials or (self.quick.trials if quick else self.trials)
         protocol = tuple(shortened(step, self.quick.share) if quick else step for step in self.protocol)
-        config = Config().with_values(self.set)
-        world_text = text_of(open_world(self.world, robot_radius_m=config.robot.robot_radius_m))
+        texts = {world: self._text_of(world) for world in {self.world_of(cell) for cell in self.cells(quick)}}
         return [
             Trial(
-                self.name, engine, tuple(level.label for level in cell), self.seed + number, self.world, world_text,
-                self.values(engine, cell), protocol, tuple(self.measures), code_version(), quick,
+                self.name, engine, tuple(level.label for level in cell), self.seed + number, self.world_of(cell),
+                texts[self.world_of(cell)], self.values(engine, cell), protocol, tuple(self.measures), code_version(), quick,
             )
             for number in range(count)
             for cell in self.cells(quick)
             for engine in engines or list(self.engines)
         ]  # fmt: skip
+
+    def world_of(self, cell: tuple[Level, ...]) -> str:
+        """The world of a cell: that of a level, or else the experiment's."""
+        return next((level.world for level in cell if level.world is not None), self.world)
+
+    def _text_of(self, world: str) -> str:
+        return text_of(open_world(world, robot_radius_m=Config().with_values(self.set).robot.robot_radius_m))
 
     def values(self, engine: EngineName, cell: tuple[Level, ...]) -> Values:
         """The parameters of an engine in a cell; ValueError if the experiment has no such engine."""
@@ -162,7 +170,8 @@ class Experiment(_Part):
         return values
 
     def check(self) -> None:
-        """ValueError says what does not fit together: a parameter, a place, a world."""
+        """ValueError says what does not fit together: a parameter, a place, a world, a figure."""
+        check_figures(self)
         for trial in self.make_trials(trials=1):
             trial.begin()
 
@@ -182,6 +191,9 @@ def shortened(step: Step, share: float) -> Step:
             return step.model_copy(update={"times": max(1, round(step.times * share))})
         case Visit():
             return step.model_copy(update={"timeout_s": step.timeout_s * share})
+        case Tour():
+            visits = max(1, round(step.visits * share))
+            return step.model_copy(update={"visits": visits, "goals": min(step.goals, visits)})
         case Wait():
             return step.model_copy(update={"seconds": step.seconds * share})
         case Repeat():
@@ -202,6 +214,8 @@ def duration_s(step: Step) -> float:
             return step.times * sum(seconds for _, _, seconds in step.moves)
         case Visit():
             return 40.0 * len(step.places)
+        case Tour():
+            return 40.0 * step.visits
         case Wait():
             return step.seconds
         case Repeat():

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Protocol
 
+import numpy as np
+
+from app.evaluation import Coverage
 from app.trials.course import Course
+from app.trials.goal_memory_routes import GoalMemoryRoutes
+from ratslam_core.experience_map.places import find_places
 
 
 class Measure(Protocol):
@@ -16,23 +22,210 @@ class Measure(Protocol):
     def scores(self) -> dict[str, float]: ...
 
 
+class _AtTheEnd:
+    """A measure that looks once."""
+
+    def __init__(self, course: Course) -> None:
+        self.course = course
+        self.session = course.session
+
+    def note(self) -> None: ...
+
+
 class Packets:
-    """Competing packets: how many there were at most, and for how long a second one held more than a fifth of the activity."""
+    """Competing packets (A 5): how many at most, for how long a second one held a fifth, and when one had won after a kidnap.
+
+    `one_won_s`: from the last kidnap until no rival held a fifth any more, for good.
+    """
 
     SHARE = 0.2
 
     def __init__(self, course: Course) -> None:
         self._session = course.session
-        self._most, self._rival_s = 0, 0.0
+        self._most, self._rival_s, self._last_rival_s = 0, 0.0, 0.0
 
     def note(self) -> None:
         packets = self._session.brain.pose_cells.packets
         self._most = max(self._most, len(packets))
         if len(packets) > 1 and packets[1].mass > self.SHARE:
             self._rival_s += self._session.frame.dt
+            self._last_rival_s = self._session.time_s
 
     def scores(self) -> dict[str, float]:
-        return {"packets_at_most": float(self._most), "rival_s": self._rival_s}
+        scores = {"packets_at_most": float(self._most), "rival_s": self._rival_s}
+        kidnaps = self._session.evaluation.kidnaps
+        if kidnaps:
+            scores["one_won_s"] = max(0.0, self._last_rival_s - kidnaps[-1].at_s)
+        return scores
 
 
-MEASURES: dict[str, Callable[[Course], Measure]] = {"packets": Packets}
+class FalseSnaps:
+    """Snaps (A 6.6): those that ended at an experience made more than a metre from where the robot truly was."""
+
+    FALSE_M = 1.0
+
+    def __init__(self, course: Course) -> None:
+        self._session = course.session
+        self._false = self._true = 0
+
+    def note(self) -> None:
+        session = self._session
+        if not session.estimate.relocalised or session.estimate.created:
+            return
+        map_, truth = session.brain.experience_map, session.simulator.truth
+        false = math.dist((truth.x, truth.y), session.evaluation.made_at(map_.active, map_)) > self.FALSE_M
+        self._false += false
+        self._true += not false
+
+    def scores(self) -> dict[str, float]:
+        return {"false_snaps": float(self._false), "true_snaps": float(self._true)}
+
+
+class Phenomena(_AtTheEnd):
+    """Places with several representations, and pose cells that stand for several places (B 3.6, 3.7)."""
+
+    def scores(self) -> dict[str, float]:
+        found = find_places(self.session.brain.experience_map)
+        return {
+            "places": float(len(found.first)),
+            "multiple_representations": float(len(found.multiple_representations)),
+            "hash_collisions": float(len(found.hash_collisions)),
+        }
+
+
+class Residual:
+    """The disagreement of map and links (B 4.3): mean over the links, at the end and at most; nothing if it is not finite."""
+
+    EVERY = 50  # ticks
+
+    def __init__(self, course: Course) -> None:
+        self._session = course.session
+        self._most_m = 0.0
+
+    def note(self) -> None:
+        if self._session.tick_count % self.EVERY == 0:
+            self._most_m = max(self._most_m, self._session.brain.experience_map.residual[0])
+
+    def scores(self) -> dict[str, float]:
+        return {"residual_m": self._session.brain.experience_map.residual[0], "residual_at_most_m": self._most_m}
+
+
+class Covered(_AtTheEnd):
+    """The share of the floor to which the robot has come within a metre."""
+
+    def scores(self) -> dict[str, float]:
+        session = self.session
+        return {"covered": Coverage().follow(session.simulator.free_space, session.evaluation.path)}
+
+
+class TurnOfCells:
+    """How far the packet's path turns in the pose cells for each turn that the robot truly makes (B 5.2), from 0 to 1.
+
+    1: right; 0: the loop's path is a straight line. Turning to the left and to the right cancel, as they do in a loop.
+    """
+
+    def __init__(self, course: Course) -> None:
+        self._session = course.session
+        self._cells = self._true = 0.0
+        self._before: tuple[float, float] | None = None
+
+    def note(self) -> None:
+        heading = self._session.brain.pose_cells.winner.heading_rad
+        true = self._session.simulator.truth.heading_rad
+        if self._before is not None and not self._session.estimate.relocalised:
+            self._cells += math.remainder(heading - self._before[0], math.tau)
+            self._true += math.remainder(true - self._before[1], math.tau)
+        self._before = heading, true
+
+    def scores(self) -> dict[str, float]:
+        turns = {"turned_in_cells_deg": math.degrees(self._cells), "turned_deg": math.degrees(self._true)}
+        return turns if abs(self._true) < math.pi else {**turns, "turn_kept": self._cells / self._true}
+
+
+class EndPoint(_AtTheEnd):
+    """How far the packet is, at the end, from where the same moves without errors lead, in metres (A 4, path integration)."""
+
+    def __init__(self, course: Course) -> None:
+        super().__init__(course)
+        winner, truth = self.session.brain.pose_cells.winner, self.session.simulator.truth
+        self._began = winner.x, winner.y, winner.heading_rad - truth.heading_rad, truth.x, truth.y
+
+    def scores(self) -> dict[str, float]:
+        session, (x, y, turn, true_x, true_y) = self.session, self._began
+        cells, truth = session.brain.pose_cells, session.simulator.truth
+        c, s, cell_m = math.cos(turn), math.sin(turn), session.config.pose_cells.cell_m
+        dx, dy = truth.x - true_x, truth.y - true_y
+        ahead, aside = x + (c * dx - s * dy) / cell_m, y + (s * dx + c * dy) / cell_m
+        return {"end_off_m": cells.cells_apart(ahead, aside, cells.winner.x, cells.winner.y) * cell_m}
+
+
+class WaysApart(_AtTheEnd):
+    """How far apart the map draws the ways out and back of one place (B 7), m: mean, and at most.
+
+    Two experiences are of one place if they were made within half a metre of each other, facing opposite ways.
+    """
+
+    NEAR_M = 0.5
+    OPPOSITE_RAD = 2.5
+
+    def scores(self) -> dict[str, float]:
+        map_ = self.session.brain.experience_map
+        made = self.session.evaluation.births(len(map_))
+        known = np.flatnonzero(np.isfinite(made[:, 0]))
+        apart: list[float] = []
+        for i in known.tolist():
+            others = known[known > i]
+            near = np.hypot(made[others, 0] - made[i, 0], made[others, 1] - made[i, 1]) < self.NEAR_M
+            turn = np.abs(np.remainder(made[others, 2] - made[i, 2] + np.pi, 2 * np.pi) - np.pi)
+            pairs = others[near & (turn > self.OPPOSITE_RAD)]
+            apart.extend(np.hypot(*(map_.poses[pairs, :2] - map_.poses[i, :2]).T).tolist())
+        return {"ways_apart_m": float(np.mean(apart)), "ways_apart_at_most_m": max(apart)} if apart else {}
+
+
+class WayTaken(_AtTheEnd):
+    """The share of the last visit's way that was driven in the lower half of the world (C V.D: where the slow way is)."""
+
+    def scores(self) -> dict[str, float]:
+        if not self.course.visits:
+            return {}
+        session, visit = self.session, self.course.visits[-1]
+        path = session.evaluation.path[round(visit.began_s / session.frame.dt) :]
+        _, low, _, high = session.world.bounds
+        return {"lower_way": float(np.mean(path[:, 1] < (low + high) / 2))} if len(path) else {}
+
+
+class Consistency:
+    """Consistency over time (A 6.5): the longest period in which the robot was more than half a metre off, s, and how far."""
+
+    OFF_M = 0.5
+
+    def __init__(self, course: Course) -> None:
+        self._session = course.session
+        self._off_s = self._longest_s = self._farthest_m = 0.0
+
+    def note(self) -> None:
+        session = self._session
+        off_m, _ = session.evaluation.belief_off(session.simulator.truth, session.brain.experience_map)
+        if math.isnan(off_m) or off_m <= self.OFF_M:
+            self._off_s = 0.0
+            return
+        self._off_s += session.frame.dt
+        self._longest_s, self._farthest_m = max(self._longest_s, self._off_s), max(self._farthest_m, off_m)
+
+    def scores(self) -> dict[str, float]:
+        return {"longest_off_s": self._longest_s, "farthest_off_m": self._farthest_m}
+
+
+MEASURES: dict[str, Callable[[Course], Measure]] = {
+    "packets": Packets,
+    "false snaps": FalseSnaps,
+    "phenomena": Phenomena,
+    "residual": Residual,
+    "covered": Covered,
+    "turn of the cells": TurnOfCells,
+    "end point": EndPoint,
+    "ways apart": WaysApart,
+    "way taken": WayTaken,
+    "consistency": Consistency,
+    "goal memory routes": GoalMemoryRoutes,
+}

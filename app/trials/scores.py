@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import statistics
 
 from app.trials.course import Course
 
@@ -16,6 +17,8 @@ def scores_of(course: Course) -> dict[str, float]:
         "error_m": error_m,
         "odometry_m": odometry_m,
         "path_m": evaluation.path_m,
+        "simulated_s": session.time_s,
+        "old_ground": evaluation.revisit_share,
         "views": len(session.brain.local_view),
         "experiences": len(map_),
         "links": map_.link_count,
@@ -46,6 +49,9 @@ def _kidnaps(course: Course) -> dict[str, float]:
     if not kidnaps:
         return {}
     scores = {"kidnaps": float(len(kidnaps)), "recovered": float(sum(k.after_s is not None for k in kidnaps))}
+    after = [kidnap.after_s for kidnap in kidnaps if kidnap.after_s is not None]
+    if after:
+        scores["kidnap_median_s"] = statistics.median(after)
     for number, kidnap in enumerate(kidnaps, start=1):
         if kidnap.after_s is not None:
             scores[f"kidnap_{number}_s"], scores[f"kidnap_{number}_m"] = kidnap.after_s, kidnap.after_m or 0.0

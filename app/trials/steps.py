@@ -78,6 +78,19 @@ class Visit(_Step):
     near_m: Metres = 1.0
 
 
+class Tour(_Step):
+    """The robot is sent to places spread over its map, `visits` times in all; in every round to each, in a new order.
+
+    It has come to a place if it says so and truly is within `near_m` of where it had made that experience.
+    """
+
+    do: Literal["tour"]
+    goals: Annotated[int, Field(ge=1, le=1000)]
+    visits: Annotated[int, Field(ge=1, le=100_000)]
+    timeout_s: Seconds = 180.0
+    near_m: Metres = 1.0
+
+
 class Wait(_Step):
     """The robot stands still."""
 
@@ -108,5 +121,7 @@ class Repeat(_Step):
     steps: Annotated[list[Step], Field(min_length=1)]
 
 
-Step = Annotated[Explore | Drive | Move | Kidnap | Tag | Visit | Wait | Set | Door | Repeat, Field(discriminator="do")]
+Step = Annotated[
+    Explore | Drive | Move | Kidnap | Tag | Visit | Tour | Wait | Set | Door | Repeat, Field(discriminator="do")
+]
 Repeat.model_rebuild()

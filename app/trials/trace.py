@@ -1,4 +1,7 @@
-"""What the figures need of a trial that is not kept with its scores: it is run again and written down here."""
+"""What the figures need of a trial that is not kept with its scores: it is run again and written down here.
+
+Plain numbers and arrays, since it is made in other processes and sent here.
+"""
 
 from __future__ import annotations
 
@@ -8,59 +11,67 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.evaluation.alignment import align, alignment, rmse
-from app.trials.course import Course, Moment
+from app.evaluation.alignment import rmse
+from app.trials.course import Course, Moment, Visited
+from app.trials.final_map import FinalMap, Plan, final_map, placed, plan_of
 from app.trials.measures import MEASURES
 from app.trials.trial import Trial, watched
-from ratslam_core import Pose2
+from ratslam_core import Packet, Pose2
 
 _Array = NDArray[np.float64]
 EVERY_S = 0.5  # between two rows
+PATH_EVERY = 5  # ticks between two points of a path
 ERROR_EVERY_S = 15.0  # between two looks at the whole map
 MOST_PACKETS = 4
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """A place that was tagged. experience: None if the robot never came near."""
+
+    name: str
+    x: float
+    y: float
+    experience: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Carried:
+    """A kidnap; after_s and after_m are None if the robot never knew again where it was."""
+
+    at_s: float
+    after_s: float | None
+    after_m: float | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Trace:
-    """One trial, written down. Lengths in metres, angles in rad, times in s; n rows, one each `EVERY_S`."""
+    """One trial, written down. Lengths in m, angles in rad, times in s; n rows, one each `EVERY_S`."""
 
     trial: Trial
-    course: Course  # at its end
     time_s: _Array  # (n,)
     truth: _Array  # (n, 3) true x, y, heading, office frame
     cells: _Array  # (n, 3) the winning packet: x, y in cells, heading in rad
-    mass: _Array  # (n, 4) activity of the strongest packets
+    mass: _Array  # (n, 4) activity of the strongest packets, 0 where there are fewer
     off_m: _Array  # (n,) between the robot and where it believes itself to be; NaN where that has no meaning
-    jumped: NDArray[np.bool_]  # (n,) the packet has jumped since the row before
-    active: NDArray[np.int64]  # (n,) experience
+    residual: _Array  # (n,) by how much map and links disagree, m
     views: NDArray[np.int64]  # (n,) recruited so far
-    residual: _Array  # (n,) mean disagreement of map and links, m
-    error_time_s: _Array  # (k,)
-    error_m: _Array  # (k,) of the whole map so far
-    moments: list[Moment]
-
-    @property
-    def map_in_office(self) -> Pose2:
-        """The pose of the map's frame in the office that fits the whole path best."""
-        evaluation, map_ = self.course.session.evaluation, self.course.session.brain.experience_map
-        truth, mapped, _ = evaluation.trajectories(map_, every=5)
-        return alignment(mapped, truth)
-
-    @property
-    def mapped_path(self) -> _Array:
-        """The robot's path as its map tells it at the end, laid over the office; (m, 2)."""
-        evaluation, map_ = self.course.session.evaluation, self.course.session.brain.experience_map
-        truth, mapped, _ = evaluation.trajectories(map_, every=5)
-        return align(mapped, truth)
-
-    @property
-    def odometry_path(self) -> _Array:
-        """The path by odometry alone, laid so that it begins where the robot began; (m, 2)."""
-        evaluation = self.course.session.evaluation
-        _, _, odometry = evaluation.trajectories(self.course.session.brain.experience_map, every=5)
-        x, y, heading = self.truth[0]
-        c, s = math.cos(heading), math.sin(heading)
-        return odometry @ np.array([[c, s], [-s, c]]) + (x, y)
+    experiences: NDArray[np.int64]  # (n,) made so far
+    active: NDArray[np.int64]  # (n,) experience
+    snaps: _Array  # (k, 7) each jump of the winning packet: time; x, y, heading before (S); x, y, heading after (F)
+    error_time_s: _Array  # (e,)
+    error_m: _Array  # (e,) of the whole map so far
+    true_path: _Array  # (p, 2)
+    mapped_path: _Array  # (p, 2) the same path as the map tells it at the end, laid over the office
+    odometry_path: _Array  # (p, 2) the same by odometry alone, laid so that it begins where the robot began
+    cells_shape: tuple[int, int, int]  # layers, cells along y' and x'
+    cell_m: float
+    map: FinalMap
+    plan: Plan
+    moments: tuple[Moment, ...]
+    goals: tuple[Goal, ...]
+    visits: tuple[Visited, ...]
+    kidnaps: tuple[Carried, ...]
 
 
 class _Recorder:
@@ -68,28 +79,36 @@ class _Recorder:
         self.course = course
         self.rows: list[tuple[float, ...]] = []
         self.errors: list[tuple[float, float]] = []
+        self.snaps: list[tuple[float, ...]] = []
         self._row_s = self._error_s = 0.0
-        self._snaps = 0
+        self._snaps = course.session.brain.relocalisations
+        self._before: Packet = course.session.brain.pose_cells.winner
+        self.note()  # before the first tick
 
     def note(self) -> None:
         session = self.course.session
-        if session.time_s < self._row_s - 1e-9:
-            return
-        self._row_s += EVERY_S
-        brain, truth = session.brain, session.simulator.truth
-        map_, winner = brain.experience_map, brain.pose_cells.winner
+        winner, snaps = session.brain.pose_cells.winner, session.brain.relocalisations
+        if snaps > self._snaps:
+            self.snaps.append((session.time_s, *_state(self._before), *_state(winner)))
+        self._before, self._snaps = winner, snaps
+        if session.time_s >= self._row_s - 1e-9:
+            self._row_s += EVERY_S
+            self._row()
+        if session.time_s >= self._error_s - 1e-9:
+            self._error_s += ERROR_EVERY_S
+            path, mapped, _ = session.evaluation.trajectories(session.brain.experience_map, every=2 * PATH_EVERY)
+            self.errors.append((session.time_s, rmse(mapped, path)))
+
+    def _row(self) -> None:
+        session = self.course.session
+        brain, truth, map_ = session.brain, session.simulator.truth, session.brain.experience_map
         mass = [packet.mass for packet in brain.pose_cells.packets[:MOST_PACKETS]]
         mass += [0.0] * (MOST_PACKETS - len(mass))
         off_m = session.evaluation.belief_off(truth, map_)[0]
-        jumped, self._snaps = brain.relocalisations > self._snaps, brain.relocalisations
         self.rows.append((
-            session.time_s, truth.x, truth.y, truth.heading_rad, winner.x, winner.y, winner.heading_rad, *mass, off_m, jumped,
-            map_.active, len(brain.local_view), map_.residual[0],
+            session.time_s, truth.x, truth.y, truth.heading_rad, *_state(brain.pose_cells.winner), *mass, off_m,
+            map_.residual[0], len(brain.local_view), len(map_), map_.active,
         ))  # fmt: skip
-        if session.time_s >= self._error_s - 1e-9:
-            self._error_s += ERROR_EVERY_S
-            path, mapped, _ = session.evaluation.trajectories(map_, every=10)
-            self.errors.append((session.time_s, rmse(mapped, path)))
 
     def scores(self) -> dict[str, float]:
         return {}
@@ -100,8 +119,35 @@ def trace_of(trial: Trial) -> Trace:
     course = trial.begin()
     recorder = _Recorder(course)
     watched(course, [*(MEASURES[name](course) for name in trial.measures), recorder])
-    rows, errors = np.array(recorder.rows, np.float64), np.array(recorder.errors, np.float64)
+    session, map_ = course.session, course.session.brain.experience_map
+    rows = np.array(recorder.rows, np.float64).reshape(-1, 16)
+    errors = np.array(recorder.errors, np.float64).reshape(-1, 2)
+    truth, mapped, odometry = session.evaluation.trajectories(map_, every=PATH_EVERY)
+    picture = final_map(course)
+    whole = rows[:, 13:16].astype(np.int64)
     return Trace(
-        trial, course, rows[:, 0], rows[:, 1:4], rows[:, 4:7], rows[:, 7:11], rows[:, 11], rows[:, 12].astype(np.bool_),
-        rows[:, 13].astype(np.int64), rows[:, 14].astype(np.int64), rows[:, 15], errors[:, 0], errors[:, 1], course.moments,
+        trial=trial,
+        time_s=rows[:, 0], truth=rows[:, 1:4], cells=rows[:, 4:7], mass=rows[:, 7:11], off_m=rows[:, 11],
+        residual=rows[:, 12], views=whole[:, 0], experiences=whole[:, 1], active=whole[:, 2],
+        snaps=np.array(recorder.snaps, np.float64).reshape(-1, 7),
+        error_time_s=errors[:, 0], error_m=errors[:, 1],
+        true_path=truth.copy(),
+        mapped_path=placed(mapped, picture.in_office),
+        odometry_path=placed(odometry, _beginning(course)),
+        cells_shape=session.brain.pose_cells.shape, cell_m=map_.cell_m,
+        map=picture, plan=plan_of(session.world),
+        moments=tuple(course.moments),
+        goals=tuple(Goal(name, tag.x, tag.y, tag.experience) for name, tag in course.tags.items()),
+        visits=tuple(course.visits),
+        kidnaps=tuple(Carried(k.at_s, k.after_s, k.after_m) for k in session.evaluation.kidnaps),
     )  # fmt: skip
+
+
+def _state(packet: Packet) -> tuple[float, float, float]:
+    return packet.x, packet.y, packet.heading_rad
+
+
+def _beginning(course: Course) -> Pose2:
+    """The true pose at the start, which is the origin of odometry."""
+    x, y, heading, _ = course.session.evaluation.births(1)[0].tolist()
+    return Pose2(x, y, heading) if math.isfinite(x) else Pose2(0.0, 0.0, 0.0)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from app.session import Session, is_lost
 from app.views.event_log import EventLog
+from app.views.snap_causes import SnapCauses, words_of
 from ratslam_core import find_places
 from web.messages import Packet, Snap
 
 FALSE_EVERY_S = 5.0  # false positives are marked no more often
 PLACES_EVERY_S = 10.0
+DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
 class EventWatch:
@@ -16,6 +18,7 @@ class EventWatch:
 
     def __init__(self, session: Session, log: EventLog) -> None:
         self._session, self._log = session, log
+        self._causes = SnapCauses(session)
         self.last_snap: Snap | None = None
         self.lost = False
         self._before = session.brain.pose_cells.winner
@@ -24,6 +27,7 @@ class EventWatch:
         self._recovered = self._multiple = self._collisions = 0
         self._dropped = len(session.brain.experience_map.dropped_links)
         self._places_due_s = session.time_s + PLACES_EVERY_S
+        self._diverged, self._diverged_due_s = False, 0.0
 
     def watch(self) -> None:
         self._watch_snaps()
@@ -33,16 +37,18 @@ class EventWatch:
         self._watch_false_positives()
         self._watch_links()
         self._watch_places()
+        self._watch_correction()
 
     def _watch_snaps(self) -> None:
         session = self._session
+        self._causes.watch()
         packet = session.estimate.packet
         if session.estimate.relocalised:
             start, end = (Packet(p.x, p.y, p.heading_rad, p.mass, p.id) for p in (self._before, packet))
-            self.last_snap = Snap(session.time_s, start, end)
-            view = session.estimate.recognition.view
+            causes = self._causes.of(packet)
+            self.last_snap = Snap(session.time_s, start, end, causes)
             ends = f"({start.x:.0f}, {start.y:.0f}) to ({end.x:.0f}, {end.y:.0f})"
-            self._log.note("snap", f"relocalised by view {view}: {ends}")
+            self._log.note("snap", f"relocalised {words_of(causes)}: {ends}")
         self._before = packet
 
     def _watch_packets(self) -> None:
@@ -108,3 +114,13 @@ class EventWatch:
         if collisions > self._collisions:
             self._log.note("place", f"states of the pose cells that stand for several places: {collisions}")
         self._multiple, self._collisions = max(multiple, self._multiple), max(collisions, self._collisions)
+
+    def _watch_correction(self) -> None:
+        """Marks that the papers' literal correction has thrown the map apart."""
+        session, was, self._diverged = self._session, self._diverged, self._session.brain.experience_map.diverged
+        if self._diverged and not was and session.time_s >= self._diverged_due_s:
+            rate = session.config.experience_map.correction
+            self._log.note(
+                "warning", f"the map has diverged: a correction rate of {rate:g} is too high for all links at once"
+            )
+            self._diverged_due_s = session.time_s + DIVERGED_EVERY_S

@@ -137,7 +137,7 @@ class TickRecorder:
         if odometry.speed == 0 and odometry.yaw_rate == 0:
             return "The wheels stand: the activity stays where it is."
         ahead = odometry.speed * odometry.dt / params.cell_m
-        turn = odometry.yaw_rate * odometry.dt / math.tau * params.n_theta
+        turn = (odometry.yaw_rate + params.yaw_bias) * odometry.dt / math.tau * params.n_theta
         return (
             f"All activity moves {_plain(ahead, 2)} cells along its own heading and turns by {_plain(turn, 2)} layers."
         )

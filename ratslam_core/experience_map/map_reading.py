@@ -157,6 +157,11 @@ class MapReading:
         return float(np.sqrt(apart[:, :2].sum() / total)), float(np.sqrt(apart[:, 2].sum() / total))
 
     @property
+    def diverged(self) -> bool:
+        """Whether correction with the sweep "all at once" has thrown the map apart: `relaxation.sweep_all_at_once`."""
+        return self.params.sweep == "all at once" and relaxation.has_diverged(self.poses, self.moves)
+
+    @property
     def dropped_links(self) -> tuple[tuple[int, int], ...]:
         """From and to of every link that was deleted, in order. One that was driven again may be among `links`, too."""
         return tuple(self.transitions.dropped)

@@ -17,6 +17,7 @@ from ratslam_core.solvers.laplacian import eliminate
 if TYPE_CHECKING:
     from ratslam_core.experience_map.experience_map import ExperienceMap
 
+DIVERGED = 10.0  # times the length of all links together: where no map that fits them puts an experience
 LEAST_STRENGTH = 1e-9  # below it, only rounding tells a bias from a bend in the way
 
 
@@ -34,6 +35,9 @@ class Relaxation:
         for _ in range(p.sweeps):
             if p.sweep == "by link":
                 sweep_by_link(poses, t.graph, ends, moves, t.travelled, p.correction)
+            elif p.sweep == "all at once":
+                ways = t.travelled[: t.count]
+                sweep_all_at_once(poses, ends[ways], moves[ways], p.correction)
             else:
                 sweep(poses, t.graph, moves, t.believed, p.correction)
 
@@ -98,8 +102,8 @@ def sweep_by_link(
 ) -> None:
     """One sweep, in place: each experience but the first is moved by alpha times the residual of each of its links in turn.
 
-    ACRA 2005 eqs. 12-14 may also be read as all links of an experience at once. That oscillates for ever where four
-    links meet, and diverges where more do. Places use the headings from before the sweep.
+    ACRA 2005 eqs. 12-14 may also be read as all links at once: `sweep_all_at_once`. Places use the headings from before
+    the sweep.
     test_papers.py::test_a_biased_loop_is_corrected_as_in_the_twin.
     """
     ends = links.view(np.uint64)[: len(moves)]
@@ -130,6 +134,34 @@ def _sweep_by_link(
                 poses[i, 1] += alpha * (poses[other, 1] + sign * turned[row, 1] - poses[i, 1])
                 turn = _wrapped(poses[other, 2] + sign * moves[row, 2] - poses[i, 2])
                 poses[i, 2] = _wrapped(poses[i, 2] + alpha * turn)
+
+
+def sweep_all_at_once(
+    poses: NDArray[np.float64], links: NDArray[np.int64], moves: NDArray[np.float64], alpha: float
+) -> None:
+    """One sweep as ACRA 2005 eqs. 12-14 print it, in place: all experiences but the first are moved at once, each by alpha
+    times the sum of the residuals of its links.
+
+    It diverges where alpha times the largest eigenvalue of the graph's Laplacian is above 2; with 0.5, mostly where more than two
+    links meet. [ours] A map that has diverged is left as it is unless the sweep brings it together, so that all numbers
+    stay finite. test_sweep_all_at_once.py.
+    """
+    n = len(poses)
+    off = np.ascontiguousarray(disagreement(poses, links, moves).T)
+    swept = poses.copy()
+    swept[1:] += alpha * np.stack([_asked(n, links, errors) for errors in off], axis=1)[1:]
+    if not has_diverged(poses, moves) or _reach(swept) < _reach(poses):
+        swept[:, 2] -= 2 * math.pi * np.round(swept[:, 2] / (2 * math.pi))
+        poses[:] = swept
+
+
+def has_diverged(poses: NDArray[np.float64], moves: NDArray[np.float64]) -> bool:
+    """Whether an experience lies farther from the first than DIVERGED times the length of all links together."""
+    return _reach(poses) > DIVERGED * float(np.hypot(moves[:, 0], moves[:, 1]).sum())
+
+
+def _reach(poses: NDArray[np.float64]) -> float:
+    return float(np.hypot(*(poses[:, :2] - poses[:1, :2]).T).max(initial=0.0))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -237,29 +269,6 @@ def disagreement(
         out[row, 1] = poses[i, 1] + s * moves[row, 0] + c * moves[row, 1] - poses[j, 1]
         out[row, 2] = _wrapped(poses[i, 2] + moves[row, 2] - poses[j, 2])
     return out
-
-
-def trust(
-    poses: NDArray[np.float64],
-    links: NDArray[np.int64],
-    moves: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    chain: NDArray[np.bool_],
-    sigma: float,
-    p: SolverParams,
-) -> NDArray[np.float64]:
-    """[ours] How far each link is believed, 0 to 1, given how well the map fits it.
-
-    weights: sigma^2 / variance; chain: rows of odometry, the others are looks. The pull of a look stops growing with
-    its error (Huber). Odometry cannot be far off, so its pull even falls (Cauchy). Many looks that agree thus tear the
-    one link along which the robot was carried, and a single look does not.
-    test_relaxation_trust.py::test_many_looks_tear_the_link_of_a_kidnap.
-    """
-    ex, ey, turn = disagreement(poses, links, moves).T
-    chi: NDArray[np.float64] = np.sqrt(weights * (ex**2 + ey**2 + (turn / p.rad_per_m) ** 2)) / sigma
-    return np.where(
-        chain, 1 / (1 + (chi / p.odometry_gives) ** 2), np.minimum(1, p.look_gives / np.maximum(chi, p.look_gives))
-    )
 
 
 @njit(cache=True, nogil=True)

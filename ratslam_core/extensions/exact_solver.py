@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.experience_map import relaxation
+from ratslam_core.extensions import robust_weights
 from ratslam_core.extensions.graduated_trust import contradiction, kept
 from ratslam_core.params import SolverParams
 
@@ -87,7 +88,7 @@ class ExactSolver:
             if self._given_up(map_).any():  # the verdict of the last trial stands
                 share = np.divide(t.believed[: t.count], weights, out=np.zeros(t.count), where=weights > 0.0)
             else:
-                share = relaxation.trust(
+                share = robust_weights.trust(
                     poses, ends, moves, weights, self._odometry(map_), p.odometry_sigma, self.params
                 )
         t.believed[: t.count] = weights if share is None else weights * share

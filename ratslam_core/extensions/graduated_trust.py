@@ -6,7 +6,7 @@ wholly or not at all (truncated least squares). So many false closures are found
 asks all of them anew, one that was believed for a while is let go when others contradict it, and one that was given up
 counts again when they agree. Yang, Antonante, Tzoumas and Carlone, RA-L 2020, eqs. 12-14.
 test_graduated_trust.py::test_false_closures_are_found_out. `solver.closures` "reweighted" is the plain twin: it asks
-only how well the map fits a row as it is (`relaxation.trust`).
+only how well the map fits a row as it is (`robust_weights.trust`).
 """
 
 from __future__ import annotations

@@ -169,8 +169,9 @@ class ExperienceMapParams:
     )
     sweep: str = param(
         "by experience",
-        choices=("by experience", "by link"),
-        meaning="an experience is moved by the weighted mean of its links' residuals, or by each link in turn",
+        choices=("by experience", "by link", "all at once"),
+        meaning="an experience is moved by the weighted mean of its links' residuals, by each link in turn, or all are by their "
+        "sums, as printed, which diverges where the rate is too high",
         source="ours; B 4.3",
     )
     sweeps: int = param(1, unit="1/step", low=0, high=100, meaning="correction sweeps in each step", source="B 4.3")

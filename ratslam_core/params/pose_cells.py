@@ -10,7 +10,7 @@ from ratslam_core.params.parameter import check_ranges, param
 MOST_CELLS = 2**26  # of the pose cells, four bytes each: a brain has to fit into memory, and into its file
 
 
-@kind("parameters of pose cells/1")
+@kind("parameters of pose cells/2")
 @dataclass(frozen=True, slots=True)
 class PoseCellParams:
     """The continuous attractor network (A section 4)."""
@@ -94,6 +94,15 @@ class PoseCellParams:
         meaning="path integration comes before association: the image belongs to the end of the movement",
         source="ours; A 4 associates first",
         live=False,
+    )
+    yaw_bias: float = param(
+        0.0,
+        symbol="b_θ'",
+        unit="rad/s",
+        low=-0.2,
+        high=0.2,
+        meaning="added to the yaw rate for the pose cells alone while the wheels turn: 0.0262 = 1.5 deg/s; 0 = as it is",
+        source="B 5.2",
     )
     snap_cells: float = param(
         3.0,

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from ratslam_core import SolverParams
 from ratslam_core.experience_map import relaxation
 from ratslam_core.experience_map.relaxation import solve
+from ratslam_core.extensions import robust_weights
 from tests.unit.ratslam_core import literal
 
 from .pose_graphs import EXAMPLES
@@ -33,7 +34,7 @@ def carried_chain(looks: int) -> tuple[np.ndarray, np.ndarray]:
     poses[:, 0] = 0.05 * np.arange(40)
     trust = np.ones(len(links))
     for _ in range(60):
-        trust = relaxation.trust(poses, links, moves, weights, is_chain, 0.01, SolverParams())
+        trust = robust_weights.trust(poses, links, moves, weights, is_chain, 0.01, SolverParams())
         solve(poses, links, moves, weights * trust)
     return poses[:, 0] - true_x, trust
 
@@ -63,7 +64,9 @@ def test_trust_falls_with_contradiction(near: float, far: float, turn: float, ch
     links, weights = np.array([[0, 1]]), np.array([0.5])
     poses = np.zeros((2, 3))
     trusts = [
-        relaxation.trust(poses, links, np.array([[d, 0.0, turn]]), weights, np.array([chain]), 0.01, SolverParams())[0]
+        robust_weights.trust(
+            poses, links, np.array([[d, 0.0, turn]]), weights, np.array([chain]), 0.01, SolverParams()
+        )[0]
         for d in (near, far)
     ]
     assert 0 < trusts[1] <= trusts[0] <= 1
@@ -84,5 +87,5 @@ def test_how_far_a_link_gives(times: float, bearing: float, share: float, weight
         metres, turn = off * np.cos(share), p.rad_per_m * off * np.sin(share)
         assert abs(turn) < np.pi
         move = np.array([[metres * np.cos(bearing), metres * np.sin(bearing), turn]])
-        found = relaxation.trust(poses, links, move, np.array([weight]), np.array([chain]), sigma, p)
+        found = robust_weights.trust(poses, links, move, np.array([weight]), np.array([chain]), sigma, p)
         assert found[0] == pytest.approx(expected, rel=1e-9)

@@ -13,6 +13,8 @@ from web.messages.brain import (
     PoseCellLayer,
     Senses,
     Snap,
+    SnapCause,
+    TaggedPlace,
     TimesLayer,
 )
 from web.messages.commands import (
@@ -23,6 +25,7 @@ from web.messages.commands import (
     EditStep,
     EditWorld,
     Finite,
+    GoToTag,
     InjectPacket,
     Inspect,
     Kidnap,
@@ -43,7 +46,10 @@ from web.messages.commands import (
     SetSpeed,
     Step,
     StepStage,
+    Tag,
+    TagOrder,
     UndoEdit,
+    Untag,
     UsePreset,
     WatchExperiment,
 )
@@ -63,7 +69,7 @@ from web.messages.engine_requests import (
     WorldRestored,
     WorldSaved,
 )
-from web.messages.office import LivingLayer, OfficeEdition, WorldDrawing
+from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
 from web.messages.reports import (
     CellReport,
     ExperienceReport,
@@ -92,6 +98,7 @@ __all__ = [
     "EventKind",
     "ExperienceReport",
     "Finite",
+    "GoToTag",
     "Goal",
     "GoalMemoryLayer",
     "GoalState",
@@ -103,6 +110,7 @@ __all__ = [
     "LivingLayer",
     "LookOrder",
     "MapLayer",
+    "Movements",
     "OccupancyLayer",
     "OccupancyPicture",
     "OfficeEdition",
@@ -135,9 +143,13 @@ __all__ = [
     "SetParameter",
     "SetSpeed",
     "Snap",
+    "SnapCause",
     "Snapshot",
     "Step",
     "StepStage",
+    "Tag",
+    "TagOrder",
+    "TaggedPlace",
     "TickStage",
     "TickWalk",
     "Times",
@@ -146,6 +158,7 @@ __all__ = [
     "TrialState",
     "TrialView",
     "UndoEdit",
+    "Untag",
     "UseBrain",
     "UsePreset",
     "ViewReport",

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from app.cli import command_line as cli
 from app.headless import Deliveries, deliveries, visiting
-from app.headless.deliveries import order
 from app.headless.report import MACHINE
 from app.headless.visiting import Visit
+from app.trials.tour import order
 from sim2d import load_world
 
 LOOP = load_world("loop")

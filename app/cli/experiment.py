@@ -1,0 +1,129 @@
+"""`ratslam experiment`: lists the experiments, runs one or all, opens one of their trials, checks a file."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from app.cli.options import Verbs
+from disk import require_writable
+
+_RESERVED = ("all", "check", "open", "results")
+_MOST_TRIALS = 100_000
+
+
+def add_experiment(commands: Verbs) -> None:
+    parser = commands.add_parser(
+        "experiment",
+        help="run the papers' experiments, or one of your own",
+        description="Without a name: lists the experiments.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="NAME or FILE.toml   runs one; what was run before is not run again\n"
+        "all                 runs every experiment that comes with the program\n"
+        "open ID             opens a trial in the dashboard, at the moment that decided it\n"
+        "check FILE.toml     says whether a file of your own is right\n"
+        "results             writes results.md and results.json from the stored trials (--out, default docs)",
+    )
+    parser.add_argument("what", nargs="*", metavar="NAME|FILE.toml|all|open ID|check FILE", help="see below")
+    parser.add_argument(
+        "--engine", choices=("paper", "ours", "both"), default="both", help="whose rules (default both)"
+    )
+    parser.add_argument("--trials", type=int, metavar="N", help="trials in each cell (default: the experiment's)")
+    parser.add_argument("--quick", action="store_true", help="made short, to see that it works")
+    parser.add_argument(
+        "--workers", type=int, metavar="N", help="processes on this machine (default: one for each core)"
+    )
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="use this Dask cluster, such as tcp://127.0.0.1:8786")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="where page, figures and table go (default ./experiments/NAME)"
+    )
+    parser.add_argument(
+        "--store", type=Path, metavar="FILE", help="where trials are kept (default ~/.ratslam/experiments.sqlite)"
+    )
+    parser.add_argument(
+        "--parquet", type=Path, metavar="FILE", help="also write all stored trials of the experiment to FILE"
+    )
+    parser.set_defaults(do=_experiment)
+
+
+def _experiment(args: argparse.Namespace) -> int:
+    _check(args)
+    match args.what:
+        case []:
+            from app.cli.experiment_list import list_experiments
+
+            return list_experiments(args)
+        case ["open", trial_id]:
+            return _open(trial_id, args.store)
+        case ["check", file]:
+            return _check_file(file)
+        case ["open" | "check" as verb, *_]:
+            raise ValueError(
+                f"experiment {verb} takes {'the id of a trial' if verb == 'open' else 'a file'}, and one only"
+            )
+        case ["all"]:
+            from app.cli.experiment_run import run_all
+
+            return run_all(args)
+        case ["results"]:
+            return _results(args)
+        case [name]:
+            from app.cli.experiment_run import run_one
+
+            return run_one(name, args)
+        case names:
+            raise ValueError(
+                f"one experiment at a time, got {', '.join(names)}; `ratslam experiment all` runs every one"
+            )
+
+
+def _check(args: argparse.Namespace) -> None:
+    if args.trials is not None and not 1 <= args.trials <= _MOST_TRIALS:
+        raise ValueError(f"--trials must be from 1 to {_MOST_TRIALS}, got {args.trials}")
+    if args.workers is not None and not 1 <= args.workers <= 1024:
+        raise ValueError(f"--workers must be from 1 to 1024, got {args.workers}")
+    if args.scheduler is not None and args.workers is not None:
+        raise ValueError(
+            f"--workers {args.workers} are processes on this machine; the cluster of --scheduler has its own"
+        )
+    if args.what == ["all"] and args.parquet is not None:
+        raise ValueError("--parquet takes the trials of one experiment; name it")
+    require_writable("--parquet", args.parquet)
+
+
+def _open(trial_id: str, store_file: Path | None) -> int:
+    import sys
+
+    from app.cli.run import run_with_trial
+    from app.experiments.opening import open_trial
+    from app.experiments.store import Store
+
+    with Store(store_file) as store:
+        opened = open_trial(trial_id, store)
+    for words in opened.warnings:
+        print(f"ratslam: note: {words}", file=sys.stderr)
+    return run_with_trial(opened.trial, opened.moment_s)
+
+
+def _results(args: argparse.Namespace) -> int:
+    from app.experiments.results import write_results
+    from app.experiments.store import Store
+    from app.trials.experiment import catalogue
+
+    with Store(args.store) as store:
+        runs = [(experiment, store.stored(experiment.make_trials())) for experiment in catalogue()]
+    for path in write_results(runs, args.out or Path("docs")):
+        print(path)
+    return 0
+
+
+def _check_file(file: str) -> int:
+    from app.trials.experiment import read_experiment
+
+    experiment = read_experiment(Path(file))
+    if experiment.name in _RESERVED:
+        raise ValueError(f"{file}: name: {experiment.name!r} is a word of the command; choose another")
+    experiment.check()
+    cells, trials = len(experiment.cells()), len(experiment.make_trials())
+    print(f"{file}: {experiment.title}: {cells} {'cell' if cells == 1 else 'cells'}, {trials} trials; all is right")
+    return 0

@@ -1,0 +1,134 @@
+"""The workers that run trials: some on this machine, or those of a Dask cluster that exists."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import multiprocessing
+import os
+import signal
+from collections.abc import Generator
+from typing import Any
+
+from app.trials.code_version import code_version
+
+HERE = "127.0.0.1"
+FIND_S = 20.0  # how long to look for a scheduler
+JOIN_S = 60.0  # how long to wait for its first worker
+END_S = 5.0
+_ONE_THREAD = {"NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+_CONFIG: dict[str, Any] = {
+    "distributed.scheduler.http.routes": [],  # nothing is served to browsers
+    "distributed.worker.http.routes": [],
+    "distributed.nanny.pre-spawn-environ": _ONE_THREAD,
+    "distributed.admin.low-level-log-length": 100,
+    "distributed.deploy.lost-worker-timeout": "1 day",  # a nanny starts its worker again, however slow the machine is
+}
+
+
+@contextlib.contextmanager
+def connected_to(scheduler: str | None, workers: int | None) -> Generator[Any]:
+    """A Dask client. scheduler: its address; without one, `workers` processes on this machine, by default one a core.
+
+    ValueError: nobody answers there, or the workers run another version of this program.
+    """
+    if scheduler is not None:
+        with _cluster_that_exists(scheduler) as client:
+            yield client
+    else:
+        with _cluster_of_our_own(workers or cores()) as client:
+            yield client
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextlib.contextmanager
+def _cluster_of_our_own(workers: int) -> Generator[Any]:
+    import dask.config
+    from distributed import Client, LocalCluster
+
+    with dask.config.set(_CONFIG):
+        _fork_ready_workers()
+        cluster: Any = LocalCluster(
+            n_workers=workers, threads_per_worker=1, processes=True, host=HERE, memory_limit=0,
+            dashboard_address=f"{HERE}:0", scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL,
+            preload=["app.experiments.batch"],
+        )  # fmt: skip
+        try:
+            client: Any = Client(cluster, set_as_default=False)
+            try:
+                yield client
+            finally:
+                with contextlib.suppress(TimeoutError, OSError):
+                    cluster.sync(_end_workers, list(cluster.workers.values()))
+                    client.close(timeout=END_S)
+        finally:
+            with contextlib.suppress(TimeoutError, OSError):
+                cluster.close(timeout=END_S)
+
+
+def _fork_ready_workers() -> None:
+    """Workers are forked, where that is possible, from one process that has imported all they need: the first starts
+    as soon, the others at once, also those that replace one that died."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return
+    import dask.config
+    from distributed.utils import get_mp_context
+
+    dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"})
+    context: Any = get_mp_context()
+    context.set_forkserver_preload(["distributed", "app.experiments.batch"])
+
+
+async def _end_workers(nannies: list[Any]) -> None:
+    """What they are doing is not waited for, and nobody starts them again."""
+    for nanny in nannies:
+        nanny.close_gracefully(reason="the client ends")
+        if nanny.pid:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(nanny.pid, signal.SIGKILL)
+
+
+@contextlib.contextmanager
+def _cluster_that_exists(address: str) -> Generator[Any]:
+    from distributed import Client
+
+    try:
+        client: Any = Client(address, timeout=FIND_S, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        raise ValueError(
+            f"--scheduler {address}: no Dask scheduler answers ({error}); expected such as tcp://{HERE}:8786"
+        ) from None
+    try:
+        try:
+            client.wait_for_workers(1, timeout=JOIN_S)
+        except TimeoutError:
+            raise ValueError(
+                f"--scheduler {address}: it has no workers; start some there with `dask worker {address}`"
+            ) from None
+        _check_versions(client, address)
+        yield client
+    finally:
+        client.close(timeout=END_S)
+
+
+def _here() -> str:
+    return code_version()
+
+
+def _check_versions(client: Any, address: str) -> None:
+    here = _here()
+    try:
+        versions: dict[str, str] = client.run(code_version)
+    except Exception as error:
+        raise ValueError(
+            f"--scheduler {address}: its workers do not know this program ({error}); install it there, in the same version"
+        ) from None
+    for worker, version in versions.items():
+        if version != here:
+            raise ValueError(
+                f"--scheduler {address}: {worker} runs version {version} of this program, not {here}; make them equal"
+            )

@@ -1,0 +1,77 @@
+"""Trials to take elsewhere: a row for each, with its levels, its scores, and the id by which it can be opened."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from app.experiments.stored_trial import StoredTrial
+from app.trials.experiment import Experiment
+from disk import whole_file, write_whole
+
+_FIRST = ["id", "engine"]
+_LAST = ["seed", "version", "quick", "simulated_s", "wall_s", "moment_s", "moment", "error"]
+
+Cell = str | int | float | bool | None
+
+
+def write_csv(path: Path, experiment: Experiment, trials: Sequence[StoredTrial]) -> None:
+    """OSError names the file."""
+    columns, rows = table_of(experiment, trials)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(rows)
+    write_whole(path, text.getvalue())
+
+
+def write_parquet(path: Path, experiment: Experiment, trials: Sequence[StoredTrial]) -> None:
+    """OSError names the file. What a trial does not have is null."""
+    pyarrow: Any = import_module("pyarrow")  # it has no types
+    parquet: Any = import_module("pyarrow.parquet")
+    columns, rows = table_of(experiment, trials)
+    types = {"seed": pyarrow.int64(), "quick": pyarrow.bool_()}
+    numbers = {"simulated_s", "wall_s", "moment_s", *columns[len(columns) - len(_scores(trials)) :]}
+    arrays = {
+        column: pyarrow.array(
+            [row[at] for row in rows],
+            types.get(column, pyarrow.float64() if column in numbers else pyarrow.string()),
+        )
+        for at, column in enumerate(columns)
+    }
+    with whole_file(path) as file:
+        parquet.write_table(pyarrow.table(arrays), file)
+
+
+def table_of(experiment: Experiment, trials: Sequence[StoredTrial]) -> tuple[list[str], list[list[Cell]]]:
+    """Column names and rows. An axis has the column of its name."""
+    scores = _scores(trials)
+    axes = [axis.name for axis in experiment.axes]
+    columns = [*_FIRST, *(_free(axis, _FIRST + _LAST, "axis") for axis in axes), *_LAST]
+    columns += [_free(score, columns, "score") for score in scores]
+    rows: list[list[Cell]] = [
+        [
+            trial.id, trial.engine, *_levels(trial, len(axes)), trial.seed, trial.version, trial.quick, trial.simulated_s,
+            trial.wall_s, trial.moment_s, trial.moment_words, trial.error, *(trial.scores.get(name) for name in scores),
+        ]
+        for trial in trials
+    ]  # fmt: skip
+    return columns, rows
+
+
+def _free(name: str, taken: Sequence[str], kind: str) -> str:
+    """A name for a column: no two have the same."""
+    return f"{name} ({kind})" if name in taken else name
+
+
+def _levels(trial: StoredTrial, axes: int) -> list[str | None]:
+    """One for each axis. Older trials may be from a file with other axes."""
+    return [*trial.levels[:axes], *[None] * (axes - len(trial.levels))]
+
+
+def _scores(trials: Sequence[StoredTrial]) -> list[str]:
+    return sorted({name for trial in trials for name in trial.scores})

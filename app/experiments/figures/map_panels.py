@@ -1,0 +1,207 @@
+"""One panel of a map, each kind a function: it draws a trace on axes in metres of the office, or in pose cells."""
+
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_rgb
+from matplotlib.transforms import Affine2D
+from numpy.typing import NDArray
+
+from app.experiments.figures.palette import BLUE, ENGINE_COLOUR, FAINT, GREEN, INK, ORANGE, PURPLE, SKY, SOFT, WALL
+from app.trials.figure_options import Maps
+from app.trials.final_map import Grid
+from app.trials.trace import Trace
+
+_Array = NDArray[np.float64]
+MARGIN_M = 0.4
+MANY_LINKS = 6000  # more are drawn as a picture
+FEW_SNAPS = 12  # so many are lettered
+_FREE, _TAKEN = to_rgb(SKY), to_rgb(SOFT)
+
+
+def plan(panel: Axes, trace: Trace) -> None:
+    """Walls and boxes; the panel is as large as the office."""
+    panel.add_collection(
+        LineCollection(list(trace.plan.walls.reshape(-1, 2, 2)), colors=WALL, linewidths=0.8, zorder=1)
+    )
+    panel.add_collection(PolyCollection(list(trace.plan.boxes), facecolors="none", edgecolors=WALL, linewidths=0.5))
+    x1, y1, x2, y2 = trace.plan.bounds
+    panel.set(xlim=(x1 - MARGIN_M, x2 + MARGIN_M), ylim=(y1 - MARGIN_M, y2 + MARGIN_M), aspect="equal")
+    panel.update_datalim([(x1, y1), (x2, y2)])
+
+
+def goals(panel: Axes, trace: Trace) -> None:
+    """A star where a goal truly is, a ring where the map has put the experience that was tagged there, and who was reached."""
+    reached = {visit.name: visit.reached for visit in trace.visits}
+    for goal in trace.goals:
+        ok = reached.get(goal.name)
+        colour = INK if ok is None else GREEN if ok else ORANGE
+        label = "goal" if ok is None else "goal, reached" if ok else "goal, not reached"
+        panel.plot(goal.x, goal.y, "*", ms=8, mfc=colour, mec="white", mew=0.4, ls="none", zorder=6, label=label)
+        if goal.experience is not None:
+            x, y, _ = trace.map.poses[goal.experience]
+            panel.plot([goal.x, x], [goal.y, y], "-", color=colour, lw=0.6, zorder=5)
+            panel.plot(
+                x, y, "o", ms=5, mfc="none", mec=colour, mew=0.9, ls="none", zorder=6, label="its place in the map"
+            )
+
+
+def _links(panel: Axes, trace: Trace, colour: str, width: float = 0.7) -> None:
+    """One line with gaps, since a file with a path for each link would be ten times as large."""
+    ends = trace.map.poses[trace.map.links, :2]
+    gaps = np.full((len(ends), 1, 2), np.nan)
+    line = np.concatenate([ends, gaps], axis=1).reshape(-1, 2)
+    panel.plot(*line.T, color=colour, lw=width, zorder=2, rasterized=len(ends) > MANY_LINKS)
+
+
+def experience_map(panel: Axes, trace: Trace, options: Maps) -> None:
+    plan(panel, trace)
+    colour = ENGINE_COLOUR[trace.trial.engine]
+    _links(panel, trace, colour)
+    panel.plot(*trace.map.poses[:, :2].T, ".", ms=1.8, color=colour, zorder=3)
+    if options.marks:
+        goals(panel, trace)
+
+
+def paths(panel: Axes, trace: Trace, options: Maps) -> None:
+    plan(panel, trace)
+    panel.plot(*trace.odometry_path.T, color=ORANGE, lw=0.7, zorder=2, label="odometry alone")
+    panel.plot(*trace.true_path.T, color=INK, lw=1.4, zorder=3, label="truth")
+    panel.plot(*trace.mapped_path.T, color=BLUE, lw=0.7, zorder=4, label="as the map tells it")
+    low, high = trace.odometry_path.min(axis=0), trace.odometry_path.max(axis=0)
+    x1, y1, x2, y2 = trace.plan.bounds
+    panel.set(xlim=(min(x1, low[0]) - MARGIN_M, max(x2, high[0]) + MARGIN_M),
+              ylim=(min(y1, low[1]) - MARGIN_M, max(y2, high[1]) + MARGIN_M))  # fmt: skip
+    if options.marks:
+        goals(panel, trace)
+
+
+# ------------------------------------------------------------ in pose cells
+
+
+def cells_frame(panel: Axes, trace: Trace) -> None:
+    _, n_y, n_x = trace.cells_shape
+    panel.set(
+        xlim=(-0.5, n_x - 0.5),
+        ylim=(-0.5, n_y - 0.5),
+        aspect="equal",
+        xlabel=f"{n_x} x {n_y} cells of {trace.cell_m:g} m",
+    )
+
+
+def pose_cells(panel: Axes, trace: Trace, options: Maps) -> None:
+    """The line is broken where the packet leaves through one face and comes in through the other, and where it snaps."""
+    cells_frame(panel, trace)
+    path = broken_path(trace)
+    panel.plot(*path.T, color=ENGINE_COLOUR[trace.trial.engine], lw=0.8, zorder=3)
+    before, after = _in_faces(trace.snaps[:, 1:3], trace), _in_faces(trace.snaps[:, 4:6], trace)
+    few = len(before) <= FEW_SNAPS
+    jumps = np.stack([before, after], axis=1)
+    lines = LineCollection(list(jumps), colors=SOFT, linewidths=0.5 if few else 0.3, linestyles=(0, (3, 2)), zorder=2,
+                           label="snap")  # fmt: skip
+    if len(before):
+        panel.add_collection(lines)
+    for start, end in jumps if few and options.marks else ():
+        panel.annotate("S", start, fontsize=6, color=INK, ha="center", va="center", zorder=5)
+        panel.annotate("F", end, fontsize=6, color=INK, ha="center", va="center", zorder=5)
+
+
+def broken_path(trace: Trace) -> _Array:
+    """x, y of the winning packet in each row, with a row of NaN wherever the line must not be drawn."""
+    _, n_y, n_x = trace.cells_shape
+    path = _in_faces(trace.cells[:, :2], trace)
+    far = (np.abs(np.diff(path, axis=0)) > np.array([n_x, n_y]) / 2).any(axis=1)
+    snapped = np.diff(np.searchsorted(trace.snaps[:, 0], trace.time_s + 1e-9, side="right")) > 0
+    return np.insert(path, np.flatnonzero(far | snapped) + 1, np.nan, axis=0)
+
+
+def _in_faces(points: _Array, trace: Trace) -> _Array:
+    """The middle of the first cell is at 0, so the network reaches from half a cell before it."""
+    _, n_y, n_x = trace.cells_shape
+    return (points + 0.5) % (n_x, n_y) - 0.5
+
+
+# ------------------------------------------------------------ pictures
+
+
+def map_grid(panel: Axes, trace: Trace, options: Maps) -> None:
+    plan(panel, trace)
+    grid = trace.map.occupancy
+    if grid is None:
+        return
+    frame = trace.map.in_office
+    turn = Affine2D().rotate(frame.heading_rad).translate(frame.x, frame.y)
+    limits = panel.get_xlim(), panel.get_ylim()
+    panel.imshow(_tinted(grid), origin="lower", extent=_extent(grid), transform=turn + panel.transData, zorder=0)
+    panel.set(xlim=limits[0], ylim=limits[1], aspect="equal")
+    if options.marks:
+        goals(panel, trace)
+
+
+def occupancy(panel: Axes, trace: Trace, options: Maps) -> None:  # noqa: ARG001
+    grid = trace.map.cells_occupancy
+    if grid is not None:
+        panel.imshow(_tinted(grid), origin="lower", extent=_extent(grid), zorder=0)
+    cells_frame(panel, trace)
+
+
+def goal_memory(panel: Axes, trace: Trace, options: Maps) -> None:  # noqa: ARG001
+    grid = trace.map.goal_times
+    if grid is not None:
+        known = np.ma.masked_invalid(grid.values)
+        drawn = panel.imshow(known, origin="lower", extent=_extent(grid), cmap="viridis_r", zorder=0)
+        _seconds(panel, drawn)
+    cells_frame(panel, trace)
+
+
+def _tinted(grid: Grid) -> _Array:
+    """(n_y, n_x, 4): free is tinted, taken is dark, and what nobody knows lets the page through."""
+    sure = (np.clip(grid.values, 0.0, 1.0) - 0.5) * 2
+    colour = np.where((sure > 0)[..., None], _TAKEN, _FREE)
+    return np.dstack([colour, np.abs(sure) * np.where(sure > 0, 1.0, 0.45)])
+
+
+def _extent(grid: Grid) -> tuple[float, float, float, float]:
+    (x, y), half = grid.origin, grid.cell / 2
+    n_y, n_x = grid.values.shape
+    return x - half, x + n_x * grid.cell - half, y - half, y + n_y * grid.cell - half
+
+
+def temporal_map(panel: Axes, trace: Trace, options: Maps) -> None:
+    plan(panel, trace)
+    _links(panel, trace, FAINT)
+    known = np.isfinite(trace.map.times_s)
+    x, y, _ = trace.map.poses[known].T
+    drawn = panel.scatter(x, y, c=trace.map.times_s[known], s=7, cmap="viridis_r", linewidths=0, zorder=3)
+    _seconds(panel, drawn)
+    if options.marks:
+        goals(panel, trace)
+
+
+def _seconds(panel: Axes, drawn: object) -> None:
+    figure = panel.get_figure(root=True)
+    assert figure is not None
+    bar = figure.colorbar(drawn, ax=panel, shrink=0.7, pad=0.02, aspect=25)  # type: ignore[arg-type]
+    bar.set_label("seconds to the goal")
+    bar.outline.set_visible(False)  # type: ignore[union-attr]
+
+
+def representations(panel: Axes, trace: Trace, options: Maps) -> None:
+    plan(panel, trace)
+    _links(panel, trace, FAINT)
+    panel.plot(*trace.map.poses[:, :2].T, ".", ms=1.2, color=WALL, zorder=3)
+    groups = (
+        (trace.map.multiple, "multiple representation", "o", BLUE),
+        (trace.map.collisions, "hash collision", "s", PURPLE),
+    )
+    for found, words, marker, colour in groups:
+        for group in found:
+            x, y, _ = trace.map.poses[list(group)].T
+            panel.plot(x, y, marker + ":", ms=4, mfc="none", color=colour, lw=0.4, mew=0.8, zorder=4,
+                       label=f"{words}s" if options.marks else None)  # fmt: skip
+    panel.set_xlabel(f"{len(trace.map.multiple)} multiple, {len(trace.map.collisions)} collisions", color=SOFT)

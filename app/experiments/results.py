@@ -1,0 +1,208 @@
+"""docs/results.md: every result, also the bad ones. It is made of docs/results.json, and that of the stored trials.
+
+A test makes the text again from the numbers, and compares the experiments of then with those of now.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import astuple
+from pathlib import Path
+from typing import Any, cast
+
+from app.experiments.intervals import Estimate
+from app.experiments.sentences import found
+from app.experiments.store import Store
+from app.experiments.stored_trial import StoredTrial
+from app.experiments.summary import CellSummary, summarise, words
+from app.experiments.words import ENGINE_WORDS, words_of
+from app.trials.code_version import code_version
+from app.trials.experiment import Experiment, catalogue
+
+DOCS = Path(__file__).parents[2] / "docs"
+_HEADING = """# Results
+
+Every experiment of the papers that is run again here: what the paper has, what its own rules come to in our office, and
+what ours do. The numbers are in [results.json](results.json); this file is made from them by `ratslam experiment results`
+and must not be edited. Rates have their 95 % intervals after Wilson, medians theirs by the bootstrap. n is the number of
+trials of each engine at these levels.
+"""
+
+
+def definition_digest(experiment: Experiment) -> str:
+    """Of all that decides the numbers: what is run, how often, and what is measured. Texts and figures do not count."""
+    decides = {
+        "name",
+        "world",
+        "trials",
+        "seed",
+        "set",
+        "engines",
+        "axes",
+        "protocol",
+        "measures",
+        "scores",
+        "original",
+    }
+    tree = experiment.model_dump(mode="json", include=decides)
+    return hashlib.sha256(json.dumps(tree, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def gathered(runs: Iterable[tuple[Experiment, Sequence[StoredTrial]]]) -> dict[str, Any]:
+    """The numbers of all experiments, as they stand in docs/results.json. Experiments without trials are left out.
+
+    Quick trials do not count.
+    """
+    full = [(experiment, [trial for trial in trials if not trial.quick]) for experiment, trials in runs]
+    return {
+        "experiments": {
+            experiment.name: {
+                "definition": definition_digest(experiment),
+                "version": next((t.version for t in trials if t.version), code_version()),
+                "seeds": _ends(sorted({trial.seed for trial in trials})),
+                "cells": [_row(cell) for cell in summarise(experiment, trials)],
+            }
+            for experiment, trials in full
+            if trials
+        },
+    }
+
+
+def results_markdown(data: Mapping[str, Any], experiments: Sequence[Experiment]) -> str:
+    """The text of docs/results.md: the experiments in this order, those without numbers named at the end."""
+    numbers = data["experiments"]
+    parts = [_HEADING]
+    parts += [
+        _section(experiment, numbers[experiment.name]) for experiment in experiments if experiment.name in numbers
+    ]
+    missing = [experiment.name for experiment in experiments if experiment.name not in numbers]
+    if missing:
+        parts.append(f"## Not run yet\n\n{', '.join(missing)}\n")
+    return "\n".join(parts)
+
+
+def outdated(data: Mapping[str, Any], experiments: Sequence[Experiment]) -> list[str]:
+    """Names of experiments whose numbers are of another definition, or of one that is no more."""
+    now = {experiment.name: definition_digest(experiment) for experiment in experiments}
+    return [name for name, run in data["experiments"].items() if now.get(name) != run["definition"]]
+
+
+def write_results(
+    runs: Sequence[tuple[Experiment, Sequence[StoredTrial]]], folder: Path, *, keep: bool = True
+) -> tuple[Path, Path]:
+    """Write results.json and results.md into a folder.
+
+    keep: experiments that have no trials in these runs keep the numbers that the folder has of them.
+    """
+    experiments = [experiment for experiment, _ in runs]
+    data, path = gathered(runs), folder / "results.json"
+    if keep and path.exists():
+        known = read_results(path)["experiments"]
+        names = [experiment.name for experiment in experiments]
+        old = {name: known[name] for name in names if name in known and name not in data["experiments"]}
+        merged = {**old, **data["experiments"]}
+        data = {"experiments": {name: merged[name] for name in names if name in merged}}
+    text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+    markdown = folder / "results.md"
+    markdown.write_text(results_markdown(data, experiments), encoding="utf-8")
+    return path, markdown
+
+
+def read_results(path: Path) -> dict[str, Any]:
+    """The numbers of docs/results.json. ValueError if it is not such a file."""
+    try:
+        data: Any = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ValueError(f"{path}: {error}") from None
+    experiments: Any = cast("dict[str, Any]", data).get("experiments") if isinstance(data, dict) else None
+    if not isinstance(experiments, dict):
+        raise ValueError(f'{path}: expected {{"experiments": ...}}, as `ratslam experiment results` writes it')
+    return {"experiments": experiments}
+
+
+# ------------------------------------------------------------ a section
+
+
+def _section(experiment: Experiment, run: Mapping[str, Any]) -> str:
+    cells = [_cell(row) for row in run["cells"]]
+    says = "\n".join(f"- {sentence}" for sentence in found(experiment, cells))
+    low, high = run["seeds"]
+    seeds = f"seed {low}" if low == high else f"seeds {low} to {high}"
+    failed = sum(cell.failed for cell in cells)
+    broken = f", {failed} trials ended with an error" if failed else ""
+    sources = list(dict.fromkeys(original.source for original in experiment.original))
+    source = f"\nThe paper's values: {'; '.join(sources)}.\n" if sources else ""
+    return f"""## {experiment.title}
+
+{experiment.paper}. `ratslam experiment {experiment.name}`; {seeds}, code version {run["version"]}{broken}.
+
+Asked: {experiment.asks}
+
+The paper found: {experiment.found}
+
+{says}
+
+{_table(experiment, cells)}
+{source}"""
+
+
+def _table(experiment: Experiment, cells: list[CellSummary]) -> str:
+    """A row for each cell; for each score the paper's value, if there is one at all, and each engine's."""
+    engines = [engine for engine in experiment.engines if any(cell.engine == engine for cell in cells)]
+    heads = [*(axis.name for axis in experiment.axes), "n"]
+    for score in experiment.scores:
+        if any(original.score == score.label for original in experiment.original):
+            heads.append(f"{score.label}: the paper")
+        heads += [f"{score.label}: {ENGINE_WORDS[engine]}" for engine in engines]
+    rows = [heads, ["---"] * len(heads)]
+    for levels in dict.fromkeys(cell.levels for cell in cells):
+        at = {cell.engine: cell for cell in cells if cell.levels == levels}
+        row = [*levels, str(max(cell.n for cell in at.values()))]
+        for score in experiment.scores:
+            of = [original for original in experiment.original if original.score == score.label]
+            here = [words_of(score, o.value) for o in of if set(o.levels) <= set(levels)]
+            row += [here[0] if here else ""] if of else []
+            row += [words(at[engine].values[score.label], score) if engine in at else "-" for engine in engines]
+        rows.append(row)
+    return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows)
+
+
+# ------------------------------------------------------------ numbers as JSON, which knows no NaN
+
+
+def _row(cell: CellSummary) -> dict[str, Any]:
+    values = {label: [_number(part) for part in astuple(each)] for label, each in cell.values.items()}
+    return {"engine": cell.engine, "levels": list(cell.levels), "n": cell.n, "failed": cell.failed, "values": values}
+
+
+def _cell(row: Mapping[str, Any]) -> CellSummary:
+    values = {
+        label: Estimate(*(math.nan if part is None else float(part) for part in parts[:3]), n=int(parts[3]))
+        for label, parts in row["values"].items()
+    }
+    return CellSummary(row["engine"], tuple(row["levels"]), row["n"], row["failed"], values)
+
+
+def _number(value: float) -> float | int | None:
+    """Six digits: more would change with the machine's last bit."""
+    return value if isinstance(value, int) else float(f"{value:.6g}") if math.isfinite(value) else None
+
+
+def _ends(seeds: list[int]) -> list[int]:
+    return [seeds[0], seeds[-1]]
+
+
+def main() -> None:
+    """Write docs/results.json and docs/results.md from what this machine has stored."""
+    with Store() as store:
+        runs = [(experiment, store.stored(experiment.make_trials())) for experiment in catalogue()]
+    for path in write_results(runs, DOCS):
+        print(path)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,32 @@
+"""[ours] Robust weights: links that the map contradicts weigh less in its exact correction (`experience_map.robust`)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ratslam_core.experience_map.relaxation import disagreement
+from ratslam_core.params import SolverParams
+
+
+def trust(
+    poses: NDArray[np.float64],
+    links: NDArray[np.int64],
+    moves: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    chain: NDArray[np.bool_],
+    sigma: float,
+    p: SolverParams,
+) -> NDArray[np.float64]:
+    """[ours] How far each link is believed, 0 to 1, given how well the map fits it.
+
+    weights: sigma^2 / variance; chain: rows of odometry, the others are looks. The pull of a look stops growing with
+    its error (Huber). Odometry cannot be far off, so its pull even falls (Cauchy). Many looks that agree thus tear the
+    one link along which the robot was carried, and a single look does not.
+    test_relaxation_trust.py::test_many_looks_tear_the_link_of_a_kidnap.
+    """
+    ex, ey, turn = disagreement(poses, links, moves).T
+    chi: NDArray[np.float64] = np.sqrt(weights * (ex**2 + ey**2 + (turn / p.rad_per_m) ** 2)) / sigma
+    return np.where(
+        chain, 1 / (1 + (chi / p.odometry_gives) ** 2), np.minimum(1, p.look_gives / np.maximum(chi, p.look_gives))
+    )

@@ -1,0 +1,72 @@
+"""kill -9 of the client and of workers at fifty random moments: no score is lost, none is counted twice."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from app.experiments.store import Store
+from tests.unit.app import fake_trials
+from tests.unit.app.test_experiment_runner import PATIENCE_S, assert_all_right, begin, wait_until
+
+KILLS = 50
+CLIENTS = 8  # of them; it takes longer until a client is at work again
+MORE = 1000  # trials at first, and whenever all are done
+MOST_WAIT_S = 0.6
+
+
+@pytest.mark.slow
+def test_fifty_kills_lose_nothing(tmp_path: Path) -> None:
+    rng, path, total = random.Random(12), tmp_path / "trials.sqlite", MORE
+    victims = ["client"] * CLIENTS + ["worker"] * (KILLS - CLIENTS)
+    rng.shuffle(victims)
+    command = begin(path, total)
+    with Store(path) as store:
+        for victim in victims:
+            if rng.random() < 0.7:  # else at any moment, also while it begins
+                wanted = kept_by(store) + rng.randint(1, 30)
+                wait_until(
+                    lambda wanted=wanted, command=command: kept_by(store) >= wanted or command.poll() is not None,
+                    "there are more",
+                )
+            time.sleep(rng.uniform(0.0, MOST_WAIT_S))
+            while (pid := command.pid if victim == "client" else worker_of(command.pid, rng)) is None or dead(command):
+                if dead(command):  # it has done all: there shall be more
+                    total += MORE
+                    command = begin(path, total)
+                time.sleep(0.01)
+            os.kill(pid, signal.SIGKILL)
+            if victim == "client":
+                command.wait()
+                command = begin(path, total)
+        command.wait(PATIENCE_S)
+        for _ in range(2):  # a trial whose worker died four times has failed, and is run by the next command
+            assert begin(path, total).wait(PATIENCE_S) == 0
+        assert_all_right(store, fake_trials.trials(total))
+
+
+def kept_by(store: Store) -> int:
+    return len(store.of_experiment("small"))
+
+
+def dead(command: subprocess.Popen[str]) -> bool:
+    return command.poll() is not None
+
+
+def worker_of(client: int, rng: random.Random) -> int | None:
+    """One of the client's workers: they are forked by a child of the client. None while there is none."""
+    try:
+        children = psutil.Process(client).children()
+        workers = [
+            worker.pid for child in children for worker in child.children() if worker.status() != psutil.STATUS_ZOMBIE
+        ]
+    except psutil.NoSuchProcess:
+        return None
+    return rng.choice(sorted(workers)) if workers else None

@@ -1,0 +1,122 @@
+"""What is told and written of many trials: tables to take elsewhere, durations, the table on the terminal, a trial opened."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+from pathlib import Path
+
+import pytest
+
+from app.experiments.durations import duration_of, time_words
+from app.experiments.export import table_of, write_csv, write_parquet
+from app.experiments.live import LiveTable
+from app.experiments.opening import open_trial
+from app.experiments.outcome import Outcome
+from app.experiments.store import Store
+from app.experiments.stored_trial import StoredTrial
+from tests.unit.app.trial_makers import SMALL, make_outcome, make_trial
+
+TRIALS = [
+    StoredTrial(
+        "aa", "ours", ("large",), 1, {"goals": 3.0, "reached": 2.0, "error_m": 0.5}, 9.0, "the end", 60.0, 0.5, "", "v1"
+    ),
+    StoredTrial(
+        "bb", "paper", ("small",), 2, {"goals": 3.0, "seed": 7.0}, 0.0, "", error="ValueError: no, never", version="v1"
+    ),
+]
+
+
+def test_the_csv_has_a_row_for_each_trial_and_a_column_for_each_axis_and_score(tmp_path: Path) -> None:
+    write_csv(tmp_path / "small.csv", SMALL, TRIALS)
+    with (tmp_path / "small.csv").open() as file:
+        first, second = csv.DictReader(file)
+    assert (first["id"], first["size"], first["engine"], first["seed"]) == ("aa", "large", "ours", "1")
+    assert (first["error_m"], first["reached"], first["moment"]) == ("0.5", "2.0", "the end")
+    assert (second["error_m"], second["error"]) == ("", "ValueError: no, never")
+
+
+def test_no_two_columns_have_the_same_name() -> None:
+    columns, rows = table_of(SMALL, TRIALS)
+    assert len(set(columns)) == len(columns)
+    assert dict(zip(columns, rows[1], strict=True))["seed (score)"] == 7.0
+
+
+def test_parquet_has_the_same_rows_with_types(tmp_path: Path) -> None:
+    from pyarrow import parquet
+
+    write_parquet(tmp_path / "small.parquet", SMALL, TRIALS)
+    columns, rows = table_of(SMALL, TRIALS)
+    table = parquet.read_table(tmp_path / "small.parquet")
+    assert table.column_names == columns
+    assert [[row[name] for name in columns] for row in table.to_pylist()] == rows
+    assert str(table.schema.field("seed").type) == "int64"
+    assert str(table.schema.field("error_m").type) == "double"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(0.2, "1 s"), (40, "40 s"), (89, "89 s"), (720, "12 min"), (5399, "90 min"), (12600, "3.5 h")],
+)
+def test_durations_in_words(seconds: float, words: str) -> None:
+    assert time_words(seconds) == words
+
+
+def test_how_long_an_experiment_takes_is_measured_where_it_can_be() -> None:
+    trials = SMALL.make_trials(trials=2)
+    ours = [trial for trial in trials if trial.engine == "ours"]
+    assert (len(trials), len(ours)) == (8, 4)
+    known = duration_of(SMALL, ours, {"ours": 30.0})
+    assert (known.seconds, known.measured, known.words(2)) == (120.0, True, "60 s, measured")
+    half = duration_of(SMALL, trials, {"ours": 30.0})
+    assert not half.measured
+    assert half.seconds > 120.0
+
+
+def test_without_a_terminal_there_is_a_line_now_and_then(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.experiments.live.LINE_EVERY_S", -1.0)
+    trials = [make_trial(seed) for seed in range(4)]
+    with LiveTable(SMALL, trials, [], 90.0) as live:
+        live.add([(trials[0], make_outcome(trials[0]))])
+        live.add([(trials[1], Outcome(trials[1].id, error="ValueError: no"))])
+        live.add([(trial, make_outcome(trial)) for trial in trials[2:]])
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0].startswith("small: 1 of 4 trials; about ")
+    assert lines[1].startswith(
+        "small: 2 of 4 trials, 1 failed" if len(lines) == 2 else "small: 1 of 4 trials, 1 failed; about "
+    )
+    assert lines[-1] == "small: 3 of 4 trials, 1 failed; done"
+
+
+def test_on_a_terminal_the_table_fills_in(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr("app.experiments.live.REDRAW_S", -1.0)
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "120")
+    trials = [make_trial(1, "large"), make_trial(1, "small")]
+    with LiveTable(SMALL, trials, [], 90.0) as live:
+        for trial in trials:
+            outcome = make_outcome(trial)
+            assert outcome.result is not None
+            scores = {"reached": 25.0, "goals": 30.0, "error_m": 0.125}
+            live.add([(trial, Outcome(trial.id, dataclasses.replace(outcome.result, scores=scores)))])
+    shown = capsys.readouterr().err
+    assert "83 % (66-93)" in shown
+    assert "0.125 m" in shown
+    assert "2/2" in shown
+
+
+def test_a_trial_is_opened_with_what_may_make_it_differ(tmp_path: Path) -> None:
+    trial, old = SMALL.make_trials(trials=1)[0], make_trial(5)
+    with Store(tmp_path / "trials.sqlite") as store:
+        store.add((each, make_outcome(each)) for each in (trial, old))
+        opened = open_trial(trial.id[:12], store)
+        assert (opened.trial, opened.moment_s, opened.moment_words) == (trial, 0.5, "the end")
+        assert opened.warnings == ()
+        version, world = open_trial(old.id, store).warnings
+        assert version.startswith("the trial was run by version v1 of the program, this is ")
+        assert world == "the world loop has changed since the trial: the run may differ"
+        with pytest.raises(ValueError, match="there is no trial 'nothing'"):
+            open_trial("nothing", store)

@@ -1,0 +1,152 @@
+"""Many trials on Dask's workers: each runs once, whatever happens to a worker; nothing is left behind when the client ends."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+
+from app.experiments.cluster import connected_to
+from app.experiments.outcome import Outcome
+from app.experiments.runner import pending, run_trials
+from app.experiments.store import Store
+from app.trials.trial import Trial
+from tests.unit.app import fake_trials
+from tests.unit.app.fake_trials import DEADLY, FAILING
+from tests.unit.app.trial_makers import make_trial, score_of
+
+# distributed closes its sockets and queues when it is collected
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
+PATIENCE_S = 120.0
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    with connected_to(None, 2) as client:
+        yield client
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    with Store(tmp_path / "trials.sqlite") as store:
+        yield store
+
+
+def wait_until(true: Callable[[], object], what: str) -> None:
+    until = time.monotonic() + PATIENCE_S
+    while not true():
+        assert time.monotonic() < until, f"not in {PATIENCE_S:g} s: {what}"
+        time.sleep(0.01)
+
+
+def assert_all_right(store: Store, trials: list[Trial]) -> None:
+    assert pending(trials, store) == []
+    kept = store.of_experiment("small")
+    assert sorted(trial.id for trial in kept) == sorted(trial.id for trial in trials)
+    assert {trial.id: trial.scores for trial in kept} == {trial.id: {"mark": score_of(trial)} for trial in trials}
+
+
+def test_every_trial_runs_once_and_what_is_kept_does_not_run_again(client: Any, store: Store) -> None:
+    trials, told = fake_trials.trials(100), list[str]()
+
+    def tell(ended: Any) -> None:
+        told.extend(trial.id for trial, _ in ended)
+
+    run_trials(trials[:40], store, client, run=fake_trials.run, tell=tell)
+    assert sorted(told) == sorted(trial.id for trial in trials[:40])
+    told.clear()
+    run_trials([*trials, *trials], store, client, run=fake_trials.run, expected_s=0.1, tell=tell)
+    assert sorted(told) == sorted(trial.id for trial in trials[40:])
+    assert_all_right(store, trials)
+
+
+def test_a_trial_that_fails_or_kills_its_worker_costs_the_others_nothing(client: Any, store: Store) -> None:
+    good, ended = fake_trials.trials(60), dict[str, Outcome]()
+    bad = [make_trial(DEADLY), make_trial(FAILING)]
+    mixed = [*good[:20], *bad, *good[20:]]
+    run_trials(
+        mixed, store, client, run=fake_trials.run_badly, expected_s=0.1,
+        tell=lambda some: ended.update({trial.id: outcome for trial, outcome in some}),
+    )  # fmt: skip
+    assert pending(mixed, store) == bad
+    deadly, failing = (ended[trial.id] for trial in bad)
+    assert deadly.error.startswith("KilledWorker")
+    assert failing.error == "ValueError: no such door"
+    run_trials(mixed, store, client, run=fake_trials.run, expected_s=0.1)  # mended: the next command runs them again
+    assert_all_right(store, mixed)
+
+
+def test_a_worker_that_is_killed_costs_its_batch_and_nothing_else(client: Any, store: Store) -> None:
+    trials, killed = fake_trials.trials(300), list[int]()
+
+    def tell(_: Any) -> None:
+        if not killed:
+            killed.append(next(nanny.pid for nanny in client.cluster.workers.values() if nanny.pid))
+            os.kill(killed[0], signal.SIGKILL)
+
+    run_trials(trials, store, client, run=fake_trials.run, expected_s=0.1, tell=tell)
+    assert len(killed) == 1
+    assert_all_right(store, trials)
+
+
+def test_a_cluster_that_exists_is_used_by_its_address(client: Any, store: Store) -> None:
+    trials = fake_trials.trials(20)
+    with connected_to(client.cluster.scheduler_address, None) as other:
+        run_trials(trials, store, other, run=fake_trials.run, expected_s=0.1)
+    assert_all_right(store, trials)
+    assert len(client.nthreads()) == 2  # it lives on
+
+
+def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.experiments.cluster.FIND_S", 0.5)
+    with (
+        pytest.raises(ValueError, match=r"--scheduler tcp://127\.0\.0\.1:9: no Dask scheduler answers"),
+        connected_to("tcp://127.0.0.1:9", None),
+    ):
+        pass
+
+
+def test_workers_of_another_version_are_refused(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.experiments.cluster._here", lambda: "0123456789ab")
+    with (
+        pytest.raises(ValueError, match=r"runs version .* of this program, not 0123456789ab"),
+        connected_to(client.cluster.scheduler_address, None),
+    ):
+        pass
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)])
+def test_a_command_that_is_stopped_leaves_no_process_and_goes_on(tmp_path: Path, number: int, code: int) -> None:
+    path = tmp_path / "trials.sqlite"
+    command = begin(path, 600)
+    with Store(path) as store:
+        wait_until(lambda: len(store.of_experiment("small")) > 20, "some trials are kept")
+        group = [command.pid, *(process.pid for process in psutil.Process(command.pid).children(recursive=True))]
+        if number == signal.SIGINT:
+            os.killpg(command.pid, number)  # as a terminal does
+        else:
+            os.kill(command.pid, number)
+        _, said = command.communicate(timeout=PATIENCE_S)
+        assert command.returncode == code
+        assert "Traceback" not in said
+        wait_until(lambda: not any(psutil.pid_exists(pid) for pid in group), "all processes have ended")
+        kept = len(store.of_experiment("small"))
+        assert 20 < kept < 600
+        assert begin(path, 600).wait(PATIENCE_S) == 0
+        assert_all_right(store, fake_trials.trials(600))
+
+
+def begin(path: Path, count: int) -> subprocess.Popen[str]:
+    """The command, in a process group of its own, as a shell begins it."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "tests.unit.app.fake_trials", str(path), str(count)],
+        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, process_group=0,
+    )  # fmt: skip
