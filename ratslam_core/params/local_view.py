@@ -12,7 +12,7 @@ from ratslam_core.params.parameter import check_ranges, param
 @kind("parameters of local view/1")
 @dataclass(frozen=True, slots=True)
 class LocalViewParams:
-    """Recognising scenes (D section 7) and their Hebbian links to pose cells (A 4)."""
+    """Recognising scenes (D section 7) and their Hebbian links to pose cells (A 4). They learn and inject once a beat."""
 
     front_end: str = param(
         "image and sonars",
@@ -85,7 +85,7 @@ class LocalViewParams:
         meaning="a view with a smaller share of colour shows nothing to hue and saturation",
         source="ours",
     )
-    learning_rate: float = param(0.15, symbol="η", low=0.0, high=1.0, meaning="Hebbian learning rate, a beat", source="C IV.C")
+    learning_rate: float = param(0.15, symbol="η", low=0.0, high=1.0, meaning="Hebbian learning rate", source="C IV.C")
     adaptive: bool = param(
         False,
         meaning="the learning rate follows the strength of vision and the confidence of the estimate",
@@ -97,7 +97,7 @@ class LocalViewParams:
         source="A 4; off is ours",
     )
     decay: float = param(
-        0.0, symbol="δ", low=0.0, high=1.0, meaning="share of a link forgotten in each beat of a sight", source="A eq. 2"
+        0.0, symbol="δ", low=0.0, high=1.0, meaning="share of a link forgotten in each beat", source="A eq. 2"
     )
     most_links: int = param(
         600,
@@ -107,11 +107,11 @@ class LocalViewParams:
         source="ours",
     )
     saturation: float = param(
-        0.02, symbol="s_max", low=0.0, high=1.0, meaning="most that one link injects in a beat", source="A eq. 4; value ours"
+        0.02, symbol="s_max", low=0.0, high=1.0, meaning="most that one link injects", source="A eq. 4; value ours"
     )
     capped: bool = param(True, meaning="all links of a view inject at most `injection` together", source="ours")
     injection: float = param(
-        0.14, low=0.0, high=5.0, meaning="most that all links of a view inject together in a beat", source="ours"
+        0.14, low=0.0, high=5.0, meaning="most that all links of a view inject together", source="ours"
     )
     rest: float = param(
         10.0, unit="s", low=0.0, high=1e6, meaning="a view younger than this does not inject", source="ours"
@@ -137,7 +137,7 @@ class LocalViewParams:
         0.3,
         low=0.0,
         high=1.0,
-        meaning="share of the turn by which the wheels may be wrong about it between two images",
+        meaning="share of the turn by which the wheels may be wrong about it in a beat",
         source="ours",
     )
     range_surprise: float = param(
@@ -151,7 +151,7 @@ class LocalViewParams:
         0.5,
         low=0.0,
         high=5.0,
-        meaning="what all links of a view inject together in a beat while the robot knows that it is lost",
+        meaning="what all links of a view inject together while the robot knows that it is lost",
         source="ours",
     )
     false_positives: float = param(

@@ -27,7 +27,7 @@ class MemoryParams:
         meaning="a place is familiar when the shares of recognised sights of the experiences there add up to this",
         source="ours",
     )
-    sights: int = param(20, low=1, high=10_000, meaning="over how many sights, one a beat, that share is averaged", source="ours")
+    sights: int = param(20, low=1, high=10_000, meaning="over how many sights that share is averaged", source="ours")
     near_m: float = param(
         0.4, unit="m", low=0.01, high=10.0, meaning="experiences this near are of the same place", source="ours"
     )

@@ -34,9 +34,7 @@ def test_at_10_hz_each_tick_is_a_beat_and_nothing_is_computed() -> None:
         assert beats.turned_by(odometry) == odometry.yaw_rate * odometry.dt
 
 
-@given(
-    st.lists(st.tuples(st.floats(-1, 1), st.floats(-2, 2), st.floats(0.01, 3.0)), min_size=1, max_size=60)
-)
+@given(st.lists(st.tuples(st.floats(-1, 1), st.floats(-2, 2), st.floats(0.01, 3.0)), min_size=1, max_size=60))
 def test_no_movement_and_no_time_is_lost(ticks: list[tuple[float, float, float]]) -> None:
     beats, told, given_back = Beats(), [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
     for speed, yaw_rate, dt in ticks:
