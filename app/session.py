@@ -14,16 +14,18 @@ import numpy as np
 from app.config import Config, Value
 from app.evaluation import Evaluation
 from app.pilot import Mode, Pilot
+from app.pilot.goal_place import nearest_to, of_its_place
 from app.stopwatch import Stopwatch
 from disk import encode, kind
 from ratslam_core import Estimate, Odometry, RatSlam
 from ratslam_core.slam import STAGES
 from sim2d import SONAR_ANGLES_RAD, Drive, SensorFrame, Simulator, World, WorldText
 
+MOST_TAGS = 24
 PARTS = ("pilot", "office and senses", *STAGES, "judging")  # of a tick; "judging" compares the estimate with the truth
 
 
-@kind("session/1")
+@kind("session/2")
 class Session:
     """One robot in one world with one brain."""
 
@@ -51,6 +53,7 @@ class Session:
         self.brain = brain
         self.pilot = Pilot(self.config.pilot, np.array(SONAR_ANGLES_RAD), np.random.default_rng(pilot_seed))
         self.evaluation = Evaluation(len(brain.experience_map))
+        self.tags: dict[str, int] = {}  # name -> the experience that was active when somebody gave it
         self._look()
         self.odometry = self._odometry()  # what the brain was told in its last step
         self.estimate: Estimate = self._think(self.stopwatch.lap)
@@ -98,18 +101,39 @@ class Session:
     # ------------------------------------------------------------ orders; ValueError says why one cannot be carried out
 
     def set_goal(self, x: float, y: float) -> int:
-        """Go to the experience nearest to (x, y), metres in the map's frame. Returns that experience."""
-        poses = self.brain.experience_map.poses
-        away = np.hypot(poses[:, 0] - x, poses[:, 1] - y)
-        nearest = int(np.argmin(away))
-        reach = self.pilot.params.goal_reach_m
-        if not away[nearest] <= reach:  # written so that NaN is refused, too
-            raise ValueError(
-                f"({x:g}, {y:g}) is off the map: the nearest experience is {away[nearest]:.1f} m away, "
-                f"at ({poses[nearest, 0]:.1f}, {poses[nearest, 1]:.1f}); choose a place within {reach:g} m of one"
-            )
-        self.pilot.set_goal(nearest)
-        return nearest
+        """Go to the place (x, y), metres in the map's frame: to the quickest of all experiences that stand for it. Returns
+        the one nearest to it."""
+        return self._go_to(nearest_to(self.brain.experience_map, x, y, self.pilot.params))
+
+    def tag(self, name: str) -> int:
+        """Name the place where the robot believes itself to be, as "the kitchen", to send it there later. A name that is
+        given again moves. Returns the active experience. IROS 2005 IV."""
+        name = name.strip()
+        if not name or not name.isprintable():
+            raise ValueError(f"a tag needs a name that can be printed, got {name!r}")
+        if name not in self.tags and len(self.tags) >= MOST_TAGS:
+            raise ValueError(f"{name!r} would be tag number {MOST_TAGS + 1}; {MOST_TAGS} are enough, remove one first")
+        self.tags[name] = self.brain.experience_map.active
+        return self.tags[name]
+
+    def untag(self, name: str) -> None:
+        del self.tags[self._tagged(name)]
+
+    def go_to_tag(self, name: str) -> int:
+        """Go to the place of this name, as after a click there. Returns its experience."""
+        return self._go_to(self.tags[self._tagged(name)])
+
+    def _go_to(self, experience: int) -> int:
+        """Go to this experience or another of its place. Returns the first of them."""
+        first, *others = of_its_place(self.brain.experience_map, experience, self.pilot.params)
+        self.pilot.set_goal(first, others)
+        return first
+
+    def _tagged(self, name: str) -> str:
+        if name not in self.tags:
+            known = f"one of: {', '.join(self.tags)}" if self.tags else "given first; there is none yet"
+            raise ValueError(f"there is no tag {name!r}; it must be {known}")
+        return name
 
     def set_mode(self, mode: Mode) -> None:
         self.pilot.set_mode(mode)
@@ -155,7 +179,16 @@ class Session:
 
     def state_hash(self) -> str:
         """A digest of everything that decides the future, and of the evaluation. Equal runs have equal hashes."""
-        parts = self.world_text, self.seed, self.config, self.simulator, self.pilot, self.brain, self.evaluation
+        parts = (
+            self.world_text,
+            self.seed,
+            self.config,
+            self.simulator,
+            self.pilot,
+            self.brain,
+            self.evaluation,
+            self.tags,
+        )
         return hashlib.sha256("".join(encode(part).digest() for part in parts).encode()).hexdigest()
 
     @property

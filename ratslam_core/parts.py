@@ -21,6 +21,7 @@ class LocalViewPart(Protocol):
 
     params: Any
     recruits: bool  # set by the brain before each step: whether an unknown sight may become a view
+    recognition: Recognition  # of the last `observe`
     faded: int  # set likewise: the view whose room it gets, -1 for a room of its own
     image_change: float  # since the step before, as a share of what driving can explain; above 1 it cannot
 
@@ -124,7 +125,14 @@ class ExperienceMapPart(Protocol):
         """Find or make the active experience; True when it is new."""
         ...
 
-    def correct(self) -> None: ...
+    def move(self, odometry: Odometry, /) -> None:
+        """The robot moved, and nothing is looked at: between two beats, or in a part of a step."""
+        ...
+
+    def correct(self) -> None:
+        """Once in each beat."""
+        ...
+
     def set_params(self, params: Any, filter_params: Any, solver_params: Any, /) -> None: ...
 
 

@@ -47,7 +47,7 @@ def _about(
     }
 
 
-@kind("parameters of robot/2")
+@kind("parameters of robot/3")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimParams:
     """Robot, camera, sonar, laser and odometry of one simulation. A value out of its range raises ValueError."""
@@ -85,6 +85,7 @@ class SimParams:
         live=True,
     )  # fmt: skip
 
+    camera: bool = _switch(True, "the camera sees; off = its image is black, for brains that see only numbers")
     camera_fov_rad: float = _number(
         math.radians(50),
         0.2,
@@ -180,7 +181,7 @@ class SimParams:
         0.5,
         "sigma_o",
         "1",
-        "standard deviation of the relative error of speed and yaw rate in a tick",
+        "standard deviation of the relative error of speed and yaw rate in 0.1 s; it adds up like noise",
         live=True,
     )
     odometry_scale_error: float = _number(

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-Name = Literal["occupancy", "cell_occupancy", "goal_memory", "click_inspects"]
+Name = Literal["occupancy", "cell_occupancy", "goal_memory", "movements", "click_inspects"]
 NAMES: tuple[Name, ...] = get_args(Name)
 
 
@@ -43,6 +43,13 @@ SWITCHES = (
         "Goal memory",
         "Seconds from each pose cell to the goal, and where they fall fastest. Needs a goal.",
         True,
+    ),
+    Switch(
+        "movements",
+        "Memory",
+        "Candidate movements",
+        "The arcs that the robot tries, 2.5 times as large: grey where an echo is too close, bold where it goes.",
+        False,
     ),
     Switch(
         "click_inspects",

@@ -17,6 +17,7 @@ from app.startup.compiling import Compiling
 from app.startup.waking import Waking
 from ratslam_core import RatSlam, load_brain
 from sim2d import DEFAULT_WORLD, World, own_worlds
+from sim2d.importers import open_world
 
 if TYPE_CHECKING:
     from app.engine.engine import Engine
@@ -113,16 +114,21 @@ def run_with_trial(trial: Trial, moment_s: float | None, *, title: str = "", ser
     moment_s: simulated time of the moment that is to be seen: the trial is run ahead, as fast as possible, to shortly
     before it, and plays from there. None: it plays from its beginning. title: of the experiment.
     """
+    from app.engine.watched_trial import CHANGED
+    from app.trials.code_version import code_version
+
     serving = serving or Serving()
-    course = trial.begin()  # ValueError now rather than in the engine's thread
-    session = course.session
+    config = Config().with_values(trial.values)
+    world = open_world(trial.world, robot_radius_m=config.robot.robot_radius_m)
 
     def begin(engine: Engine) -> None:
-        engine.begin_trial(trial, title or trial.experiment, moment_s)
+        run = engine.begin_trial(trial, title or trial.experiment, moment_s)
+        if trial.version != code_version():
+            run.event_log.note("warning", CHANGED)
         engine.running = serving.running or engine.runs_ahead
 
     own_worlds.tidy()
-    first = First(session.world, trial.seed, session.config, begin=begin)
+    first = First(world, trial.seed, config, begin=begin)
     return _compiling(lambda compiling: _serve(serving, first, compiling, None))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.commands.outcome import Outcome
 from app.engine.engine import Engine
+from app.engine.watched_trial import CHANGED
 from app.trials.chosen import check_levels, chosen_trial
 from app.trials.experiment import Experiment, catalogue
 from web import messages as m
@@ -22,7 +23,11 @@ ALTERS = (
 
 
 def watch_experiment(engine: Engine, command: m.WatchExperiment) -> Outcome:
-    """Begin the trial in a new run, and play it."""
+    """Begin the trial in a new run, and play it. The id of the one that is being watched begins that one again."""
+    now = engine.run.trial
+    if now is not None and command.trial == now.trial.id:
+        engine.begin_trial(now.trial, now.title, command.moment_s)
+        return None
     known = {experiment.name: experiment for experiment in catalogue()}
     experiment = known.get(command.experiment)
     if experiment is None:
@@ -37,8 +42,7 @@ def watch_experiment(engine: Engine, command: m.WatchExperiment) -> Outcome:
     except ValueError as error:
         return m.Refused("experiment", command.experiment, str(error))
     if command.trial is not None and command.trial != trial.id:
-        words = "the program has changed since this trial was run: what it does today may differ from its scores"
-        engine.run.event_log.note("warning", words)
+        engine.run.event_log.note("warning", CHANGED)
     return None
 
 

@@ -1,4 +1,4 @@
-"""Commands to the robot: goal, mode, driving by hand, kidnapping."""
+"""Commands to the robot: goal, tags, mode, driving by hand, kidnapping."""
 
 from __future__ import annotations
 
@@ -13,6 +13,26 @@ def set_goal(engine: Engine, command: m.SetGoal) -> Outcome:
         engine.run.event_log.note("goal", f"to experience {experience}")
 
     return attempt("x, y", (command.x, command.y), go)
+
+
+def tag(engine: Engine, command: m.Tag) -> Outcome:
+    def name() -> None:
+        experience = engine.run.session.tag(command.name)
+        engine.run.event_log.note("place", f"{command.name.strip()} is here, at experience {experience}")
+
+    return attempt("name", command.name, name)
+
+
+def untag(engine: Engine, command: m.Untag) -> Outcome:
+    return attempt("name", command.name, lambda: engine.run.session.untag(command.name))
+
+
+def go_to_tag(engine: Engine, command: m.GoToTag) -> Outcome:
+    def go() -> None:
+        experience = engine.run.session.go_to_tag(command.name)
+        engine.run.event_log.note("goal", f"to {command.name}, experience {experience}")
+
+    return attempt("name", command.name, go)
 
 
 def cancel_goal(engine: Engine, _: m.CancelGoal) -> Outcome:

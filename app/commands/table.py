@@ -17,6 +17,9 @@ Handler = Callable[[Engine, Any], Outcome]  # Any: an instance of the class that
 COMMANDS: dict[type, Handler] = {
     m.SetGoal: robot.set_goal,
     m.CancelGoal: robot.cancel_goal,
+    m.Tag: robot.tag,
+    m.Untag: robot.untag,
+    m.GoToTag: robot.go_to_tag,
     m.SetMode: robot.set_mode,
     m.Drive: robot.drive,
     m.Kidnap: robot.kidnap,

@@ -9,6 +9,7 @@ from app.views.event_log import EventLog
 from web.messages import TrialState, TrialView
 
 BEFORE_S = 10.0  # a trial that is run ahead to a moment stops so long before it
+CHANGED = "the program has changed since this trial was run: what it does today may differ from its scores"
 _UNTOLD = ("recovered", "end")  # the log tells of the first anyway, and of the second together with the outcome
 
 
@@ -38,16 +39,18 @@ class WatchedTrial:
         """Give the robot its orders for the next tick, and note what has happened."""
         if self.state != "running":
             return
+        over = False
         try:
             self.doing = next(self._ticks)
         except StopIteration:
-            self._over()
+            over = True
         except ValueError as error:  # what it needs is no longer there
             self.end(f"it cannot go on: {error}")
         self._note_moments()
-        if self.state == "over":
+        if over:
+            self.state, self.outcome, self._ahead_s = "over", outcome_of(self.course), None
             self._log.note("trial", f"{self.trial.experiment} is over: {self.outcome}")
-        if self._ahead_s is not None and self.course.session.time_s >= self._ahead_s - 1e-9:
+        elif self._ahead_s is not None and self.course.session.time_s >= self._ahead_s - 1e-9:
             self._ahead_s = None
 
     def stop_running_ahead(self) -> None:
@@ -74,9 +77,6 @@ class WatchedTrial:
             trial.experiment, self.title, trial.engine, trial.levels, trial.seed, trial.id, self.state, self.doing,
             self._about_s, ahead, self.altered, self.outcome,
         )  # fmt: skip
-
-    def _over(self) -> None:
-        self.state, self.outcome, self._ahead_s = "over", outcome_of(self.course), None
 
     def _note_moments(self) -> None:
         for moment in self.course.moments[self._told :]:

@@ -11,6 +11,7 @@ import traceback
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import replace
+from functools import partial
 
 from app.commands import Later, carry_out
 from app.config import Config
@@ -43,7 +44,9 @@ class EngineThread:
         self.stillborn: str | None = None  # why the engine could not begin; then the thread has ended ...
         self.on_stillborn: Callable[[], object] = lambda: None  # ... and calls this
         self.pace = Pace(speed)
-        self._first = first or (lambda engine: engine.begin(world, seed, config, brain))
+        self._first: Callable[[Engine], object] = first or partial(
+            Engine.begin, world=world, seed=seed, config=config, brain=brain
+        )
         self._inbox = Inbox()
         self._watchdog = Watchdog(stall_s, self._tell_stall)
         self._engine = Engine(world, self.pace, self._watchdog, running=running, answer=self._inbox.answer)

@@ -37,7 +37,8 @@ def write_report_page(
 ) -> Report:
     """Write `NAME.html` into `out`, and each figure as SVG and PNG into `out/figures`.
 
-    trials: those of this experiment, in any order; traces: runs some of them again, in the order given. ValueError names
+    trials: those of this experiment, in any order; traces: runs some of them again, in the order given; quick: whether
+    they are those of the shortened experiment. ValueError names
     an experiment and figure whose options do not fit.
     """
     good = sorted((t for t in trials if not t.error), key=lambda t: (t.seed, t.engine, t.levels))

@@ -11,16 +11,18 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from app.experiments.intervals import Estimate
 from app.experiments.sentences import found
+from app.experiments.store import Store
 from app.experiments.stored_trial import StoredTrial
 from app.experiments.summary import CellSummary, summarise, words
 from app.experiments.words import ENGINE_WORDS, words_of
 from app.trials.code_version import code_version
-from app.trials.experiment import Experiment
+from app.trials.experiment import Experiment, catalogue
 
+DOCS = Path(__file__).parents[2] / "docs"
 _HEADING = """# Results
 
 Every experiment of the papers that is run again here: what the paper has, what its own rules come to in our office, and
@@ -50,7 +52,11 @@ def definition_digest(experiment: Experiment) -> str:
 
 
 def gathered(runs: Iterable[tuple[Experiment, Sequence[StoredTrial]]]) -> dict[str, Any]:
-    """The numbers of all experiments, as they stand in docs/results.json. Experiments without trials are left out."""
+    """The numbers of all experiments, as they stand in docs/results.json. Experiments without trials are left out.
+
+    Quick trials do not count.
+    """
+    full = [(experiment, [trial for trial in trials if not trial.quick]) for experiment, trials in runs]
     return {
         "experiments": {
             experiment.name: {
@@ -59,7 +65,7 @@ def gathered(runs: Iterable[tuple[Experiment, Sequence[StoredTrial]]]) -> dict[s
                 "seeds": _ends(sorted({trial.seed for trial in trials})),
                 "cells": [_row(cell) for cell in summarise(experiment, trials)],
             }
-            for experiment, trials in runs
+            for experiment, trials in full
             if trials
         },
     }
@@ -112,9 +118,10 @@ def read_results(path: Path) -> dict[str, Any]:
         data: Any = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise ValueError(f"{path}: {error}") from None
-    if not isinstance(data, dict) or not isinstance(data.get("experiments"), dict):
+    experiments: Any = cast("dict[str, Any]", data).get("experiments") if isinstance(data, dict) else None
+    if not isinstance(experiments, dict):
         raise ValueError(f'{path}: expected {{"experiments": ...}}, as `ratslam experiment results` writes it')
-    return {"experiments": data["experiments"]}
+    return {"experiments": experiments}
 
 
 # ------------------------------------------------------------ a section
@@ -187,3 +194,15 @@ def _number(value: float) -> float | int | None:
 
 def _ends(seeds: list[int]) -> list[int]:
     return [seeds[0], seeds[-1]]
+
+
+def main() -> None:
+    """Write docs/results.json and docs/results.md from what this machine has stored."""
+    with Store() as store:
+        runs = [(experiment, store.stored(experiment.make_trials())) for experiment in catalogue()]
+    for path in write_results(runs, DOCS):
+        print(path)
+
+
+if __name__ == "__main__":
+    main()

@@ -13,7 +13,8 @@ def found(experiment: Experiment, cells: list[CellSummary]) -> list[str]:
     """A sentence for each engine, then one for each value of the paper."""
     engines = [engine for engine in experiment.engines if any(cell.engine == engine for cell in cells)]
     says = [_engine(experiment, engine, [c for c in cells if c.engine == engine]) for engine in engines]
-    return says + [_original(experiment, cells, each, engines) for each in experiment.original[:_MOST_ORIGINALS]]
+    originals = experiment.original[:_MOST_ORIGINALS] if cells else []
+    return says + [_original(experiment, cells, each, engines) for each in originals]
 
 
 def _engine(experiment: Experiment, engine: str, cells: list[CellSummary]) -> str:

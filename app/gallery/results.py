@@ -19,7 +19,7 @@ def results_of(experiment: Experiment, stored: Sequence[StoredTrial]) -> Results
     """stored: all trials of the experiment, the oldest first. Those shown are of one kind, the best there is."""
     trials, note = _chosen([trial for trial in stored if not trial.error])
     score = next((score for score in experiment.scores if score.rate is not None), experiment.scores[0])
-    values = {
+    values: dict[tuple[EngineName, tuple[str, ...]], float] = {
         (engine, cell): estimate(score, _of(trials, engine, cell)).value
         for engine in experiment.engines
         for cell in _cells(experiment)

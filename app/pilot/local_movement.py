@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from app.pilot.params import DrivingParams, PilotParams
 from disk import kind
 from ratslam_core import Odometry
+from ratslam_core.beats import BEAT_S, Beats
 
 _Array = NDArray[np.float64]  # (n, 2): points in the robot's frame, m
 
 
-class _Choice(NamedTuple):
+class Choice(NamedTuple):
     """The parameters that compiled code needs."""
 
     speed: float
@@ -40,19 +41,23 @@ class _Choice(NamedTuple):
     escape_m2: float
 
 
-@kind("local movement/1")
+@kind("local movement/2")
 class LocalMovement:
     """Remembers echoes around the robot and chooses (speed m/s, yaw rate rad/s)."""
 
-    CACHES = ("_choice",)
+    CACHES = ("_choice", "_asked")
 
-    def __init__(self, sonar_angles_rad: NDArray[np.float64], ticks: int) -> None:
-        """sonar_angles_rad: (8,) from left to right, positive to the left. ticks: how long echoes are remembered."""
+    def __init__(self, sonar_angles_rad: NDArray[np.float64], echo_s: float) -> None:
+        """sonar_angles_rad: (8,) from left to right, positive to the left. echo_s: how long echoes are remembered, s.
+
+        One scan of each beat is remembered, its last.
+        """
         self._angles = np.asarray(sonar_angles_rad, np.float64)
-        self._ticks = ticks
-        self._echoes = np.full((ticks * len(self._angles), 2), np.inf)  # in the robot's frame now
-        self._tick = 0
-        self._choice: tuple[DrivingParams, _Choice] | None = None
+        self._scans = max(1, round(echo_s / BEAT_S))
+        self._echoes = np.full((self._scans * len(self._angles), 2), np.inf)  # in the robot's frame now
+        self._beats, self._beat = Beats(), -1
+        self._choice: tuple[DrivingParams, Choice] | None = None
+        self._asked: tuple[float, float, Choice] | None = None  # since it last sensed, for people who look
 
     def forget(self) -> None:
         self._echoes[:] = np.inf
@@ -64,15 +69,25 @@ class LocalMovement:
 
     def sense(self, ranges_m: NDArray[np.float32], odometry: Odometry, p: DrivingParams) -> None:
         """Move the old echoes into the robot's new frame and add the new ones. ranges_m: (8,) from its middle."""
-        n = len(self._angles)
-        start = self._tick % self._ticks * n
-        self._tick += 1
+        n, (passed, _) = len(self._angles), self._beats.take(odometry)
+        for beat in range(self._beat + 1, self._beat + min(passed, self._scans)):
+            start = beat % self._scans * n
+            self._echoes[start : start + n] = np.inf  # no scan was made in it
+        self._beat += passed
+        start = self._beat % self._scans * n
+        self._asked = None
         moved, turned = odometry.speed * odometry.dt, odometry.yaw_rate * odometry.dt
         _sense(self._echoes, moved, turned, start, ranges_m, self._angles, p.echo_range_m)
 
     def towards(self, x: float, y: float, p: DrivingParams) -> tuple[float, float]:
         """Speed and yaw rate of the free arc that costs least on the way to (x, y), metres in the robot's frame."""
-        return _best_arc(self._echoes, x, y, self._chosen_by(p))
+        self._asked = asked = x, y, self._chosen_by(p)
+        return _best_arc(self._echoes, *asked)
+
+    @property
+    def asked(self) -> tuple[_Array, float, float, Choice] | None:
+        """What `candidates` needs to tell about the choice in this tick, as copies; None: there was none."""
+        return None if self._asked is None else (self._echoes.copy(), *self._asked)
 
     def free_way(self, bearing: float, p: DrivingParams) -> float:
         """How far (m) the robot can drive straight in this direction (rad) before it is too close to an echo."""
@@ -90,10 +105,10 @@ class LocalMovement:
         better = _freest(self._echoes, bearing, want, p.clearance, p.gap_rad / p.gap_steps, p.gap_steps, p.gap_cost)
         return want * math.cos(better), want * math.sin(better)
 
-    def _chosen_by(self, p: DrivingParams) -> _Choice:
+    def _chosen_by(self, p: DrivingParams) -> Choice:
         """The same object for the same parameters, since it is needed in every tick."""
         if self._choice is None or self._choice[0] is not p:
-            self._choice = p, _Choice(
+            self._choice = p, Choice(
                 p.cruise_speed, p.turn_rate, p.clearance, p.arc_s, p.arc_steps, p.arcs_a_side, p.medium_share, p.slow_share,
                 p.spot_share, p.spot_s, p.turn_cost, p.bearing_m, p.narrow_m, p.narrow_cost, p.escape_m2,
             )  # fmt: skip
@@ -136,11 +151,11 @@ def _place(echoes: _Array, start: int, ranges: NDArray[np.float32], angles: _Arr
 
 
 @njit(cache=True, nogil=True)
-def _best_arc(echoes: _Array, x: float, y: float, p: _Choice) -> tuple[float, float]:
+def _best_arc(echoes: _Array, x: float, y: float, p: Choice) -> tuple[float, float]:
     """Speed and yaw rate of the cheapest arc that keeps clear of all echoes; a turn on the spot is always clear."""
     best, best_v, best_w = np.inf, 0.0, 0.0
-    near = _within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m, p)  # generously
-    facing = _facing(p)
+    near = within(echoes, p.speed * p.arc_s + p.clearance + 2 * p.narrow_m, p)  # generously
+    facing = facing_of(p)
     for share in (1.0, p.medium, p.slow, 0.0):
         v = p.speed * share
         for wi in range(-p.arcs, p.arcs + 1):
@@ -149,19 +164,19 @@ def _best_arc(echoes: _Array, x: float, y: float, p: _Choice) -> tuple[float, fl
             w = p.turn_rate * wi / p.arcs
             px, py, nearest, free = 0.0, 0.0, np.inf, True
             if v > 0.0:
-                px, py, nearest, free = _along(near, v * (p.arc_s / p.steps), facing[wi + p.arcs], p)
+                px, py, nearest, free = along(near, v * (p.arc_s / p.steps), facing[wi + p.arcs], p)
             if free:
-                cost = _cost(x, y, px, py, w * (p.arc_s if v > 0.0 else p.spot_s), nearest, p)
+                cost = cost_of(x, y, px, py, w * (p.arc_s if v > 0.0 else p.spot_s), nearest, p)
                 if cost < best:
                     best, best_v, best_w = cost, v, w
     return best_v, best_w
 
 
 @njit(cache=True, nogil=True)
-def _along(near: tuple[_Array, _Array], step: float, facing: _Array, p: _Choice) -> tuple[float, float, float, bool]:
+def along(near: tuple[_Array, _Array], step: float, facing: _Array, p: Choice) -> tuple[float, float, float, bool]:
     """The end (m) of an arc, the squared distance (m²) of the nearest echo, and whether it keeps clear of all.
 
-    near: from `_within`. All echoes are compared at once, without a branch, so that the compiler can vectorise.
+    near: from `within`. All echoes are compared at once, without a branch, so that the compiler can vectorise.
     """
     px = py = 0.0
     places, limits = near
@@ -185,7 +200,7 @@ def _along(near: tuple[_Array, _Array], step: float, facing: _Array, p: _Choice)
 
 
 @njit(cache=True, nogil=True)
-def _cost(x: float, y: float, px: float, py: float, heading: float, nearest: float, p: _Choice) -> float:
+def cost_of(x: float, y: float, px: float, py: float, heading: float, nearest: float, p: Choice) -> float:
     """Cost in metres: distance left from the arc's end to (x, y), angle left to turn, and passing close to an echo."""
     left = math.hypot(x - px, y - py)
     aim = math.atan2(y - py, x - px) - heading if left > p.bearing_m else math.atan2(y, x) - heading
@@ -195,7 +210,7 @@ def _cost(x: float, y: float, px: float, py: float, heading: float, nearest: flo
 
 
 @njit(cache=True, nogil=True)
-def _facing(p: _Choice) -> _Array:
+def facing_of(p: Choice) -> _Array:
     """Cosine and sine of the heading in the middle of each step of each arc."""
     out = np.empty((2 * p.arcs + 1, p.steps, 2))
     for wi in range(-p.arcs, p.arcs + 1):
@@ -206,11 +221,11 @@ def _facing(p: _Choice) -> _Array:
 
 
 @njit(cache=True, nogil=True)
-def _within(echoes: _Array, reach: float, p: _Choice) -> tuple[_Array, _Array]:
+def within(echoes: _Array, reach: float, p: Choice) -> tuple[_Array, _Array]:
     """The echoes within `reach`, in their order, (2, n); no other can matter to an arc.
 
     And in (2, n) how near (m²) an arc must come to count as too close, since an echo that is already too close does not
-    forbid an arc that leads away from it, and a row for `_along`.
+    forbid an arc that leads away from it, and a row for `along`.
     """
     places, limits = np.empty((2, len(echoes))), np.empty((2, len(echoes)))
     n = 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import Literal
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from app.pilot.bars import Bars
 from app.pilot.behaviours import Behaviour
+from app.pilot.candidates import Candidates, candidates
 from app.pilot.explore import Explorer
 from app.pilot.freeing import Freeing
 from app.pilot.local_movement import LocalMovement
@@ -30,7 +32,7 @@ class Pilot:
         self.mode: Mode = "explore"
         self._behaviour = Behaviour.STARTING.name
         self._explorer = Explorer(rng)
-        self._local = LocalMovement(sonar_angles_rad, params.echo_ticks)
+        self._local = LocalMovement(sonar_angles_rad, params.echo_s)
         self._rng = rng
         self._follower: RouteFollower | None = None
         self._hand = (0.0, 0.0)  # speed, yaw rate
@@ -45,6 +47,11 @@ class Pilot:
     @property
     def goal(self) -> int | None:
         return self._follower.goal if self._follower else None
+
+    @property
+    def goals(self) -> tuple[int, ...]:
+        """All experiences that stand for the goal, `goal` first; none without a goal."""
+        return tuple(self._follower.goals) if self._follower else ()
 
     @property
     def goal_state(self) -> tuple[int, str] | None:
@@ -64,12 +71,18 @@ class Pilot:
         """The current behaviour in words."""
         return self.behaviour.words
 
+    def look_at_choice(self) -> Callable[[], Candidates] | None:
+        """How to find out, at any time, among which arcs the robot chose in this tick; None: it chose none."""
+        asked = self._local.asked
+        return None if asked is None else lambda: candidates(*asked)
+
     def progress(self, experiences: ExperienceMap) -> Progress | None:
         return self._follower.progress(experiences) if self._follower else None
 
-    def set_goal(self, experience: int) -> None:
+    def set_goal(self, experience: int, others: Sequence[int] = ()) -> None:
+        """others: experiences that stand for the same place; to come to one of them is to arrive."""
         self._bars.forget()  # they may lie wrong by now: the map is bent, doors move
-        self._follower = RouteFollower(experience, self._bars)
+        self._follower = RouteFollower(experience, self._bars, others)
         self._seeker.stop()
         self.mode = "goal"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -33,13 +34,13 @@ class Progress:
     arrival_s: NDArray[np.float64]  # seconds from now
 
 
-@kind("route follower/2")
+@kind("route follower/3")
 class RouteFollower:
-    """Keeps the quickest route to one goal and says which point to head for."""
+    """Keeps the quickest route to a goal, one experience or several of one place, and says which point to head for."""
 
-    def __init__(self, goal: int, bars: Bars | None = None) -> None:
-        """bars: what was in the robot's way so far."""
-        self.goal = goal
+    def __init__(self, goal: int, bars: Bars | None = None, others: Sequence[int] = ()) -> None:
+        """bars: what was in the robot's way so far. others: experiences that stand for the goal's place, too."""
+        self.goals = [goal, *others]
         self.state: GoalState = "tracking"
         self.failed = False  # in this tick: the robot could not get on, and should back out
         self._route: Route | None = None
@@ -52,6 +53,10 @@ class RouteFollower:
         self._look_around_s = 0.0
         self._headway = Headway()
         self._bars = Bars() if bars is None else bars
+
+    @property
+    def goal(self) -> int:
+        return self.goals[0]
 
     def move(self, odometry: Odometry, trying: bool, p: RouteParams) -> None:
         """The robot moved. Called in every tick on the way to the goal. trying: whether it drove as `step` said."""
@@ -149,9 +154,10 @@ class RouteFollower:
     # ------------------------------------------------------------ arriving
 
     def _goal_from_robot(self, experiences: ExperienceMap) -> tuple[float, float]:
-        """The place of the goal, whichever way its experience faces; m, robot's frame."""
-        goal = experiences.pose(self.goal)
-        return _from_robot(experiences.robot, goal.x, goal.y)
+        """The place of the goal's experience that is nearest to the robot, whichever way it faces; m, robot's frame."""
+        places, robot = experiences.poses[list(self.goals), :2], experiences.robot
+        nearest = int(np.argmin(np.hypot(places[:, 0] - robot.x, places[:, 1] - robot.y)))
+        return _from_robot(robot, *places[nearest])
 
     def _there(self, away: float, dt: float, p: RouteParams) -> bool:
         """Near enough; or close by and no longer getting nearer, as at a goal in a corner too tight for the robot."""
@@ -174,7 +180,7 @@ class RouteFollower:
         t = experiences.transitions
         delays = self._bars.delays(t.ends[: t.count], experiences.poses, p) if p.bar_fade_s else None
         ways, robot, poses = experiences.temporal_map, experiences.robot, experiences.poses
-        times = ways.times_to(self.goal, delays)
+        times = ways.times_to(self.goals, delays)
         away = np.hypot(poses[:, 0] - robot.x, poses[:, 1] - robot.y)
         start = self._start(experiences, local, times, away, p)
         if not np.isfinite(times[start]):

@@ -17,6 +17,7 @@ from app.pilot.known_ground import KnownGround
 from app.pilot.route_following import RouteFollower
 from app.pilot.seeking import Seeker
 from ratslam_core import Route
+from ratslam_core.laws.beats import beats
 from ratslam_core.laws.kinds import same_kind
 from ratslam_core.laws.measures import FAR_M, array, number, true, whole, within
 from sim2d import SONAR_ANGLES_RAD
@@ -37,10 +38,11 @@ def pilot(pilot: Pilot, experiences: int) -> None:
     within("the pilot's place", place, -MOST_TURNED, MOST_TURNED)
     local = pilot._local
     true(np.array_equal(local._angles, SONAR_ANGLES_RAD), "the pilot must know the robot's sonars")
-    ticks = whole("ticks that echoes are remembered", local._ticks, 1, 10**6)
-    echoes = array("echoes", local._echoes, np.float64, (ticks * len(SONAR_ANGLES_RAD), 2))
+    scans = whole("scans that are remembered", local._scans, 1, 10**6)
+    echoes = array("echoes", local._echoes, np.float64, (scans * len(SONAR_ANGLES_RAD), 2))
     true(not np.isnan(echoes).any(), "echoes must be places, or none")
-    whole("the echoes' tick", local._tick)
+    whole("the echoes' beat", local._beat, -1)
+    beats(local._beats)
     _explorer(pilot._explorer)
     one = pilot._explorer._rng is pilot._rng is pilot._freeing._rng
     true(one, "all parts of the pilot must draw from one generator")
@@ -64,7 +66,9 @@ def _explorer(explorer: Explorer) -> None:
 def _follower(follower: RouteFollower, experiences: int) -> None:
     true(isinstance(follower, RouteFollower), "who follows a route must be a RouteFollower")
     same_kind("route follower", follower, RouteFollower(0))
-    whole("the goal", follower.goal, 0, experiences - 1)
+    true(isinstance(follower.goals, list) and len(follower.goals) > 0, "a route must lead to a goal")
+    for goal in follower.goals:
+        whole("the goal", goal, 0, experiences - 1)
     true(follower.state in get_args(GoalState), f"the way to a goal cannot be {follower.state!r}")
     if follower._route is not None:
         true(isinstance(follower._route, Route), "the route must be one")

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.config import Config
-from app.session import Session
+from app.session import MOST_TAGS, Session
 from app.session_laws.evaluation import evaluation
 from app.session_laws.pilot import pilot
 from app.session_laws.simulator import simulator
@@ -17,7 +17,8 @@ from ratslam_core.laws.kinds import same_kind
 from ratslam_core.laws.measures import number, pose, true, whole
 from sim2d import SONAR_ANGLES_RAD, World
 
-_PARTS = {"seed", "config", "simulator", "brain", "pilot", "evaluation", "odometry", "estimate"}
+LONGEST_NAME = 40
+_PARTS = {"seed", "config", "simulator", "brain", "pilot", "evaluation", "odometry", "estimate", "tags"}
 
 
 def check(session: Session, world: World) -> None:
@@ -36,6 +37,10 @@ def check(session: Session, world: World) -> None:
     )
     pilot(session.pilot, n)
     evaluation(session.evaluation, n)
+    true(isinstance(session.tags, dict) and len(session.tags) <= MOST_TAGS, "tags must be a table, and not too many")
+    for name, experience in session.tags.items():
+        true(isinstance(name, str) and 0 < len(name) <= LONGEST_NAME, f"a tag must have a name, got {name!r}")
+        whole(f"the experience tagged {name!r}", experience, 0, n - 1)
     _last_step(session, n, len(session.brain.local_view))
 
 

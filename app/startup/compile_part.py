@@ -73,7 +73,7 @@ def office() -> None:
     nowhere = ExperienceMap((cells.n_theta, cells.n_y, cells.n_x), cells.cell_m, config.experience_map)
     frame = simulator.observe()
     Coverage().follow(simulator.free_space, np.zeros((1, 2)))
-    local = LocalMovement(ANGLES, config.pilot.echo_ticks)
+    local = LocalMovement(ANGLES, config.pilot.echo_s)
     local.free_way(0.0, config.pilot)
     local.sense(np.full(len(ANGLES), 0.2, np.float32), Odometry(0.0, 0.0, 0.1), config.pilot)
     local.gap_towards(1.0, 0.2, config.pilot)
@@ -140,7 +140,7 @@ def loops() -> None:
     made.temporal_map.times_to(0)
     made.step(Packet(30.0, 30.0, 0.0, 1.0), Recognition(99, True, -1, 2.0), Odometry(0.3, 0.1, 0.1))
     made.temporal_map.times_to(0)  # is mended now
-    local = LocalMovement(ANGLES, config.pilot.echo_ticks)
+    local = LocalMovement(ANGLES, config.pilot.echo_s)
     RouteFollower(0, Bars()).step(made, local, 0.1, config.pilot)
     find_places(made)
 

@@ -14,16 +14,20 @@ if TYPE_CHECKING:
     from app.trials.experiment import Experiment, FigureSpec
 
 Shown = Literal[
-    "experience map", "pose cells", "path", "occupancy", "cells occupancy", "representations", "temporal map", "goal memory"
+    "experience map", "pose cells", "path", "occupancy", "map grid", "representations", "temporal map", "goal memory"
 ]  # fmt: skip
 Channel = Literal[
-    "packets", "off_m", "error_m", "residual", "views", "experiences", "active", "x", "y", "heading"
+    "packets", "off", "map error", "residual", "views", "experiences", "active experience", "x", "y", "heading"
 ]  # fmt: skip
 Each = str  # an axis by name, "engine" or "seed"
 
 
 class Options(BaseModel):
-    """What every kind takes. at: levels, by label, of the axes that a figure does not vary; left out, the first of each."""
+    """What every kind takes.
+
+    at: levels, by label. Of an axis that a figure does not vary, the one that is shown, else the first; of one that it
+    varies, those that are shown, else all.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
     at: list[str] = []
@@ -42,7 +46,10 @@ class Curves(Options):
 
 
 class Dots(Options):
-    """Each trial a dot, by level and engine, with the median or the rate and its interval."""
+    """Each trial a dot, by level and engine, with the median or the rate and its interval.
+
+    by: an axis; left out, every combination of levels has its place.
+    """
 
     score: str
     by: str = ""
@@ -70,17 +77,22 @@ class Series(OneTrial):
 
     channels: Annotated[list[Channel], Field(min_length=1)]
     each: Each = "engine"
-    around_kidnap: tuple[float, float] | None = None  # seconds before and after the first kidnap, which is then 0
-    from_s: Annotated[float, Field(ge=0)] = 0.0
-    to_s: Annotated[float, Field(ge=0)] = 0.0  # 0: to the end
+    after: str = ""  # how the words of a moment begin: the first such moment is then 0
+    before: Annotated[float, Field(ge=0)] = 5.0  # seconds shown before it
+    seconds: Annotated[float, Field(ge=0)] = 0.0  # shown after it, or from the start; 0: to the end
+    log: bool = False  # of all channels but the packets
 
 
 class Survival(Options):
-    """The share of kidnaps recovered from, against time or metres since."""
+    """The share of trials in which something has happened, by the time or the way until then, which is a score.
 
-    against: Literal["seconds", "metres"] = "seconds"
+    A trial without that score is one in which it has not happened.
+    """
+
+    score: str
+    unit: str = ""  # in words beside the axis; left out, that of the score
     lines: str = "engine"
-    most: Annotated[float, Field(ge=0)] = 0.0  # end of the axis; 0: where the last one has recovered
+    most: Annotated[float, Field(ge=0)] = 0.0  # end of the axis; 0: where the last one stands
 
 
 OPTIONS: dict[str, type[Options]] = {
@@ -145,6 +157,7 @@ def _check(experiment: Experiment, options: Options) -> None:
             if options.pick == "median":
                 _one_of("score", options.score, scores)
         case Survival():
+            _one_of("score", options.score, [score.label for score in experiment.scores if score.rate is None])
             _one_of("lines", options.lines, ["engine", *axes])
         case _:
             pass

@@ -83,6 +83,7 @@ class _Recorder:
         self._row_s = self._error_s = 0.0
         self._snaps = course.session.brain.relocalisations
         self._before: Packet = course.session.brain.pose_cells.winner
+        self.note()  # before the first tick
 
     def note(self) -> None:
         session = self.course.session

@@ -23,7 +23,7 @@ class MapLayers:
         self._session = session
         self._map: MapLayer | None = None
         self._times: TimesLayer | None = None
-        self._goal_timed: int | None = None
+        self._goals_timed: tuple[int, ...] = ()
         self._map_due = self._times_due = -math.inf
 
     def refresh(self) -> None:
@@ -34,17 +34,16 @@ class MapLayers:
         if self._map is None or now >= self._map_due:
             self._map = map_layer(self._session.brain.experience_map)
             self._map_due, self._times_due = now + MAP_EVERY_S, -math.inf
-        goal = self._session.pilot.goal
-        if self._times is None or now >= self._times_due or goal != self._goal_timed:
-            self._times = self._times_to(goal, len(self._map.ids))
-            self._times_due, self._goal_timed = now + TIMES_EVERY_S, goal
+        goals = self._session.pilot.goals
+        if self._times is None or now >= self._times_due or goals != self._goals_timed:
+            self._times = self._times_to(goals, len(self._map.ids))
+            self._times_due, self._goals_timed = now + TIMES_EVERY_S, goals
         return self._map, self._times
 
-    def _times_to(self, goal: int | None, shown: int) -> TimesLayer:
+    def _times_to(self, goals: tuple[int, ...], shown: int) -> TimesLayer:
         experiences = self._session.brain.experience_map
-        source = experiences.active if goal is None else goal
-        seconds = experiences.temporal_map.times_to(source)[:shown].astype(np.float32)
-        return TimesLayer(goal is not None, frozen(seconds))
+        seconds = experiences.temporal_map.times_to(goals or experiences.active)[:shown].astype(np.float32)
+        return TimesLayer(bool(goals), frozen(seconds))
 
 
 def map_layer(experiences: ExperienceMap) -> MapLayer:

@@ -9,10 +9,11 @@ from app.session import Session
 from app.views.actors import ActorsView
 from app.views.belief import belief_of
 from app.views.goal_memory_layer import goal_memory_layer
-from app.views.goal_view import goal_view
+from app.views.goal_view import goal_view, tags_view
 from app.views.history import History
 from app.views.inspection import inspect
 from app.views.map_layers import MapLayers
+from app.views.movements import movements_of
 from app.views.occupancy_layer import occupancy_layer
 from app.views.parameter_rows import ParameterRows
 from app.views.pose_cell_layer import pose_cell_layer
@@ -75,6 +76,7 @@ class Snapshots:
             map=parts["map"],
             times=parts["times"],
             goal=goal_view(session),
+            tags=tags_view(session),
             belief=belief_of(session),
             views=len(brain.local_view),
             experiences=len(brain.experience_map),
@@ -91,6 +93,7 @@ class Snapshots:
             parameters=parameters,
             occupancy=self._occupancy.part(session.tick_count),
             goal_memory=self._goal_memory.part(session.tick_count),
+            movements=movements_of(session),
             living=self._actors.look(session.simulator),
             switches=self._actors.switches(session.simulator.world),
             inspected=self._inspection.part(session.tick_count),

@@ -6,6 +6,7 @@ import math
 
 from disk import kind
 from ratslam_core.experience_map.experience_map import ExperienceMap
+from ratslam_core.experience_map.preintegrated import moved_by
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, wrap_angle
 
 
@@ -18,7 +19,6 @@ class CellsOnly(ExperienceMap):
     """
 
     def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0) -> bool:  # noqa: ARG002
-        self.steps += 1
         if self.active < 0:
             self._create(packet, seen.view, IDENTITY)
             return True
@@ -29,6 +29,10 @@ class CellsOnly(ExperienceMap):
         turn = wrap_angle(dtheta * 2 * math.pi / self.shape[0])
         self.pose_filter.local = Pose2(c * dx + s * dy, -s * dx + c * dy, turn)
         return False
+
+    def move(self, odometry: Odometry) -> None:
+        """Between two steps the packet stands, and the robot is where odometry leads from it."""
+        self.pose_filter.move(moved_by(odometry), 0.0)
 
     def declare_kidnapped(self, *, sure: bool = True) -> None:
         """Nothing is done: only the pose cells can relocalise the robot."""

@@ -45,7 +45,7 @@ class ExperienceMap(Looks):
         self.yaw_bias = 0.0  # rad/s, learnt
         self.agrees = True  # whether the last look agreed with where the robot believed itself to be
         self.closures = 0  # links made to experiences that existed before
-        self.steps = 0
+        self.steps = 0  # of correction
         self._offset = IDENTITY  # the robot in the frame of the active experience, at the best look so far
         self._sigma = 0.0  # how far off that may be, m
         self._travel = IDENTITY  # odometry since then
@@ -63,7 +63,7 @@ class ExperienceMap(Looks):
         require_behaviour(behaviour)
         for name in ("x", "y", "heading_rad"):
             require_finite(f"packet.{name}", getattr(packet, name))
-        self.steps, self.agrees = self.steps + 1, True
+        self.agrees = True
         if self.active < 0:
             self._create(packet, seen.view, IDENTITY)
             return True
@@ -90,8 +90,14 @@ class ExperienceMap(Looks):
             self._see_better(seen)
         return False
 
+    def move(self, odometry: Odometry) -> None:
+        """The robot moved as the odometry says, and nothing is looked at: a part of a step, or a tick between two."""
+        if self.active >= 0:
+            self._move(odometry)
+
     def correct(self) -> None:
         """One step of map correction: experiences are moved until links and map agree. ACRA 2006 section 3.3."""
+        self.steps += 1
         self.optimiser.correct(self)
 
     def set_params(self, params: ExperienceMapParams, filter_params: PoseFilterParams, solver: SolverParams) -> None:

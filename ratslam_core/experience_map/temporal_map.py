@@ -5,6 +5,7 @@ The papers' relaxation t_j <- min(t_j, t_i + t_ij) ends at the shortest times; D
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -32,8 +33,9 @@ class TemporalMap:
     """Times over the links of an experience map, both ways along each link; of parallel links the quickest counts.
 
     It lives as long as its map and reads the map's own links, so nothing is rebuilt when links are added or removed.
-    Every answer is exact for the links, their times and the places at the moment of asking. The tree of the last goal
-    is kept. If nothing has changed, the answer is ready. Otherwise the tree is mended, at the cost of a pass over the
+    Every answer is exact for the links, their times and the places at the moment of asking. A goal may be several
+    experiences, as those that stand for one place; then the quickest of them counts, at the cost of one. The tree of the
+    last goal is kept. If nothing has changed, the answer is ready. Otherwise the tree is mended, at the cost of a pass over the
     links and of the nodes that have become quicker to reach. A mended answer equals a fresh one to the bit, so it does
     not matter who asks in between.
 
@@ -46,21 +48,22 @@ class TemporalMap:
 
     def __init__(self, experiences: MapReading) -> None:
         self._map = experiences
-        self._goal: int | None = None
+        self._goal: tuple[int, ...] | None = None
         self._asked: _Asked | None = None  # the links and places that the answer holds for
         self._times = np.zeros(0)
         self._parent = np.zeros(0, np.int32)
 
-    def times_to(self, experience: int, delays: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
-        """Seconds from every experience to this one (and back), shape (n,); inf where no way is known.
+    def times_to(self, goal: int | Sequence[int], delays: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Seconds from every experience to this one (and back), or to the nearest in time of several, shape (n,); inf
+        where no way is known. test_temporal_map.py::test_of_several_goals_the_quickest_counts.
 
         delays: seconds by which each row of the transitions takes longer now, shape (rows,); [ours], for what the robot
         knows to be in its way. test_temporal_map.py::test_a_delay_sends_the_robot_round.
         """
-        self._answer(experience, delays)
+        self._answer(goal, delays)
         return self._times.copy()
 
-    def route(self, start: int, goal: int, delays: NDArray[np.float64] | None = None) -> Route | None:
+    def route(self, start: int, goal: int | Sequence[int], delays: NDArray[np.float64] | None = None) -> Route | None:
         """The quickest way, None when there is none. Among equal ways, the one over experiences with lower numbers."""
         self._require(start)
         self._answer(goal, delays)
@@ -73,21 +76,25 @@ class TemporalMap:
             raise ValueError(f"no times are known for experience {start!r}; ask for `times_to` a goal first")
         if not np.isfinite(self._times[start]):
             return None
-        nodes = dijkstra.trace(start, self._goal, self._times, self._asked.links, self._asked.near)
+        nodes = dijkstra.trace(start, self._times, self._asked.links, self._asked.near)
         return Route(nodes, self._times[start] - self._times[nodes])
 
-    def _answer(self, goal: int, delays: NDArray[np.float64] | None) -> _Asked:
+    def _answer(self, goal: int | Sequence[int], delays: NDArray[np.float64] | None) -> _Asked:
         """Bring times and tree up to date for this goal; returns what they hold for."""
-        self._require(goal)
+        goals = (goal,) if isinstance(goal, int | np.integer) else tuple(goal)
+        if not goals:
+            raise ValueError("goal must be an experience or several, got none")
+        for experience in goals:
+            self._require(experience)
         asked, before, n = _Asked(self._map, delays), self._asked, len(self._map)
-        if goal != self._goal or before is None:
+        if goals != self._goal or before is None:
             self._times, self._parent = np.empty(n), np.empty(n, np.int32)
-            dijkstra.fresh(goal, self._times, self._parent, asked.links, asked.near)
+            dijkstra.fresh(np.array(goals, np.int64), self._times, self._parent, asked.links, asked.near)
         elif not asked.same_as(before):
             new = np.full(n - len(self._parent), -1, np.int32)
             self._times, self._parent = np.empty(n), np.concatenate([self._parent, new])
-            dijkstra.mend(goal, self._times, self._parent, asked.links, asked.near)
-        self._goal, self._asked = goal, asked
+            dijkstra.mend(np.array(goals, np.int64), self._times, self._parent, asked.links, asked.near)
+        self._goal, self._asked = goals, asked
         return asked
 
     def _require(self, experience: int) -> None:

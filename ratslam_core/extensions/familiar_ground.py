@@ -19,6 +19,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
+from ratslam_core.beats import weight
 from ratslam_core.params import MemoryParams
 from ratslam_core.types import Odometry, Recognition
 
@@ -100,11 +101,14 @@ class FamiliarGround:
         self.links_spared += tied
         return tied
 
-    def note(self, map_: ExperienceMap, seen: Recognition, created: bool, odometry: Odometry, lost: bool) -> None:
+    def note(
+        self, map_: ExperienceMap, seen: Recognition, created: bool, odometry: Odometry, lost: bool, beats: int = 1
+    ) -> None:
         """The end of a step: count what was seen for the place where the robot was, and look where it is now.
 
         Only sights on the way count, since one that lasts says no more than one; and neither do those of nothing. An
-        experience that was just made begins with the mean share of those around it.
+        experience that was just made begins with the mean share of those around it. beats: for how many sights this one
+        counts.
         """
         while len(map_) > len(self._share):
             self._share = np.concatenate([self._share, np.zeros_like(self._share)])
@@ -113,7 +117,7 @@ class FamiliarGround:
         under_way = odometry.speed != 0 or odometry.yaw_rate != 0
         if under_way and (seen.view >= 0 or seen.familiar):
             hit = map_.agrees and not (created or self._let_go)
-            _count(self._share, self._unseen, self.near, float(hit), 1 / self.params.sights)
+            _count(self._share, self._unseen, self.near, float(hit), weight(1 / self.params.sights, beats), beats)
             if hit:
                 self._unseen[map_.active] = 0
         if created:
@@ -169,7 +173,9 @@ class NewGround:
     def well_tied(self, _t: Transitions, _i: int, _j: int) -> bool:
         return False
 
-    def note(self, _map: ExperienceMap, _seen: Recognition, _created: bool, _odometry: Odometry, _lost: bool) -> None:
+    def note(
+        self, _map: ExperienceMap, _seen: Recognition, _created: bool, _odometry: Odometry, _lost: bool, _beats: int = 1
+    ) -> None:
         """Nothing is counted."""
 
 
@@ -180,10 +186,10 @@ def _ties(t: Transitions, experience: int) -> int:
 
 @njit(cache=True, nogil=True)
 def _count(
-    share: NDArray[np.float64], unseen: NDArray[np.int64], near: NDArray[np.int64], hit: float, rate: float
+    share: NDArray[np.float64], unseen: NDArray[np.int64], near: NDArray[np.int64], hit: float, rate: float, beats: int
 ) -> None:
     for i in near:
-        unseen[i] += 1
+        unseen[i] += beats
         share[i] += rate * (hit - share[i])
 
 

@@ -18,13 +18,14 @@ from ratslam_core.params import PoseFilterParams
 from ratslam_core.types import Pose2, wrap_angle
 
 
-@kind("gate/1")
+@kind("gate/2")
 class Gate:
     """How far looks may reach, and the hypothesis that those beyond have in common."""
 
     def __init__(self, params: PoseFilterParams) -> None:
         self.params = params
         self.sights = 0  # that agree on the hypothesis
+        self.beats = 1  # for how many sights one counts, since it lasts so long
         self.surprised = False  # where it believes itself to be, the robot expects something else than it sees
         self.needed = params.gate_sights  # that must agree before it is believed
         self.known = 0  # how many experiences there were when it arose
@@ -43,7 +44,7 @@ class Gate:
 
     def doubt(self) -> None:
         """A sight spoke against the hypothesis."""
-        self.sights = max(self.sights - 1, 0)
+        self.sights = max(self.sights - self.beats, 0)
 
     def dismiss(self) -> None:
         """There is no doubt any more."""
@@ -68,7 +69,7 @@ class Gate:
             self.known, self._views = experiences, []
         if view not in self._views:
             self._views.append(view)
-        self.sights += self.params.gate_surprise if self.surprised else 1
+        self.sights += self.beats * (self.params.gate_surprise if self.surprised else 1)
         self._robot, self._other = robot, claimed
         if self.sights < needed or len(self._views) < views:
             return False

@@ -12,6 +12,7 @@ import numpy as np
 
 from ratslam_core.extensions.kidnap_detector import MOST_USUAL, KidnapDetector
 from ratslam_core.laws import memories
+from ratslam_core.laws.beats import beats
 from ratslam_core.laws.experience_map import LONGEST, experience_map
 from ratslam_core.laws.kinds import same_kind
 from ratslam_core.laws.measures import array, number, true, whole, within
@@ -48,6 +49,7 @@ def check(brain: RatSlam) -> None:
     if isinstance(brain.kidnap_detector, KidnapDetector):
         _kidnap_detector(brain.kidnap_detector, len(brain.experience_map), sonars)
     whole("relocalisations", brain.relocalisations)
+    beats(brain.beats)
 
 
 def _sonars(brain: RatSlam) -> tuple[float, ...]:

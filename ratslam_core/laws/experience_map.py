@@ -52,6 +52,7 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     gate = map_.gate
     for name in ("sights", "needed", "known"):
         whole(name, getattr(gate, name))
+    whole("for how many sights one counts", gate.beats, 1)
     whole("the latest island", map_.islands.begun)
     whole("the island", map_.islands.current, 0, map_.islands.begun)
     whole("the first experience of the latest island", map_.islands.landed, 0, n)

@@ -94,7 +94,9 @@ class LocalView:
     def strength(self, seen: Recognition) -> float:
         """How sure a recognition is: 1 for a new or an equal view, 0 for one that is only just recognised."""
         vague, limit = self.front_end.vague, self.front_end.threshold(self.params)
-        return 1.0 if seen.recruited or limit <= vague else 1 - (seen.difference - vague) / (limit - vague)
+        if seen.recruited or limit <= vague:
+            return 1.0
+        return min(1.0, 1 - (seen.difference - vague) / (limit - vague))
 
     def observe(
         self,

@@ -8,11 +8,12 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of goal memory/1")
+@kind("parameters of goal memory/2")
 @dataclass(frozen=True, slots=True)
 class GoalMemoryParams:
     """Times between places, learnt on the pose cells (C III)."""
 
+    enabled: bool = param(True, meaning="learn times between pose cells; off = no goal memory", source="C III")
     time_weight: float = param(
         1.0, symbol="α", low=0.0, high=10.0, meaning="weight of the time between two iterations", source="C IV.C"
     )

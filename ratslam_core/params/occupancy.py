@@ -9,11 +9,12 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of occupancy/1")
+@kind("parameters of occupancy/2")
 @dataclass(frozen=True, slots=True)
 class OccupancyParams:
     """The wide sonar beam of the occupancy pictures (A 6.1, C V.A)."""
 
+    enabled: bool = param(True, meaning="draw the occupancy grids; off = no grids", source="A 6.1, C V.A")
     beam_rad: float = param(
         math.radians(15), unit="rad", low=0.01, high=1.5, meaning="width of a sonar's beam", source="Moravec and Elfes"
     )

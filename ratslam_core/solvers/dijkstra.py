@@ -1,4 +1,5 @@
-"""Shortest times to one node along links and, when there is a reach, by shortcuts to nodes that are close in the map.
+"""Shortest times to the nearest of some nodes, the goals, along links and, when there is a reach, by shortcuts to nodes
+that are close in the map.
 
 Dijkstra's algorithm on a binary heap. A node whose time fell stands in it twice, and the older entry is skipped. A time
 is that of the next node on the way plus that of the link, rounded. Such sums only grow, so the least of them do not
@@ -28,17 +29,24 @@ LEAST_S = 1e-3  # no link takes less, so that no way leads round in circles
 
 
 @njit(cache=True, nogil=True)
-def fresh(goal: int, times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near) -> None:
-    """Write the seconds from every node to the goal to `times`, inf for no way, and the next node or -1 to `parent`."""
+def fresh(
+    goals: NDArray[np.int64], times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near
+) -> None:
+    """Write the seconds from every node to its nearest goal to `times`, inf for no way, and the next node or -1 to
+    `parent`. All goals are in the heap from the start, so that many cost as much as one."""
     times[:] = np.inf
     parent[:] = -1
-    times[goal] = 0.0
-    heap = np.zeros(64), np.full(64, goal, np.uint32)
-    _settle(np.int64(1), heap, times, parent, links, near)
+    times[goals] = 0.0
+    heap = np.zeros(64 + len(goals)), np.zeros(64 + len(goals), np.uint32)
+    for k in range(len(goals)):  # equal times are a heap in any order
+        heap[1][k] = goals[k]
+    _settle(np.int64(len(goals)), heap, times, parent, links, near)
 
 
 @njit(cache=True, nogil=True)
-def mend(goal: int, times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near) -> None:
+def mend(
+    goals: NDArray[np.int64], times: NDArray[np.float64], parent: NDArray[np.int32], links: Links, near: Near
+) -> None:
     """The same, beginning with an older tree in `parent`, however links and times have changed since.
 
     First come the times along what is left of the old tree: none is too short. Then every shorter way is followed up.
@@ -46,7 +54,7 @@ def mend(goal: int, times: NDArray[np.float64], parent: NDArray[np.int32], links
     n = len(times)
     stack = np.empty(n, np.int32)
     times[:] = -1.0
-    times[goal] = 0.0
+    times[goals] = 0.0
     for first in range(n):
         depth = 0
         node: int = first
@@ -72,12 +80,13 @@ def mend(goal: int, times: NDArray[np.float64], parent: NDArray[np.int32], links
 
 
 @njit(cache=True, nogil=True)
-def trace(start: int, goal: int, times: NDArray[np.float64], links: Links, near: Near) -> NDArray[np.int64]:
-    """Nodes of the quickest way; among equal ways, the one whose next node has the lowest number."""
+def trace(start: int, times: NDArray[np.float64], links: Links, near: Near) -> NDArray[np.int64]:
+    """Nodes of the quickest way to a goal, where the time is 0; among equal ways, the one whose next node has the lowest
+    number."""
     path: list[Whole] = [start]
     node: Whole = start
     other: Whole
-    while node != goal:
+    while times[node] > 0:
         best: Whole = len(times)
         begin, used, _, others, _ = links
         for at in range(begin[node], begin[node] + used[node]):

@@ -9,6 +9,9 @@ import numpy as np
 from sim2d.params import SimParams
 
 
+_NOISE_S = 0.1  # `odometry_noise` is that of a movement of so long
+
+
 def wrap_angle(angle: float) -> float:
     """The same direction in (-pi, pi]."""
     wrapped = math.remainder(angle, 2 * math.pi)
@@ -36,11 +39,15 @@ def report(speed: float, yaw_rate: float, params: SimParams, rng: np.random.Gene
     A robot at rest gives no counts and reports exactly (0, 0). The bias of the yaw rate acts only while the wheels
     turn, since a robot at rest could calibrate it away. The scale error comes from the wheels and affects only the
     speed.
+
+    [ours] The noise of a short tick is larger, so that noise adds up to the same variance in a second at every rate.
+    test_odometer.py::test_noise_adds_up_alike_at_every_rate.
     """
     speed_error, yaw_error = rng.standard_normal(2).tolist()
+    noise = params.odometry_noise * math.sqrt(_NOISE_S / params.tick_s)
     if abs(speed) < params.still_speed and abs(yaw_rate) < params.still_yaw_rate:
         return 0.0, 0.0
     return (
-        speed * (1.0 + params.odometry_scale_error) * (1.0 + params.odometry_noise * speed_error),
-        yaw_rate * (1.0 + params.odometry_noise * yaw_error) + params.gyro_bias,
+        speed * (1.0 + params.odometry_scale_error) * (1.0 + noise * speed_error),
+        yaw_rate * (1.0 + noise * yaw_error) + params.gyro_bias,
     )

@@ -116,7 +116,11 @@ class Sensors:
     ) -> SensorFrame:
         """The sensor frame at a pose. Its arrays are read-only."""
         gain, noise = params.light * params.exposure_gain, params.image_noise * params.exposure_gain
-        image = self._camera.image(*pose, gain, noise, self._image_rng, reflections)
+        image = (
+            self._camera.image(*pose, gain, noise, self._image_rng, reflections)
+            if params.camera
+            else np.zeros((params.image_height, params.image_width, 3), np.uint8)
+        )
         ranges, bumped = self._sonar(pose, params)
         bumped = bumped or self._actors.walkers.touch(*pose[:2], params.robot_radius_m + params.bumper_m)
         scan = np.zeros(0, np.float32)

@@ -26,7 +26,8 @@ ROOM = [[0, 0, 8, 0], [8, 0, 8, 6], [8, 6, 0, 6], [0, 6, 0, 0], [3, 0, 3, 2.5],
 VALUES = ("1", "0", "-1", "1e400", "nan", "inf", "true", "x", "[[1]]", "{a=1}", "'", '"\\ud800"', "9" * 5000, "[" * 2000,
           "2020-13-01", "1979-05-27", "a.b", "0x1_", "1000", "360", "8", "12", "0.0", "{" * 500, "=", "\n[robot]")  # fmt: skip
 COMMANDS: tuple[dict[str, Any], ...] = (
-    {"type": "set_goal", "x": 1.0, "y": 0.5}, {"type": "cancel_goal"}, {"type": "set_mode", "mode": "manual"},
+    {"type": "set_goal", "x": 1.0, "y": 0.5}, {"type": "cancel_goal"}, {"type": "tag", "name": "desk"},
+    {"type": "go_to_tag", "name": "desk"}, {"type": "untag", "name": "desk"}, {"type": "set_mode", "mode": "manual"},
     {"type": "drive", "speed": 0.2, "yaw_rate": -0.4}, {"type": "kidnap", "x": 2.0, "y": 2.0, "heading_rad": 0.1},
     {"type": "pause"}, {"type": "resume"}, {"type": "step", "ticks": 2}, {"type": "set_speed", "factor": 4.0},
     {"type": "reset", "world": "loop", "seed": 3}, {"type": "set_parameter", "name": "robot.image_width", "value": 64},

@@ -197,6 +197,33 @@ def test_large_maps_agree_with_scipy(seed: int, shortcut_m: float) -> None:
         map_.link(int(rng.integers(n)), int(rng.integers(n)), 0.1)
 
 
+@settings(max_examples=60)
+@given(st.integers(1, 12), st.data())
+@pytest.mark.slow
+def test_of_several_goals_the_quickest_counts(n: int, data: st.DataObject) -> None:
+    """While the map changes: the least of the times to each, bit for bit, and the route ends at one that takes it."""
+    map_ = Links(np.zeros((n, 3)))
+    ways = ways_of(map_)
+    goals = data.draw(st.lists(st.integers(0, n - 1), min_size=1, max_size=4))
+    for _ in range(data.draw(st.integers(1, 5))):
+        for _ in range(data.draw(st.integers(0, 6))):
+            change(map_, data)
+        each = [ways_of(map_).times_to(goal) for goal in goals]
+        assert np.array_equal(ways.times_to(goals), np.min(each, axis=0))
+        start = data.draw(st.integers(0, len(map_) - 1))
+        route = ways.route_again(start)
+        assert (route is None) == bool(np.isinf(np.min(each, axis=0)[start]))
+        if route is not None:
+            end = int(route.experiences[-1])
+            assert end in goals
+            assert each[goals.index(end)][start] == route.arrival_s[-1]
+
+
+def test_there_must_be_a_goal() -> None:
+    with pytest.raises(ValueError, match="goal must be an experience or several, got none"):
+        ways_of(links(2, [(0, 1, 1.0)])).times_to([])
+
+
 def test_of_parallel_links_the_quickest_counts() -> None:
     ways = ways_of(links(2, [(0, 1, 5.0), (1, 0, 2.0), (0, 1, 3.0)]))
     assert ways.times_to(1).tolist() == [2.0, 0.0]

@@ -13,6 +13,7 @@ from web.messages.brain import (
     PoseCellLayer,
     Senses,
     Snap,
+    TaggedPlace,
     TimesLayer,
 )
 from web.messages.commands import (
@@ -23,6 +24,7 @@ from web.messages.commands import (
     EditStep,
     EditWorld,
     Finite,
+    GoToTag,
     InjectPacket,
     Inspect,
     Kidnap,
@@ -43,7 +45,10 @@ from web.messages.commands import (
     SetSpeed,
     Step,
     StepStage,
+    Tag,
+    TagOrder,
     UndoEdit,
+    Untag,
     UsePreset,
     WatchExperiment,
 )
@@ -63,7 +68,7 @@ from web.messages.engine_requests import (
     WorldRestored,
     WorldSaved,
 )
-from web.messages.office import LivingLayer, OfficeEdition, WorldDrawing
+from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
 from web.messages.reports import (
     CellReport,
     ExperienceReport,
@@ -92,6 +97,7 @@ __all__ = [
     "EventKind",
     "ExperienceReport",
     "Finite",
+    "GoToTag",
     "Goal",
     "GoalMemoryLayer",
     "GoalState",
@@ -103,6 +109,7 @@ __all__ = [
     "LivingLayer",
     "LookOrder",
     "MapLayer",
+    "Movements",
     "OccupancyLayer",
     "OccupancyPicture",
     "OfficeEdition",
@@ -138,6 +145,9 @@ __all__ = [
     "Snapshot",
     "Step",
     "StepStage",
+    "Tag",
+    "TagOrder",
+    "TaggedPlace",
     "TickStage",
     "TickWalk",
     "Times",
@@ -146,6 +156,7 @@ __all__ = [
     "TrialState",
     "TrialView",
     "UndoEdit",
+    "Untag",
     "UseBrain",
     "UsePreset",
     "ViewReport",

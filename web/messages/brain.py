@@ -7,7 +7,7 @@ The map frame is the experience map's own (first experience at its origin); pose
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -138,6 +138,16 @@ class Belief:
     forgotten: int  # links of views to pose cells
 
 
+@dataclass(frozen=True, slots=True)
+class TaggedPlace:
+    """A place that somebody has named. Map frame."""
+
+    name: str
+    experience: int
+    x: float
+    y: float
+
+
 GoalState = Literal["tracking", "coasting", "exploring", "arrived", "unreachable"]
 
 
@@ -151,3 +161,7 @@ class Goal:
     remaining_m: float | None
     route_xy: NDArray[np.float32]  # (r, 2) map frame, from the robot to the goal; empty when none is known
     route_arrival_s: NDArray[np.float32]  # (r,) seconds from now
+    places_xy: NDArray[np.float32] = field(
+        default_factory=lambda: np.zeros((0, 2), np.float32)
+    )  # (k, 2) map frame, of all
+    # experiences that stand for the goal

@@ -13,10 +13,11 @@ class _Command(BaseModel):
 
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
+_Name = Annotated[str, Field(min_length=1, max_length=40)]
 
 
 class SetGoal(_Command):
-    """Go to the experience nearest to this place of the map (metres, map frame)."""
+    """Go to this place of the map (metres, map frame): to the quickest of all experiences that stand for it."""
 
     type: Literal["set_goal"]
     x: Finite
@@ -25,6 +26,25 @@ class SetGoal(_Command):
 
 class CancelGoal(_Command):
     type: Literal["cancel_goal"]
+
+
+class Tag(_Command):
+    """Name the place where the robot believes itself to be, to send it there later. A name that is given again moves."""
+
+    type: Literal["tag"]
+    name: _Name
+
+
+class Untag(_Command):
+    type: Literal["untag"]
+    name: _Name
+
+
+class GoToTag(_Command):
+    """Go to the place that was given this name."""
+
+    type: Literal["go_to_tag"]
+    name: _Name
 
 
 class SetMode(_Command):
@@ -101,7 +121,6 @@ class SetParameter(_Command):
     value: float | int | bool | Annotated[str, Field(max_length=64)]
 
 
-_Name = Annotated[str, Field(min_length=1, max_length=40)]
 _Size = Annotated[float, Field(ge=0.05, le=20.0)]
 
 
@@ -236,11 +255,13 @@ class RedoEdit(_Command):
 
 
 EditOrder = EditWorld | UndoEdit | RedoEdit
+TagOrder = Tag | Untag | GoToTag
 OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
 LookOrder = Inspect | StepStage | InjectPacket
 Command = Annotated[
     SetGoal
     | CancelGoal
+    | TagOrder
     | SetMode
     | Drive
     | Kidnap

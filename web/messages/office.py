@@ -50,6 +50,19 @@ class LivingLayer:
     daylight: float  # 1 = as painted
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Movements:
+    """The n local movements that the robot tried in this tick, from where it was then. Office frame."""
+
+    paths: NDArray[np.float32]  # (n, k, 2): places along each
+    length_m: NDArray[np.float32]  # (n,) of each path
+    turned_rad: NDArray[np.float32]  # (n,) from beginning to end
+    heading_rad: float  # at the beginning
+    drives: NDArray[np.bool_]  # (n,) False: it only turns on the spot
+    free: NDArray[np.bool_]  # (n,) no echo is too close to it
+    chosen: int  # which of them
+
+
 @dataclass(frozen=True, slots=True)
 class OfficeEdition:
     """Which edition of the office this is, for editors."""

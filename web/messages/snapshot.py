@@ -24,9 +24,10 @@ from web.messages.brain import (
     Pose,
     PoseCellLayer,
     Senses,
+    TaggedPlace,
     TimesLayer,
 )
-from web.messages.office import LivingLayer, OfficeEdition, WorldDrawing
+from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
 from web.messages.reports import Report
 from web.messages.tick import TickWalk, Timing
 from web.messages.trial import TrialView
@@ -115,6 +116,7 @@ class Snapshot:
     no_room: Callable[[float, float], str | None]  # why the robot cannot be put there (office frame); None: it fits
     occupancy: OccupancyLayer | None = None  # None without sonars
     goal_memory: GoalMemoryLayer | None = None
+    movements: Callable[[], Movements] | None = None  # works on copies, in any thread; None: the robot chose no arc
     living: LivingLayer | None = None  # None: nothing lives in this world
     switches: tuple[str, ...] = ()  # those parameters of `office` that do something in this world
     inspected: Report | None = None
@@ -125,4 +127,5 @@ class Snapshot:
     office: OfficeEdition | None = None
     belief: Belief | None = None  # None: there is no experience map
     trial: TrialView | None = None  # None: no trial of an experiment was begun in this run
+    tags: tuple[TaggedPlace, ...] = ()  # in the order in which they were given
     map_turn_rad: float = 0.0  # turns the map, for the eye only, so that it lies as the office does

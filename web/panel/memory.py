@@ -92,7 +92,11 @@ def _attractor(layer: PoseCellLayer) -> dict[str, Any]:
 def _goal(goal: Goal | None) -> dict[str, Any]:
     if goal is None:
         return table("Goal", [], "none: click on the map and the robot goes there")
-    rows = [("state", goal.state), ("experience", f"#{goal.experience}")]
+    others = len(goal.places_xy) - 1
+    rows = [
+        ("state", goal.state),
+        ("experience", f"#{goal.experience}" + (f" or {others} others" if others > 0 else "")),
+    ]
     rows += [("time to get there", number(goal.eta_s, "s", 0)), ("way to go", number(goal.remaining_m, "m"))]
     return table("Goal", [*rows, ("place in the map", f"{goal.x:.2f}, {goal.y:.2f} m")])
 

@@ -1,8 +1,8 @@
-"""Office: what moves in this world, one switch each, and the robot's presets."""
+"""Office: what moves in this world, one switch each, the robot's presets, and the places that people have named."""
 
 from __future__ import annotations
 
-from web.messages import LivingLayer, Parameter
+from web.messages import LivingLayer, Parameter, TaggedPlace
 from web.panel.part import Content
 from web.panel.tune import knob
 from web.panel.words import counted
@@ -34,6 +34,11 @@ def office(
             "words": words(layer, shown),
         }
     )
+
+
+def tags(places: tuple[TaggedPlace, ...]) -> Content:
+    """The places that people have named, in the order in which they did."""
+    return Content({"tags": [place.name for place in places]})
 
 
 def words(layer: LivingLayer | None, shown: tuple[str, ...]) -> str:

@@ -16,7 +16,7 @@ import orjson
 from web.messages import Snapshot
 from web.panel.inspected import active, inspected
 from web.panel.memory import memory
-from web.panel.office import office
+from web.panel.office import office, tags
 from web.panel.packing import Packed, framed, packed
 from web.panel.part import Content
 from web.panel.senses import RecentViews, cells, views
@@ -66,6 +66,7 @@ PARTS = (
     Part("Truth", "numbers", 2, lambda s: (s.snapshot,), numbers),
     Part("Truth", "series", 1, lambda s: (s.snapshot.series,), series),
     Part("Office", "office", 5, lambda s: _office(s.snapshot), office),
+    Part("Office", "tags", 5, lambda s: (s.snapshot.tags,), tags),
     Part("Tune", "tune", 5, lambda s: (s.snapshot.parameters,), tune),
 )
 

@@ -4,6 +4,7 @@ import { $, find } from "./elements/dom.js";
 import { HandDrive } from "./driving/drive.js";
 import { Editor } from "./editor/editor.js";
 import { Files } from "./worlds/files.js";
+import { Gallery } from "./experiments/gallery.js";
 import { Header } from "./header/header.js";
 import { setIcon } from "./elements/icons.js";
 import { KeptBrain } from "./worlds/kept_brain.js";
@@ -18,6 +19,7 @@ import { Panel } from "./panel/panel.js";
 import { Viewer } from "./viewer/viewer.js";
 import { Timeline } from "./timeline/timeline.js";
 import { dismissToast, toast } from "./elements/toasts.js";
+import { Watched } from "./experiments/watched.js";
 
 const page = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 const link = new Connection(page);
@@ -42,6 +44,12 @@ const files = new Files(isSaved, own);
 const fresh = new NewWorld(isSaved, () => editor.toggle(true));
 const editor = new Editor(link, { open: () => files.open(), begin: () => fresh.ask() });
 const kept = new KeptBrain(async (world) => world === state?.world || mayLeave());
+const gallery = new Gallery(link, mayLeave);
+const watched = new Watched({
+  here: () => command({ type: "resume" }),
+  again: (wish) => command(wish),
+  more: () => gallery.open(),
+});
 viewer.addEventListener("inside", () => viewer.frame.contentWindow && files.catchDrops(viewer.frame.contentWindow));
 
 // ---------------------------------------------------------------- what arrives
@@ -49,6 +57,7 @@ viewer.addEventListener("inside", () => viewer.frame.contentWindow && files.catc
 link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   state = detail.state;
   header.show(state, detail.page);
+  watched.show(state, detail.page);
   panel.inspected(detail.page.inspected);
   timeline.at(state.time_s);
   office = detail.page.office;
@@ -128,6 +137,7 @@ on("kidnap-phone", kidnap);
 on("cancel", cancelGoal);
 on("theme", toggleTheme);
 on("help", toggleHelp);
+on("experiments", () => gallery.open());
 on("help-close", toggleHelp);
 on("restart-same", () => state && restart(state.seed));
 on("restart-new", () => restart(crypto.getRandomValues(new Uint16Array(1))[0] % 10000));
@@ -180,20 +190,26 @@ async function mayLeave() {
 }
 $("help-dialog").addEventListener("click", ({ target }) => target === $("help-dialog") && toggleHelp());
 
+/** What the keys do. @type {Record<string, () => unknown>} */
+const KEYS = {
+  " ": playOrPause,
+  ".": oneTick,
+  ",": () => oneStage(),
+  e: explore,
+  k: kidnap,
+  t: toggleTheme,
+  p: () => panel.show(!panel.shown),
+  o: () => editor.toggle(),
+  g: () => gallery.open(),
+  "?": toggleHelp,
+};
+
 /** True when the key had a meaning. @param {string} name */
 function act(name) {
   const view = VIEWS[Number(name) - 1];
   if (view) viewer.show(view);
-  else if (name === " ") playOrPause();
-  else if (name === ".") oneTick();
-  else if (name === ",") oneStage();
-  else if (name === "e") explore();
-  else if (name === "k") kidnap();
   else if (name === "x" && state?.goal) cancelGoal();
-  else if (name === "t") toggleTheme();
-  else if (name === "p") panel.show(!panel.shown);
-  else if (name === "o") editor.toggle();
-  else if (name === "?") toggleHelp();
+  else if (Object.hasOwn(KEYS, name)) KEYS[name]();
   else return name === "Escape" && (closeOpenMenu() || dismissToast());
   return true;
 }

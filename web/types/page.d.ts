@@ -61,6 +61,22 @@ type State = {
   pose_cells: { shape: number[]; packets: (Pose & { mass: number })[] };
   goal: Goal | null;
   living: Living | null;
+  trial: Trial | null;
+};
+type TrialState = "running" | "over" | "ended";
+type Trial = {
+  experiment: string;
+  title: string;
+  engine: EngineName;
+  levels: string[];
+  seed: number;
+  id: string;
+  state: TrialState;
+  doing: string;
+  about_s: number;
+  ahead: number | null;
+  altered: boolean;
+  outcome: string;
 };
 type Moving = { walkers: Record<string, [number, number, number]>; boxes: string[] };
 type Walk = { at: number; of: number; title: string; words: string };
@@ -84,6 +100,39 @@ type Wrong = { field: string | null; value: unknown; reason: string };
 type Told = { [key: string]: any; wrong?: string; field?: string | null };
 type Answer = { accepted: boolean; detail: Wrong[]; id?: number; tick?: number };
 type KeptOffer = { world: string; title: string; experiences: number; time_s: number; kept_at: number };
+type EngineName = "paper" | "ours";
+type Axis = { name: string; levels: string[] };
+type PlanDrawing = { width: number; depth: number; left: number; bottom: number; walls: string; way: string; places: Point[] };
+type Card = {
+  name: string;
+  title: string;
+  paper: string;
+  asks: string;
+  found: string;
+  world: string;
+  engines: EngineName[];
+  axes: Axis[];
+  watch: string[];
+  seed: number;
+  trials: number;
+  seconds: number;
+  done: number;
+  picture: string | null;
+  plan: PlanDrawing | null;
+};
+type Dot = {
+  id: string;
+  seed: number;
+  quick: boolean;
+  good: number | null;
+  of: number | null;
+  words: string;
+  moment_s: number;
+  moment: string;
+};
+type Cell = { engine: EngineName; levels: string[]; n: number; words: string; shade: number | null; dots: Dot[] };
+type Results = { score: string; is_rate: boolean; note: string; cells: Cell[] };
+type ExperimentDetail = { card: Card; results: Results };
 type WorldTitles = { yours: Record<string, string>; ours: Record<string, string> };
 
 // What concerns one page alone.

@@ -123,12 +123,14 @@ class Viewer:
         offer, cells = self._layers, snapshot.pose_cells
         with self.server.atomic():
             if offer["world"].offer(now_s, snapshot.world):
-                self._forget("robot", "trail", "living")
+                self._forget("robot", "trail", "living", "movements")
             offer["living"].offer(now_s, snapshot.living)
             if self._pointer.dragging:
                 self._forget("robot")  # when it is let go, it goes back to its true place
             else:
                 offer["robot"].offer(now_s, snapshot.truth, snapshot.senses)
+            tried = None if self._pointer.dragging or not self._switches.is_on("movements") else snapshot.movements
+            offer["movements"].offer(now_s, tried)
             offer["trail"].offer(now_s, snapshot.trail)
             self._draw_overlays(snapshot, now_s)
             offer["cells"].offer(now_s, cells)
@@ -139,11 +141,12 @@ class Viewer:
             offer["estimate"].offer(now_s, snapshot.estimate)
             offer["other"].offer(now_s, snapshot.belief.other if snapshot.belief else None)
             offer["goal"].offer(now_s, snapshot.goal)
+            offer["tags"].offer(now_s, snapshot.tags)
             self._pointer.settle(snapshot, self._scenery.map, now_s)
 
     def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
         if self._scenery.map.set_map(layer, turn_rad):
-            self._forget("times", "estimate", "other", "goal", "inspected")
+            self._forget("times", "estimate", "other", "goal", "tags", "inspected")
             self._pointer.moved(self._scenery.map)
 
     def _draw_overlays(self, snapshot: Snapshot, now_s: float) -> None:
@@ -190,6 +193,7 @@ class Viewer:
         self._layers: dict[str, Throttle] = {
             "world": Throttle(5, office.set_world),
             "robot": Throttle(15, office.set_robot),
+            "movements": Throttle(10, office.set_movements),
             "trail": Throttle(2, office.set_trail),
             "living": Throttle(12, office.set_living),
             "cells": Throttle(6, cells.set_cells),
@@ -200,6 +204,7 @@ class Viewer:
             "estimate": Throttle(15, map_plate.set_robot),
             "other": Throttle(6, map_plate.set_other),
             "goal": Throttle(3, map_plate.set_goal),
+            "tags": Throttle(2, map_plate.set_tags),
             "cell_floor": Throttle(2, cells.set_floor),
             "zone": Throttle(4, cells.set_inspected),
             "inspected": Throttle(4, map_plate.set_inspected),

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 from matplotlib.axes import Axes
@@ -14,10 +15,10 @@ from matplotlib.lines import Line2D
 from app.experiments.figures.canvas import WIDTH_IN, grid_lines, panels
 from app.experiments.figures.curves import finish_score, has, interval_words
 from app.experiments.figures.material import Drawn, Material, trial_gid
-from app.experiments.figures.palette import ENGINE_COLOUR, INK
+from app.experiments.figures.palette import ENGINE_COLOUR, FAINT, INK
 from app.experiments.stored_trial import StoredTrial
 from app.experiments.words import ENGINE_WORDS, value_of
-from app.trials.experiment import FigureSpec
+from app.trials.experiment import FigureSpec, Score
 from app.trials.figure_options import Dots
 
 _HIGH_IN = 3.0
@@ -30,37 +31,47 @@ _MIDDLE = 0.36  # how far to the right of its dots an interval stands
 
 def draw(spec: FigureSpec, options: Dots, material: Material) -> Drawn:
     engines, score = material.engines(options), material.score(options.score)
-    labels = material.labels(options.by) if options.by else [""]
-    groups = [(label, engine) for label in labels for engine in engines]
-    width = options.width or min(WIDTH_IN, 2.0 + 0.62 * len(groups))
-    figure, axes = panels(1, 1, width, _HIGH_IN)
+    places = _places(options, material)
+    count = len(places) * len(engines)
+    figure, axes = panels(1, 1, options.width or min(WIDTH_IN, 2.0 + 0.62 * count), _HIGH_IN)
     panel: Axes = axes[0, 0]
     grid_lines(panel)
-    for place, (label, engine) in enumerate(groups):
-        _group(panel, options, material, engine, label, float(place))
-    drawn = _originals(panel, options, material, labels, len(engines))
-    _ticks(panel, options, labels, engines)
+    drawn = False
+    for number, (_, levels) in enumerate(places):
+        for at, engine in enumerate(engines):
+            _group(panel, score, material, engine, levels, float(number * len(engines) + at))
+        for original in material.originals(options.score, levels):
+            middle = number * len(engines) + (len(engines) - 1) / 2
+            panel.plot(middle, original.value, "D", ms=8, mfc="none", mec=INK, mew=1.1, zorder=6)
+            drawn = True
+    _ticks(panel, options, [words for words, _ in places], engines)
     finish_score([panel], score, options.log)
     _legend(figure, engines, originals=drawn)
+    varied = [options.by] if options.by else [axis.name for axis in material.experiment.axes]
     says = f"{score.label.capitalize()} of each trial" + (f", by {options.by}" if options.by else "") + "."
-    caption = material.caption(
-        f"{says} {interval_words(score)}", options=options, score=options.score, varied=[options.by]
-    )
+    caption = material.caption(f"{says} {interval_words(score)}", options=options, score=options.score, varied=varied)
     return Drawn(spec, figure, caption)
 
 
-def _group(panel: Axes, options: Dots, material: Material, engine: str, label: str, place: float) -> None:
-    score = material.score(options.score)
-    levels = material.fixed(options, options.by)
+def _places(options: Dots, material: Material) -> list[tuple[str, dict[int, str]]]:
+    """What stands beside each other: the levels of one axis, or every combination of all; in words, and by place of axis."""
     if options.by:
-        levels[material.axis(options.by)] = label
+        fixed, at = material.fixed(options, options.by), material.axis(options.by)
+        return [(label, {**fixed, at: label}) for label in material.labels(options.by, options)]
+    axes = [axis.name for axis in material.experiment.axes]
+    combined = itertools.product(*(material.labels(name, options) for name in axes))
+    return [(",\n".join(labels), dict(enumerate(labels))) for labels in combined]
+
+
+def _group(panel: Axes, score: Score, material: Material, engine: str, levels: dict[int, str], place: float) -> None:
+    """The trials of one engine at one level, and their interval to the right of them."""
     for number, trial in enumerate(material.of(engine, levels)):
         value = value_of(score, trial)
         if value is not None:
             dot(panel, place + _beside(number), value, ENGINE_COLOUR[engine], trial)
     cell = material.cell(engine, levels)
-    if cell is not None and has(cell, options.score):
-        estimate = cell.values[options.score]
+    if cell is not None and has(cell, score.label):
+        estimate = cell.values[score.label]
         panel.vlines(place + _MIDDLE, estimate.low, estimate.high, color=INK, lw=1.1, zorder=4)
         panel.plot(place + _MIDDLE, estimate.value, "_", ms=8, mew=1.8, color=INK, zorder=5)
 
@@ -74,30 +85,16 @@ def _beside(number: int) -> float:
     return (number * _GOLDEN % 1.0 - 0.5) * 2 * _SPREAD
 
 
-def _originals(panel: Axes, options: Dots, material: Material, labels: list[str], engines: int) -> bool:
-    """Open diamonds; whether there are any."""
-    drawn = False
-    for number, label in enumerate(labels):
-        levels = material.fixed(options, options.by)
-        if options.by:
-            levels[material.axis(options.by)] = label
-        for original in material.originals(options.score, levels):
-            x = number * engines + (engines - 1) / 2
-            panel.plot(x, original.value, "D", ms=8, mfc="none", mec=INK, mew=1.1, zorder=6)
-            drawn = True
-    return drawn
-
-
 def _ticks(panel: Axes, options: Dots, labels: list[str], engines: list[str]) -> None:
     count = len(engines)
-    if options.by:
+    if len(labels) > 1 or options.by:
         middles = [number * count + (count - 1) / 2 for number in range(len(labels))]
         panel.set_xticks(middles, labels)
         panel.set_xlabel(options.by)
     else:
         panel.set_xticks(range(count), [ENGINE_WORDS[engine] for engine in engines])
     for edge in range(1, len(labels)):
-        panel.axvline(edge * count - 0.5, color="#d9dde1", lw=0.5)
+        panel.axvline(edge * count - 0.5, color=FAINT, lw=0.5)
     panel.set_xlim(-0.6, len(labels) * count - 0.3)
 
 

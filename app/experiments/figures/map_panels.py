@@ -129,7 +129,7 @@ def _in_faces(points: _Array, trace: Trace) -> _Array:
 # ------------------------------------------------------------ pictures
 
 
-def occupancy(panel: Axes, trace: Trace, options: Maps) -> None:
+def map_grid(panel: Axes, trace: Trace, options: Maps) -> None:
     plan(panel, trace)
     grid = trace.map.occupancy
     if grid is None:
@@ -143,7 +143,7 @@ def occupancy(panel: Axes, trace: Trace, options: Maps) -> None:
         goals(panel, trace)
 
 
-def cells_occupancy(panel: Axes, trace: Trace, options: Maps) -> None:  # noqa: ARG001
+def occupancy(panel: Axes, trace: Trace, options: Maps) -> None:  # noqa: ARG001
     grid = trace.map.cells_occupancy
     if grid is not None:
         panel.imshow(_tinted(grid), origin="lower", extent=_extent(grid), zorder=0)

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -23,18 +25,18 @@ _SHOW = {
     "pose cells": map_panels.pose_cells,
     "path": map_panels.paths,
     "occupancy": map_panels.occupancy,
-    "cells occupancy": map_panels.cells_occupancy,
+    "map grid": map_panels.map_grid,
     "representations": map_panels.representations,
     "temporal map": map_panels.temporal_map,
     "goal memory": map_panels.goal_memory,
 }
-_IN_CELLS = {"pose cells", "cells occupancy", "goal memory"}
+_IN_CELLS = {"pose cells", "occupancy", "goal memory"}
 _SAYS = {
     "experience map": "Experiences (dots) and links (lines) at the end, laid over the plan",
     "pose cells": "The winning packet's way through the pose cells, whose faces are joined; a snap goes from S to F",
     "path": "The true path, the path as the map tells it at the end, and odometry alone, over the plan",
-    "occupancy": "Where the sonars met something, bent with the map and laid over the plan",
-    "cells occupancy": "Where the sonars met something, in the pose cells' own frame, as the papers draw it",
+    "map grid": "Where the sonars met something, bent with the map and laid over the plan",
+    "occupancy": "Where the sonars met something, in the pose cells' own frame, as the papers draw it",
     "representations": "Places that several states of the pose cells stand for, and states that stand for several places",
     "temporal map": "Seconds from each experience to the goal, over the links of the experience map",
     "goal memory": "Seconds from each pose cell to the goal, as the goal memory has learnt them",
@@ -44,6 +46,7 @@ _BELOW_IN = 0.2  # under a panel that tells the size of its pose cells
 _BAR = 0.8  # a colour bar leaves this share of the width to its panel
 _WITH_BAR = {"temporal map", "goal memory"}
 _MOST_HIGH_IN = 8.5
+_LONG = 0.5  # plans that are less high than this, for their width
 _BEYOND = 0.3  # of the office's size: where odometry leads farther out, it is cut off
 
 
@@ -53,17 +56,17 @@ def wanted(options: Maps, material: Material) -> list[Pick]:
 
 
 def draw(spec: FigureSpec, options: Maps, material: Material) -> Drawn:
-    picks = wanted(options, material)
+    picks = _one_below_the_other(wanted(options, material), options, material)
     rows, columns = max(p.row for p in picks) + 1, max(p.column for p in picks) + 1
-    figure, axes = _figure(options, [material.trace(p) for p in picks], rows, columns)
+    figure, axes = _figure(options, _shape(options, material, picks), rows, columns)
     for pick in picks:
         panel: Axes = axes[pick.row, pick.column]
         trace = material.trace(pick)
         _SHOW[options.show](panel, trace, options)
-        if pick.row == 0:
+        if pick.row == 0 or options.each == "engine":
             panel.set_title(pick.column_words)
         panel.patch.set_gid(trial_gid(pick.trial))
-        if pick.column == 0 and rows > 1:
+        if pick.column == 0 and rows > 1 and options.each != "engine":
             panel.set_ylabel(ENGINE_WORDS[pick.engine], color=SOFT)
         frame(panel)
     if options.show == "path":
@@ -72,14 +75,25 @@ def draw(spec: FigureSpec, options: Maps, material: Material) -> Drawn:
     return Drawn(spec, figure, material.caption(_SAYS[options.show] + ".", picks=picks, options=options))
 
 
-def _figure(options: Maps, traces: list[Trace], rows: int, columns: int) -> tuple[Figure, np.ndarray]:
-    """A figure as high as its panels need to be for what they show, which is as wide as it is."""
+def _one_below_the_other(picks: list[Pick], options: Maps, material: Material) -> list[Pick]:
+    """Engines stand side by side, unless the plan is so long that each needs the whole width."""
+    if options.each != "engine" or options.show in _IN_CELLS or _shape(options, material, picks) > _LONG:
+        return picks
+    return [replace(pick, row=pick.column, column=0) for pick in picks]
+
+
+def _shape(options: Maps, material: Material, picks: list[Pick]) -> float:
+    """How high panels are for their width."""
+    traces = [material.trace(pick) for pick in picks]
     if options.show in _IN_CELLS:
-        shape = max(t.cells_shape[1] / t.cells_shape[2] for t in traces)
-    else:
-        x1, y1, x2, y2 = (np.array([t.plan.bounds for t in traces])).T
-        shape = float(np.max((y2 - y1) / (x2 - x1)))
-    most = {1: 4.6, 2: 6.4}.get(columns, WIDTH_IN)
+        return max(t.cells_shape[1] / t.cells_shape[2] for t in traces)
+    x1, y1, x2, y2 = (np.array([t.plan.bounds for t in traces])).T
+    return float(np.max((y2 - y1) / (x2 - x1)))
+
+
+def _figure(options: Maps, shape: float, rows: int, columns: int) -> tuple[Figure, np.ndarray]:
+    """A figure as high as its panels need to be for what they show, which is as wide as it is."""
+    most = {1: 4.6 if shape > _LONG else 6.4, 2: 6.4}.get(columns, WIDTH_IN)
     width = options.width or most
     panel = width / columns * shape * (_BAR if options.show in _WITH_BAR else 1.0)
     below = _BETWEEN_IN + (_BELOW_IN if options.show in _IN_CELLS else 0.0) + _BETWEEN_IN

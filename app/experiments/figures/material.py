@@ -69,16 +69,18 @@ class Material:
         """The place of an axis among the axes."""
         return [axis.name for axis in self.experiment.axes].index(name)
 
-    def labels(self, name: str) -> list[str]:
-        """The levels of an axis that have trials, in order."""
+    def labels(self, name: str, options: Options | None = None) -> list[str]:
+        """The levels of an axis that have trials, in order; if some are in `at`, only those."""
         at = self.axis(name)
         there = {trial.levels[at] for trial in self.trials}
-        return [level.label for level in self.experiment.axes[at].levels if level.label in there]
+        labels = [level.label for level in self.experiment.axes[at].levels if level.label in there]
+        chosen = [label for label in labels if options is not None and label in options.at]
+        return chosen or labels
 
     def fixed(self, options: Options, *varied: str) -> dict[int, str]:
         """The levels of the axes that a figure does not vary: those of `at`, else the first."""
         return {
-            number: next((label for label in self.labels(axis.name) if label in options.at), self.labels(axis.name)[0])
+            number: self.labels(axis.name, options)[0]
             for number, axis in enumerate(self.experiment.axes)
             if axis.name not in varied and self.labels(axis.name)
         }
@@ -120,7 +122,7 @@ class Material:
                 picks += [Pick(row, column, engine, f"seed {t.seed}", t) for column, t in enumerate(several)]
                 continue
             fixed, at = self.fixed(options, each), self.axis(each)
-            for column, label in enumerate(self.labels(each)):
+            for column, label in enumerate(self.labels(each, options)):
                 found = self.of(engine, {**fixed, at: label})
                 if found:
                     picks.append(Pick(row, column, engine, label, self._one(options, found)))
@@ -165,7 +167,7 @@ class Material:
                 if options.pick == "first"
                 else f"each the median by {options.score};"
             )
-        parts.append(f"version {code_version()}.")
+        parts.append(f"version {self.trials[0].version or code_version()}.")
         found = [o for o in self.experiment.original if o.score == score]
         if found:
             parts.append("Original: " + "; ".join(self._original(o) for o in found) + ".")

@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from app.experiments.figures.canvas import WIDTH_IN, grid_lines, panels
@@ -23,24 +24,24 @@ from app.trials.trace import Trace
 _Array = NDArray[np.float64]
 _WORDS = {
     "packets": "share of activity",
-    "off_m": "off by (m)",
-    "error_m": "map error (m)",
+    "off": "off by (m)",
+    "map error": "map error (m)",
     "residual": "residual (m)",
     "views": "views",
     "experiences": "experiences",
-    "active": "active experience",
+    "active experience": "experience",
     "x": "x' (cells)",
     "y": "y' (cells)",
     "heading": "θ' (°)",
 }
 _SAYS = {
     "packets": "the packets of pose-cell activity, the strongest first",
-    "off_m": "how far the robot is from where it believes itself to be",
-    "error_m": "root mean square error of the whole map so far",
+    "off": "how far the robot is from where it believes itself to be",
+    "map error": "root mean square error of the whole map so far",
     "residual": "by how much the map and its links disagree",
     "views": "views recruited so far",
     "experiences": "experiences made so far",
-    "active": "the active experience",
+    "active experience": "the active experience",
     "x": "the winning packet's x'",
     "y": "the winning packet's y'",
     "heading": "the winning packet's θ'",
@@ -48,6 +49,7 @@ _SAYS = {
 _SECONDS_PER_MINUTE = 60.0
 _LONG_S = 600.0  # longer runs are drawn in minutes
 _MOST_MOMENTS = 14
+_FROM_ZERO = {"off", "map error", "residual", "views", "experiences"}
 _APART = 0.03  # of the width; words nearer to each other than this would lie over one another
 
 
@@ -58,44 +60,66 @@ def wanted(options: Series, material: Material) -> list[Pick]:
 
 def draw(spec: FigureSpec, options: Series, material: Material) -> Drawn:
     picks = wanted(options, material)
+    columns = _columns(picks, options)
     rows = len(options.channels)
-    width = options.width or (WIDTH_IN if len(picks) > 1 else 5.2)
-    figure, axes = panels(rows, len(picks), width, 0.75 + 1.15 * rows, sharex="col", sharey="row")
-    for column, pick in enumerate(picks):
-        trace = material.trace(pick)
-        clock = _Clock(trace, options)
+    width = options.width or (WIDTH_IN if len(columns) > 1 else 5.2)
+    figure, axes = panels(rows, len(columns), width, 0.75 + 1.15 * rows, sharex="col", sharey="row")
+    for column, together in enumerate(columns):
+        traces = [material.trace(pick) for pick in together]
+        clock = _Clock(traces, options)
+        colours = CYCLE if len(together) > 1 else (ENGINE_COLOUR[together[0].engine],)
         for row, channel in enumerate(options.channels):
             panel: Axes = axes[row, column]
-            _channel(panel, trace, channel, clock)
+            for number, (pick, trace) in enumerate(zip(together, traces, strict=True)):
+                label = pick.column_words if len(together) > 1 else None
+                _channel(panel, trace, channel, clock, colours[number % len(colours)], label)
             panel.set_xlim(clock.least, clock.most)
+            if options.log and channel != "packets":
+                panel.set_yscale("log")
             grid_lines(panel)
-            _mark(panel, trace, clock, words=row == 0)
-            if row == 0:
-                panel.patch.set_gid(trial_gid(pick.trial))
+            if len(together) == 1:
+                _mark(panel, traces[0], clock, words=row == 0)
+                panel.patch.set_gid(trial_gid(together[0].trial) if row == 0 else None)
             if column == 0:
                 panel.set_ylabel(_WORDS[channel])
-        axes[0, column].set_title(_heading(pick, picks), pad=_words_room(trace, clock))
+        room = _words_room(traces[0], clock) if len(together) == 1 else None
+        axes[0, column].set_title(_heading(together, picks), pad=room)
         axes[-1, column].set_xlabel(clock.words)
-    figure.align_ylabels(list(axes[:, 0]))
-    for panel in axes[:, 0]:
-        if panel.get_ylim()[0] > 0 and "θ" not in panel.get_ylabel() and "cells" not in panel.get_ylabel():
-            panel.set_ylim(bottom=0)
+    _finish(figure, axes, options)
     says = "From above: " + "; ".join(_SAYS[channel] for channel in options.channels) + "."
     return Drawn(spec, figure, material.caption(says, picks=picks, options=options))
 
 
-class _Clock:
-    """Seconds or minutes, from the start or from the first kidnap."""
+def _columns(picks: list[Pick], options: Series) -> list[list[Pick]]:
+    """The trials of each column of panels: one, or, where lines can be told apart, all levels of an axis by one engine."""
+    if options.each in ("engine", "seed") or "packets" in options.channels:
+        return [[pick] for pick in picks]
+    return [[pick for pick in picks if pick.engine == engine] for engine in dict.fromkeys(p.engine for p in picks)]
 
-    def __init__(self, trace: Trace, options: Series) -> None:
-        first, last = float(trace.time_s[0]), float(trace.time_s[-1])
-        self.zero, begin, end = 0.0, max(first, options.from_s), options.to_s or last
-        self.words = "time"
-        if options.around_kidnap is not None and trace.kidnaps:
-            before, after = options.around_kidnap
-            self.zero = trace.kidnaps[0].at_s
-            begin, end = self.zero - before, self.zero + after
-            self.words = "time since the kidnap"
+
+def _finish(figure: Figure, axes: NDArray[np.object_], options: Series) -> None:
+    figure.align_ylabels(list(axes[:, 0]))
+    for panel, channel in zip(axes[:, 0], options.channels, strict=True):
+        if channel in _FROM_ZERO and not options.log:
+            panel.set_ylim(bottom=0)
+    handles, labels = axes[-1, 0].get_legend_handles_labels()
+    if labels and options.channels[-1] != "packets":
+        figure.legend(handles, labels, loc="outside lower center", ncols=min(6, len(labels)), title=options.each)
+
+
+class _Clock:
+    """Seconds or minutes, from the start or from a moment."""
+
+    def __init__(self, traces: list[Trace], options: Series) -> None:
+        begin, end = 0.0, max(float(trace.time_s[-1]) for trace in traces)
+        self.zero, self.words = 0.0, "time"
+        moments = traces[0].moments if len(traces) == 1 else ()
+        since = [m for m in moments if options.after and m.words.startswith(options.after)]
+        if since:
+            self.zero, self.words = since[0].time_s, f"time after: {since[0].words}"
+            begin = self.zero - options.before
+        if options.seconds:
+            end = min(end, self.zero + options.seconds)
         self.unit = _SECONDS_PER_MINUTE if end - begin > _LONG_S else 1.0
         self.words += " (min)" if self.unit > 1 else " (s)"
         self.least, self.most = (float(self.of(np.array(t))) for t in (begin, max(end, begin + 1.0)))
@@ -107,20 +131,20 @@ class _Clock:
         return self.least <= float(self.of(np.array(time_s))) <= self.most
 
 
-def _channel(panel: Axes, trace: Trace, channel: str, clock: _Clock) -> None:
-    time, colour = clock.of(trace.time_s), ENGINE_COLOUR[trace.trial.engine]
+def _channel(panel: Axes, trace: Trace, channel: str, clock: _Clock, colour: str, label: str | None) -> None:
+    time = clock.of(trace.time_s)
     if channel == "packets":
         for number in reversed(range(trace.mass.shape[1])):
             mass = np.where(trace.mass[:, number] > 0, trace.mass[:, number], np.nan)
             drawn = INK if number == 0 else CYCLE[number]
-            panel.plot(time, mass, color=drawn, lw=1.2 if number == 0 else 0.9, label=f"packet {number + 1}")
+            panel.plot(time, mass, color=drawn, lw=1.2 if number == 0 else 0.9)
         panel.set_ylim(0, 1.02)
         return
-    if channel == "error_m":
-        panel.plot(clock.of(trace.error_time_s), trace.error_m, color=colour, lw=1.2)
+    if channel == "map error":
+        panel.plot(clock.of(trace.error_time_s), trace.error_m, color=colour, lw=1.2, label=label)
         return
-    values = _VALUES[channel](trace)
-    panel.plot(time, values, color=colour, lw=1.0, drawstyle="steps-post" if channel == "active" else "default")
+    drawstyle = "steps-post" if channel == "active experience" else "default"
+    panel.plot(time, _VALUES[channel](trace), color=colour, lw=1.0, drawstyle=drawstyle, label=label)
 
 
 def _turns(trace: Trace) -> _Array:
@@ -138,11 +162,11 @@ def _gaps(values: _Array, ring: int) -> _Array:
 
 
 _VALUES: dict[str, Callable[[Trace], _Array]] = {
-    "off_m": lambda t: t.off_m,
+    "off": lambda t: t.off_m,
     "residual": lambda t: t.residual,
     "views": lambda t: t.views.astype(np.float64),
     "experiences": lambda t: t.experiences.astype(np.float64),
-    "active": lambda t: t.active.astype(np.float64),
+    "active experience": lambda t: t.active.astype(np.float64),
     "x": lambda t: _gaps(t.cells[:, 0], t.cells_shape[2]),
     "y": lambda t: _gaps(t.cells[:, 1], t.cells_shape[1]),
     "heading": _turns,
@@ -193,9 +217,9 @@ def _words_room(trace: Trace, clock: _Clock) -> float:
     return 8 + 3.4 * longest
 
 
-def _heading(pick: Pick, picks: list[Pick]) -> str:
-    engines = {each.engine for each in picks}
-    words = [pick.column_words] if pick.column_words else []
-    if len(engines) > 1 and pick.engine_words not in words:
-        words.append(pick.engine_words)
+def _heading(together: list[Pick], picks: list[Pick]) -> str:
+    """The engine, if there are several, and the level or seed, if the column shows one only."""
+    words = [together[0].column_words] if len(together) == 1 and together[0].column_words else []
+    if len({each.engine for each in picks}) > 1 and together[0].engine_words not in words:
+        words.append(together[0].engine_words)
     return ", ".join(words)

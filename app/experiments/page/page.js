@@ -40,7 +40,7 @@ function fill(facts, extra) {
   const close = element("button", "×", "close");
   close.setAttribute("aria-label", "Close");
   close.addEventListener("click", hide);
-  const heading = element("h4", facts.heading);
+  const heading = element("h2", facts.heading);
   heading.id = "box-heading";
   box.replaceChildren(heading, close, element("div", facts.levels), pairs(facts.scores), ...extra);
 }

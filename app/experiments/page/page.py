@@ -18,7 +18,7 @@ from app.experiments.stored_trial import StoredTrial
 from app.experiments.summary import CellSummary, words
 from app.experiments.words import ENGINE_WORDS, value_of, words_of
 from app.trials.code_version import code_version
-from app.trials.experiment import Experiment
+from app.trials.experiment import Experiment, Score
 
 _HERE = Path(__file__).parent
 
@@ -53,6 +53,7 @@ def page_of(material: Material, drawn: list[Drawn], command: str, failed: list[S
         engines=[engine for engine in experiment.engines if any(c.engine == engine for c in material.cells)],
         engine_words=ENGINE_WORDS,
         rows=_rows(material),
+        scores=[(score, int(_is_compared(experiment, score))) for score in experiment.scores],
         trials=[_row_of(material, trial) for trial in material.trials],
         failed=failed,
         told=_json({"trials": _told(material), "cells": _cells(material)}),
@@ -162,13 +163,19 @@ def _rows(material: Material) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = []
     for levels in dict.fromkeys(cell.levels for cell in material.cells):
         cells = {cell.engine: cell for cell in material.cells if cell.levels == levels}
-        scores: list[tuple[str, list[str]]] = []
+        scores: list[tuple[str | None, list[str]]] = []
         for score in experiment.scores:
             original = [o for o in experiment.original if o.score == score.label and set(o.levels) <= set(levels)]
             ours = [words(cells[e].values[score.label], score) if e in cells else "-" for e in engines]
-            scores.append((words_of(score, original[0].value) if original else "", ours))
+            paper = words_of(score, original[0].value) if original else ""
+            scores.append((paper if _is_compared(experiment, score) else None, ours))
         rows.append({"levels": levels, "n": max(cell.n for cell in cells.values()), "scores": scores})
     return rows
+
+
+def _is_compared(experiment: Experiment, score: Score) -> bool:
+    """Whether the paper has a value of this score at all."""
+    return any(original.score == score.label for original in experiment.original)
 
 
 def _row_of(material: Material, trial: StoredTrial) -> dict[str, Any]:

@@ -31,8 +31,8 @@ class DrivingParams:
         meaning="least distance from the robot's middle to an obstacle",
         source="ours",
     )
-    echo_ticks: int = param(
-        30, unit="ticks", low=1, high=600, meaning="how long a sonar echo is remembered", source="ours", live=False
+    echo_s: float = param(
+        3.0, unit="s", low=0.1, high=60.0, meaning="how long a sonar echo is remembered", source="ours", live=False
     )
     echo_range_m: float = param(
         1.6, unit="m", low=0.3, high=10.0, meaning="echoes from farther away are ignored", source="ours"

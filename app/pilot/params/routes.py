@@ -15,6 +15,11 @@ class RouteParams:
         1.5, unit="m", low=0.1, high=100.0, meaning="a goal farther than this from every experience is refused",
         source="ours",
     )  # fmt: skip
+    goal_place_m: float = param(
+        0.3, unit="m", low=0.0, high=5.0,
+        meaning="all experiences within this of the one nearest to a click stand for its place; 0 = that one only",
+        source="B 3.6; value ours",
+    )  # fmt: skip
     lookahead_m: float = param(
         0.6, unit="m", low=0.2, high=3.0, meaning="how far ahead on the route the robot aims", source="ours"
     )

@@ -75,16 +75,8 @@ class DashboardDouble:
     on_ready: Callable[[str], None] | None = None
 
     def __init__(
-        self,
-        doubles: Doubles,
-        latest: object,
-        submit: object,
-        stage: object,
-        *,
-        port: int,
-        offered: object,
-        experiments: object,
-    ):
+        self, doubles: Doubles, latest: object, submit: object, stage: object, *, port: int, **_options: object
+    ) -> None:
         self._doubles = doubles
         doubles.made["dashboard"] = (latest, submit, stage, port)
 

@@ -33,7 +33,7 @@ def test_fifty_kills_lose_nothing(tmp_path: Path) -> None:
             if rng.random() < 0.7:  # else at any moment, also while it begins
                 wanted = kept_by(store) + rng.randint(1, 30)
                 wait_until(
-                    lambda wanted=wanted: kept_by(store) >= wanted or command.poll() is not None, "there are more"
+                    lambda wanted=wanted, command=command: kept_by(store) >= wanted or dead(command), "there are more"
                 )
             time.sleep(rng.uniform(0.0, MOST_WAIT_S))
             while (pid := command.pid if victim == "client" else worker_of(command.pid, rng)) is None or dead(command):

@@ -31,6 +31,17 @@ def kinds(history: History) -> list[str]:
     return [event.kind for event in history.log.events]
 
 
+def test_a_map_that_has_diverged_is_told_once() -> None:
+    session = a_session(30)
+    session.set_parameters({"experience_map.sweep": "all at once", "experience_map.correction": 0.9})
+    history = observed(session, 1)
+    session.brain.experience_map.poses[-1, 0] = 1e6
+    for _ in range(5):
+        history.watch()
+    warnings = [event.text for event in history.log.events if event.kind == "warning"]
+    assert warnings == ["the map has diverged: a correction rate of 0.9 is too high for all links at once"]
+
+
 def test_the_history_changes_nothing() -> None:
     watched = a_session()
     observed(watched, 120)

@@ -17,7 +17,7 @@ from .pilots import DT, NEAR, STILL, USUAL
 
 def sensed(*echoes: tuple[float, float]) -> LocalMovement:
     """Obstacles at these places: bearing and distance."""
-    local = LocalMovement(np.array([bearing for bearing, _ in echoes]), USUAL.echo_ticks)
+    local = LocalMovement(np.array([bearing for bearing, _ in echoes]), USUAL.echo_s)
     local.sense(np.array([distance for _, distance in echoes], np.float32), STILL, USUAL)
     return local
 
@@ -90,7 +90,7 @@ def test_the_free_way_is_the_distance_less_the_clearance(interpreted: bool, monk
 def test_echoes_are_carried_along_and_forgotten(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if interpreted:
         literal.interpret(local_movement, monkeypatch)
-    local = LocalMovement(np.array([0.0, 0.7]), USUAL.echo_ticks)
+    local = LocalMovement(np.array([0.0, 0.7]), USUAL.echo_s)
     local.sense(np.array([1.2, 5.0], np.float32), STILL, NEAR)
     nothing = np.array([5.0, 5.0], np.float32)
     for _ in range(10):  # half a metre ahead

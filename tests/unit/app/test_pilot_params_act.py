@@ -25,7 +25,7 @@ from .test_routes import two_ways
 from .worlds import EXACT, HandMadeMap, chain, room
 
 OTHER: dict[str, float] = {
-    "cruise_speed": 0.2, "turn_rate": 0.5, "clearance": 0.35, "echo_ticks": 1, "echo_range_m": 0.8, "arc_s": 0.6,
+    "cruise_speed": 0.2, "turn_rate": 0.5, "clearance": 0.35, "echo_s": 0.1, "echo_range_m": 0.8, "arc_s": 0.6,
     "arc_steps": 2, "arcs_a_side": 3, "medium_share": 0.8, "slow_share": 0.1, "spot_share": 1.0, "spot_s": 0.2,
     "turn_cost": 0.0, "bearing_m": 1.0, "narrow_m": 0.4, "narrow_cost": 1.0, "escape_m2": 0.01,
     "wall_distance": 0.9, "follow_ahead_m": 0.3, "follow_aside_m": 0.1, "blocked_ahead_m": 0.6,
@@ -57,7 +57,7 @@ def arcs(p: PilotParams) -> Trace:
     """The arcs chosen among many kinds of echoes."""
     rng = np.random.default_rng(1)
     for _ in range(400):
-        local = LocalMovement(ANGLES, p.echo_ticks)
+        local = LocalMovement(ANGLES, p.echo_s)
         for _ in range(3):
             ranges = rng.uniform(0.2, 6.0, 8).astype(np.float32)
             local.sense(ranges, Odometry(float(rng.uniform(0, 0.5)), float(rng.uniform(-1, 1)), DT), p)
@@ -123,7 +123,7 @@ def side_by_side(p: PilotParams) -> Trace:
         map_.poses[n:, 2] = 2.0
         map_.robot = Pose2(0.0, 0.0, 0.3)
         for distance in (0.5, 5.0):
-            bars, local = Bars(), LocalMovement(ANGLES, p.echo_ticks)
+            bars, local = Bars(), LocalMovement(ANGLES, p.echo_s)
             bars.add(Pose2(3.0, 3.0, 0.0), 0.0, p)
             local.sense(np.full(8, distance, np.float32), STILL, p)
             follower = RouteFollower(goal + n, bars)
@@ -236,7 +236,7 @@ def of(name: str) -> type:
 
 
 def test_every_parameter_has_another_value() -> None:
-    assert {item.name for item in fields(PilotParams)} == {*OTHER, "goal_reach_m"}  # that is in test_session.py
+    assert {item.name for item in fields(PilotParams)} == {*OTHER, "goal_reach_m", "goal_place_m"}  # test_session.py
 
 
 @pytest.mark.parametrize("name", OTHER)

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from app.session import Session, spread_goals
 from app.session_snapshot import load_session, read_session, restore_session, save_session, take_session
 from disk import State, write_state
+from disk.state_codec import LONG
 from ratslam_core import save_brain
 from sim2d import Box, Lamp, load_world
 
@@ -83,6 +84,16 @@ def test_in_the_middle_of_a_route() -> None:
         assert ticks < 400
     goes_on(session, 60)
     assert session.pilot.goal is not None
+
+
+@pytest.mark.parametrize("place_m", [0.3, 3.0])
+def test_on_the_way_to_a_place_of_many_experiences(place_m: float) -> None:
+    session = driven("office", 300)
+    session.set_parameter("pilot.goal_place_m", place_m)
+    session.tag("here")
+    session.set_goal(0.0, 0.0)
+    assert (len(session.pilot.goals) > LONG) is (place_m > 1)
+    goes_on(session, 20)
 
 
 @pytest.mark.slow

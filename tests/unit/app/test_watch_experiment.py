@@ -16,6 +16,7 @@ from web import messages as m
 from .engine_threads import accept, do, refuse, snapshot, wait_for
 from .engines import an_engine, tell
 from .sessions import OFFICE
+from .trials_to_watch import short_trial
 
 
 def watch(**fields: object) -> m.WatchExperiment:
@@ -68,6 +69,16 @@ def test_a_trial_of_another_version_is_told() -> None:
     assert not [event for event in engine.run.event_log.events if event.kind == "warning"]
     tell(engine, type="watch_experiment", experiment="table", quick=True, trial="0" * 16)
     assert "the program has changed" in engine.run.event_log.events[-1].text
+
+
+def test_the_one_that_is_watched_begins_again_by_its_id() -> None:
+    engine = an_engine(OFFICE)
+    trial = short_trial()  # of no catalogue
+    engine.begin_trial(trial, "A title")
+    for _ in range(3):
+        engine.tick()
+    assert tell(engine, type="watch_experiment", experiment="short", trial=trial.id) == "short begins: ours, seed 1"
+    assert (engine.run.session.tick_count, engine.run.trial and engine.run.trial.trial) == (0, trial)
 
 
 def test_in_its_thread_it_is_the_same_run_and_pauses_at_its_end(start: Callable[..., EngineThread]) -> None:

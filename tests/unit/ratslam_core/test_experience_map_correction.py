@@ -84,7 +84,6 @@ def test_a_correction_that_was_hard_is_followed_by_a_long_rest(
     monkeypatch.setattr(relaxation, "solve", lambda *given: solved.append(solve(*given)) or solved[-1])
     for _ in range(60):
         robot.map.closures += 1
-        robot.map.steps += 1
         robot.map.correct()
     rests = max(1, math.ceil(solved[0].work / a_step))
     assert (rests > 4) is rested

@@ -11,8 +11,8 @@ import pytest
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
-from web.messages import LivingLayer, Parameter, Refused, SetDoor
-from web.panel.office import MOST
+from web.messages import LivingLayer, Parameter, Refused, SetDoor, TaggedPlace
+from web.panel.office import MOST, tags
 from web.panel.office import office as office_tab
 from web.viewer.fits.office_fit import OfficeFit
 from web.viewer.plates.office_plate import ORIGIN
@@ -222,3 +222,10 @@ def test_a_thousand_doors_are_no_thousand_switches() -> None:
         door_names=names, doors=doors, door_wanted=np.zeros(1000, bool), door_opening=np.zeros(1000, np.float32)
     )
     assert len(told(many, ())["doors"]) == MOST
+
+
+def test_the_tab_lists_the_names_of_places_and_not_where_they_are() -> None:
+    """The map bends all the time; the list is told anew only when a name comes or goes."""
+    places = (TaggedPlace("kitchen", 3, 1.0, 2.0), TaggedPlace("desk", 9, -1.0, 0.0))
+    assert tags(places).data == {"tags": ["kitchen", "desk"]}
+    assert tags(()).data == {"tags": []}

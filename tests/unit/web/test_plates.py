@@ -11,7 +11,7 @@ import pytest
 
 from tests.fake_snapshots import fake_reports, fake_snapshot
 from tests.unit.web.bench import Bench
-from web.messages import Belief, MapLayer, OccupancyPicture, Pose, TimesLayer
+from web.messages import Belief, MapLayer, OccupancyPicture, Pose, TaggedPlace, TimesLayer
 from web.viewer.plates.map_plate import seconds_words
 
 
@@ -170,6 +170,35 @@ def test_the_flag_says_how_long(bench: Bench, state: str, eta: float | None, wor
     )
     bench.show(replace(s, goal=short))
     assert bench.says("/map/flag/pill", words)
+
+
+def test_a_dot_marks_each_experience_that_stands_for_the_goal(bench: Bench) -> None:
+    s = fake_snapshot(436)
+    assert s.goal is not None
+    bench.show(replace(s, goal=replace(s.goal, places_xy=s.map.xy[:3])), 5)
+    dots = bench.drawn("/map/flag_places", "vertices")
+    middles = bench.viewer._scenery.map.fit.to_plate(s.map.xy[:3])
+    near = np.hypot(*(dots[:, None, :2] - middles).T).T.min(1)
+    assert near.max() < 0.1
+    assert len(dots) % 3 == 0
+    bench.show(replace(s, goal=None), 5)
+    assert len(bench.drawn("/map/flag_places", "vertices")) == 0
+
+
+def test_tagged_places_have_their_names_on_the_map(bench: Bench) -> None:
+    s = fake_snapshot(437)
+    tags = tuple(TaggedPlace(name, k, *s.map.xy[k].tolist()) for k, name in enumerate(("kitchen", "desk")))
+    bench.show(replace(s, tags=tags), 5)
+    assert bench.says("/map/tags_0_pill", "kitchen")
+    assert bench.says("/map/tags_1_pill", "desk")
+    assert bench.visible("/map/tags_1/ring")
+    at = bench.node("/map/tags_1")["position"][:2]
+    assert at == pytest.approx(bench.viewer._scenery.map.fit.to_plate(s.map.xy[1:2])[0], abs=0.02)
+    assert not any("tags" in name for name in bench.show(replace(s, tags=tuple(tags)), 5))  # nothing has changed
+    bench.show(replace(s, tags=tags[1:]), 5)
+    assert bench.says("/map/tags_0_pill", "desk")
+    assert not bench.visible("/map/tags_1/ring")
+    assert not bench.visible("/map/tags_1_pill")
 
 
 def test_seconds_in_words() -> None:

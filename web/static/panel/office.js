@@ -1,8 +1,9 @@
-// Office: what moves in this world, one switch each, and the robot's presets. After a refusal a switch goes back.
+// Office: what moves in this world, one switch each, the robot's presets, and the places with a name. After a refusal a switch goes back.
 
 import { make } from "../elements/elements.js";
 import { Knob } from "./knob.js";
 import { heading, note, renew, say } from "./parts.js";
+import { TagList } from "./tag_list.js";
 
 const OWN = "own settings";
 
@@ -30,7 +31,8 @@ export class OfficeTab {
     this.lives = make("section");
     this.doors = make("section");
     this.lamps = make("section");
-    this.box = make("div", {}, this.words, this.robot, this.lives, this.doors, this.lamps);
+    this.tags = new TagList(ask);
+    this.box = make("div", {}, this.words, this.tags.box, this.robot, this.lives, this.doors, this.lamps);
     /** @type {Map<string, Knob>} */
     this.knobs = new Map();
     /** @type {any} as the session last said */
@@ -104,6 +106,6 @@ export class OfficeTab {
   }
 
   get parts() {
-    return { office: this.office.bind(this) };
+    return { office: this.office.bind(this), tags: this.tags.show.bind(this.tags) };
   }
 }

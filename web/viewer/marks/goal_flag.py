@@ -1,4 +1,5 @@
-"""The goal's flag on the map: a pole, a pennant, two rings, and a pill with the time left."""
+"""The goal's flag on the map: a pole, a pennant, two rings, a pill with the time left, and a dot at each experience that
+stands for the goal."""
 
 from __future__ import annotations
 
@@ -11,12 +12,15 @@ from web.viewer.primitives.labels import Pill, add_mesh
 from web.viewer.primitives.palette import Palette
 
 HEIGHT = 1.5
+DOT, DOT_Z, DOT_CORNERS = 0.06, 0.062, 10
 
 
 class GoalFlag:
     def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
         self._palette = palette
         self._frame = scene.add_frame(name, show_axes=False, visible=False)
+        self._dots = add_mesh(scene, f"{name}_places", meshes.NOTHING, palette.lit(palette.goal))
+        self._dotted = b""
         for k, (radius, width) in enumerate(((0.24, 0.07), (0.44, 0.04))):
             add_mesh(scene, f"{name}/ring_{k}", meshes.ring(radius, width, 0.12), palette.lit(palette.goal))
         pole = meshes.extruded(meshes.rounded_rectangle(0.07, 0.07, 0.034, 4), 0.0, HEIGHT)
@@ -26,10 +30,22 @@ class GoalFlag:
         add_mesh(scene, f"{name}/pennant", pennant, palette.lit(palette.goal, (0.0, -1.0, 0.0)), side="double")
         self._pill = Pill(scene, f"{name}/pill", 0.6, palette.goal, palette)
 
-    def show(self, at: NDArray[np.float64], words: str) -> None:
+    def show(self, at: NDArray[np.float64], words: str, places: NDArray[np.float64]) -> None:
+        """at: (2,), places: (k, 2), on the plate."""
         self._frame.position = (float(at[0]), float(at[1]), 0.0)
         self._frame.visible = True
         self._pill.show(words, self._palette.on_goal, (0.0, 0.0, HEIGHT + 0.46))
 
+        self._dot(places)
+
     def hide(self) -> None:
         self._frame.visible = False
+        self._dot(np.zeros((0, 2)))
+
+    def _dot(self, places: NDArray[np.float64]) -> None:
+        """Shows a dot at each place. Only what has changed is sent."""
+        now = places.tobytes()
+        if now != self._dotted:
+            self._dotted = now
+            dots = [meshes.disc((x, y), DOT, DOT_Z, DOT_CORNERS) for x, y in places.tolist()]
+            self._dots.vertices, self._dots.faces = meshes.joined(*dots) if dots else meshes.NOTHING

@@ -7,12 +7,13 @@ import math
 import numpy as np
 import viser
 
-from web.messages import Goal, MapLayer, OccupancyPicture, Pose, Report, TimesLayer
+from web.messages import Goal, MapLayer, OccupancyPicture, Pose, Report, TaggedPlace, TimesLayer
 from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.marks.goal_flag import GoalFlag
 from web.viewer.marks.inspected import MapMark
 from web.viewer.marks.links import Links
 from web.viewer.marks.route import Route
+from web.viewer.marks.tags import TagMarks
 from web.viewer.plates.overlays import map_floor
 from web.viewer.plates.plate import FLOOR_Z, TEXT_Z, Plate
 from web.viewer.primitives import images, meshes
@@ -63,6 +64,7 @@ class MapPlate(Plate):
         add_mesh(scene, f"{self.root}/other/ring", meshes.ring(0.42, 0.06, 0.02), palette.lit(palette.robot))
         self._route = Route(scene, palette, f"{self.root}/route")
         self._flag = GoalFlag(scene, palette, f"{self.root}/flag")
+        self._tags = TagMarks(scene, palette, f"{self.root}/tags")
         self._clicked = scene.add_frame(f"{self.root}/clicked", show_axes=False, visible=False)
         for k, radius in enumerate((0.16, 0.34)):
             add_mesh(scene, f"{self.root}/clicked/ring_{k}", meshes.ring(radius, 0.06, 0.09), palette.lit(palette.goal))
@@ -170,8 +172,12 @@ class MapPlate(Plate):
             self._flag.hide()
             return
         at = self.fit.to_plate(np.array([[goal.x, goal.y]]))[0]
-        self._flag.show(at, _promise(goal))
+        self._flag.show(at, _promise(goal), meshes.stepped(self.fit.to_plate(goal.places_xy)))
         self._route.show(self.fit.to_plate(goal.route_xy), goal.route_arrival_s, at)
+
+    def set_tags(self, tags: tuple[TaggedPlace, ...]) -> None:
+        places = self.fit.to_plate(np.array([(tag.x, tag.y) for tag in tags]).reshape(-1, 2))
+        self._tags.show([tag.name for tag in tags], meshes.stepped(places))
 
     def show_click(self, place: tuple[float, float] | None) -> None:
         """Shows the marker of a goal that has been requested (map frame) but is not set yet; None hides it."""

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from web.messages import LivingLayer, Pose, Senses, WorldDrawing
+from web.messages import LivingLayer, Movements, Pose, Senses, WorldDrawing
 from web.viewer.fits.office_fit import OfficeFit
 from web.viewer.marks.actors import LivingThings
+from web.viewer.marks.movements import MovementArcs
 from web.viewer.marks.robot_model import RobotModel
 from web.viewer.plates.furniture import add_floor, add_furniture
 from web.viewer.plates.plate import FLOOR_Z, Plate
@@ -37,6 +40,7 @@ class OfficePlate(Plate):
         self._walls = np.zeros((0, 4))
         self.things = LivingThings(scene, palette, self.root)
         self.robot = RobotModel(scene, palette, f"{self.root}/robot")
+        self._arcs = MovementArcs(scene, palette, f"{self.root}/movements")
         self._fan = add_mesh(
             scene,
             f"{self.root}/view",
@@ -91,6 +95,13 @@ class OfficePlate(Plate):
     def set_living(self, layer: LivingLayer | None) -> None:
         """Shows doors, boxes, people and lamps where they are now."""
         self.things.show(layer, self.fit)
+
+    def set_movements(self, draw: Callable[[], Movements] | None) -> None:
+        """Shows the local movements among which the robot chooses. draw: is called only to show them; None: nothing."""
+        if draw is None:
+            self._arcs.hide()
+        else:
+            self._arcs.show(draw(), self.fit, self.robot.radius)
 
     def set_robot(self, truth: Pose, senses: Senses) -> None:
         """Shows the robot at its true pose, with its field of view and the sonars' echoes."""

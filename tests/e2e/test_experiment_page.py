@@ -1,0 +1,107 @@
+"""The page of an experiment, opened from its file as a reader would."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser, Page, expect
+
+from app.experiments import report
+from app.experiments.report import write_report_page
+from tests.unit.app.made_trials import experiment, figure, trace, trials
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = experiment(
+        figures=[
+            figure("curves", score="goals reached", along="N_vis", lines="size"),
+            figure("dots", score="map error", by="size"),
+            figure("maps", show="experience map", each="size"),
+        ]
+    )
+    stored = trials(made)
+    traces = {each.id: trace(each, made) for each in stored}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(report, "trials_by_id", lambda *_, **__: {name: each.trial for name, each in traces.items()})
+        out = tmp_path_factory.mktemp("page")
+        return write_report_page(made, stored, out, lambda ts: [traces[t.id] for t in ts], command="ratslam").page
+
+
+@pytest.fixture(params=["light", "dark"])
+def page(browser: Browser, written: Path, request: pytest.FixtureRequest) -> Iterator[Page]:
+    """The page; afterwards its console must have said nothing, and nothing may have been loaded but the file itself."""
+    context = browser.new_context(viewport={"width": 1100, "height": 900}, color_scheme=request.param)
+    opened, faults = context.new_page(), list[str]()
+    opened.on("console", lambda message: faults.append(message.text))
+    opened.on("pageerror", lambda error: faults.append(str(error)))
+    own = (written.as_uri(), "data:")
+    opened.on("request", lambda asked: None if asked.url.startswith(own) else faults.append(asked.url))
+    opened.goto(written.as_uri())
+    yield opened
+    assert faults == []
+    context.close()
+
+
+def test_a_click_on_a_dot_shows_the_command_that_opens_its_trial(page: Page) -> None:
+    dot = page.locator("svg [id^='f2-trial-']").nth(3)
+    trial = dot.get_attribute("data-trial")
+    expect(page.locator("#box")).to_be_hidden()
+    dot.click()
+    box = page.locator("#box")
+    expect(box).to_be_visible()
+    expect(box.locator("code")).to_have_text(f"ratslam experiment open {trial}")
+    expect(box).to_contain_text("N_vis 0 %, size 8")
+    expect(box).to_contain_text("kitchen: reached, at 61.5 s")
+    page.keyboard.press("Escape")
+    expect(box).to_be_hidden()
+
+
+def test_the_command_can_be_copied(page: Page) -> None:
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    dot = page.locator("svg [id^='f2-trial-']").first
+    dot.click()
+    page.get_by_role("button", name="Copy").click()
+    expect(page.get_by_role("button", name="Copied")).to_be_visible()
+    copied = page.evaluate("navigator.clipboard.readText()")
+    assert copied == f"ratslam experiment open {dot.get_attribute('data-trial')}"
+
+
+def test_a_dot_is_reached_and_left_with_the_keyboard(page: Page) -> None:
+    dot = page.locator("svg [id^='f2-trial-']").nth(5)
+    dot.focus()
+    page.keyboard.press("Enter")
+    expect(page.locator("#box code")).to_have_text(f"ratslam experiment open {dot.get_attribute('data-trial')}")
+    page.keyboard.press("Escape")
+    expect(dot).to_be_focused()
+
+
+def test_a_point_of_a_curve_lists_its_trials_and_a_panel_of_a_map_tells_its_own(page: Page) -> None:
+    page.locator("svg [data-cell]").first.click()
+    expect(page.locator("#box code")).to_have_count(4)
+    page.locator("svg [id^='f3-trial-']").first.click(position={"x": 15, "y": 15})
+    expect(page.locator("#box code")).to_have_count(1)
+    page.locator("h1").click()
+    expect(page.locator("#box")).to_be_hidden()
+
+
+def test_the_page_is_accessible(page: Page) -> None:
+    page.locator("svg [data-trial]").first.focus()
+    page.keyboard.press("Enter")
+    found = Axe().run(page)
+    assert found.violations_count == 0, found.generate_report()
+
+
+def test_nothing_lies_beyond_a_small_screen(page: Page) -> None:
+    page.set_viewport_size({"width": 390, "height": 800})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.locator("svg [data-trial]").last.click()
+    corner = page.locator("#box").bounding_box()
+    assert corner is not None
+    assert corner["x"] >= 0
+    assert corner["x"] + corner["width"] <= 390

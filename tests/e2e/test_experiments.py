@@ -1,0 +1,167 @@
+"""The gallery of experiments in a real browser: one is watched, a cell and a dot are clicked, and the trial plays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from app.experiments.outcome import Outcome
+from app.experiments.store import Store
+from app.trials.chosen import chosen_trial
+from app.trials.experiment import find_experiment
+from app.trials.trial import Result, Trial, run_trial
+from tests.e2e.browser import calm, open_page, told, turn_theme, until
+from tests.e2e.program import Program
+from tests.e2e.test_accessibility import findings
+
+SAYS = "(words) => document.getElementById('trial').innerText.includes(words)"
+TABLE = find_experiment("table")
+Ran = tuple[Trial, Result]
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Ran]:
+    """A store with one short trial that was truly run."""
+    path = tmp_path_factory.mktemp("store") / "experiments.sqlite"
+    trial = chosen_trial(TABLE, "ours", ["2 %", "8 x 8"], 7, quick=True)
+    result, _ = run_trial(trial)
+    with Store(path) as store:
+        store.add([(trial, Outcome(trial.id, result))])
+    return path, (trial, result)
+
+
+@pytest.fixture(scope="module")
+def stored(ran: tuple[Path, Ran]) -> Iterator[Program]:
+    made = Program("--port", "0", "--paused", RATSLAM_EXPERIMENTS=str(ran[0]))
+    yield made
+    assert made.stop() == 0
+
+
+def trials_of_the_table(page: Page) -> None:
+    page.keyboard.press("g")
+    page.click(".card[data-name=table] .trials")
+    page.wait_for_selector("#one-grid .cell")
+
+
+def test_one_is_watched_and_an_order_of_ones_own_ends_it(stored: Program, browser) -> None:
+    with open_page(browser, stored.url, stage=False) as page:
+        page.click("#experiments")
+        card = page.locator(".card[data-name=table]")
+        expect(card.locator("h3")).to_have_text(TABLE.title)
+        expect(card.locator(".asks")).to_have_text(TABLE.asks)
+        card.locator("select").select_option("paper")
+        card.locator(".go").click()
+        told(page, f"Watching: {TABLE.title}.")
+        assert page.evaluate("() => !document.getElementById('gallery-dialog').open")
+        for words in ("Experiment table", "the paper's rules", "exploring", "of about 22:00"):
+            until(page, SAYS, argument=words)
+        state = stored.wait(lambda state: state["time_s"] > 0.3)
+        assert state["running"]
+        assert (state["trial"]["engine"], state["trial"]["levels"]) == ("paper", ["0 %", "64 x 64"])
+        page.click("#kidnap")
+        until(page, SAYS, argument="ended: somebody carried the robot away")
+        page.click("#trial-again")
+        until(page, SAYS, argument="exploring")
+        page.click("#trial-close")
+        expect(page.locator("#trial")).to_be_hidden()
+        stored.command("reset", seed=3)
+        stored.wait(lambda state: state["trial"] is None)
+        stored.command("pause")
+
+
+def test_a_cell_and_a_dot_are_clicked_and_the_trial_plays_from_its_moment(
+    stored: Program, browser, ran: tuple[Path, Ran]
+) -> None:
+    trial, result = ran[1]
+    with open_page(browser, stored.url, stage=False) as page:
+        trials_of_the_table(page)
+        cell = page.locator(".cell").and_(page.get_by_label("2 %, 8 x 8: "))
+        expect(page.locator("#cell-none")).to_be_visible()  # nothing was run where it begins
+        cell.click()
+        expect(cell).to_have_attribute("aria-pressed", "true")
+        expect(page.locator("#cell-title")).to_have_text("2 %, 8 x 8, our rules")
+        expect(page.locator(".dot")).to_have_count(1)
+        assert page.locator(".dot").get_attribute("aria-label").startswith("Seed 7: 0 of 3 goals reached. Decided at")
+        page.focus(".dot")
+        page.keyboard.press("Enter")
+        told(page, "Seed 7: going to the moment that decided it.")
+        before_s = result.deciding.time_s - 10
+        state = stored.wait(lambda state: state["trial"]["ahead"] is None and state["time_s"] >= before_s - 0.1)
+        assert (state["speed"], state["trial"]["id"]) == (1.0, trial.id)
+        assert state["time_s"] < result.deciding.time_s
+        assert not any("has changed" in said for said in page.evaluate("() => [...toasted]"))
+        stored.command("set_speed", factor=0)
+        told(page, "The trial is over: 0 of 3 goals reached.")
+        until(page, SAYS, argument="over: 0 of 3 goals reached")
+        ended = stored.state()
+        assert not ended["running"]
+        assert ended["time_s"] == pytest.approx(result.simulated_s)
+        legend = page.evaluate("() => [...document.querySelectorAll('#timeline .mark')].map((one) => one.dataset.kind)")
+        assert {"trial", "failed"} <= set(legend)
+
+
+def test_going_to_a_moment_can_be_broken_off(stored: Program, browser) -> None:
+    with open_page(browser, stored.url, stage=False) as page:
+        stored.command("watch_experiment", experiment="table", moment_s=1300.0)
+        until(page, SAYS, argument="going to the moment")
+        page.click("#trial-here")
+        until(page, SAYS, argument="exploring")
+        state = stored.wait(lambda state: state["trial"]["ahead"] is None)
+        assert (state["running"], state["trial"]["state"]) == (True, "running")
+        assert state["time_s"] < 1290
+        stored.command("pause")
+
+
+@pytest.mark.parametrize(("size", "light"), [((1280, 800), False), ((390, 844), True), ((360, 740), False)])
+def test_axe_finds_nothing_and_nothing_sticks_out(stored: Program, browser, size, light: bool) -> None:
+    with open_page(browser, stored.url, *size, light=light, stage=False) as page:
+        if size[0] < 500:
+            page.click("#more")
+        page.click("#experiments")
+        page.wait_for_selector(".card")
+        for look in range(2):
+            if look:
+                page.click(".card[data-name=table] .trials")
+                page.wait_for_selector("#one-grid .cell")
+                page.get_by_label("2 %, 8 x 8: ").click()
+            for _ in range(2):
+                calm(page)
+                assert findings(page) == []
+                turn_theme(page)
+            wide = "() => { const box = document.getElementById('gallery-dialog'); return box.scrollWidth - box.clientWidth; }"
+            assert page.evaluate(wide) <= 0
+        stored.command("watch_experiment", experiment="table", quick=True)
+        page.click("#gallery-close")
+        until(page, SAYS, argument="Experiment table")
+        calm(page)
+        assert findings(page) == []
+        stored.command("pause")
+
+
+def test_by_keyboard_alone_there_and_back(stored: Program, browser) -> None:
+    with open_page(browser, stored.url, stage=False) as page:
+        trials_of_the_table(page)
+        assert page.evaluate("() => document.activeElement.id") == "gallery-back"
+        page.keyboard.press("Enter")
+        assert page.evaluate("() => document.activeElement.className") == "trials"
+        page.keyboard.press("Escape")
+        assert page.evaluate("() => !document.getElementById('gallery-dialog').open")
+
+
+def test_a_refusal_is_said_where_one_looks(stored: Program, browser) -> None:
+    with open_page(browser, stored.url, stage=False) as page:
+        page.route("**/api/experiments", lambda route: _renamed(route))
+        page.keyboard.press("g")
+        page.click(".card >> nth=0 >> .go")
+        expect(page.locator("#gallery-wrong")).to_contain_text("There is no experiment 'castle'; expected one of: ")
+        assert page.evaluate("() => document.getElementById('gallery-dialog').open")
+
+
+def _renamed(route) -> None:
+    answer = route.fetch()
+    cards = answer.json()
+    cards[0]["name"] = "castle"
+    route.fulfill(response=answer, json=cards)

@@ -1,0 +1,60 @@
+"""The robot's candidate movements in a real browser: a switch of the panel draws them on the floor of the office."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import cv2
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page
+
+from sim2d import load_world
+from tests.e2e.browser import on_screen, open_page, show
+from tests.e2e.program import Program
+from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.plates.office_plate import ORIGIN
+
+NEAR_PX = 90
+
+
+@pytest.fixture(scope="module")
+def office() -> Iterator[Program]:
+    made = Program("--port", "0", "--seed", "5", "--preset", "ideal")
+    yield made
+    assert made.stop() == 0
+
+
+def around(page: Page, robot: dict[str, float]) -> np.ndarray:
+    """The picture around the robot, (h, w, 3)."""
+    page.wait_for_timeout(700)  # the plates have drawn what was switched
+    shot = cv2.imdecode(np.frombuffer(page.screenshot(), np.uint8), cv2.IMREAD_COLOR)
+    assert shot is not None
+    x, y = OfficeFit(load_world().bounds).to_plate(np.array([[robot["x"], robot["y"]]]))[0]
+    column, row = on_screen(page, "office", (ORIGIN[0] + x, ORIGIN[1] + y, ORIGIN[2]))
+    return shot[round(row) - NEAR_PX : round(row) + NEAR_PX, round(column) - NEAR_PX : round(column) + NEAR_PX].astype(
+        int
+    )
+
+
+def test_the_candidate_movements_are_drawn_around_the_robot_while_they_are_switched_on(
+    office: Program, browser: Browser
+) -> None:
+    office.command("pause")
+    office.command("reset", seed=5)
+    office.command("pause")
+    office.command("step", ticks=40)  # it follows the wall, and 6 of 47 movements are blocked
+    office.wait(lambda state: state["tick"] == 40)
+    robot = office.state()["robot"]
+    with open_page(browser, office.url) as page:
+        show(page, "office")
+        page.get_by_role("tab", name="Memory").click()
+        switch = page.get_by_label("Candidate movements")
+        bare = around(page, robot)
+        switch.check()
+        shown = around(page, robot)
+        switch.uncheck()
+        again = around(page, robot)
+    changed, left = (np.abs(picture - bare).max(2) > 60 for picture in (shown, again))
+    assert changed.sum() > 300
+    assert left.sum() < 0.1 * changed.sum()

@@ -1,0 +1,139 @@
+// What was run of one experiment: a grid of cells, and the trials of the cell that is chosen as dots.
+
+import { $ } from "../elements/dom.js";
+import { make } from "../elements/elements.js";
+import { dotFace, dotWords, engineWords, firstEngine, lookOf, rowsOf, settingWords } from "../model/experiments.js";
+import { ended } from "../model/sentences.js";
+
+export class Grid {
+  /** @param {(wish: WatchExperiment) => void} watch */
+  constructor(watch) {
+    this.watch = watch;
+    /** @type {ExperimentDetail | null} */
+    this.detail = null;
+    /** @type {EngineName} */
+    this.engine = "ours";
+    /** @type {string[]} */
+    this.fixed = [];
+    /** @type {Cell | null} */
+    this.cell = null;
+    $("cell-watch").addEventListener("click", () => this.cell && watch(this.wish(this.cell)));
+  }
+
+  /** @param {ExperimentDetail} detail @param {EngineName} [engine] */
+  show(detail, engine) {
+    const { card, results } = detail;
+    this.detail = detail;
+    this.engine = engine ?? firstEngine(card);
+    this.fixed = card.watch.slice(2);
+    $("one-asks").textContent = card.asks;
+    $("one-found").textContent = `The paper: ${ended(card.found)}`;
+    $("one-note").hidden = !results.note;
+    $("one-note").textContent = results.note;
+    this.showChoices(card);
+    this.draw();
+    this.choose(card.watch);
+  }
+
+  /** @param {Card} card */
+  showChoices({ name, engines, axes }) {
+    const radios = engines.map((engine) => {
+      const radio = make("input", { type: "radio", name: `engine-${name}`, value: engine });
+      radio.checked = engine === this.engine;
+      radio.addEventListener("change", () => {
+        this.engine = engine;
+        this.draw();
+        this.choose(this.cell?.levels ?? []);
+      });
+      return make("label", {}, radio, engineWords(engine));
+    });
+    $("one-engines").replaceChildren(make("legend", { className: "gone", textContent: "Engine" }), ...radios);
+    const selects = axes.slice(2).map((axis, k) => {
+      const select = make("select", {});
+      select.append(...axis.levels.map((level) => new Option(level, level)));
+      select.value = this.fixed[k];
+      select.addEventListener("change", () => {
+        this.fixed[k] = select.value;
+        this.draw();
+        this.choose([...(this.cell?.levels.slice(0, 2) ?? []), ...this.fixed]);
+      });
+      return make("label", {}, `${axis.name} `, select);
+    });
+    $("one-fixed").replaceChildren(...selects);
+  }
+
+  draw() {
+    if (!this.detail) return;
+    const { card, results } = this.detail;
+    const [across, down] = card.axes;
+    $("one-grid").hidden = !across;
+    if (!across) return;
+    const corner = down ? `${down.name} ↓  ${across.name} →` : across.name;
+    const head = make("tr", {}, make("td", { className: "corner", textContent: corner }));
+    for (const label of across.levels) head.append(make("th", { scope: "col", textContent: label }));
+    const body = rowsOf(card, results, this.engine, this.fixed).map(({ label, cells }) =>
+      make(
+        "tr",
+        {},
+        make("th", { scope: "row", textContent: label || results.score }),
+        ...cells.map((cell) => make("td", {}, ...(cell ? [this.button(cell)] : []))),
+      ),
+    );
+    const caption = make("caption", {
+      textContent: `${results.score}, ${engineWords(this.engine)}, with 95 % intervals`,
+    });
+    $("one-grid").replaceChildren(make("table", {}, caption, make("thead", {}, head), make("tbody", {}, ...body)));
+  }
+
+  /** @param {Cell} cell */
+  button(cell) {
+    const button = make("button", { type: "button", className: "cell" });
+    const [value, ...interval] = cell.words.split(" (");
+    button.append(make("b", { textContent: cell.n ? value : "–" }));
+    if (interval.length) button.append(make("small", { textContent: interval[0].replace(")", "") }));
+    if (cell.shade !== null) button.style.setProperty("--shade", `${Math.round(100 * cell.shade)}%`);
+    button.dataset.levels = JSON.stringify(cell.levels);
+    button.ariaLabel = `${settingWords(cell)}: ${cell.n ? `${cell.words}, ${count(cell.n)}` : "no trial yet"}`;
+    button.addEventListener("click", () => this.choose(cell.levels));
+    return button;
+  }
+
+  /** Show the trials of a cell. @param {string[]} levels */
+  choose(levels) {
+    if (!this.detail) return;
+    const { card, results } = this.detail;
+    const same = (/** @type {Cell} */ { engine, levels: its }) =>
+      engine === this.engine && its.every((level, k) => level === levels[k]);
+    const cell = results.cells.find(same) ?? results.cells.find(({ engine }) => engine === this.engine) ?? null;
+    this.cell = cell;
+    if (!cell) return;
+    for (const button of $("one-grid").querySelectorAll("button"))
+      button.setAttribute("aria-pressed", String(button.dataset.levels === JSON.stringify(cell.levels)));
+    $("cell-title").textContent = [...cell.levels, engineWords(this.engine)].join(", ");
+    $("cell-words").textContent = cell.n
+      ? `${results.score}: ${cell.words}, ${count(cell.n)}. A dot plays its trial from the moment that decided it.`
+      : "";
+    $("cell-none").hidden = cell.n > 0;
+    $("cell-none").textContent = `No trial of this was run here yet: ratslam experiment ${card.name} runs them all.`;
+    $("cell-dots").replaceChildren(...cell.dots.map((dot) => this.dot(cell, dot, results)));
+  }
+
+  /** @param {Cell} cell @param {Dot} dot @param {Results} results */
+  dot(cell, dot, results) {
+    const button = make("button", { type: "button", className: "dot", title: dotWords(dot, results) });
+    button.ariaLabel = dotWords(dot, results);
+    button.dataset.look = lookOf(dot);
+    button.append(make("b", { textContent: dotFace(dot) }), make("small", { textContent: String(dot.seed) }));
+    const { seed, quick, id: trial, moment_s } = dot;
+    button.addEventListener("click", () => this.watch({ ...this.wish(cell), seed, quick, trial, moment_s }));
+    return make("li", {}, button);
+  }
+
+  /** @param {Cell} cell @returns {WatchExperiment} */
+  wish({ engine, levels }) {
+    return { type: "watch_experiment", experiment: this.detail?.card.name ?? "", engine, levels };
+  }
+}
+
+/** @param {number} trials */
+const count = (trials) => `${trials} ${trials === 1 ? "trial" : "trials"}`;
