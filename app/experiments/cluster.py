@@ -8,7 +8,7 @@ import multiprocessing
 import os
 import signal
 from collections.abc import Generator
-from typing import Any
+from typing import Any, cast
 
 from app.trials.code_version import code_version
 
@@ -76,10 +76,10 @@ def _fork_ready_workers() -> None:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return
     import dask.config
-    from distributed.utils import get_mp_context
+    from distributed import utils
 
     dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"})
-    context: Any = get_mp_context()
+    context: Any = cast(Any, utils).get_mp_context()
     context.set_forkserver_preload(["distributed", "app.experiments.batch"])
 
 

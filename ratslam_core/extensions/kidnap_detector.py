@@ -8,8 +8,6 @@ test_sonars_help_to_notice_a_kidnap}.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -41,10 +39,11 @@ class KidnapDetector:
         alone do not tell: when a robot turns between two walls, all of them jump. Nor does an image, where images change
         as much all the time. test_kidnap_detector.py::test_where_images_always_jump_a_jump_tells_nothing.
 
-        beats: since the step before. In more time driving explains more, by the root, as chance adds up; after a second
-        there is hardly a change that it cannot. test_kidnap_detector.py::test_in_more_time_driving_explains_more.
+        beats: since the step before; in more time driving explains more (`time_power`).
+        test_kidnap_detector.py::test_in_more_time_driving_explains_more.
         """
-        p, explained = self.params, math.sqrt(beats)
+        p = self.params
+        explained = float(beats**p.time_power)
         image_change /= explained
         heard = self.view_params.range_surprise * self._scans.observe(ranges_m, p) / explained
         self.sure = image_change > 1
