@@ -186,7 +186,9 @@ def shortened(step: Step, share: float) -> Step:
         case Explore():
             return step.model_copy(update={"minutes": step.minutes * share})
         case Drive():
-            return step.model_copy(update={"laps": max(1, round(step.laps * share))})
+            laps = step.laps * share
+            path = step.path if laps >= 1 else step.path[: max(1, round(len(step.path) * laps))]
+            return step.model_copy(update={"laps": max(1, round(laps)), "path": path})
         case Move():
             return step.model_copy(update={"times": max(1, round(step.times * share))})
         case Visit():

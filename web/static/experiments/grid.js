@@ -49,6 +49,7 @@ export class Grid {
       });
       return make("label", {}, radio, engineWords(engine));
     });
+    $("one-engines").hidden = radios.length < 2;
     $("one-engines").replaceChildren(make("legend", { className: "gone", textContent: "Engine" }), ...radios);
     const selects = axes.slice(2).map((axis, k) => {
       const select = make("select", {});
