@@ -1,7 +1,8 @@
 """The rate changes, the result does not: one drive of exact moves at 1 to 60 Hz ends at one place with one map.
 
-ACRA 2004 section 4.3 asks it of path integration; here it holds for the whole engine. At 10 Hz and above the engine does
-the same; below, it has fewer images, and its map is a little coarser. docs/findings.md has the figures.
+ACRA 2004 section 4 asks it of path integration; here it holds for the whole engine from 10 Hz on. Below, it has fewer
+images: in the office its map is a little coarser, and where much looks alike it may be another. docs/findings.md has the
+figures.
 """
 
 from __future__ import annotations
