@@ -112,17 +112,21 @@ def run_with_trial(trial: Trial, moment_s: float | None, *, title: str = "", ser
     """Open the dashboard on a trial of an experiment. The exit code.
 
     moment_s: simulated time of the moment that is to be seen: the trial is run ahead, as fast as possible, to shortly
-    before it, and plays from there. None: it plays from its beginning. title: of the experiment.
+    before it, and plays from there. None: it plays from its beginning. title: of the experiment, by default as in the
+    catalogue.
     """
     from app.engine.watched_trial import CHANGED
     from app.trials.code_version import code_version
+    from app.trials.experiment import catalogue
+
+    title = title or next((each.title for each in catalogue() if each.name == trial.experiment), trial.experiment)
 
     serving = serving or Serving()
     config = Config().with_values(trial.values)
     world = open_world(trial.world, robot_radius_m=config.robot.robot_radius_m)
 
     def begin(engine: Engine) -> None:
-        run = engine.begin_trial(trial, title or trial.experiment, moment_s)
+        run = engine.begin_trial(trial, title, moment_s)
         if trial.version != code_version():
             run.event_log.note("warning", CHANGED)
         engine.running = serving.running or engine.runs_ahead

@@ -117,6 +117,10 @@ class Store:
         scores = self._scores([row[0] for row in rows])
         return [_stored(row, scores, row[1], tuple(json.loads(row[2]))) for row in rows]
 
+    def counts(self) -> dict[str, int]:
+        """How many trials each experiment has that did not fail."""
+        return dict(self._db.execute("SELECT experiment, count(*) FROM trials WHERE error = '' GROUP BY experiment"))
+
     def seconds(self, name: str, quick: bool) -> dict[str, float]:
         """Wall seconds of a trial of this experiment, on average, by engine; measured on whatever machine it ran."""
         rows = self._db.execute(

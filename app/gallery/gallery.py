@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
+from typing import TypeVar
 
 from app.experiments.results import published_cells
 from app.experiments.store import Store, default_path
-from app.experiments.stored_trial import StoredTrial
 from app.experiments.summary import CellSummary
 from app.gallery.plan import plan_of
 from app.gallery.results import results_of
@@ -19,6 +20,7 @@ from sim2d import World
 from sim2d.importers import open_world
 from web.http.experiments import Axis, Card, Detail
 
+_T = TypeVar("_T")
 PICTURES = Path(__file__).parents[2] / "docs" / "pictures" / "experiments"  # those that come with the program
 FIGURES = "figures"  # the folder beside the store for those that are drawn here
 
@@ -31,14 +33,16 @@ class StoredGallery:
 
     def cards(self) -> list[Card]:
         code_version()  # takes a second the first time: better here than when somebody presses "Watch it"
-        return [self._card(experiment, self._trials(experiment.name)) for experiment in catalogue()]
+        counts = self._read(lambda store: store.counts()) or {}
+        return [self._card(experiment, counts.get(experiment.name, 0)) for experiment in catalogue()]
 
     def detail(self, name: str) -> Detail | None:
         experiment = _experiments().get(name)
         if experiment is None:
             return None
-        trials = self._trials(name)
-        return Detail(card=self._card(experiment, trials), results=results_of(experiment, trials, _published(name)))
+        trials = self._read(lambda store: store.of_experiment(name)) or []
+        done = sum(not trial.error for trial in trials)
+        return Detail(card=self._card(experiment, done), results=results_of(experiment, trials, _published(name)))
 
     def picture(self, name: str) -> Path | None:
         """The newest figure drawn here, the first of its experiment; else the one that comes with the program."""
@@ -58,16 +62,15 @@ class StoredGallery:
     def _folder(self) -> Path:
         return self._path.parent / FIGURES
 
-    def _trials(self, name: str) -> list[StoredTrial]:
-        try:
-            if not self._path.is_file():
-                return []  # and none is made: nothing was run yet
-            with Store(self._path) as store:
-                return store.of_experiment(name)
-        except ValueError:  # it is something else than a store; `ratslam experiment` says so
-            return []
+    def _read(self, question: Callable[[Store], _T]) -> _T | None:
+        """The store's answer; None if nothing was run yet, and then no file is made."""
+        with contextlib.suppress(ValueError):  # it is something else than a store; `ratslam experiment` says so
+            if self._path.is_file():
+                with Store(self._path) as store:
+                    return question(store)
+        return None
 
-    def _card(self, experiment: Experiment, trials: list[StoredTrial]) -> Card:
+    def _card(self, experiment: Experiment, done: int) -> Card:
         world = _world(experiment.world)
         picture = self.picture(experiment.name)
         return Card(
@@ -83,7 +86,7 @@ class StoredGallery:
             seed=experiment.seed,
             trials=experiment.trials,
             seconds=experiment.seconds(),
-            done=sum(not trial.error for trial in trials),
+            done=done,
             picture=None if picture is None else f"/api/experiments/{experiment.name}/picture",
             plan=plan_of(experiment, world),
         )

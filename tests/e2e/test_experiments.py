@@ -19,6 +19,15 @@ from tests.e2e.test_accessibility import findings
 
 SAYS = "(words) => document.getElementById('trial').innerText.includes(words)"
 TABLE = find_experiment("table")
+OPEN = """
+from pathlib import Path
+from app.cli.run import Serving, run_with_trial
+from app.experiments.opening import open_trial
+from app.experiments.store import Store
+with Store(Path({store!r})) as store:
+    opened = open_trial({id!r}, store)
+raise SystemExit(run_with_trial(opened.trial, opened.moment_s, serving=Serving(port=0, browser=False)))
+"""
 Ran = tuple[Trial, Result]
 
 
@@ -101,6 +110,18 @@ def test_a_cell_and_a_dot_are_clicked_and_the_trial_plays_from_its_moment(
         assert ended["time_s"] == pytest.approx(result.simulated_s)
         legend = page.evaluate("() => [...document.querySelectorAll('#timeline .mark')].map((one) => one.dataset.kind)")
         assert {"trial", "failed"} <= set(legend)
+
+
+def test_a_stored_trial_is_opened_at_its_moment(browser, ran: tuple[Path, Ran]) -> None:
+    path, (trial, result) = ran
+    opened = Program(start=OPEN.format(store=str(path), id=trial.id))
+    with open_page(browser, opened.url, stage=False) as page:
+        until(page, SAYS, argument="8 x 8")
+        state = opened.wait(lambda state: state["trial"]["ahead"] is None and state["time_s"] < result.simulated_s)
+        assert state["time_s"] >= result.deciding.time_s - 10.1
+        assert (state["trial"]["id"], state["trial"]["title"], state["speed"]) == (trial.id, TABLE.title, 1.0)
+        told(page, "The trial is over: 0 of 3 goals reached.")
+    assert opened.stop() == 0
 
 
 def test_going_to_a_moment_can_be_broken_off(stored: Program, browser) -> None:

@@ -72,6 +72,7 @@ def test_without_trials_every_cell_is_there_and_empty(tmp_path: Path) -> None:
 def test_a_cell_is_the_rate_of_its_trials_and_each_trial_a_dot(store: Store) -> None:
     store.add([ended(trial(2), 3), ended(trial(1), 1), ended(trial(1, ("10 %", "8 x 8")), 0)])
     found = results(store)
+    assert [card.done for card in StoredGallery(store.path).cards() if card.name == "table"] == [3]
     first = cell(found, ["0 %", "64 x 64"])
     assert (found.score, found.is_rate, first.n) == ("goals reached", True, 2)
     assert first.words.startswith("67 %")
