@@ -101,7 +101,7 @@ class RatSlam:
         seen = self.local_view.observe(image, scene, scan, self.beats.turned_by(odometry))
         beats, moved = self.beats.take(odometry)
         watch("view match")
-        if self.kidnap_detector.observe(self.local_view.image_change, scan):
+        if self.kidnap_detector.observe(self.local_view.image_change, scan, beats):
             self.declare_kidnapped(sure=self.kidnap_detector.sure)
         moved = self.experience_map.calibrated(moved)
         packet, relocalised = self._move_cells(seen, moved, beats, watch)

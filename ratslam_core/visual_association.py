@@ -5,6 +5,11 @@ ACRA 2004 section 4, eqs. 2-4.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
 from disk import kind
 from ratslam_core.local_view.view_links import ViewLinks
 from ratslam_core.params import LocalViewParams
@@ -12,14 +17,26 @@ from ratslam_core.parts import PoseCellsPart
 from ratslam_core.types import Recognition
 
 
-@kind("visual association/1")
+@dataclass(frozen=True, slots=True, eq=False)
+class Injection:
+    """What a view put into the pose cells in one step."""
+
+    view: int
+    cells: NDArray[np.int32]  # (k,) flat indices
+    values: NDArray[np.float32]  # (k,) activity added to each
+
+
+@kind("visual association/2")
 class VisualAssociation:
     """Links the active view with the pose cells, once per step."""
+
+    CACHES = ("injection",)
 
     def __init__(self, params: LocalViewParams) -> None:
         self.params = params
         self.links = ViewLinks(params)
         self.learning_rate = 0.0  # of the last association
+        self.injection: Injection | None = None  # of the last step, for who watches; nothing here depends on it
         self._time_s = 0.0
         self._learnt_s: list[float] = []  # when each view was recruited
 
@@ -37,6 +54,7 @@ class VisualAssociation:
         test_visual_association.py::test_a_young_view_does_not_hold_the_packet_back.
         """
         self._time_s += dt
+        self.injection = None
         if seen.recruited:
             self._begin(seen.view)
         if seen.view < 0:
@@ -53,6 +71,11 @@ class VisualAssociation:
         if not learns_first:
             self._learn(seen.view, pose_cells)
         pose_cells.inject(cells, injection)
+        self.injection = Injection(seen.view, cells, injection)
+
+    def age_s(self, view: int) -> float:
+        """How long ago a view was recruited, seconds of the engine's time."""
+        return self._time_s - self._learnt_s[view]
 
     def _begin(self, view: int) -> None:
         """A view was recruited, perhaps in the room of one that has faded."""

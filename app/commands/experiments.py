@@ -11,6 +11,7 @@ from web import messages as m
 
 ENDS: dict[type, str] = {  # the robot can have one master only
     m.SetGoal: "somebody gave the robot a goal",
+    m.GoToTag: "somebody gave the robot a goal",
     m.CancelGoal: "somebody cancelled the robot's goal",
     m.SetMode: "somebody told the robot what to do",
     m.Drive: "somebody drove the robot by hand",

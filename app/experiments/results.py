@@ -124,6 +124,12 @@ def read_results(path: Path) -> dict[str, Any]:
     return {"experiments": experiments}
 
 
+def published_cells(name: str, path: Path = DOCS / "results.json") -> list[CellSummary]:
+    """The cells of an experiment as they stand in docs/results.json; none if it is not there."""
+    run = read_results(path)["experiments"].get(name)
+    return [] if run is None else [_cell(row) for row in run["cells"]]
+
+
 # ------------------------------------------------------------ a section
 
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 from functools import lru_cache
 from pathlib import Path
 
+from app.experiments.results import published_cells
 from app.experiments.store import Store, default_path
 from app.experiments.stored_trial import StoredTrial
+from app.experiments.summary import CellSummary
 from app.gallery.plan import plan_of
 from app.gallery.results import results_of
 from app.trials.chosen import first_levels
@@ -35,7 +38,7 @@ class StoredGallery:
         if experiment is None:
             return None
         trials = self._trials(name)
-        return Detail(card=self._card(experiment, trials), results=results_of(experiment, trials))
+        return Detail(card=self._card(experiment, trials), results=results_of(experiment, trials, _published(name)))
 
     def picture(self, name: str) -> Path | None:
         """The newest figure drawn here, the first of its experiment; else the one that comes with the program."""
@@ -88,6 +91,12 @@ class StoredGallery:
 
 def _experiments() -> dict[str, Experiment]:
     return {experiment.name: experiment for experiment in catalogue()}
+
+
+def _published(name: str) -> list[CellSummary]:
+    with contextlib.suppress(ValueError):  # an installed program may come without its documents
+        return published_cells(name)
+    return []
 
 
 @lru_cache

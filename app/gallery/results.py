@@ -6,31 +6,40 @@ import math
 from collections.abc import Sequence
 
 from app.experiments.stored_trial import StoredTrial
-from app.experiments.summary import estimate, words
+from app.experiments.summary import CellSummary, summarise, words
 from app.trials.code_version import code_version
 from app.trials.experiment import EngineName, Experiment, Score
 from web.http.experiments import Cell, Dot, Results
 
 EARLIER = "These trials were run by an earlier version of the program: played today, they may go otherwise."
+PUBLISHED = "These are the program's own results, as in docs/results.md; none of these trials was run here yet."
 QUICK = "These are short trials, run to see that the experiment works; they say little."
 
 
-def results_of(experiment: Experiment, stored: Sequence[StoredTrial]) -> Results:
-    """stored: all trials of the experiment, the oldest first. Those shown are of one kind, the best there is."""
+def results_of(experiment: Experiment, stored: Sequence[StoredTrial], published: Sequence[CellSummary] = ()) -> Results:
+    """stored: all trials of the experiment, the oldest first. Those shown are of one kind, the best there is.
+
+    published: what stands in docs/results.md, for want of trials.
+    """
     trials, note = _chosen([trial for trial in stored if not trial.error])
+    cells = summarise(experiment, trials) if trials else published
+    if not trials and published:
+        note = PUBLISHED
     score = next((score for score in experiment.scores if score.rate is not None), experiment.scores[0])
-    values: dict[tuple[EngineName, tuple[str, ...]], float] = {
-        (engine, cell): estimate(score, _of(trials, engine, cell)).value
-        for engine in experiment.engines
-        for cell in _cells(experiment)
-    }
-    finite = [value for value in values.values() if math.isfinite(value)]
-    low, high = (0.0, 1.0) if score.rate is not None else (min(finite, default=0.0), max(finite, default=1.0))
-    cells = [
-        _cell(score, engine, cell, _of(trials, engine, cell), _share(value, low, high))
-        for (engine, cell), value in values.items()
-    ]
-    return Results(score=score.label, is_rate=score.rate is not None, note=note, cells=cells)
+    found = {(cell.engine, cell.levels): cell for cell in cells if score.label in cell.values}
+    values = [cell.values[score.label].value for cell in found.values()]
+    finite = [value for value in values if math.isfinite(value)]
+    span = (0.0, 1.0) if score.rate is not None else (min(finite, default=0.0), max(finite, default=1.0))
+    return Results(
+        score=score.label,
+        is_rate=score.rate is not None,
+        note=note,
+        cells=[
+            _cell(score, engine, levels, found.get((engine, levels)), span, _of(trials, engine, levels))
+            for engine in experiment.engines
+            for levels in _cells(experiment)
+        ],
+    )
 
 
 def _chosen(trials: list[StoredTrial]) -> tuple[list[StoredTrial], str]:
@@ -62,11 +71,15 @@ def _share(value: float, low: float, high: float) -> float | None:
 
 
 def _cell(
-    score: Score, engine: EngineName, levels: tuple[str, ...], trials: list[StoredTrial], shade: float | None
-) -> Cell:
-    said = words(estimate(score, trials), score) if trials else ""
+    score: Score, engine: EngineName, levels: tuple[str, ...], summary: CellSummary | None, span: tuple[float, float],
+    trials: list[StoredTrial],
+) -> Cell:  # fmt: skip
     dots = [_dot(score, trial) for trial in trials]
-    return Cell(engine=engine, levels=list(levels), n=len(trials), words=said, shade=shade, dots=dots)
+    if summary is None or summary.n == 0:
+        return Cell(engine=engine, levels=list(levels), n=0, words="", shade=None, dots=dots)
+    value = summary.values[score.label]
+    shade = _share(value.value, *span)
+    return Cell(engine=engine, levels=list(levels), n=summary.n, words=words(value, score), shade=shade, dots=dots)
 
 
 def _dot(score: Score, trial: StoredTrial) -> Dot:

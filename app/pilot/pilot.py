@@ -76,6 +76,12 @@ class Pilot:
         asked = self._local.asked
         return None if asked is None else lambda: candidates(*asked)
 
+    @property
+    def aim(self) -> tuple[float, float] | None:
+        """The point that it steered towards in this tick (m, the robot's frame then); None: it steered towards none."""
+        asked = self._local.asked
+        return None if asked is None else asked[1:3]
+
     def progress(self, experiences: ExperienceMap) -> Progress | None:
         return self._follower.progress(experiences) if self._follower else None
 

@@ -22,7 +22,11 @@ def chosen_trial(
     engine = engine or (OURS if OURS in experiment.engines else next(iter(experiment.engines)))
     wanted = first_levels(experiment) if levels is None else tuple(levels)
     check_levels(experiment, wanted)
-    found = next(trial for trial in experiment.make_trials([engine], 1) if trial.levels == wanted)
+    axes = [
+        axis.model_copy(update={"levels": [each for each in axis.levels if each.label == label]})
+        for axis, label in zip(experiment.axes, wanted, strict=True)
+    ]
+    found = experiment.model_copy(update={"axes": axes}).make_trials([engine], 1)[0]
     if quick:
         steps = tuple(shortened(step, experiment.quick.share) for step in found.protocol)
         found = replace(found, protocol=steps, quick=True)

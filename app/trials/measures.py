@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from app.evaluation import Coverage
+from app.trials.arbitration import Arbitration
 from app.trials.course import Course
 from app.trials.goal_memory_routes import GoalMemoryRoutes
 from ratslam_core.experience_map.places import find_places
@@ -228,4 +229,5 @@ MEASURES: dict[str, Callable[[Course], Measure]] = {
     "way taken": WayTaken,
     "consistency": Consistency,
     "goal memory routes": GoalMemoryRoutes,
+    "arbitration": Arbitration,
 }

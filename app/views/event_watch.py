@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.session import Session, is_lost
 from app.views.event_log import EventLog
+from app.views.snap_causes import SnapCauses, words_of
 from ratslam_core import find_places
 from web.messages import Packet, Snap
 
@@ -17,6 +18,7 @@ class EventWatch:
 
     def __init__(self, session: Session, log: EventLog) -> None:
         self._session, self._log = session, log
+        self._causes = SnapCauses(session)
         self.last_snap: Snap | None = None
         self.lost = False
         self._before = session.brain.pose_cells.winner
@@ -39,13 +41,14 @@ class EventWatch:
 
     def _watch_snaps(self) -> None:
         session = self._session
+        self._causes.watch()
         packet = session.estimate.packet
         if session.estimate.relocalised:
             start, end = (Packet(p.x, p.y, p.heading_rad, p.mass, p.id) for p in (self._before, packet))
-            self.last_snap = Snap(session.time_s, start, end)
-            view = session.estimate.recognition.view
+            causes = self._causes.of(packet)
+            self.last_snap = Snap(session.time_s, start, end, causes)
             ends = f"({start.x:.0f}, {start.y:.0f}) to ({end.x:.0f}, {end.y:.0f})"
-            self._log.note("snap", f"relocalised by view {view}: {ends}")
+            self._log.note("snap", f"relocalised {words_of(causes)}: {ends}")
         self._before = packet
 
     def _watch_packets(self) -> None:

@@ -64,6 +64,7 @@ class TickRecorder:
         self._known = len(session.brain.experience_map)
         self._cells: dict[str, Activity] = {"view match": self._activity()}
         self._iterations = 1
+        self._between = session.brain.beats.due(session.frame.dt) == 0
         self._poses = np.zeros((0, 3))
         self._map: dict[str, Any] = {}
         self._residual = (0.0, 0.0)
@@ -83,6 +84,9 @@ class TickRecorder:
     def walk(self, after: dict[str, Any]) -> Walk:
         """A walk through the recorded tick. after: the same parts as `before`, at the end of the tick."""
         params, before = self._session.brain.params.pose_cells, self._before
+        if self._between:
+            words = f"{self._image()} It is not looked at: views, packets and map wait for the next tenth of a second."
+            return Walk((Still(TickStage("image", TITLES["image"], words), {}),))
         moved, injected = self._cells["path integration"], self._cells["injection"]
         start = injected
         for _ in range(self._iterations - 1):

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
+from ratslam_core.beats import weight
 from ratslam_core.extensions.scan_change import ScanChange
 from ratslam_core.params import KidnapParams, LocalViewParams
 
@@ -31,18 +32,23 @@ class KidnapDetector:
         self._known_before = 0  # how many experiences there were when it happened
         self._agreed = self._settled = 0
 
-    def observe(self, image_change: float, ranges_m: NDArray[np.float64] | None) -> bool:
+    def observe(self, image_change: float, ranges_m: NDArray[np.float64] | None, beats: int = 1) -> bool:
         """Whether image and sonars say that the robot was carried away since the step before.
 
         image_change: above 1 driving cannot explain it (`LocalView.image_change`); ranges_m: (n_sonars,), m. Sonars
         alone do not tell: when a robot turns between two walls, all of them jump. Nor does an image, where images change
         as much all the time. test_kidnap_detector.py::test_where_images_always_jump_a_jump_tells_nothing.
+
+        beats: since the step before; in more time driving explains more (`time_power`).
+        test_kidnap_detector.py::test_in_more_time_driving_explains_more.
         """
         p = self.params
-        heard = self.view_params.range_surprise * self._scans.observe(ranges_m, p)
+        explained = float(beats**p.time_power)
+        image_change /= explained
+        heard = self.view_params.range_surprise * self._scans.observe(ranges_m, p) / explained
         self.sure = image_change > 1
         jumped = image_change > p.usual_times * self._usual and image_change + heard > 1
-        self._usual += p.usual_rate * (min(image_change, MOST_USUAL) - self._usual)
+        self._usual += weight(p.usual_rate, beats) * (min(image_change, MOST_USUAL) - self._usual)
         return jumped
 
     def declare(self, experiences: int) -> None:
@@ -51,11 +57,11 @@ class KidnapDetector:
         self._agreed = self._settled = 0
 
     def settle(self, agrees: bool, known: int) -> None:
-        """One more step; decides whether the robot is still lost.
+        """One more beat; decides whether the robot is still lost.
 
         It is no longer lost once `found_again` sights of experiences from before the kidnap, taking into account the
         odometry between them, agree on where it is. New experiences in between count neither way: perhaps only a wall
-        was drawn. It is no longer lost either after `settled` steps (two minutes at 10 Hz) without a contradiction: it is
+        was drawn. It is no longer lost either after `settled` beats (two minutes) without a contradiction: it is
         elsewhere and knows its way there.
 
         agrees: whether the look agrees with where the robot believed itself to be; known: the experience that was
@@ -81,7 +87,7 @@ class NeverKidnapped:
     def __init__(self, params: KidnapParams, view_params: LocalViewParams) -> None:
         self.params, self.view_params = params, view_params
 
-    def observe(self, _image_change: float, _ranges_m: NDArray[np.float64] | None) -> bool:
+    def observe(self, _image_change: float, _ranges_m: NDArray[np.float64] | None, _beats: int = 1) -> bool:
         return False
 
     def declare(self, _experiences: int) -> None:

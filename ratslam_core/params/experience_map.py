@@ -97,7 +97,7 @@ class ExperienceMapParams:
         unit="sights",
         low=1,
         high=10_000,
-        meaning="sights that must agree on where an island lies, or on where a robot is that knows itself lost",
+        meaning="sights, one a beat, that must agree on where an island lies, or on where a robot is that knows itself lost",
         source="ours",
     )
     join_views: int = param(
@@ -174,13 +174,13 @@ class ExperienceMapParams:
         "sums, as printed, which diverges where the rate is too high",
         source="ours; B 4.3",
     )
-    sweeps: int = param(1, unit="1/step", low=0, high=100, meaning="correction sweeps in each step", source="B 4.3")
+    sweeps: int = param(1, unit="1/beat", low=0, high=100, meaning="correction sweeps in each beat", source="B 4.3")
     solve_every: int = param(
         50,
-        unit="steps",
+        unit="beats",
         low=0,
         high=10_000,
-        meaning="least time between exact corrections, made while loops close; 0 = never",
+        meaning="least time between exact corrections, in tenths of a second, made while loops close; 0 = never",
         source="ours",
     )
 

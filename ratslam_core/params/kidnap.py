@@ -8,7 +8,7 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of kidnap/1")
+@kind("parameters of kidnap/2")
 @dataclass(frozen=True, slots=True)
 class KidnapParams:
     """When a jump of image and sonars counts as a kidnap. The papers' robots did not notice that they were carried."""
@@ -25,10 +25,17 @@ class KidnapParams:
     )
     usual_rate: float = param(
         0.02,
-        unit="1/step",
+        unit="1/beat",
         low=0.0,
         high=1.0,
         meaning="weight of the newest change in the mean that counts as usual",
+        source="ours",
+    )
+    time_power: float = param(
+        0.3,
+        low=0.0,
+        high=1.0,
+        meaning="if more than a beat lies between two images, driving explains more by this power of the time",
         source="ours",
     )
     sonar_near_m: float = param(
@@ -55,15 +62,15 @@ class KidnapParams:
         unit="sights",
         low=1,
         high=1000,
-        meaning="sights of known places that must agree before the robot is no longer lost",
+        meaning="sights of known places, one a beat, that must agree before the robot is no longer lost",
         source="ours",
     )
     settled: int = param(
         1200,
-        unit="steps",
+        unit="beats",
         low=1,
         high=10**6,
-        meaning="steps without a contradiction after which the robot is no longer lost, either",
+        meaning="tenths of a second without a contradiction after which the robot is no longer lost, either",
         source="ours",
     )
 

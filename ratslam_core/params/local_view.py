@@ -12,7 +12,7 @@ from ratslam_core.params.parameter import check_ranges, param
 @kind("parameters of local view/1")
 @dataclass(frozen=True, slots=True)
 class LocalViewParams:
-    """Recognising scenes (D section 7) and their Hebbian links to pose cells (A 4)."""
+    """Recognising scenes (D section 7) and their Hebbian links to pose cells (A 4). They learn and inject once a beat."""
 
     front_end: str = param(
         "image and sonars",
@@ -97,7 +97,7 @@ class LocalViewParams:
         source="A 4; off is ours",
     )
     decay: float = param(
-        0.0, symbol="δ", low=0.0, high=1.0, meaning="share of a link forgotten at each sight", source="A eq. 2"
+        0.0, symbol="δ", low=0.0, high=1.0, meaning="share of a link forgotten in each beat", source="A eq. 2"
     )
     most_links: int = param(
         600,
@@ -137,7 +137,7 @@ class LocalViewParams:
         0.3,
         low=0.0,
         high=1.0,
-        meaning="share of the turn by which the wheels may be wrong about it in a tick",
+        meaning="share of the turn by which the wheels may be wrong about it in a beat",
         source="ours",
     )
     range_surprise: float = param(

@@ -86,7 +86,7 @@ class PoseCellParams:
         4,
         low=1,
         high=16,
-        meaning="most attractor iterations in a step, one for each cell driven; 1 = always one",
+        meaning="most attractor iterations in a beat, one for each cell driven; 1 = always one",
         source="ours",
     )
     move_first: bool = param(

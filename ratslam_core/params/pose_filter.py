@@ -56,7 +56,7 @@ class PoseFilterParams:
         unit="sights",
         low=1,
         high=100_000,
-        meaning="sights held back that must agree on where the robot is before it believes them",
+        meaning="sights held back, one a beat, that must agree on where the robot is before it believes them",
         source="ours",
     )
     gate_surprise: int = param(

@@ -20,7 +20,7 @@ class SolverParams:
         1e5,
         low=1.0,
         high=1e9,
-        meaning="work of exact corrections per step, on average; 100,000 take about half a millisecond",
+        meaning="work of exact corrections per beat, on average; 100,000 take about half a millisecond",
         source="ours",
     )
     work_an_experience: float = param(

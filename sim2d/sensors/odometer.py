@@ -8,7 +8,6 @@ import numpy as np
 
 from sim2d.params import SimParams
 
-
 _NOISE_S = 0.1  # `odometry_noise` is that of a movement of so long
 
 

@@ -13,6 +13,7 @@ from web.messages.brain import (
     PoseCellLayer,
     Senses,
     Snap,
+    SnapCause,
     TaggedPlace,
     TimesLayer,
 )
@@ -142,6 +143,7 @@ __all__ = [
     "SetParameter",
     "SetSpeed",
     "Snap",
+    "SnapCause",
     "Snapshot",
     "Step",
     "StepStage",

@@ -55,12 +55,26 @@ class Packet:
 
 
 @dataclass(frozen=True, slots=True)
+class SnapCause:
+    """A view whose links put activity where a snap has led."""
+
+    view: int
+    looks: int  # ticks in which it did, since the packet came into being
+    amount: float  # of activity in all of them
+    share: float  # of what all views put there
+    links: int  # to cells around the packet
+    strongest: float  # of these links
+    age_s: float  # since the view was learnt
+
+
+@dataclass(frozen=True, slots=True)
 class Snap:
     """A relocalisation: the winning packet's centre went from start S to end F (pose-cell frame, cells)."""
 
     time_s: float
     start: Packet
     end: Packet
+    causes: tuple[SnapCause, ...] = ()  # those that injected most first
 
 
 @dataclass(frozen=True, slots=True, eq=False)

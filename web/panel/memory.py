@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from web.messages import Belief, Goal, PoseCellLayer, Snapshot
+from web.messages import Belief, Goal, PoseCellLayer, Snap, Snapshot
 from web.panel.part import Content
-from web.panel.words import clock, number, often, table, thousands
+from web.panel.words import clock, counted, number, often, percent, table, thousands
 
 LOG = 8
 SNAP_KINDS = ("snap", "kidnap", "recovered", "lost")
@@ -22,6 +22,7 @@ def memory(snapshot: Snapshot) -> Content:
         _attractor(cells),
         _goal(snapshot.goal),
         _log(snapshot),
+        *_causes(cells.last_snap),
     ]
     return Content({"tables": tables})
 
@@ -105,6 +106,21 @@ def _log(snapshot: Snapshot) -> dict[str, Any]:
     snaps = [event for event in snapshot.events if event.kind in SNAP_KINDS][-LOG:]
     rows = [(clock(event.time_s), event.text) for event in reversed(snaps)]
     return table("Snaps", rows, _no_snaps(snapshot))
+
+
+def _causes(snap: Snap | None) -> list[dict[str, Any]]:
+    """The links that made the last snap: views, their looks, and what they put where the snap has led."""
+    if snap is None:
+        return []
+    rows = [
+        (
+            f"view {cause.view}",
+            f"{counted(cause.looks, 'look', 'looks')}, {percent(cause.share)} of the injected activity; "
+            f"{counted(cause.links, 'link', 'links')} there, up to {cause.strongest:.2f}; learnt {cause.age_s:.0f} s before",
+        )
+        for cause in snap.causes
+    ]
+    return [table(f"Views that made the snap of {clock(snap.time_s)}", rows, "none: no view put activity there")]
 
 
 def _no_snaps(snapshot: Snapshot) -> str:

@@ -16,7 +16,7 @@ class RouteParams:
         source="ours",
     )  # fmt: skip
     goal_place_m: float = param(
-        0.3, unit="m", low=0.0, high=5.0,
+        0.2, unit="m", low=0.0, high=5.0,
         meaning="all experiences within this of the one nearest to a click stand for its place; 0 = that one only",
         source="B 3.6; value ours",
     )  # fmt: skip

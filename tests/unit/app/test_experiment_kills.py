@@ -7,6 +7,7 @@ import random
 import signal
 import subprocess
 import time
+from functools import partial
 from pathlib import Path
 
 import psutil
@@ -32,9 +33,7 @@ def test_fifty_kills_lose_nothing(tmp_path: Path) -> None:
         for victim in victims:
             if rng.random() < 0.7:  # else at any moment, also while it begins
                 wanted = kept_by(store) + rng.randint(1, 30)
-                wait_until(
-                    lambda wanted=wanted, command=command: kept_by(store) >= wanted or dead(command), "there are more"
-                )
+                wait_until(partial(_has_done, store, wanted, command), "there are more")
             time.sleep(rng.uniform(0.0, MOST_WAIT_S))
             while (pid := command.pid if victim == "client" else worker_of(command.pid, rng)) is None or dead(command):
                 if dead(command):  # it has done all: there shall be more
@@ -53,6 +52,10 @@ def test_fifty_kills_lose_nothing(tmp_path: Path) -> None:
 
 def kept_by(store: Store) -> int:
     return len(store.of_experiment("small"))
+
+
+def _has_done(store: Store, wanted: int, command: subprocess.Popen[str]) -> bool:
+    return kept_by(store) >= wanted or dead(command)
 
 
 def dead(command: subprocess.Popen[str]) -> bool:

@@ -9,8 +9,10 @@ import pytest
 
 from app.experiments.outcome import Outcome
 from app.experiments.store import Store
+from app.experiments.stored_trial import StoredTrial
+from app.experiments.summary import summarise
 from app.gallery.gallery import StoredGallery
-from app.gallery.results import EARLIER, QUICK
+from app.gallery.results import EARLIER, PUBLISHED, QUICK
 from app.trials.chosen import chosen_trial, first_levels
 from app.trials.course import Moment
 from app.trials.experiment import find_experiment
@@ -92,6 +94,19 @@ def test_short_trials_and_those_of_an_earlier_version_are_shown_only_for_want_of
     monkeypatch.setattr("app.gallery.results.code_version", lambda: "later")
     assert results(store).note == EARLIER
     assert [dot.good for dot in cell(results(store), ["0 %", "64 x 64"]).dots] == [3]
+
+
+def test_for_want_of_trials_the_programs_own_results_are_shown(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    published = summarise(
+        TABLE, [StoredTrial("a", "ours", ("0 %", "64 x 64"), 1, {"goals": 3.0, "reached": 3.0}, 1.0, "")]
+    )
+    monkeypatch.setattr("app.gallery.gallery.published_cells", lambda _name: published)
+    found = results(store)
+    one = cell(found, ["0 %", "64 x 64"])
+    assert (found.note, one.n, one.shade, one.dots) == (PUBLISHED, 1, 1.0, [])
+    assert one.words.startswith("100 %")
+    store.add([ended(trial(1), 0)])
+    assert (results(store).note, cell(results(store), ["0 %", "64 x 64"]).shade) == ("", 0.0)
 
 
 def test_a_trial_that_failed_is_no_dot(store: Store) -> None:

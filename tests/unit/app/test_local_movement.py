@@ -109,6 +109,20 @@ def test_echoes_are_carried_along_and_forgotten(interpreted: bool, monkeypatch: 
     assert local.free_way(0.0, NEAR) == pytest.approx(1.6)
 
 
+@pytest.mark.parametrize("rate", [1, 2, 5, 10, 20, 60])
+def test_echoes_are_remembered_for_as_long_at_every_rate(rate: int) -> None:
+    local = LocalMovement(np.array([0.0]), 3.0)
+    near, nothing, still = np.array([0.8], np.float32), np.array([5.0], np.float32), Odometry(0.0, 0.0, 1 / rate)
+    for _ in range(rate):
+        local.sense(near, still, USUAL)
+    known = []
+    for _ in range(4 * rate):
+        local.sense(nothing, still, USUAL)
+        known.append(local.free_way(0.0, USUAL) < 1.0)
+    assert sum(known) / rate == pytest.approx(3.0, abs=0.11 + 1 / rate)
+    assert known == sorted(known, reverse=True)
+
+
 @pytest.mark.parametrize("interpreted", [False, True])
 def test_the_gap_beside_the_point_is_headed_for(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """The map has the point half a metre beside a door: the robot heads for the door, not for the jamb."""

@@ -86,9 +86,9 @@ def test_in_the_middle_of_a_route() -> None:
     assert session.pilot.goal is not None
 
 
-@pytest.mark.parametrize("place_m", [0.3, 3.0])
+@pytest.mark.parametrize("place_m", [0.2, 5.0])
 def test_on_the_way_to_a_place_of_many_experiences(place_m: float) -> None:
-    session = driven("office", 300)
+    session = driven("office", 900)
     session.set_parameter("pilot.goal_place_m", place_m)
     session.tag("here")
     session.set_goal(0.0, 0.0)

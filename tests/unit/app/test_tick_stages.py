@@ -168,3 +168,13 @@ def test_the_parts_of_a_tick_are_timed_apart() -> None:
     told = session.stopwatch.mean_and_worst_ms
     assert tuple(told) == PARTS
     assert all(0 < mean <= worst for mean, worst in told.values())
+
+
+def test_between_two_beats_a_tick_has_one_stage() -> None:
+    session = explored(1, Config().with_values({"robot.sensor_rate_hz": 20}))
+    between = session.brain.beats.due(session.frame.dt) == 0
+    for _ in range(2):
+        walk, _ = recorded(session)
+        names = [stage.name for stage in walk.told.stages]
+        assert names == (["image"] if between else list(TITLES))
+        between = not between

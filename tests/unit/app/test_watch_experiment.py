@@ -7,6 +7,8 @@ from collections.abc import Callable
 
 import pytest
 
+from app.commands.experiments import ALTERS, ENDS
+from app.commands.table import COMMANDS
 from app.engine_thread import EngineThread
 from app.trials.chosen import chosen_trial
 from app.trials.experiment import find_experiment
@@ -69,6 +71,15 @@ def test_a_trial_of_another_version_is_told() -> None:
     assert not [event for event in engine.run.event_log.events if event.kind == "warning"]
     tell(engine, type="watch_experiment", experiment="table", quick=True, trial="0" * 16)
     assert "the program has changed" in engine.run.event_log.events[-1].text
+
+
+def test_of_every_command_it_is_known_what_it_does_to_a_trial() -> None:
+    leaves = {
+        m.Tag, m.Untag, m.Pause, m.Resume, m.Step, m.StepStage, m.SetSpeed, m.Reset, m.Inspect, m.WatchExperiment,
+    }  # fmt: skip
+    groups = [set(ENDS), set(ALTERS), leaves]
+    assert set.union(*groups) == set(COMMANDS)
+    assert sum(map(len, groups)) == len(COMMANDS)
 
 
 def test_the_one_that_is_watched_begins_again_by_its_id() -> None:

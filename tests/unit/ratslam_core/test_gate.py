@@ -151,3 +151,12 @@ def test_so_many_different_views_must_agree(seen: list[int], views: int, needed:
     ready = [k + 1 >= needed and len(set(seen[: k + 1])) >= views for k in range(len(seen))]
     first = ready.index(True) if True in ready else len(seen)
     assert believed[: first + 1] == ready[: first + 1]
+
+
+def test_a_sight_that_lasts_counts_for_several() -> None:
+    gate = Gate(P)
+    gate.beats = 5
+    assert [gate.believes(HERE, THERE, 12, 7) for _ in range(3)] == [False, False, True]
+    gate.believes(HERE, THERE, 12, 7)
+    gate.doubt()
+    assert gate.sights == 0

@@ -171,3 +171,18 @@ def test_it_is_found_again_just_when_it_was_seen_often_enough(known: int, steps:
         assert detector.kidnapped
         detector.settle(True, known)
     assert not detector.kidnapped
+
+
+def test_in_more_time_driving_explains_more() -> None:
+    """A change that tells of a kidnap within a tenth of a second is nothing unusual after a second."""
+    params = KidnapParams(usual_times=0.0, time_power=0.3)
+    for beats, limit in ((1, 1.0), (2, 2**0.3), (10, 10**0.3)):
+        for change, noticed in ((0.999 * limit, False), (1.001 * limit, True)):
+            detector = KidnapDetector(params, LocalViewParams())
+            assert detector.observe(change, None, beats) is noticed
+    usual = KidnapDetector(params, LocalViewParams())
+    usual.observe(0.0, None, 10)
+    often = KidnapDetector(params, LocalViewParams())
+    for _ in range(10):
+        often.observe(0.0, None)
+    assert usual._usual == pytest.approx(often._usual)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from disk import encode
 from ratslam_core import ExperienceMapParams, LocalViewParams, PoseCells, RatSlamParams, Recognition
 from ratslam_core.visual_association import VisualAssociation
 from tests.unit.ratslam_core import literal
@@ -93,6 +94,23 @@ def test_a_view_injects_from_the_moment_it_is_as_old_as_rest() -> None:
     assert amounts == pytest.approx([0, 0, 0, 0, 0.01, 0, 0.01], abs=1e-6)
     learnt = association.links.of(0)[1].sum()
     assert learnt == pytest.approx(0.02, rel=1e-3)  # when it was recruited, and when it injected
+
+
+def test_what_was_injected_is_told_and_is_no_part_of_the_state() -> None:
+    association, pose_cells = VisualAssociation(LocalViewParams(rest=0.0, learn_first=False)), PoseCells()
+    injected(association, seen(0, True), pose_cells)
+    for _ in range(3):
+        more = injected(association, seen(0), pose_cells)
+        told = association.injection
+        assert told is not None
+        assert told.view == 0
+        assert float(told.values.sum(dtype=np.float64)) == pytest.approx(more, abs=1e-6)
+        assert set(told.cells.tolist()) <= set(association.links.of(0)[0].tolist())
+    assert association.age_s(0) == pytest.approx(1.5)
+    before = encode(association).digest()
+    injected(association, seen(-1), pose_cells, 1e-300)
+    assert association.injection is None
+    assert encode(association).digest() == before
 
 
 def test_nothing_seen_changes_nothing() -> None:

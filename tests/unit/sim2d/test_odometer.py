@@ -31,6 +31,17 @@ def test_random_error_has_the_declared_size() -> None:
     assert got.mean(axis=0) == pytest.approx([0.5, 1.0], rel=0.005)
 
 
+@pytest.mark.parametrize("rate", [1, 2, 5, 10, 20, 30, 60])
+def test_noise_adds_up_alike_at_every_rate(rate: int) -> None:
+    """Over four seconds the way is wrong by as much, whether it is reported in few pieces or in many."""
+    rng = np.random.default_rng(2)
+    params = SimParams(sensor_rate_hz=rate, odometry_scale_error=0.0, gyro_bias=0.0)
+    ways = [sum(report(0.5, 1.0, params, rng)[0] / rate for _ in range(4 * rate)) for _ in range(2000)]
+    one = 0.05 * 0.5 * 0.1  # standard deviation of a tenth of a second, m
+    assert np.std(ways) == pytest.approx(one * math.sqrt(40), rel=0.06)
+    assert np.mean(ways) == pytest.approx(2.0, rel=0.002)
+
+
 def test_standing_wheels_give_no_counts() -> None:
     rng = np.random.default_rng(0)
     assert report(0.0, 0.0, SimParams(), rng) == (0.0, 0.0)

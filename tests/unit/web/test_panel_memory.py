@@ -9,7 +9,7 @@ import pytest
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.panel_page import Page, words_of
-from web.messages import Belief, Event, Goal, Pose, Snapshot
+from web.messages import Belief, Event, Goal, Pose, Snap, SnapCause, Snapshot
 from web.panel.panel import Panel
 from web.switches import Switches
 
@@ -47,6 +47,23 @@ def test_the_memory_tells_packets_goal_and_snaps_with_their_units(page: Page) ->
     assert "'3.2 m'" in words
     assert "('1:05', 'snapped 5.6 m')".replace("(", "[").replace(")", "]") in words
     assert "goal set" not in words
+
+
+def test_the_memory_tells_which_links_made_the_last_snap(page: Page) -> None:
+    snapshot = fake_snapshot(430)
+    snap = Snap(65.0, *[snapshot.pose_cells.packets[0]] * 2, (SnapCause(312, 7, 1.2, 0.41, 90, 0.02, 61.3),))
+    words = memory(page, replace(snapshot, pose_cells=replace(snapshot.pose_cells, last_snap=snap)))
+    assert "Views that made the snap of 1:05" in words
+    assert "view 312" in words
+    assert "7 looks, 41 % of the injected activity; 90 links there, up to 0.02; learnt 61 s before" in words
+    bare = replace(snap, causes=())
+    words = memory(page, replace(snapshot, pose_cells=replace(snapshot.pose_cells, last_snap=bare)))
+    assert "none: no view put activity there" in words
+
+
+def test_the_memory_tells_of_how_many_experiences_the_goal_is_one(page: Page) -> None:
+    goal = Goal(7, 1.0, 2.0, "tracking", 12.4, 3.21, np.zeros((0, 2)), np.zeros(0), np.zeros((4, 2), np.float32))
+    assert "#7 or 3 others" in memory(page, replace(fake_snapshot(430), goal=goal))
 
 
 @pytest.mark.parametrize(

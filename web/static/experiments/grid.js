@@ -5,6 +5,8 @@ import { make } from "../elements/elements.js";
 import { dotFace, dotWords, engineWords, firstEngine, lookOf, rowsOf, settingWords } from "../model/experiments.js";
 import { ended } from "../model/sentences.js";
 
+const PLAYS = " A dot plays its trial from the moment that decided it.";
+
 export class Grid {
   /** @param {(wish: WatchExperiment) => void} watch */
   constructor(watch) {
@@ -111,9 +113,9 @@ export class Grid {
       button.setAttribute("aria-pressed", String(button.dataset.levels === JSON.stringify(cell.levels)));
     $("cell-title").textContent = [...cell.levels, engineWords(this.engine)].join(", ");
     $("cell-words").textContent = cell.n
-      ? `${results.score}: ${cell.words}, ${count(cell.n)}. A dot plays its trial from the moment that decided it.`
+      ? `${results.score}: ${cell.words}, ${count(cell.n)}.${cell.dots.length ? PLAYS : ""}`
       : "";
-    $("cell-none").hidden = cell.n > 0;
+    $("cell-none").hidden = cell.dots.length > 0;
     $("cell-none").textContent = `No trial of this was run here yet: ratslam experiment ${card.name} runs them all.`;
     $("cell-dots").replaceChildren(...cell.dots.map((dot) => this.dot(cell, dot, results)));
   }

@@ -12,7 +12,7 @@ from web.viewer.primitives.labels import Pill, add_mesh
 from web.viewer.primitives.palette import Palette
 
 HEIGHT = 1.5
-DOT, DOT_Z, DOT_CORNERS = 0.06, 0.062, 10
+DOT, DOT_Z, DOT_CORNERS = 0.085, 0.09, 12
 
 
 class GoalFlag:

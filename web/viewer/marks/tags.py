@@ -11,7 +11,7 @@ from web.viewer.primitives.labels import Pill, add_mesh
 from web.viewer.primitives.palette import Palette
 
 RING, RING_WIDTH, RING_Z = 0.14, 0.05, 0.1
-PILL, ABOVE, PILL_Z = 0.4, 0.5, 0.28
+PILL, BELOW, PILL_Z = 0.4, 0.5, 0.2
 
 
 class TagMarks:
@@ -34,7 +34,7 @@ class TagMarks:
                 self._add(k)
             self._rings[k].position = (x, y, 0.0)
             self._rings[k].visible = True
-            self._pills[k].show(name, self._palette.sheet, (x, y + ABOVE, PILL_Z))
+            self._pills[k].show(name, self._palette.sheet, (x, y - BELOW, PILL_Z))
         for k in range(len(names), len(self._rings)):
             self._rings[k].visible = False
             self._pills[k].hide()

@@ -1,0 +1,55 @@
+"""IROS 2005 V.D, point B: of two ways of one length, the robot takes the one that it could drive quickly.
+
+In the world `two-goals` the wheels slip on the lower way. The robot is driven round both ways in both directions and then
+goes from goal to goal by itself.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.config import Config
+from app.session import Session
+from app.trials.course import Course
+from app.trials.steps import Drive, Tag, Visit
+from sim2d import load_world
+
+Place = str | tuple[float, float]
+ROUND: list[Place] = [
+    (20.0, 7.4), (18.2, 8.8), (5.8, 8.8), (4.0, 7.4), (2.2, 6.0), (4.0, 4.6), (5.8, 3.2), (18.2, 3.2), (20.0, 4.6), (21.8, 6.0),
+]  # fmt: skip
+BACK: list[Place] = [*ROUND[-2::-1], ROUND[-1]]
+MIDDLE_Y = 6.0
+
+
+def ways(seed: int, slow_zones: bool) -> tuple[Course, dict[str, float]]:
+    """The course when it is over, and how high (y, m) the robot drove in the middle of each of its trips."""
+    session = Session(load_world("two-goals"), seed, Config().with_values({"office.slow_zones": slow_zones}))
+    course = Course(
+        session,
+        [
+            Tag(do="tag", places=["goal 1", "goal 2"], within_m=1.5),
+            Drive(do="drive", path=ROUND, laps=2, speed=0.36),
+            Drive(do="drive", path=BACK, laps=2, speed=0.36),
+            Visit(do="visit", places=["goal 1", "goal 2"], timeout_s=300),
+        ],
+    )
+    heights: dict[str, list[float]] = {"goal 1": [], "goal 2": []}
+    for what in course.ticks():
+        session.tick()
+        truth = session.simulator.truth
+        if what.startswith("on the way to") and 9 < truth.x < 15:
+            heights[what.removeprefix("on the way to ")].append(truth.y)
+    return course, {name: float(np.mean(ys)) for name, ys in heights.items()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_slow_zone_flips_the_choice(seed: int) -> None:
+    slow, heights = ways(seed, slow_zones=True)
+    assert [visit.why for visit in slow.visits] == ["", ""]
+    assert min(heights.values()) > MIDDLE_Y + 1.5  # both trips avoid the slippery floor
+    assert max(visit.time_s for visit in slow.visits) < 80  # the lower way takes more than 100 s
+    _, heights = ways(seed, slow_zones=False)
+    assert min(heights.values()) < MIDDLE_Y - 1.5  # then the lower way is as good, and is taken

@@ -1,0 +1,165 @@
+"""Experiments as files: those that come with the program fit the worlds and parameters, and wrong ones are refused clearly."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from app.config import Config
+from app.trials.experiment import (
+    Experiment,
+    catalogue,
+    duration_s,
+    find_experiment,
+    names,
+    read_experiment,
+    shortened,
+)
+from app.trials.steps import Drive, Explore, Repeat, Tour, Visit, Wait
+from ratslam_core.params.additions import ADDITIONS
+
+# The experiments of the four papers, and two of ours.
+ALL = {
+    "hypotheses", "rates", "odometry-alone", "learning-rates", "loop", "campus", "kidnap-turn", "kidnap-far", "snaps",
+    "correction", "biased-loop", "floor", "open-plan", "turn-around", "goal-memory", "two-goals", "faster-way",
+    "arbitration", "table", "trial", "additions", "deliveries",
+}  # fmt: skip
+
+LEAST = """
+name = "mine"
+title = "Mine"
+paper = "none"
+asks = "Does it stand still?"
+found = "Nothing."
+world = "loop"
+[engines.ours]
+[[protocol]]
+do = "wait"
+seconds = 5
+[[scores]]
+label = "map error"
+score = "error_m"
+"""
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_the_catalogue_is_whole() -> None:
+    assert set(names()) == ALL
+    assert len(names()) == len(ALL)
+
+
+@pytest.mark.parametrize("name", sorted(ALL))
+def test_each_experiment_fits_its_worlds_and_parameters(name: str) -> None:
+    experiment = find_experiment(name)
+    assert experiment.asks.endswith("?")
+    assert experiment.found.endswith(".")
+    experiment.check()
+    assert len({trial.id for trial in experiment.make_trials()}) == len(experiment.make_trials())
+
+
+def test_every_addition_is_left_out_once() -> None:
+    axis = next(axis for axis in find_experiment("additions").axes if axis.name == "additions")
+    assert [(level.label, level.set) for level in axis.levels[1:]] == [(f"without {a.name}", a.off) for a in ADDITIONS]
+    assert axis.levels[0].set == {}
+
+
+def test_the_table_is_that_of_the_paper() -> None:
+    table = find_experiment("table")
+    assert [len(axis.levels) for axis in table.axes] == [6, 4]
+    assert table.trials == 10
+    assert len(table.make_trials(["paper"])) == 240
+    sizes = {trial.values["pose_cells.n_x"] for trial in table.make_trials(["paper"], 1)}
+    assert sizes == {64, 32, 16, 8}
+
+
+def test_the_least_file_is_an_experiment(tmp_path: Path) -> None:
+    experiment = read_experiment(written(tmp_path, LEAST))
+    trials = experiment.make_trials()
+    assert [trial.seed for trial in trials] == [1, 2, 3, 4, 5]
+    assert {trial.levels for trial in trials} == {()}
+    assert experiment.seconds() == 5.0
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right", "message"),
+    [
+        ('do = "wait"', 'do = "fly"', "protocol.0.*fly"),
+        ("seconds = 5", "seconds = -5", "protocol.0.wait.seconds: .*greater than 0"),
+        ('score = "error_m"', "", "score 'map error': give either score = NAME or rate"),
+        ('name = "mine"', 'name = "My own"', "name: .*pattern"),
+        ("[engines.ours]", "[engines.mine]", "engines.mine"),
+        ('title = "Mine"', 'titel = "Mine"', "title: Field required"),
+        ("seconds = 5", "seconds = ", "not valid TOML"),
+        ("[engines.ours]", 'measures = ["beauty"]\n[engines.ours]', "measures: unknown 'beauty'; expected one of: arbitration"),
+    ],
+)  # fmt: skip
+def test_a_wrong_file_is_refused_by_name_place_and_reason(tmp_path: Path, wrong: str, right: str, message: str) -> None:
+    path = written(tmp_path, LEAST.replace(wrong, right, 1))
+    with pytest.raises(ValueError, match=rf"^{re.escape(str(path))}: .*{message}"):
+        read_experiment(path)
+
+
+def test_what_does_not_exist_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"unknown experiment 'tabel'; expected .* one of: hypotheses"):
+        find_experiment("tabel")
+    with pytest.raises(ValueError, match="No such file"):
+        read_experiment(tmp_path / "none.toml")
+    parameter = LEAST.replace("[engines.ours]", '[engines.ours]\nset = { "pose_cells.size" = 3 }')
+    with pytest.raises(ValueError, match=r"unknown parameter 'pose_cells.size'"):
+        read_experiment(written(tmp_path, parameter)).check()
+
+
+def test_a_trial_is_named_by_what_decides_it() -> None:
+    experiment = Experiment.model_validate(find_experiment("table").model_dump())
+    trials = experiment.make_trials(trials=2)
+    again = {trial.id: trial for trial in experiment.make_trials(trials=2)}
+    assert all(again[trial.id] == trial for trial in trials)
+    assert len(again) == 2 * 24 * 2
+    quick = experiment.make_trials(trials=2, quick=True)
+    assert not {trial.id for trial in quick} & set(again)
+
+
+def test_levels_go_over_engines_and_these_over_the_experiment() -> None:
+    experiment = find_experiment("table")
+    cell = experiment.cells()[-1]
+    values = experiment.values("paper", cell)
+    assert values["local_view.false_positives"] == 0.1
+    assert values["pose_cells.n_x"] == 8
+    assert values["local_view.front_end"] == "scene numbers"
+    assert values["goal_memory.enabled"] is False
+    Config().with_values(values)
+    with pytest.raises(ValueError, match=r"arbitration has no engine 'paper'; it has: ours"):
+        find_experiment("arbitration").values("paper", ())
+
+
+def test_a_level_may_have_a_world_of_its_own() -> None:
+    trials = find_experiment("odometry-alone").make_trials(trials=1)
+    assert {(trial.levels[0][:1], trial.world) for trial in trials} == {("A", "corridors"), ("B", "campus")}
+
+
+def test_quick_is_the_same_protocol_made_short() -> None:
+    for experiment in catalogue():
+        short, full = experiment.make_trials(quick=True), experiment.make_trials()
+        assert len(short) < len(full) or len(full) <= 2
+        assert [step.do for step in short[0].protocol] == [step.do for step in full[0].protocol]
+        assert experiment.seconds(quick=True) <= 60.0 or experiment.seconds(quick=True) < 0.3 * experiment.seconds()
+        assert all(trial.quick for trial in short)
+
+
+def test_each_step_can_be_made_short() -> None:
+    explore = Explore(do="explore", minutes=10)
+    assert shortened(explore, 0.1) == Explore(do="explore", minutes=1.0)
+    assert shortened(Repeat(do="repeat", times=4, steps=[explore]), 0.5) == Repeat(
+        do="repeat", times=2, steps=[Explore(do="explore", minutes=5.0)]
+    )
+    assert shortened(Tour(do="tour", goals=11, visits=100), 0.05) == Tour(do="tour", goals=5, visits=5)
+    assert shortened(Drive(do="drive", path=[(0, 0)], laps=3), 0.01).laps == 1  # type: ignore[union-attr]
+    assert shortened(Visit(do="visit", places=["a"], timeout_s=100), 0.5).timeout_s == 50  # type: ignore[union-attr]
+    assert duration_s(shortened(Wait(do="wait", seconds=10), 0.2)) == 2.0

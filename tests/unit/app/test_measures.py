@@ -1,0 +1,137 @@
+"""What experiments measure: each from a run in which the right answer is known."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from app.config import Config, Value
+from app.session import Session
+from app.trials.course import Course
+from app.trials.measures import MEASURES, Measure
+from app.trials.scores import scores_of
+from app.trials.steps import Drive, Explore, Kidnap, Move, Step, Tag, Visit
+from app.trials.trial import watched
+from sim2d import load_world
+
+IDEAL: dict[str, Value] = {"robot.odometry_noise": 0.0, "robot.gyro_bias": 0.0, "robot.odometry_scale_error": 0.0}
+LAPS = ["south-east corner", "north-east corner", "north-west corner", "south-west corner"]
+
+
+def measured(
+    names: list[str], *steps: Step, world: str = "loop", seed: int = 5, **values: Value
+) -> tuple[dict[str, float], Course]:
+    config = Config().with_values({**IDEAL, **{name.replace("__", "."): value for name, value in values.items()}})
+    course = Course(Session(load_world(world), seed, config), steps)
+    measures: list[Measure] = [MEASURES[name](course) for name in names]
+    watched(course, measures)
+    scores: dict[str, float] = {}
+    for measure in measures:
+        scores.update(measure.scores())
+    return scores, course
+
+
+def test_measuring_changes_nothing() -> None:
+    steps = Explore(do="explore", minutes=0.5), Kidnap(do="kidnap"), Explore(do="explore", minutes=0.5)
+    _, alone = measured([], *steps)
+    _, with_all = measured(list(MEASURES), *steps)
+    assert alone.session.state_hash() == with_all.session.state_hash()
+
+
+def test_without_errors_the_packet_ends_where_the_moves_lead() -> None:
+    square = Move(do="move", moves=[(0.2, 0, 5), (0, 45, 2), (0.2, 0, 5), (0, -45, 2)])
+    scores, _ = measured(["end point"], square, local_view__enabled=False)
+    assert scores["end_off_m"] < 0.1
+    off, _ = measured(["end point"], square, local_view__enabled=False, robot__odometry_scale_error=0.5)
+    assert off["end_off_m"] == pytest.approx(0.5 * math.hypot(1.0, 1.0), abs=0.15)
+
+
+def test_the_turn_of_the_cells_is_that_of_the_robot_less_the_bias() -> None:
+    turn = Move(do="move", moves=[(0, 30, 10)])
+    right, _ = measured(["turn of the cells"], turn, local_view__enabled=False)
+    assert right["turned_deg"] == pytest.approx(300, abs=5)
+    assert right["turn_kept"] == pytest.approx(1.0, abs=0.03)
+    biased, _ = measured(["turn of the cells"], turn, local_view__enabled=False, pose_cells__yaw_bias=-math.radians(6))
+    assert biased["turn_kept"] == pytest.approx(0.8, abs=0.03)
+
+
+def test_a_robot_that_drove_everywhere_has_covered_the_floor() -> None:
+    none, _ = measured(["covered"], Move(do="move", moves=[(0, 10, 1)]))
+    half, _ = measured(["covered"], Drive(do="drive", path=LAPS[:2]))
+    full, _ = measured(["covered"], Drive(do="drive", path=[*LAPS, "home"]))
+    assert none["covered"] < half["covered"] < full["covered"]
+    assert full["covered"] > 0.95
+
+
+def test_ways_out_and_back_lie_together_where_the_map_is_right() -> None:
+    there_and_back = Drive(do="drive", path=["south-east corner", "north-east corner", "south-east corner", "home"])
+    scores, course = measured(["ways apart"], there_and_back)
+    assert 0.0 < scores["ways_apart_m"] < 0.6
+    map_ = course.session.brain.experience_map
+    made = course.session.evaluation.births(len(map_))
+    pairs = [
+        math.dist(map_.poses[i, :2], map_.poses[j, :2])
+        for i in range(len(map_))
+        for j in range(i)
+        if math.dist(made[i, :2], made[j, :2]) < 0.5
+        and abs(math.remainder(made[i, 2] - made[j, 2], math.tau)) > 2.5
+    ]  # fmt: skip
+    assert scores["ways_apart_m"] == pytest.approx(float(np.mean(pairs)))
+    assert scores["ways_apart_at_most_m"] == pytest.approx(max(pairs))
+
+
+def test_the_way_taken_is_that_of_the_last_visit() -> None:
+    steps = (
+        Tag(do="tag", places=["north-west corner", "north-east corner"]),
+        Drive(do="drive", path=[*LAPS, *LAPS, "north-east corner"]),
+        Visit(do="visit", places=["north-east corner", "north-west corner"], timeout_s=120),
+    )
+    scores, course = measured(["way taken"], *steps)
+    path = course.session.evaluation.path[round(course.visits[-1].began_s * 10) :, 1]
+    middle = sum(course.session.world.bounds[1::2]) / 2
+    assert scores["lower_way"] == pytest.approx(np.mean(path < middle))
+
+
+def test_consistency_is_the_longest_time_off() -> None:
+    drive = Drive(do="drive", path=LAPS)
+    right, _ = measured(["consistency"], drive)
+    assert (right["longest_off_s"], right["farthest_off_m"]) == (0.0, 0.0)
+    carried = Kidnap(do="kidnap", place="north-west corner", heading_deg=-90)
+    wrong, _ = measured(["consistency"], drive, carried, Move(do="move", moves=[(0, 0, 3)]), kidnap__enabled=False,
+                        local_view__enabled=False)  # fmt: skip
+    assert wrong["longest_off_s"] == pytest.approx(3.0, abs=0.15)
+    assert wrong["farthest_off_m"] == pytest.approx(4.5, abs=0.4)
+
+
+def test_the_chosen_movement_ends_nearer_to_the_route_than_the_others() -> None:
+    scores, _ = measured(
+        ["arbitration"],
+        Tag(do="tag", places=["north-west corner"]),
+        Drive(do="drive", path=[*LAPS, *LAPS]),
+        Visit(do="visit", places=["north-west corner"], timeout_s=120),
+    )
+    assert scores["chosen_off_m"] < scores["others_off_m"]
+
+
+def test_false_and_true_snaps_are_all_snaps() -> None:
+    steps = Drive(do="drive", path=LAPS, laps=3), Kidnap(do="kidnap", turn_deg=180), Drive(do="drive", path=LAPS)
+    scores, course = measured(["false snaps"], *steps)
+    assert 1 <= scores["false_snaps"] + scores["true_snaps"] <= course.session.brain.relocalisations
+
+
+def test_scores_are_those_of_the_judges() -> None:
+    _, course = measured([], Explore(do="explore", minutes=1), Kidnap(do="kidnap"), Explore(do="explore", minutes=1))
+    scores, evaluation = scores_of(course), course.session.evaluation
+    assert scores["kidnaps"] == 1.0
+    assert scores["recovered"] == float(evaluation.kidnaps[0].after_s is not None)
+    assert scores["error_m"] == evaluation.errors(course.session.brain.experience_map)[0]
+    assert "goals" not in scores
+    assert all(math.isfinite(value) for value in scores.values())
+
+
+def test_routes_of_the_goal_memory_stay_when_a_weight_changes_by_a_fifth() -> None:
+    scores, _ = measured(["goal memory routes"], Drive(do="drive", path=[*LAPS, *LAPS[:2]]))
+    assert scores["route_cells"] > 3
+    assert scores["route_off_m"] < 0.5
