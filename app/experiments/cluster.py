@@ -8,10 +8,13 @@ import multiprocessing
 import os
 import signal
 from collections.abc import Generator
-from typing import Any, cast
+from importlib import import_module
+from pathlib import Path
+from typing import Any
 
 from app.trials.code_version import code_version
 
+_ROOT = Path(__file__).parents[2]
 HERE = "127.0.0.1"
 FIND_S = 20.0  # how long to look for a scheduler
 JOIN_S = 60.0  # how long to wait for its first worker
@@ -32,12 +35,22 @@ def connected_to(scheduler: str | None, workers: int | None) -> Generator[Any]:
 
     ValueError: nobody answers there, or the workers run another version of this program.
     """
+    _quiet()
     if scheduler is not None:
         with _cluster_that_exists(scheduler) as client:
             yield client
     else:
         with _cluster_of_our_own(workers or cores()) as client:
             yield client
+
+
+def _quiet() -> None:
+    """What goes wrong is told by the runner; connections that end with their workers are no news."""
+    import distributed.config  # makes the handlers  # noqa: F401 # pyright: ignore[reportUnusedImport]
+
+    logger = logging.getLogger("distributed")
+    for one in (logger, *logger.handlers):
+        one.setLevel(logging.CRITICAL)
 
 
 def cores() -> int:
@@ -76,11 +89,28 @@ def _fork_ready_workers() -> None:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return
     import dask.config
-    from distributed import utils
 
+    utils: Any = import_module("distributed.utils")  # these have no types
+    server: Any = import_module("multiprocessing.forkserver")
     dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"})
-    context: Any = cast(Any, utils).get_mp_context()
-    context.set_forkserver_preload(["distributed", "app.experiments.batch"])
+    utils.get_mp_context().set_forkserver_preload(["distributed", "app.experiments.batch"])
+    with _environment(PYTHONPATH=str(_ROOT), PYTHONSAFEPATH="1", **_ONE_THREAD):  # this program, wherever it is called
+        server.ensure_running()
+
+
+@contextlib.contextmanager
+def _environment(**values: str) -> Generator[None]:
+    """For the time of the block, these variables have these values."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
 
 
 async def _end_workers(nannies: list[Any]) -> None:
