@@ -68,6 +68,7 @@ class Visited:
     """How a visit ended. why: empty if the goal was reached."""
 
     name: str
+    experience: int | None  # that the robot was sent to; None: there was none
     reached: bool
     began_s: float
     time_s: float
@@ -207,7 +208,7 @@ class Course:
         tag = self.tags[name]
         tag.passed = True  # what stands for a place does not change once the robot is sent there
         if tag.experience is None:
-            self._visited(name, (tag.x, tag.y), "never approached while exploring", self._beginning)
+            self._visited(name, None, (tag.x, tag.y), "never approached while exploring", self._beginning)
             return
         yield from self._go(name, tag.experience, (tag.x, tag.y), step)
 
@@ -228,20 +229,24 @@ class Course:
         session.pilot.set_goal(experience)
         while session.pilot.goal_state != (experience, "arrived"):
             if session.time_s - beginning[0] >= step.timeout_s - 1e-9:
-                self._visited(name, place, f"not reached in {step.timeout_s:g} s", beginning)
+                self._visited(name, experience, place, f"not reached in {step.timeout_s:g} s", beginning)
                 return
             yield from self._tick(f"on the way to {name}")
         miss_m = math.dist(self._here, place)
-        self._visited(name, place, "" if miss_m <= step.near_m else f"arrived {miss_m:.2f} m away", beginning)
+        self._visited(
+            name, experience, place, "" if miss_m <= step.near_m else f"arrived {miss_m:.2f} m away", beginning
+        )
 
     @property
     def _beginning(self) -> tuple[float, float]:
         return self.session.time_s, self.session.evaluation.path_m
 
-    def _visited(self, name: str, place: tuple[float, float], why: str, beginning: tuple[float, float]) -> None:
+    def _visited(
+        self, name: str, experience: int | None, place: tuple[float, float], why: str, beginning: tuple[float, float]
+    ) -> None:
         session, (began_s, began_m) = self.session, beginning
         path_m, miss_m = session.evaluation.path_m - began_m, math.dist(self._here, place)
-        self.visits.append(Visited(name, not why, began_s, session.time_s - began_s, path_m, miss_m, why))
+        self.visits.append(Visited(name, experience, not why, began_s, session.time_s - began_s, path_m, miss_m, why))
         self.note(f"{name}: {why or 'reached'}", not why)
 
     def _kidnap(self, step: Kidnap) -> None:

@@ -104,7 +104,7 @@ def placed(poses: _Array, frame: Pose2) -> _Array:
 
 def _goal(course: Course) -> int:
     map_ = course.session.brain.experience_map
-    visited = [course.tags[visit.name].experience for visit in course.visits]
+    visited = [visit.experience for visit in course.visits]
     known = [experience for experience in visited if experience is not None]
     return known[-1] if known else map_.active
 
