@@ -19,8 +19,8 @@ from tests.unit.app.test_experiment_runner import PATIENCE_S, assert_all_right, 
 
 KILLS = 50
 CLIENTS = 8  # of them; it takes longer until a client is at work again
-MORE = 1000  # trials at first, and whenever all are done
-MOST_WAIT_S = 0.6
+MORE = 4000  # trials at first, and whenever all are done
+MOST_WAIT_S = 0.2
 
 
 @pytest.mark.slow
