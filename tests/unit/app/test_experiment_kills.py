@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import random
 import signal
+import sqlite3
 import subprocess
 import time
 from functools import partial
@@ -51,7 +53,8 @@ def test_fifty_kills_lose_nothing(tmp_path: Path) -> None:
 
 
 def kept_by(store: Store) -> int:
-    return len(store.of_experiment("small"))
+    with contextlib.closing(sqlite3.connect(store.path)) as db:  # looked at often: no more than counted
+        return db.execute("SELECT count(*) FROM trials").fetchone()[0]
 
 
 def _has_done(store: Store, wanted: int, command: subprocess.Popen[str]) -> bool:
