@@ -91,9 +91,9 @@ class Course:
     def ticks(self) -> Iterator[str]:
         """What is being done, before each tick."""
         yield from self._all(self.steps)
-        self.note("the end", kind="end")
+        self.mark("the end", kind="end")
 
-    def note(self, words: str, ok: bool | None = None, kind: MomentKind | None = None) -> None:
+    def mark(self, words: str, ok: bool | None = None, kind: MomentKind | None = None) -> None:
         """Write down that something happens now."""
         judged: MomentKind = "step" if ok is None else "reached" if ok else "failed"
         self.moments.append(Moment(self.session.time_s, words, ok, kind or judged))
@@ -142,10 +142,10 @@ class Course:
                 self._kidnap(step)
             case Set():
                 self.session.set_parameters(step.values)
-                self.note(", ".join(f"{name} = {value}" for name, value in step.values.items()))
+                self.mark(", ".join(f"{name} = {value}" for name, value in step.values.items()))
             case Door():
                 self.session.simulator.set_door(step.name, step.open)
-                self.note(f"{step.name} {'opens' if step.open else 'shuts'}")
+                self.mark(f"{step.name} {'opens' if step.open else 'shuts'}")
             case _:
                 raise TypeError(f"nobody carries out {step.do}")
 
@@ -153,7 +153,7 @@ class Course:
         yield what
         for name, tag in self.tags.items():
             if tag.note(self._here, self.session.brain.experience_map.active):
-                self.note(f"{name} is tagged, {tag.away_m:.2f} m from it", kind="tagged")
+                self.mark(f"{name} is tagged, {tag.away_m:.2f} m from it", kind="tagged")
 
     def _for(self, seconds: float, what: str) -> Iterator[str]:
         for _ in range(max(1, round(seconds / self.session.frame.dt))):
@@ -173,9 +173,9 @@ class Course:
     def _judge_kidnap(self) -> None:
         kidnap = self.session.evaluation.kidnaps[-1]
         if kidnap.after_s is None:
-            self.note("not recovered from the kidnap", False)
+            self.mark("not recovered from the kidnap", False)
         else:
-            self.note(
+            self.mark(
                 f"recovered {kidnap.after_s:.1f} s and {kidnap.after_m or 0:.1f} m after the kidnap", True, "recovered"
             )
 
@@ -189,7 +189,7 @@ class Course:
         session, began_s = self.session, self.session.time_s
         while math.dist(self._here, place) > REACHED_M:
             if session.time_s - began_s > PATIENCE_S:
-                self.note(f"({place[0]:g}, {place[1]:g}) could not be driven to, and is left out")
+                self.mark(f"({place[0]:g}, {place[1]:g}) could not be driven to, and is left out")
                 return
             truth = session.simulator.truth
             aside = math.remainder(math.atan2(place[1] - truth.y, place[0] - truth.x) - truth.heading_rad, math.tau)
@@ -247,7 +247,7 @@ class Course:
         session, (began_s, began_m) = self.session, beginning
         path_m, miss_m = session.evaluation.path_m - began_m, math.dist(self._here, place)
         self.visits.append(Visited(name, experience, not why, began_s, session.time_s - began_s, path_m, miss_m, why))
-        self.note(f"{name}: {why or 'reached'}", not why)
+        self.mark(f"{name}: {why or 'reached'}", not why)
 
     def _kidnap(self, step: Kidnap) -> None:
         session, truth = self.session, self.session.simulator.truth
@@ -259,7 +259,7 @@ class Course:
         else:
             x, y, by_chance = self._far_away(step.least_m)
             session.kidnap(x, y, by_chance if heading is None else heading)
-        self.note("kidnapped", kind="kidnap")
+        self.mark("kidnapped", kind="kidnap")
 
     def _far_away(self, least_m: float) -> tuple[float, float, float]:
         for _ in range(_TRIES):

@@ -96,11 +96,13 @@ def told(page: Page, words: str) -> None:
 
 
 def box_of(locator: Locator) -> FloatRect:
-    """Where it is on the page. While the page draws it anew it is nowhere for a moment, so ask until it is there."""
-    end = time.monotonic() + PATIENCE_S
-    while (box := locator.bounding_box()) is None:
-        assert time.monotonic() < end, f"nowhere on the page within {PATIENCE_S:g} s: {locator}"
-        locator.page.wait_for_timeout(30)
+    """Where it rests on the page. While the page draws it anew it is nowhere for a moment, and while a panel opens or closes
+    it moves: so ask until two answers, a frame or two apart, are the same."""
+    end, before = time.monotonic() + PATIENCE_S, None
+    while (box := locator.bounding_box()) is None or box != before:
+        assert time.monotonic() < end, f"at rest nowhere on the page within {PATIENCE_S:g} s: {locator}"
+        before = box
+        locator.page.wait_for_timeout(50)
     return box
 
 

@@ -22,7 +22,7 @@ def test_the_cheapest_candidate_is_the_one_that_was_chosen(seed: int) -> None:
     rng = np.random.default_rng(seed)
     for _ in range(30):
         p = PilotParams(arcs_a_side=int(rng.integers(1, 9)), clearance=float(rng.uniform(0.2, 0.4)))
-        local = LocalMovement(ANGLES, p.echo_ticks)
+        local = LocalMovement(ANGLES, p.echo_s)
         for _ in range(5):
             local.sense(rng.uniform(0.2, 2.5, 8).astype(np.float32), Odometry(0.3, 0.2, 0.1), p)
         speed, yaw_rate = local.towards(float(rng.uniform(-1, 2)), float(rng.uniform(-1, 1)), p)
@@ -35,7 +35,7 @@ def test_the_cheapest_candidate_is_the_one_that_was_chosen(seed: int) -> None:
 
 
 def test_a_candidate_is_an_arc_at_its_speed_and_yaw_rate_and_blocked_where_an_echo_is_too_close() -> None:
-    local = LocalMovement(np.array([0.5]), USUAL.echo_ticks)  # an obstacle ahead on the left
+    local = LocalMovement(np.array([0.5]), USUAL.echo_s)  # an obstacle ahead on the left
     local.sense(np.array([0.5], np.float32), STILL, USUAL)
     local.towards(1.0, 0.0, USUAL)
     asked = local.asked

@@ -118,7 +118,7 @@ def test_what_is_new_recognised_or_silent_is_said() -> None:
     words: dict[str, set[str]] = {name: set() for name in TITLES}
     session = explored(3)
     for k in range(150):
-        for _ in range(600 if k == 30 else 0):
+        for _ in range(3300 if k == 30 else 0):
             session.tick()
         walk, _ = recorded(session)
         for stage in walk.told.stages:
