@@ -22,6 +22,7 @@ def trial_of(pose_cells: int, ambiguity: float, vision: str, engine: EngineName,
     values: Values = {
         **first.values,
         "local_view.front_end": "scene numbers" if vision == "scene" else _CAMERA[engine],
+        "robot.camera": vision == "camera",
         "pose_cells.n_x": pose_cells,
         "pose_cells.n_y": pose_cells,
         "local_view.false_positives": ambiguity * PER_CENT,
