@@ -17,8 +17,8 @@ from typing import Any
 from app.experiments.cluster import connected_to
 from app.experiments.runner import pending, run_trials
 from app.experiments.store import Store
-from app.trials.course import Moment
 from app.trials.experiment import find_experiment
+from app.trials.notes import Moment
 from app.trials.trial import Result, Trial
 
 BAR_MS = 5.0

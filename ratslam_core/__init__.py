@@ -1,6 +1,7 @@
 """RatSLAM after Milford, Wyeth and Prasser (2004-2006): arrays in, arrays out."""
 
 from ratslam_core.brain_file import load_brain, restore_snapshot, save_brain, take_snapshot
+from ratslam_core.experience_map.cells_only import CellsOnly
 from ratslam_core.experience_map.experience_map import ExperienceMap
 from ratslam_core.experience_map.places import HashCollision, MultipleRepresentation, Places, find_places
 from ratslam_core.experience_map.temporal_map import Route, TemporalMap
@@ -26,6 +27,7 @@ from ratslam_core.slam import RatSlam
 from ratslam_core.types import Estimate, Odometry, Packet, Pose2, Recognition, wrap_angle
 
 __all__ = [
+    "CellsOnly",
     "Estimate",
     "ExperienceMap",
     "ExperienceMapParams",

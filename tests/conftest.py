@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator
 
 import pytest
@@ -12,6 +13,10 @@ settings.register_profile("suite", deadline=None, derandomize=True, print_blob=T
 settings.register_profile("hunt", settings.get_profile("suite"), derandomize=False)  # --hypothesis-profile=hunt: others
 settings.register_profile("everyday", settings.get_profile("suite"), max_examples=40)  # of 100
 settings.load_profile("suite")
+
+# A shell lets what it starts in the background ignore Ctrl+C, and so would every program that a test starts.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -42,13 +42,13 @@ def _trial(args: argparse.Namespace) -> int:
     if not 0 <= args.seed < 2**32:
         raise ValueError(f"--seed must be from 0 to {2**32 - 1}, got {args.seed}")
     require_writable("--report", args.report)
-    from app.trials.size_and_ambiguity import report_of, trial_of
+    from app.trials.size_and_ambiguity import SizeAndAmbiguity
     from app.trials.trial import run_trial
 
-    trial = trial_of(args.pose_cells, args.ambiguity, args.vision, args.engine, args.seed)
+    asked = SizeAndAmbiguity(args.pose_cells, args.ambiguity, args.vision, args.engine, args.seed)
     compile_first()
-    result, course = with_progress(20 * 60 + 3 * 40, lambda progress: run_trial(trial, progress))
-    report = report_of(result, course, args)
+    result, course = with_progress(20 * 60 + 3 * 40, lambda progress: run_trial(asked.trial, progress))
+    report = asked.report(result, course)
     write_report(report, args.report, _words(report))
     return 0
 

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.evaluation.alignment import alignment, rmse
+from app.evaluation.earlier_passes import off_earlier_passes
 from app.evaluation.kidnapping import Kidnapping
 from disk import kind
-from ratslam_core import ExperienceMap, Odometry, Pose2
+from ratslam_core import CellsOnly, ExperienceMap, Odometry, Pose2
 from sim2d import Truth
 
 REVISIT_AGE_S = 20.0  # an active experience that was made longer ago than this counts as revisited
@@ -95,8 +96,11 @@ class Evaluation:
         """How far (m, rad) the robot is from where it believes itself to be beside the active experience.
 
         The experience counts as being where it was truly made, so a map that is bent or moves later changes nothing.
-        NaN for an experience that the brain brought with it.
+        NaN for an experience that the brain brought with it. Without a map (ACRA 2004) the robot is where the packet was
+        when it passed here before, NaN on new ground: what the cells hold need not be Cartesian.
         """
+        if isinstance(experiences, CellsOnly):
+            return self._off_passes(self._count, truth, experiences)
         x, y, heading, _ = self._made_at[experiences.active].tolist()
         if math.isnan(x):
             return math.nan, math.nan
@@ -133,20 +137,32 @@ class Evaluation:
         truth, mapped, odometry = self.trajectories(experiences, every)
         return rmse(mapped, truth), rmse(odometry, truth)
 
+    def _off_passes(self, before: int, truth: Truth, experiences: ExperienceMap) -> tuple[float, float]:
+        """How far the robot is from the estimates of the passes in the first so many rows."""
+        here, estimate = Pose2(truth.x, truth.y, truth.heading_rad), experiences.local_pose
+        return off_earlier_passes(self._rows[:before, :3], self._rows[:before, 3:6], here, estimate)
+
     def _judge(self, time_s: float, truth: Truth, experiences: ExperienceMap, way_m: float) -> None:
         revisits = time_s - self._made_at[experiences.active, 3] > REVISIT_AGE_S
         lost = [kidnap for kidnap in self.kidnaps[-1:] if kidnap.after_s is None]
         if not (revisits or lost):
             return
         off = self.belief_off(truth, experiences)
+        revisits = revisits and not math.isnan(off[0])
         if revisits:
             self._revisits += 1
             self._consistent += off[0] <= CONSISTENT_M
         for kidnap in lost:
-            kidnap.note(time_s, way_m, self._knows(kidnap, truth, experiences, off))
+            kidnap.note(time_s, way_m, self._knows(kidnap, time_s, truth, experiences, off))
 
-    def _knows(self, kidnap: Kidnapping, truth: Truth, experiences: ExperienceMap, off: tuple[float, float]) -> bool:
+    def _knows(
+        self, kidnap: Kidnapping, time_s: float, truth: Truth, experiences: ExperienceMap, off: tuple[float, float]
+    ) -> bool:
         """Whether place and heading are right. Place alone is not enough: a robot turned on the spot has not moved."""
+        if isinstance(experiences, CellsOnly):
+            known = round(self._count * kidnap.at_s / time_s)
+            off = self._off_passes(known, truth, experiences)
+            return off[0] <= NEAR_M and off[1] <= NEAR_RAD
         made_s = float(self._made_at[experiences.active, 3])
         if made_s <= kidnap.at_s:
             return off[0] <= NEAR_M and off[1] <= NEAR_RAD

@@ -149,11 +149,21 @@ def _section(experiment: Experiment, run: Mapping[str, Any]) -> str:
 Asked: {experiment.asks}
 
 The paper found: {experiment.found}
-
+{_picture(experiment)}
 {says}
 
 {_table(experiment, cells)}
 {source}"""
+
+
+def _picture(experiment: Experiment) -> str:
+    """The experiment's first figure, if it is among the documentation's pictures."""
+    for suffix in (".svg", ".png"):
+        name = f"pictures/experiments/{experiment.name}{suffix}"
+        if (DOCS / name).exists():
+            title = experiment.figures[0].title if experiment.figures else experiment.title
+            return f"\n![{title}]({name})\n"
+    return ""
 
 
 def _table(experiment: Experiment, cells: list[CellSummary]) -> str:

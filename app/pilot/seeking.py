@@ -4,12 +4,15 @@ Wandering follows walls and crosses at random, as in IROS 2005; nothing in it se
 in this order: back to old ground, if it has been on new ground for long, so that its error cannot grow without bound
 (it dares twice as far each time it came back, since its wheels are then known better); along known ground that is near
 but far by the links, which closes a loop, if `loop_share` is set. Only when nothing of that is left does it wander, and
-go by turns into openings near by and to where it has not been for longest. On an island, as after a kidnap, it looks for
-the rest of its map: it does not go back, but into one opening after the other, and round the posts of doors. It knows
-map, sonars and odometry only.
+go into openings near by; in a large map by turns with where it has not been for longest, since openings alone lead on
+and on into new corridors and close no loop. On an island, as after a kidnap, it looks for the rest of its map: it does
+not go back, but into one opening after the other, round the posts of doors, and near where the island began: perhaps it
+was not carried at all, and then the rest lies there. It knows map, sonars and odometry only.
 test_seeking.py::{test_it_goes_where_open_floor_was_seen, test_far_openings_are_sought_one_after_the_other,
 test_on_new_ground_for_long_it_goes_back, test_it_dares_twice_as_far_each_time_it_comes_back,
-test_with_nothing_new_it_goes_where_it_has_not_been_for_longest, test_on_an_island_it_goes_into_every_opening}.
+test_with_nothing_new_it_goes_where_it_has_not_been_for_longest,
+test_in_a_small_map_every_trip_goes_into_an_opening, test_on_an_island_it_goes_into_every_opening,
+test_on_an_island_it_begins_where_that_began}.
 """
 
 from __future__ import annotations
@@ -128,8 +131,8 @@ class Seeker:
     def _choose(
         self, experiences: ExperienceMap, local: LocalMovement, ranges_m: NDArray[np.float32], p: PilotParams
     ) -> None:
-        """Old ground if the robot has been on new ground for long; else a loop to close; else a far opening; else by turns
-        an opening near by and the place that was not visited for longest."""
+        """Old ground if the robot has been on new ground for long; else a loop to close; else a far opening; else an
+        opening near by, in a large map by turns with the place that was not visited for longest."""
         times = experiences.temporal_map.times_to(experiences.active)
         self._wait_s, self._trip_s, self._into_s, self._there = 0.0, 0.0, -1.0, False
         drift_m = experiences.params.odometry_drift * self.ground.new_m
@@ -144,7 +147,8 @@ class Seeker:
             goal = self._best_far_opening(experiences, local, times, p)
         if goal is None:
             self._trips += 1
-            if searching or self._trips % p.openings_every == 0:
+            small = float(np.max(times, initial=0.0, where=np.isfinite(times))) < p.small_map_s
+            if searching or small or self._trips % p.openings_every == 0:
                 goal = self._nearest_opening(experiences, times, p, p.search_beams if searching else p.opening_beams)
             if goal is None or not searching:
                 self._wait_s = p.seek_after_s
@@ -189,7 +193,11 @@ class Seeker:
         rows, places = rows[reached], places[reached]
         if not len(rows):
             return None
-        best = int(np.argmin(times[rows]))
+        cost = times[rows]
+        if _searching(experiences, p):
+            x, y = experiences.poses[np.argmax(experiences.island_of == experiences.island_of[experiences.active]), :2]
+            cost = cost + p.search_home * np.hypot(places[:, 0] - x, places[:, 1] - y) / p.cruise_speed
+        best = int(np.argmin(cost))
         return self._into(experiences, int(rows[best]), places[best])
 
     def _into(self, experiences: ExperienceMap, goal: int, place: NDArray[np.float64]) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from app.session import Session
-from app.trials.steps import Door, Drive, Kidnap, Repeat, Set, Step, Tag, Visit, Where
+from app.trials.steps import Door, Drive, Kidnap, Repeat, Send, Set, Step, Tag, TagHere, Visit, Where
 from sim2d import World
 
 
@@ -28,15 +28,18 @@ def check_steps(session: Session, steps: Sequence[Step], tagged: frozenset[str] 
             check_steps(session, step.steps, tagged)
         elif isinstance(step, Tag):
             tagged |= set(step.places)
+        elif isinstance(step, TagHere):
+            tagged |= {step.name}
         elif isinstance(step, Set):
             session.config.with_values(step.values)
         elif isinstance(step, Door):
             _check_door(session.world, step.name)
         for where in _places(step):
             place_of(session.world, where)
-        missing = [name for name in step.places if name not in tagged] if isinstance(step, Visit) else []
+        goals = step.places if isinstance(step, Visit) else [step.place] if isinstance(step, Send) else []
+        missing = [name for name in goals if name not in tagged]
         if missing:
-            raise ValueError(f"visit {missing[0]!r}: nothing is tagged so before; tag it first")
+            raise ValueError(f"{step.do} {missing[0]!r}: nothing is tagged so before; tag it first")
 
 
 def _places(step: Step) -> Sequence[Where]:

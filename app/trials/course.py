@@ -7,12 +7,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Literal
 
 from app.session import Session, spread_goals
 from app.trials.checking import check_steps, place_of
-from app.trials.steps import Door, Drive, Explore, Kidnap, Move, Repeat, Set, Step, Tag, Tour, Visit, Wait, Where
+from app.trials.notes import Moment, MomentKind, Tagged, Visited
+from app.trials.steps import (
+    Door,
+    Drive,
+    Explore,
+    Kidnap,
+    Move,
+    Repeat,
+    Send,
+    Set,
+    Step,
+    Tag,
+    TagHere,
+    Tour,
+    Visit,
+    Wait,
+    Where,
+)
 from app.trials.tour import order
 
 REACHED_M = 0.25  # a driven robot has come to a point of its path
@@ -22,59 +37,6 @@ MOST_TURN = 1.0  # rad/s, of a driven robot
 SHARP_RAD = 0.6  # it turns on the spot if its next point lies farther aside than this
 _TRIES = 200  # random places tried to find one that is far enough away
 _STANDING = (0.0, 0.0)
-
-MomentKind = Literal["tagged", "kidnap", "recovered", "reached", "failed", "step", "end"]
-
-
-@dataclass(frozen=True, slots=True)
-class Moment:
-    """Something that happened in a trial. ok: whether it went as it should; None if it is neither good nor bad."""
-
-    time_s: float
-    words: str
-    ok: bool | None = None
-    kind: MomentKind = "step"
-
-
-@dataclass(slots=True)
-class Tagged:
-    """A place that is tagged when the robot comes near it: the experience at the nearest point of the first good approach.
-
-    An approach is good if it comes within half of `within_m`; until there was one, the nearest so far counts.
-    """
-
-    x: float
-    y: float
-    within_m: float
-    experience: int | None = None
-    away_m: float = math.inf
-    passed: bool = False
-
-    def note(self, here: tuple[float, float], experience: int) -> bool:
-        """The robot is here. Whether the first approach is over now."""
-        away = math.dist(here, (self.x, self.y))
-        if self.passed:
-            return False
-        if away > self.within_m:
-            self.passed = self.away_m <= self.within_m / 2
-            return self.passed
-        if away < self.away_m:
-            self.away_m, self.experience = away, experience
-        return False
-
-
-@dataclass(frozen=True, slots=True)
-class Visited:
-    """How a visit ended. why: empty if the goal was reached."""
-
-    name: str
-    experience: int | None  # that the robot was sent to; None: there was none
-    reached: bool
-    began_s: float
-    time_s: float
-    path_m: float
-    miss_m: float
-    why: str
 
 
 class Course:
@@ -119,6 +81,8 @@ class Course:
                 yield from self._drive(step)
             case Move():
                 yield from self._move(step)
+            case Send():
+                yield from self._send(step)
             case Visit():
                 for name in step.places:
                     yield from self._visit(name, step)
@@ -138,6 +102,8 @@ class Course:
             case Tag():
                 for name in step.places:
                     self.tags[name] = Tagged(*self._place(name), step.within_m)
+            case TagHere():
+                self._tag_here(step.name)
             case Kidnap():
                 self._kidnap(step)
             case Set():
@@ -203,6 +169,25 @@ class Course:
                 self.session.pilot.drive(speed, math.radians(turn_deg))
                 yield from self._for(seconds, "moved")
         self.session.pilot.drive(*_STANDING)
+
+    def _tag_here(self, name: str) -> None:
+        x, y = self._here
+        active = self.session.brain.experience_map.active
+        self.tags[name] = Tagged(x, y, within_m=0.0, experience=active, away_m=0.0, passed=True)
+        self.mark(f"{name} is tagged, here", kind="tagged")
+
+    def _send(self, step: Send) -> Iterator[str]:
+        tag = self.tags[step.place]
+        if tag.experience is None:
+            self.mark(f"{step.place} was never approached, so that nobody is sent there")
+            return
+        self.session.pilot.set_goal(tag.experience)
+        for what in self._for(step.seconds, f"sent to {step.place}"):
+            if self.session.pilot.goal_state == (tag.experience, "arrived"):
+                self.mark(f"arrived at {step.place} before it was called back")
+                return
+            yield what
+        self.mark(f"called back from the way to {step.place}")
 
     def _visit(self, name: str, step: Visit) -> Iterator[str]:
         tag = self.tags[name]

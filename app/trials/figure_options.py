@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from app.trials.experiment import Experiment, FigureSpec
 
 Shown = Literal[
-    "experience map", "pose cells", "path", "occupancy", "map grid", "representations", "temporal map", "goal memory"
+    "experience map", "pose cells", "path", "occupancy", "map grid", "representations", "temporal map", "goal memory",
+    "movements",
 ]  # fmt: skip
 Channel = Literal[
     "packets", "off", "map error", "residual", "views", "experiences", "active experience", "x", "y", "heading"

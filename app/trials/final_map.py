@@ -13,11 +13,13 @@ from app.session import Session
 from app.trials.course import Course
 from ratslam_core import Pose2
 from ratslam_core.experience_map.places import find_places
+from ratslam_core.goal_plateau import lead_s
 from sim2d import World
 
 _Array = NDArray[np.float64]
 _Numbers = NDArray[np.int64]
 PLACE_M = 0.5  # experiences nearer than this to the first of their place belong to it
+APART_M = 4.0  # two ways to a goal are two if they come so far apart
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,6 +60,9 @@ class FinalMap:
     )  # probability that something stands there, laid over the map before it is laid over the office
     cells_occupancy: Grid | None  # the same in the pose cells' own frame, as the papers draw it
     goal_times: Grid | None  # the goal memory's temporal map over the pose cells, s; inf where no way is known
+    goal_lead: (
+        Grid | None
+    )  # by how many s the quickest way from each cell leads over another; inf where there is no other
 
 
 def plan_of(world: World) -> Plan:
@@ -76,6 +81,7 @@ def final_map(course: Course) -> FinalMap:
     places = find_places(map_, PLACE_M)
     goal = _goal(course)
     occupancy, cells_occupancy = _occupancy(session)
+    goal_times, goal_lead = _goal_times(session, goal) if len(brain.goal_memory) else (None, None)
     return FinalMap(
         in_office=in_office,
         poses=placed(map_.poses, in_office),
@@ -89,7 +95,8 @@ def final_map(course: Course) -> FinalMap:
         collisions=tuple(each.experiences for each in places.hash_collisions),
         occupancy=occupancy,
         cells_occupancy=cells_occupancy,
-        goal_times=_goal_times(session, goal) if len(brain.goal_memory) else None,
+        goal_times=goal_times,
+        goal_lead=goal_lead,
     )
 
 
@@ -109,11 +116,12 @@ def _goal(course: Course) -> int:
     return known[-1] if known else map_.active
 
 
-def _goal_times(session: Session, goal: int) -> Grid:
+def _goal_times(session: Session, goal: int) -> tuple[Grid, Grid]:
     map_, memory = session.brain.experience_map, session.brain.goal_memory
     x, y, *_ = map_.cell_state(goal)
     n_y, n_x = memory.shape[1:]
-    return Grid(memory.times_to(round(x) % n_x, round(y) % n_y), (0.0, 0.0), 1.0)
+    times = memory.times_to(round(x) % n_x, round(y) % n_y)
+    return Grid(times, (0.0, 0.0), 1.0), Grid(lead_s(memory, times, APART_M), (0.0, 0.0), 1.0)
 
 
 def _occupancy(session: Session) -> tuple[Grid | None, Grid | None]:

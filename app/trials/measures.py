@@ -61,7 +61,7 @@ class Packets:
 
 
 class FalseSnaps:
-    """Snaps (A 6.6): those that ended at an experience made more than a metre from where the robot truly was."""
+    """Snaps (A 6.6): those after which the robot was more than a metre from where it then believed to be."""
 
     FALSE_M = 1.0
 
@@ -73,10 +73,9 @@ class FalseSnaps:
         session = self._session
         if not session.estimate.relocalised or session.estimate.created:
             return
-        map_, truth = session.brain.experience_map, session.simulator.truth
-        false = math.dist((truth.x, truth.y), session.evaluation.made_at(map_.active, map_)) > self.FALSE_M
-        self._false += false
-        self._true += not false
+        off_m, _ = session.evaluation.belief_off(session.simulator.truth, session.brain.experience_map)
+        self._false += off_m > self.FALSE_M
+        self._true += off_m <= self.FALSE_M
 
     def scores(self) -> dict[str, float]:
         return {"false_snaps": float(self._false), "true_snaps": float(self._true)}

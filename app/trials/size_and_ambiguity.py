@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import argparse
-from dataclasses import replace
-from typing import Any
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Literal
 
 from app.trials.course import Course
 from app.trials.experiment import EngineName, find_experiment
@@ -15,30 +14,34 @@ PER_CENT = 0.01
 _CAMERA: dict[str, str] = {"paper": "template", "ours": "image and sonars"}
 
 
-def trial_of(pose_cells: int, ambiguity: float, vision: str, engine: EngineName, seed: int) -> Trial:
-    """ambiguity: N_vis in per cent. vision: "camera" or "scene", numbers of scenes from the true pose, as in the paper."""
-    table = find_experiment("table")
-    first = table.make_trials([engine], 1)[0]
-    values: Values = {
-        **first.values,
-        "local_view.front_end": "scene numbers" if vision == "scene" else _CAMERA[engine],
-        "robot.camera": vision == "camera",
-        "pose_cells.n_x": pose_cells,
-        "pose_cells.n_y": pose_cells,
-        "local_view.false_positives": ambiguity * PER_CENT,
-    }
-    return replace(first, levels=(f"{ambiguity:g} %", f"{pose_cells} x {pose_cells}"), seed=seed, values=values)
+@dataclass(frozen=True, slots=True)
+class SizeAndAmbiguity:
+    """vision: "camera" or "scene", numbers of scenes from the true pose, as in the paper."""
 
+    pose_cells: int  # along each side
+    ambiguity: float  # N_vis, per cent
+    vision: Literal["camera", "scene"]
+    engine: EngineName
+    seed: int
 
-def report_of(result: Result, course: Course, args: argparse.Namespace) -> dict[str, Any]:
-    """The report. docs/reports.md tells what each key means."""
-    return {
-        "pose_cells": args.pose_cells,
-        "ambiguity": args.ambiguity,
-        "vision": args.vision,
-        "engine": args.engine,
-        "seed": args.seed,
-        "goals": [
+    @property
+    def trial(self) -> Trial:
+        """The table's trial with these numbers."""
+        first = find_experiment("table").make_trials([self.engine], 1)[0]
+        size = self.pose_cells
+        values: Values = {
+            **first.values,
+            "local_view.front_end": "scene numbers" if self.vision == "scene" else _CAMERA[self.engine],
+            "robot.camera": self.vision == "camera",
+            "pose_cells.n_x": size,
+            "pose_cells.n_y": size,
+            "local_view.false_positives": self.ambiguity * PER_CENT,
+        }
+        return replace(first, levels=(f"{self.ambiguity:g} %", f"{size} x {size}"), seed=self.seed, values=values)
+
+    def report(self, result: Result, course: Course) -> dict[str, Any]:
+        """The report. docs/reports.md tells what each key means."""
+        goals = [
             {
                 "name": visit.name,
                 "reached": visit.reached,
@@ -47,9 +50,12 @@ def report_of(result: Result, course: Course, args: argparse.Namespace) -> dict[
                 "why": visit.why,
             }
             for visit in course.visits
-        ],
-        "error_m": round(result.scores["error_m"], 3),
-        "wall_s": round(result.wall_s, 3),
-        "simulated_s": round(result.simulated_s, 3),
-        "state_hash": result.state_hash,
-    }
+        ]
+        return {
+            **asdict(self),
+            "goals": goals,
+            "error_m": round(result.scores["error_m"], 3),
+            "wall_s": round(result.wall_s, 3),
+            "simulated_s": round(result.simulated_s, 3),
+            "state_hash": result.state_hash,
+        }

@@ -69,6 +69,21 @@ class Tag(_Step):
     within_m: Metres = 1.0
 
 
+class TagHere(_Step):
+    """What the robot experiences now is tagged, by this name."""
+
+    do: Literal["tag here"]
+    name: Annotated[str, Field(min_length=1)]
+
+
+class Send(_Step):
+    """The robot is sent to a tagged place, and for so long at most: the next goal finds it on the way."""
+
+    do: Literal["send"]
+    place: str
+    seconds: Seconds
+
+
 class Visit(_Step):
     """The robot is sent to these tagged places, one after the other. It has reached one if it says so and truly is near."""
 
@@ -122,6 +137,7 @@ class Repeat(_Step):
 
 
 Step = Annotated[
-    Explore | Drive | Move | Kidnap | Tag | Visit | Tour | Wait | Set | Door | Repeat, Field(discriminator="do")
+    Explore | Drive | Move | Kidnap | Tag | TagHere | Send | Visit | Tour | Wait | Set | Door | Repeat,
+    Field(discriminator="do"),
 ]
 Repeat.model_rebuild()

@@ -12,16 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.evaluation.alignment import rmse
-from app.trials.course import Course, Moment, Visited
+from app.trials.course import Course
 from app.trials.final_map import FinalMap, Plan, final_map, placed, plan_of
 from app.trials.measures import MEASURES
+from app.trials.notes import Moment, Visited
 from app.trials.trial import Trial, watched
 from ratslam_core import Packet, Pose2
+from ratslam_core.experience_map.preintegrated import moved_by
 
 _Array = NDArray[np.float64]
 EVERY_S = 0.5  # between two rows
 PATH_EVERY = 5  # ticks between two points of a path
 ERROR_EVERY_S = 15.0  # between two looks at the whole map
+LOOK_EVERY_S = 1.0  # between two looks at the arcs of a robot on a route
 MOST_PACKETS = 4
 
 
@@ -42,6 +45,26 @@ class Carried:
     at_s: float
     after_s: float | None
     after_m: float | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Movements:
+    """The n arcs among which the robot chose at one moment of following a route, in the office's frame: m and rad."""
+
+    time_s: float
+    robot: Pose2  # where it truly was when it chose
+    radius_m: float  # of the robot
+    paths: _Array  # (n, steps + 1, 2), as app/pilot/candidates.py has them; one point if it only turns
+    cost: _Array  # (n,) m; inf where an echo bars the arc
+    drives: NDArray[np.bool_]  # (n,) False for a turn on the spot
+    chosen: int
+    aim: _Array  # (2,) the point that it steered towards
+    route: _Array  # (k, 2) the experiences ahead, as the map has them about the robot
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """(n,) whether no echo bars the arc."""
+        return np.isfinite(self.cost)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,9 +95,12 @@ class Trace:
     goals: tuple[Goal, ...]
     visits: tuple[Visited, ...]
     kidnaps: tuple[Carried, ...]
+    movements: Movements | None  # None if it never chose on a route between arcs that were free and arcs that were not
 
 
-class _Recorder:
+class Recorder:
+    """Looks at a course before its first tick and after each, as a measure does, and changes nothing in it."""
+
     def __init__(self, course: Course) -> None:
         self.course = course
         self.rows: list[tuple[float, ...]] = []
@@ -83,6 +109,9 @@ class _Recorder:
         self._row_s = self._error_s = 0.0
         self._snaps = course.session.brain.relocalisations
         self._before: Packet = course.session.brain.pose_cells.winner
+        self._look_s = 0.0
+        self._telling = 0  # of the movements that are kept
+        self.movements: Movements | None = None
         self.note()  # before the first tick
 
     def note(self) -> None:
@@ -98,6 +127,10 @@ class _Recorder:
             self._error_s += ERROR_EVERY_S
             path, mapped, _ = session.evaluation.trajectories(session.brain.experience_map, every=2 * PATH_EVERY)
             self.errors.append((session.time_s, rmse(mapped, path)))
+        state = session.pilot.goal_state
+        if state is not None and state[1] == "tracking" and session.time_s >= self._look_s - 1e-9:
+            self._look_s = session.time_s + LOOK_EVERY_S
+            self._look()
 
     def _row(self) -> None:
         session = self.course.session
@@ -110,6 +143,30 @@ class _Recorder:
             map_.residual[0], len(brain.local_view), len(map_), map_.active,
         ))  # fmt: skip
 
+    def _look(self) -> None:
+        """Keep the moment with the largest product of free and barred arcs, the first of equals: it tells most."""
+        session = self.course.session
+        look, aim = session.pilot.look_at_choice(), session.pilot.aim
+        if look is None or aim is None:
+            return
+        tried = look()
+        drives, free = tried.speed > 0, np.isfinite(tried.cost)
+        telling = int((drives & free).sum()) * int((drives & ~free).sum())
+        if telling <= self._telling or not drives[tried.chosen]:
+            return
+        self._telling = telling
+        truth, map_ = session.simulator.truth, session.brain.experience_map
+        now = Pose2(truth.x, truth.y, truth.heading_rad)
+        then = now.compose(moved_by(session.odometry).inverse())  # it chose before the tick, and has moved since
+        progress = session.pilot.progress(map_)
+        ahead = map_.poses[progress.route, :2] if progress else np.zeros((0, 2))
+        self.movements = Movements(
+            time_s=session.time_s, robot=then, radius_m=session.config.robot.robot_radius_m,
+            paths=placed(tried.paths.reshape(-1, 2), then).reshape(tried.paths.shape),
+            cost=tried.cost, drives=drives, chosen=tried.chosen,
+            aim=placed(np.array([aim]), then)[0], route=placed(ahead, now.compose(map_.robot.inverse())),
+        )  # fmt: skip
+
     def scores(self) -> dict[str, float]:
         return {}
 
@@ -117,7 +174,7 @@ class _Recorder:
 def trace_of(trial: Trial) -> Trace:
     """Run a trial again and write it down. The run is the same, bit for bit, as without."""
     course = trial.begin()
-    recorder = _Recorder(course)
+    recorder = Recorder(course)
     watched(course, [*(MEASURES[name](course) for name in trial.measures), recorder])
     session, map_ = course.session, course.session.brain.experience_map
     rows = np.array(recorder.rows, np.float64).reshape(-1, 16)
@@ -140,6 +197,7 @@ def trace_of(trial: Trial) -> Trace:
         goals=tuple(Goal(name, tag.x, tag.y, tag.experience) for name, tag in course.tags.items()),
         visits=tuple(course.visits),
         kidnaps=tuple(Carried(k.at_s, k.after_s, k.after_m) for k in session.evaluation.kidnaps),
+        movements=recorder.movements,
     )  # fmt: skip
 
 

@@ -12,8 +12,9 @@ from pydantic import TypeAdapter
 
 from app.config import Config
 from app.session import Session
-from app.trials.course import Course, Moment
+from app.trials.course import Course
 from app.trials.measures import MEASURES, Measure
+from app.trials.notes import Moment
 from app.trials.scores import scores_of
 from app.trials.steps import Step, Values
 from sim2d import World, WorldText

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ratslam_core.experience_map.map_reading import MapReading
 from ratslam_core.extensions.gate import Gate
 from ratslam_core.extensions.islands import Islands, move
-from ratslam_core.extensions.torn import soften
+from ratslam_core.extensions.torn import open_way_m, soften
 from ratslam_core.params import ExperienceMapParams, PoseFilterParams
 from ratslam_core.types import IDENTITY, Packet, Pose2, Recognition, nothing_seen, wrap_angle
 
@@ -117,6 +117,8 @@ class Looks(MapReading):
     def _jumps(self, experience: int, packet: Packet, seen: Recognition) -> bool:
         """Whether a look at the robot's own island is believed although it is beyond reach."""
         robot, claimed = self.robot, self._claimed(experience, packet, seen)
+        if not self.lost and self._drifted_to(claimed, experience):
+            return self._proved(claimed, self.params.join_sights, seen.view)
         needed = self._needed(claimed) if self.lost else self.gate.params.gate_sights
         if not self._proved(claimed, needed, seen.view):
             return False
@@ -129,6 +131,19 @@ class Looks(MapReading):
             soften(self.transitions, experience, self.gate.known, off, self.params.odometry_sigma)
         return True
 
+    def _drifted_to(self, claimed: Pose2, experience: int) -> bool:
+        """Whether odometry may have led so far astray since it was last at this experience.
+
+        Looks at what the robot has just made say nothing of that. test_gate.py::test_a_long_loop_closes_soon.
+        """
+        drift, off = self.gate.params.gate_drift, self._off(claimed)
+        if drift == 0.0 or self.gate.sights < self.params.join_sights - self.gate.beats:
+            return False  # it would change nothing yet
+        return off <= drift * open_way_m(self.transitions, experience, len(self))
+
+    def _off(self, claimed: Pose2) -> float:
+        return math.hypot(claimed.x - self.robot.x, claimed.y - self.robot.y)
+
     def _proved(self, claimed: Pose2, needed: int, view: int) -> bool:
         return self.gate.believes(self.robot, claimed, needed, len(self), view, self.params.join_views)
 
@@ -138,8 +153,7 @@ class Looks(MapReading):
         Perhaps it was not carried: then only where odometry leads to is a few sights worth.
         test_islands.py::test_who_was_perhaps_not_carried_asks_for_more.
         """
-        off = math.hypot(claimed.x - self.robot.x, claimed.y - self.robot.y)
-        plain = self.islands.sure or off <= self.gate.params.snap_m
+        plain = self.islands.sure or self._off(claimed) <= self.gate.params.snap_m
         return self.params.join_sights if plain else max(self.params.join_sights, self.params.doubtful_sights)
 
     def _claimed(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:

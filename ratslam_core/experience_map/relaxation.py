@@ -224,12 +224,15 @@ def solve(
     weights: NDArray[np.float64],
     turning_s: NDArray[np.float64] | None = None,
     params: SolverParams | None = None,
+    known: float = 0.0,
+    doubt: float = 0.0,
 ) -> Solution:
     """The fixed point of the sweeps, in place: headings, then positions, each a sparse Laplacian with the first node fixed.
 
-    A map that is too entangled for that is left to the sweeps. Every experience must be connected to the first by
-    links. Headings are a linear problem once their residuals are wrapped; `params.rounds` solutions let the wrapping
-    settle.
+    known: the bias (rad/s) that the moves are already without; doubt: how strongly it is expected to be 0 in all, as a
+    weight times s^2. One short loop tells little of the bias, many long ones much. A map that is too entangled is left
+    to the sweeps. Every experience must be connected to the first by links. Headings are a linear problem once their
+    residuals are wrapped; `params.rounds` solutions let the wrapping settle.
     """
     p, n = params or SolverParams(), len(poses)
     if n < 2 or len(links) == 0:
@@ -246,7 +249,8 @@ def solve(
     for _ in range(p.rounds):
         error: NDArray[np.float64] = poses[i, 2] + moves[:, 2] - bias * seconds - poses[j, 2]
         error -= 2 * math.pi * np.round(error / (2 * math.pi))
-        more = float(np.sum(weights * unexplained * error)) / strength if strength > LEAST_STRENGTH else 0.0
+        shown = float(np.sum(weights * unexplained * error)) - doubt * (known + bias)
+        more = shown / (strength + doubt) if strength > LEAST_STRENGTH else 0.0
         bias += more
         poses[:, 2] += net.solve(_asked(n, links, weights * (error - more * seconds)))
     poses[:, 2] -= 2 * math.pi * np.round(poses[:, 2] / (2 * math.pi))

@@ -92,7 +92,9 @@ class ExactSolver:
                     poses, ends, moves, weights, self._odometry(map_), p.odometry_sigma, self.params
                 )
         t.believed[: t.count] = weights if share is None else weights * share
-        more, work = relaxation.solve(poses, ends, moves, t.believed[: t.count], turning, self.params)
+        doubt = (p.odometry_sigma * self.params.rad_per_m / self.params.bias_sigma) ** 2  # in the unit of the weights
+        believed, known = t.believed[: t.count], map_.yaw_bias
+        more, work = relaxation.solve(poses, ends, moves, believed, turning, self.params, known, doubt)
         if turning is not None:
             self._learn(map_, more)
         return more, work

@@ -27,8 +27,21 @@ def soften(t: Transitions, first: int, last: int, off_m: float, sigma: float) ->
     return rows
 
 
+def open_way_m(t: Transitions, first: int, last: int) -> float:
+    """How long the backbone is, between these experiences, where no closure bridges it: there its drift is unbounded."""
+    rows = _unbridged(t, first, last)
+    return float(np.hypot(t.move[rows, 0], t.move[rows, 1]).sum())
+
+
 def torn(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
     """The rows of the last stretch of the backbone, between these experiences, that no closure bridges."""
+    rows = _unbridged(t, first, last)
+    newer = t.ends[rows].max(axis=1)
+    apart = np.flatnonzero(np.diff(newer) > 1)  # rows are in the order in which they were made
+    return rows[apart[-1] + 1 :] if len(apart) else rows
+
+
+def _unbridged(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
     ends, chain = t.ends[: t.count], t.chain[: t.count]
     looks = ~chain & (t.believed[: t.count] > 0)
     bridges = np.zeros(int(ends.max(initial=0)) + 2, np.int64)
@@ -36,6 +49,4 @@ def torn(t: Transitions, first: int, last: int) -> NDArray[np.intp]:
     np.add.at(bridges, ends[looks].max(axis=1) + 1, -1)
     bridged = np.cumsum(bridges) > 0
     newer = ends.max(axis=1)
-    rows = np.flatnonzero(chain & (newer > first) & (newer <= last) & ~bridged[newer])
-    apart = np.flatnonzero(np.diff(newer[rows]) > 1)  # rows are in the order in which they were made
-    return rows[apart[-1] + 1 :] if len(apart) else rows
+    return np.flatnonzero(chain & (newer > first) & (newer <= last) & ~bridged[newer])

@@ -120,6 +120,12 @@ ADDITIONS = (
         {"experience_map.calibrate": False},
     ),
     Addition(
+        "doubt of the bias",
+        "the bias that is learnt is held against how large it may be",
+        "one short loop shows any bias: an error of a look, over few seconds of turning",
+        {"solver.bias_sigma": 10.0},
+    ),
+    Addition(
         "pose filter",
         "a look is weighed against odometry",
         "if each look were taken as it is, the estimate would swerve",
@@ -130,6 +136,12 @@ ADDITIONS = (
         "a look that would move the robot farther than it can be off is held back until many agree",
         "look-alikes weld places together that are metres apart",
         {"pose_filter.gate": False},
+    ),
+    Addition(
+        "long loops",
+        "a look that is held back needs eight sights only, where the way that no loop has closed is long enough for the drift",
+        "otherwise a loop of a whole floor would close a minute after the robot has come round",
+        {"pose_filter.gate_drift": 0.0},
     ),
     Addition(
         "surprise",

@@ -59,6 +59,14 @@ class PoseFilterParams:
         meaning="sights held back, one a beat, that must agree on where the robot is before it believes them",
         source="ours",
     )
+    gate_drift: float = param(
+        0.1,
+        unit="m/m",
+        low=0.0,
+        high=10.0,
+        meaning="so far may odometry lead astray where no loop has closed; within it `join_sights` are enough, 0 = never",
+        source="ours",
+    )
     gate_surprise: int = param(
         18,
         unit="sights",

@@ -52,6 +52,14 @@ class SolverParams:
         meaning="error in heading that counts as much as an error of one metre",
         source="ours",
     )
+    bias_sigma: float = param(
+        0.01,
+        unit="rad/s",
+        low=1e-4,
+        high=10.0,
+        meaning="how large a bias of the yaw rate may well be; what a few short loops seem to show beyond it is not believed",
+        source="ours",
+    )
     odometry_gives: float = param(
         5.0, unit="σ", low=0.1, high=100.0, meaning="disagreement at which odometry counts half", source="ours"
     )

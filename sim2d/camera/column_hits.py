@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 MAX_HITS = 8
 NEAR_M = 0.02  # anything nearer than this is not seen
+SAME = 1e-6  # of two walls in one place, nearer to each other than this share of the distance, the first is seen
 
 
 @njit(cache=True, nogil=True)
@@ -67,14 +68,14 @@ def column_hits(
         dw, dp = (wb - wa) / (sb - sa), (pb - pa) / (sb - sa)
         for c in range(begin, end):
             inverse = wa + (c + 0.5 - sa) * dw
-            n = counts[c]
-            if n > 0 and hits[c, n - 1, 0] >= inverse and (n == MAX_HITS or full[walls[c, n - 1] >> 1]):
+            n, beyond = counts[c], inverse * (1.0 - SAME)
+            if n > 0 and hits[c, n - 1, 0] >= beyond and (n == MAX_HITS or full[walls[c, n - 1] >> 1]):
                 continue
             left, right = max(c - sa, 0.0), min(c + 1.0, sb) - sa
             u0 = (pa + left * dp) / (wa + left * dw)
             u1 = (pa + right * dp) / (wa + right * dw)
             k = min(n, MAX_HITS - 1)
-            while k > 0 and hits[c, k - 1, 0] < inverse:
+            while k > 0 and hits[c, k - 1, 0] < beyond:
                 walls[c, k] = walls[c, k - 1]
                 for part in range(3):  # one by one: copying rows takes numba three seconds to compile
                     hits[c, k, part] = hits[c, k - 1, part]

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim2d.camera.column_hits import MAX_HITS, NEAR_M
+from sim2d.camera.column_hits import MAX_HITS, NEAR_M, SAME
 from sim2d.geometry.wall_index import FAR, WallIndex, crossing, enter
 
 MOST_FLAT_RAD = 2.4  # widest view of a flat lens: a wider one would stretch the edges of the image too much
@@ -108,12 +108,13 @@ def round_hits(
             if t < NEAR_M or t >= FAR:
                 continue
             n, inverse = counts[c], 1.0 / t
-            if n > 0 and hits[c, n - 1, 0] >= inverse and (n == MAX_HITS or full[walls[c, n - 1] >> 1]):
+            beyond = inverse * (1.0 - SAME)
+            if n > 0 and hits[c, n - 1, 0] >= beyond and (n == MAX_HITS or full[walls[c, n - 1] >> 1]):
                 continue
             left = _along(segments, i, x, y, rays[c, 1], cos, sin, s)
             right = _along(segments, i, x, y, rays[c + 1, 1], cos, sin, s)
             k = min(n, MAX_HITS - 1)
-            while k > 0 and hits[c, k - 1, 0] < inverse:
+            while k > 0 and hits[c, k - 1, 0] < beyond:
                 walls[c, k] = walls[c, k - 1]
                 for part in range(3):  # one by one: copying rows takes numba three seconds to compile
                     hits[c, k, part] = hits[c, k - 1, part]

@@ -7,7 +7,7 @@ import importlib.resources
 import pytest
 from playwright.sync_api import Page
 
-from tests.e2e.browser import PATIENCE_MS, calm, open_page, turn_theme, until
+from tests.e2e.browser import NO_STAGE, PATIENCE_MS, calm, open_page, turn_theme, until
 
 AXE = importlib.resources.files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8")
 RUN = """async () => (await axe.run(document, {iframes: false})).violations.map(
@@ -35,6 +35,18 @@ def test_axe_finds_nothing(program, browser, size):
             assert findings(page) == []
             turn_theme(page)
         page.keyboard.press("?")
+        assert findings(page) == []
+
+
+def test_axe_finds_nothing_before_the_server_has_said_anything(program, browser):
+    with browser.new_context(viewport={"width": 1440, "height": 900}) as context:
+        context.set_default_timeout(PATIENCE_MS)
+        page = context.new_page()
+        page.route("**/viser/**", lambda route: route.fulfill(content_type="text/html", body=NO_STAGE))
+        page.route_web_socket("**/api/stream**", lambda _socket: None)  # open, and silent
+        page.goto(program.url)
+        page.wait_for_selector("#panel-senses canvas")
+        calm(page)
         assert findings(page) == []
 
 

@@ -102,7 +102,7 @@ def test_a_held_key_drives_and_letting_go_stops(program, browser, where):
     program.command("resume")
     with open_page(browser, program.url, stage=where == "stage") as page:
         if where == "stage":
-            page.mouse.click(640, 400)  # the focus is in viser's frame now
+            page.mouse.click(780, 200)  # beside the plates: the focus is in viser's frame now, and no goal is set
         page.keyboard.down("ArrowLeft")
         before = program.wait(lambda state: state["mode"] == "manual")
         heading = before["robot"]["heading_rad"]

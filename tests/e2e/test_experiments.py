@@ -13,7 +13,7 @@ from app.experiments.store import Store
 from app.trials.chosen import chosen_trial
 from app.trials.experiment import find_experiment
 from app.trials.trial import Result, Trial, run_trial
-from tests.e2e.browser import calm, open_page, told, turn_theme, until
+from tests.e2e.browser import NO_STAGE, calm, open_page, told, turn_theme, until
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
 
@@ -179,6 +179,36 @@ def test_a_refusal_is_said_where_one_looks(stored: Program, browser) -> None:
         page.click(".card >> nth=0 >> .go")
         expect(page.locator("#gallery-wrong")).to_contain_text("There is no experiment 'castle'; expected one of: ")
         assert page.evaluate("() => document.getElementById('gallery-dialog').open")
+
+
+def test_who_waits_is_told_for_what(stored: Program, browser) -> None:
+    """The engine may still be compiled when the first experiment is asked for."""
+    held, pages = [], []
+
+    def slow(socket) -> None:
+        server = socket.connect_to_server()
+        pages.append(socket)
+        socket.on_message(lambda text: held.append(text) if "watch_experiment" in text else server.send(text))
+        server.on_message(lambda text: None if text[:16] == '{"type":"state",' else socket.send(text))
+        held.append(server)
+
+    with browser.new_context() as context:
+        page = context.new_page()
+        page.route("**/viser/**", lambda route: route.fulfill(content_type="text/html", body=NO_STAGE))
+        page.route_web_socket("**/api/stream**", slow)
+        page.goto(stored.url)
+        page.keyboard.press("g")
+        page.click(".card[data-name=table] .go")
+        words = page.locator("#gallery-wait")
+        expect(words).to_contain_text("It begins in a moment.")
+        pages[0].send('{"type":"waking","doing":"compiling the engine"}')
+        expect(words).to_contain_text("First the engine wakes up: compiling the engine.")
+        page.click(".card[data-name=table] .go")  # once is enough
+        server, *asked = held
+        assert len(asked) == 1
+        server.send(asked[0])
+        until(page, "() => !document.getElementById('gallery-dialog').open")
+        expect(words).to_be_hidden()
 
 
 def _renamed(route) -> None:

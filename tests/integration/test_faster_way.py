@@ -6,6 +6,8 @@ goes from goal to goal by itself.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -13,7 +15,7 @@ from app.config import Config
 from app.session import Session
 from app.trials.course import Course
 from app.trials.steps import Drive, Tag, Visit
-from sim2d import load_world
+from sim2d import World, load_world
 
 Place = str | tuple[float, float]
 ROUND: list[Place] = [
@@ -23,9 +25,16 @@ BACK: list[Place] = [*ROUND[-2::-1], ROUND[-1]]
 MIDDLE_Y = 6.0
 
 
-def ways(seed: int, slow_zones: bool) -> tuple[Course, dict[str, float]]:
+def slow_above() -> World:
+    """The world with its slow floor on the upper way instead."""
+    world = load_world("two-goals")
+    (zone,) = world.slow_zones
+    return replace(world, slow_zones=(replace(zone, corners=tuple((x, 2 * MIDDLE_Y - y) for x, y in zone.corners)),))
+
+
+def ways(seed: int, world: World) -> tuple[Course, dict[str, float]]:
     """The course when it is over, and how high (y, m) the robot drove in the middle of each of its trips."""
-    session = Session(load_world("two-goals"), seed, Config().with_values({"office.slow_zones": slow_zones}))
+    session = Session(world, seed, Config())
     course = Course(
         session,
         [
@@ -46,10 +55,11 @@ def ways(seed: int, slow_zones: bool) -> tuple[Course, dict[str, float]]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
-def test_the_slow_zone_flips_the_choice(seed: int) -> None:
-    slow, heights = ways(seed, slow_zones=True)
-    assert [visit.why for visit in slow.visits] == ["", ""]
-    assert min(heights.values()) > MIDDLE_Y + 1.5  # both trips avoid the slippery floor
-    assert max(visit.time_s for visit in slow.visits) < 80  # the lower way takes more than 100 s
-    _, heights = ways(seed, slow_zones=False)
-    assert min(heights.values()) < MIDDLE_Y - 1.5  # then the lower way is as good, and is taken
+@pytest.mark.parametrize("upper", [True, False])
+def test_the_slow_zone_flips_the_choice(seed: int, upper: bool) -> None:
+    """upper: which way is quick. Without a slow floor both are, and either is taken."""
+    course, heights = ways(seed, load_world("two-goals") if upper else slow_above())
+    assert [visit.why for visit in course.visits] == ["", ""]
+    assert max(visit.time_s for visit in course.visits) < 80  # the slow way takes more than 100 s
+    assert len(heights) == 2
+    assert all((height > MIDDLE_Y) is upper and abs(height - MIDDLE_Y) > 1.5 for height in heights.values())

@@ -61,6 +61,18 @@ def test_without_a_loop_no_bias_is_found(graph: Graph, bias: float) -> None:
 
 
 @EXAMPLES
+@given(st.floats(-0.05, 0.05), st.floats(-0.02, 0.02), st.floats(0.1, 100.0), st.floats(0.01, 1e4))
+def test_a_short_loop_tells_little_of_the_bias(error: float, known: float, seconds: float, doubt: float) -> None:
+    """There and back: the bias that minimises the loop's square error, and its own square times the doubt."""
+    links, moves = np.array([[0, 1], [1, 0]]), np.array([[1.0, 0.0, error], [-1.0, 0.0, 0.0]])
+    turning_s, weights = np.array([seconds, 0.0]), np.ones(2)
+    found = solve(np.zeros((2, 3)), links, moves, weights, turning_s, SolverParams(rounds=9), known, doubt).bias
+    # A loop of two links of weight 1 is as stiff as one of a half.
+    expected = (seconds * error / 2 - doubt * known) / (seconds**2 / 2 + doubt)
+    assert found == pytest.approx(expected, abs=1e-9)
+
+
+@EXAMPLES
 @given(graphs())
 def test_the_solution_is_that_of_dense_weighted_least_squares(graph: Graph) -> None:
     disturb(graph, 1.0, 0.4)

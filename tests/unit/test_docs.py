@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from app.config import Config, to_markdown
+from app.config import Config, additions_markdown, to_markdown
 
 DOCS = Path(__file__).parents[2] / "docs"
 ROOMS = ("app", "disk", "ratslam_core", "sim2d", "web")
@@ -39,6 +39,12 @@ def test_the_other_examples_run() -> None:
 def test_the_table_of_parameters_is_that_of_the_program() -> None:
     assert (DOCS / "parameters.md").read_text(encoding="utf-8") == to_markdown(Config()), (
         "docs/parameters.md is old: make it anew with `ratslam config --table > docs/parameters.md`"
+    )
+
+
+def test_the_table_of_additions_is_that_of_the_program() -> None:
+    assert (DOCS / "additions.md").read_text(encoding="utf-8") == additions_markdown(), (
+        "docs/additions.md is old: make it anew with `ratslam config --additions > docs/additions.md`"
     )
 
 

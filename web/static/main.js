@@ -56,6 +56,7 @@ viewer.addEventListener("inside", () => viewer.frame.contentWindow && files.catc
 
 link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   state = detail.state;
+  if (gallery.doing) gallery.waking("");
   header.show(state, detail.page);
   watched.show(state, detail.page);
   panel.inspected(detail.page.inspected);
@@ -65,7 +66,10 @@ link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   kept.ask();
   document.body.dataset.alive = "true";
 });
-link.on("waking", (/** @type {{ doing: string }} */ { doing }) => header.waking(doing));
+link.on("waking", (/** @type {{ doing: string }} */ { doing }) => {
+  header.waking(doing);
+  gallery.waking(doing);
+});
 link.on("events", (/** @type {{ fresh: boolean, events: TimelineEvent[] }} */ detail) => {
   timeline.add(detail);
   const told = detail.fresh ? ["warning"] : ["warning", "unreachable"];

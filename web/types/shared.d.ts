@@ -106,6 +106,7 @@ type IndexIds = {
   "gallery-none": HTMLElementTagNameMap["p"];
   "gallery-one": HTMLElementTagNameMap["div"];
   "gallery-title": HTMLElementTagNameMap["h2"];
+  "gallery-wait": HTMLElementTagNameMap["p"];
   "gallery-wrong": HTMLElementTagNameMap["p"];
   "goal": HTMLElementTagNameMap["p"];
   "grid": HTMLElementTagNameMap["select"];

@@ -135,10 +135,11 @@ def _look(panel: Axes, chart: _Chart) -> None:
         panel.set_ylim(len(chart.places) - 0.5, -0.5)
         return
     grid_lines(panel)
-    panel.set_xlabel(chart.options.along)
+    words, unit = _without_unit(chart.labels)
+    panel.set_xlabel(f"{chart.options.along} ({unit})" if unit else chart.options.along)
     if chart.options.spacing == "log":
         panel.set_xscale("log")
-    panel.set_xticks(chart.places, chart.labels)
+    panel.set_xticks(chart.places, words)
     panel.minorticks_off()
     if chart.options.spacing == "even":
         panel.set_xlim(-0.5, len(chart.places) - 0.5)
@@ -175,3 +176,11 @@ def _legend(figure: Figure, panel: Axes, chart: _Chart) -> None:
             handles, labels, loc="outside lower center", ncols=min(6, len(labels)), title=chart.options.lines or None,
             title_fontsize=7.5,
         )  # fmt: skip
+
+
+def _without_unit(labels: list[str]) -> tuple[list[str], str]:
+    """Labels without the unit that ends each of them, which then stands beside the axis."""
+    units = {label.partition(" ")[2] for label in labels}
+    unit = units.pop() if len(units) == 1 else ""
+    numbers = all(_NUMBER.fullmatch(label.partition(" ")[0]) for label in labels)
+    return ([label.partition(" ")[0] for label in labels], unit) if unit and numbers else (labels, "")

@@ -22,6 +22,7 @@ from app.trials.experiment import FigureSpec, Score
 from app.trials.figure_options import Dots
 
 _HIGH_IN = 3.0
+_LEGEND_IN = 1.3  # that a mark of the legend takes, with its words
 _SPREAD = 0.26  # of the room of a group: dots lie beside each other so far
 _GOLDEN = (
     math.sqrt(5) - 1
@@ -106,4 +107,5 @@ def _legend(figure: Figure, engines: list[str], *, originals: bool) -> None:
     marks.append(mark("_", INK, INK, 8, "median or rate"))
     if originals:
         marks.append(mark("D", "none", INK, 5.5, "the paper's"))
-    figure.legend(handles=marks, loc="outside lower center", ncols=len(marks))
+    fit = int(figure.get_figwidth() / _LEGEND_IN)
+    figure.legend(handles=marks, loc="outside lower center", ncols=min(len(marks), max(fit, 2)))

@@ -12,7 +12,19 @@ from matplotlib.colors import to_rgb
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from app.experiments.figures.palette import BLUE, ENGINE_COLOUR, FAINT, GREEN, INK, ORANGE, PURPLE, SKY, SOFT, WALL
+from app.experiments.figures.palette import (
+    BLUE,
+    ENGINE_COLOUR,
+    FAINT,
+    GREEN,
+    INK,
+    ORANGE,
+    PURPLE,
+    SKY,
+    SOFT,
+    VERMILION,
+    WALL,
+)
 from app.trials.figure_options import Maps
 from app.trials.final_map import Grid
 from app.trials.trace import Trace
@@ -72,13 +84,20 @@ def paths(panel: Axes, trace: Trace, options: Maps) -> None:
     plan(panel, trace)
     panel.plot(*trace.odometry_path.T, color=ORANGE, lw=0.7, zorder=2, label="odometry alone")
     panel.plot(*trace.true_path.T, color=INK, lw=1.4, zorder=3, label="truth")
+    sent = on_the_way(trace)
+    if np.isfinite(sent).any():
+        panel.plot(*sent.T, color=VERMILION, lw=1.4, zorder=3, label="truth, sent to a goal")
     panel.plot(*trace.mapped_path.T, color=BLUE, lw=0.7, zorder=4, label="as the map tells it")
-    low, high = trace.odometry_path.min(axis=0), trace.odometry_path.max(axis=0)
-    x1, y1, x2, y2 = trace.plan.bounds
-    panel.set(xlim=(min(x1, low[0]) - MARGIN_M, max(x2, high[0]) + MARGIN_M),
-              ylim=(min(y1, low[1]) - MARGIN_M, max(y2, high[1]) + MARGIN_M))  # fmt: skip
     if options.marks:
         goals(panel, trace)
+
+
+def on_the_way(trace: Trace) -> _Array:
+    """(n, 2): where the robot truly was in each row; NaN while it was not sent to a goal."""
+    sent = np.zeros(len(trace.time_s), bool)
+    for visit in trace.visits:
+        sent |= (trace.time_s >= visit.began_s) & (trace.time_s <= visit.began_s + visit.time_s)
+    return np.where(sent[:, None], trace.truth[:, :2], np.nan)
 
 
 # ------------------------------------------------------------ in pose cells
@@ -137,7 +156,7 @@ def map_grid(panel: Axes, trace: Trace, options: Maps) -> None:
     frame = trace.map.in_office
     turn = Affine2D().rotate(frame.heading_rad).translate(frame.x, frame.y)
     limits = panel.get_xlim(), panel.get_ylim()
-    panel.imshow(_tinted(grid), origin="lower", extent=_extent(grid), transform=turn + panel.transData, zorder=0)
+    panel.imshow(_tinted(grid), origin="lower", extent=extent(grid), transform=turn + panel.transData, zorder=0)
     panel.set(xlim=limits[0], ylim=limits[1], aspect="equal")
     if options.marks:
         goals(panel, trace)
@@ -146,16 +165,7 @@ def map_grid(panel: Axes, trace: Trace, options: Maps) -> None:
 def occupancy(panel: Axes, trace: Trace, options: Maps) -> None:  # noqa: ARG001
     grid = trace.map.cells_occupancy
     if grid is not None:
-        panel.imshow(_tinted(grid), origin="lower", extent=_extent(grid), zorder=0)
-    cells_frame(panel, trace)
-
-
-def goal_memory(panel: Axes, trace: Trace, options: Maps) -> None:  # noqa: ARG001
-    grid = trace.map.goal_times
-    if grid is not None:
-        known = np.ma.masked_invalid(grid.values)
-        drawn = panel.imshow(known, origin="lower", extent=_extent(grid), cmap="viridis_r", zorder=0)
-        _seconds(panel, drawn)
+        panel.imshow(_tinted(grid), origin="lower", extent=extent(grid), zorder=0)
     cells_frame(panel, trace)
 
 
@@ -166,7 +176,7 @@ def _tinted(grid: Grid) -> _Array:
     return np.dstack([colour, np.abs(sure) * np.where(sure > 0, 1.0, 0.45)])
 
 
-def _extent(grid: Grid) -> tuple[float, float, float, float]:
+def extent(grid: Grid) -> tuple[float, float, float, float]:
     (x, y), half = grid.origin, grid.cell / 2
     n_y, n_x = grid.values.shape
     return x - half, x + n_x * grid.cell - half, y - half, y + n_y * grid.cell - half
@@ -178,12 +188,12 @@ def temporal_map(panel: Axes, trace: Trace, options: Maps) -> None:
     known = np.isfinite(trace.map.times_s)
     x, y, _ = trace.map.poses[known].T
     drawn = panel.scatter(x, y, c=trace.map.times_s[known], s=7, cmap="viridis_r", linewidths=0, zorder=3)
-    _seconds(panel, drawn)
+    seconds(panel, drawn)
     if options.marks:
         goals(panel, trace)
 
 
-def _seconds(panel: Axes, drawn: object) -> None:
+def seconds(panel: Axes, drawn: object) -> None:
     figure = panel.get_figure(root=True)
     assert figure is not None
     bar = figure.colorbar(drawn, ax=panel, shrink=0.7, pad=0.02, aspect=25)  # type: ignore[arg-type]

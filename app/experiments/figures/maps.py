@@ -11,13 +11,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.experiments.figures import map_panels
+from app.experiments.figures import goal_memory_panel, map_panels, movement_panel
 from app.experiments.figures.canvas import WIDTH_IN, frame, panels
 from app.experiments.figures.material import Drawn, Material, Pick, trial_gid
 from app.experiments.figures.palette import SOFT
 from app.experiments.words import ENGINE_WORDS
 from app.trials.experiment import FigureSpec
 from app.trials.figure_options import Maps
+from app.trials.final_map import APART_M
 from app.trials.trace import Trace
 
 _SHOW = {
@@ -28,21 +29,29 @@ _SHOW = {
     "map grid": map_panels.map_grid,
     "representations": map_panels.representations,
     "temporal map": map_panels.temporal_map,
-    "goal memory": map_panels.goal_memory,
+    "goal memory": goal_memory_panel.goal_memory,
+    "movements": movement_panel.movements,
 }
 _IN_CELLS = {"pose cells", "occupancy", "goal memory"}
 _SAYS = {
     "experience map": "Experiences (dots) and links (lines) at the end, laid over the plan",
     "pose cells": "The winning packet's way through the pose cells, whose faces are joined; a snap goes from S to F",
-    "path": "The true path, the path as the map tells it at the end, and odometry alone, over the plan",
+    "path": "The true path, coloured while the robot was sent to a goal; the path as the map tells it at the end; and odometry"
+    " alone, over the plan",
     "map grid": "Where the sonars met something, bent with the map and laid over the plan",
     "occupancy": "Where the sonars met something, in the pose cells' own frame, as the papers draw it",
     "representations": "Places that several states of the pose cells stand for, and states that stand for several places",
     "temporal map": "Seconds from each experience to the goal, over the links of the experience map",
-    "goal memory": "Seconds from each pose cell to the goal, as the goal memory has learnt them",
+    "goal memory": "Seconds from each pose cell to the goal, as the goal memory has learnt them. On a plateau two ways"
+    f" that come {APART_M:g} m apart take times that differ by less than a tenth of the longest time, and no cell"
+    f" within {APART_M:g} m is much farther",
+    "movements": "The arcs that the robot tried at one moment on a route, that at which the number of free arcs times the number"
+    " of barred ones was largest. The route lies as the map has it about the robot; where echoes are in the way, the robot"
+    " steers towards a point beside it",
 }
 _HEADING_IN, _BETWEEN_IN, _LEGEND_IN = 0.25, 0.1, 0.3  # room over the first row, under each, and under the last
-_BELOW_IN = 0.2  # under a panel that tells the size of its pose cells
+_BELOW_IN = 0.2  # under a panel that tells how large what it shows is
+_WORDS_BELOW = {*_IN_CELLS, "movements"}
 _BAR = 0.8  # a colour bar leaves this share of the width to its panel
 _WITH_BAR = {"temporal map", "goal memory"}
 _MOST_HIGH_IN = 8.5
@@ -70,7 +79,9 @@ def draw(spec: FigureSpec, options: Maps, material: Material) -> Drawn:
             panel.set_ylabel(ENGINE_WORDS[pick.engine], color=SOFT)
         frame(panel)
     if options.show == "path":
-        _share_limits([axes[p.row, p.column] for p in picks], material.trace(picks[0]))
+        x1, y1, x2, y2 = _stretch([material.trace(pick) for pick in picks])
+        for pick in picks:
+            axes[pick.row, pick.column].set(xlim=(x1, x2), ylim=(y1, y2))
     _legend(figure, axes)
     return Drawn(spec, figure, material.caption(_SAYS[options.show] + ".", picks=picks, options=options))
 
@@ -85,8 +96,13 @@ def _one_below_the_other(picks: list[Pick], options: Maps, material: Material) -
 def _shape(options: Maps, material: Material, picks: list[Pick]) -> float:
     """How high panels are for their width."""
     traces = [material.trace(pick) for pick in picks]
+    if options.show == "movements":
+        return 1.0
     if options.show in _IN_CELLS:
         return max(t.cells_shape[1] / t.cells_shape[2] for t in traces)
+    if options.show == "path":
+        x1, y1, x2, y2 = _stretch(traces)
+        return (y2 - y1) / (x2 - x1)
     x1, y1, x2, y2 = (np.array([t.plan.bounds for t in traces])).T
     return float(np.max((y2 - y1) / (x2 - x1)))
 
@@ -96,21 +112,22 @@ def _figure(options: Maps, shape: float, rows: int, columns: int) -> tuple[Figur
     most = {1: 4.6 if shape > _LONG else 6.4, 2: 6.4}.get(columns, WIDTH_IN)
     width = options.width or most
     panel = width / columns * shape * (_BAR if options.show in _WITH_BAR else 1.0)
-    below = _BETWEEN_IN + (_BELOW_IN if options.show in _IN_CELLS else 0.0) + _BETWEEN_IN
+    below = _BETWEEN_IN + (_BELOW_IN if options.show in _WORDS_BELOW else 0.0) + _BETWEEN_IN
     height = rows * (panel + below) + _HEADING_IN + _LEGEND_IN
     if height > _MOST_HIGH_IN:
         width, height = width * _MOST_HIGH_IN / height, _MOST_HIGH_IN
     return panels(rows, columns, width, height)
 
 
-def _share_limits(used: list[Axes], trace: Trace) -> None:
-    """All panels show the same stretch, so that odometry can be compared."""
-    x1, y1, x2, y2 = trace.plan.bounds
+def _stretch(traces: list[Trace]) -> tuple[float, float, float, float]:
+    """Of the offices and what lies round them, as much as all the paths need: x, y of one corner and the other, m."""
+    bounds = np.array([trace.plan.bounds for trace in traces])
+    (x1, y1), (x2, y2) = bounds[:, :2].min(axis=0), bounds[:, 2:].max(axis=0)
     beyond = _BEYOND * max(x2 - x1, y2 - y1)
-    x, y = np.array([panel.get_xlim() for panel in used]), np.array([panel.get_ylim() for panel in used])
-    for panel in used:
-        panel.set_xlim(max(x[:, 0].min(), x1 - beyond), min(x[:, 1].max(), x2 + beyond))
-        panel.set_ylim(max(y[:, 0].min(), y1 - beyond), min(y[:, 1].max(), y2 + beyond))
+    paths = np.concatenate([trace.odometry_path for trace in traces])
+    low = np.clip(paths.min(axis=0), (x1 - beyond, y1 - beyond), (x1, y1)) - map_panels.MARGIN_M
+    high = np.clip(paths.max(axis=0), (x2, y2), (x2 + beyond, y2 + beyond)) + map_panels.MARGIN_M
+    return (*low.tolist(), *high.tolist())
 
 
 def _legend(figure: Figure, axes: np.ndarray) -> None:

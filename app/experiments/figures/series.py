@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from app.experiments.figures.canvas import WIDTH_IN, grid_lines, panels
 from app.experiments.figures.material import Drawn, Material, Pick, trial_gid
 from app.experiments.figures.palette import BLUE, CYCLE, ENGINE_COLOUR, FAINT, INK, SOFT, VERMILION
-from app.trials.course import Moment
 from app.trials.experiment import FigureSpec
 from app.trials.figure_options import Series
+from app.trials.notes import Moment
 from app.trials.trace import Trace
 
 _Array = NDArray[np.float64]
@@ -205,6 +205,8 @@ def _short(moment: Moment) -> str:
     for beginning in ("recovered", "not recovered"):
         if words.startswith(beginning):
             return beginning
+    if words.endswith("left out"):
+        return "point left out"
     name, colon, _ = words.partition(": ")
     if colon:
         return f"{name} {'reached' if moment.ok else 'not reached'}"

@@ -24,8 +24,12 @@ class SeekingParams:
         source="ours",
     )
     openings_every: int = param(
-        1, low=1, high=1000, meaning="of so many trips one goes into an opening, the others to places long not visited",
+        2, low=1, high=1000, meaning="of so many trips one goes into an opening, the others to places long not visited",
         source="ours",
+    )  # fmt: skip
+    small_map_s: float = param(
+        60.0, unit="s", low=0.0, high=1e6,
+        meaning="... but every trip does while the robot can reach all that it knows within this time", source="ours",
     )  # fmt: skip
     search: bool = param(
         True, meaning="on an island, as after a kidnap, it only goes on to new ground, so that it meets the rest of its map",
@@ -33,6 +37,11 @@ class SeekingParams:
     )  # fmt: skip
     search_share: float = param(
         0.1, low=0.0, high=1.0, meaning="... while there is another island, no smaller than this share of its own",
+        source="ours",
+    )  # fmt: skip
+    search_home: float = param(
+        2.0, low=0.0, high=100.0,
+        meaning="... a metre between an opening and where its island began counts as so many metres of the way there ...",
         source="ours",
     )  # fmt: skip
     search_beams: int = param(

@@ -8,11 +8,11 @@ import numpy as np
 
 from app.experiments.figures.material import Material
 from app.experiments.stored_trial import StoredTrial
-from app.trials.course import Moment, Visited
 from app.trials.experiment import Axis, EngineSpec, Experiment, FigureSpec, Level, Original, Score
 from app.trials.final_map import FinalMap, Grid, Plan
+from app.trials.notes import Moment, Visited
 from app.trials.steps import Explore
-from app.trials.trace import Carried, Goal, Trace
+from app.trials.trace import Carried, Goal, Movements, Trace
 from app.trials.trial import Trial
 from ratslam_core import Pose2
 
@@ -83,6 +83,7 @@ def trace(stored: StoredTrial, of: Experiment) -> Trace:
     ahead = np.arange(count - 1)
     trial = Trial(of.name, stored.engine, stored.levels, stored.seed, "office", "", {}, tuple(of.protocol), (), "v1")
     object.__setattr__(trial, "id", stored.id)
+    times, lead = loop_times()
     picture = FinalMap(
         in_office=Pose2(1.0, 1.0, 0.1),
         poses=poses,
@@ -96,7 +97,8 @@ def trace(stored: StoredTrial, of: Experiment) -> Trace:
         collisions=((2, 9), (4, 11, 17)),
         occupancy=Grid(rng.uniform(0, 1, (6, 8)), (0.0, 0.0), 0.5),
         cells_occupancy=Grid(rng.uniform(0, 1, (16, 16)), (0.0, 0.0), 1.0),
-        goal_times=Grid(np.where(rng.uniform(0, 1, (16, 16)) < 0.5, np.inf, 3.0), (0.0, 0.0), 1.0),
+        goal_times=Grid(times, (0.0, 0.0), 1.0),
+        goal_lead=Grid(lead, (0.0, 0.0), 1.0),
     )
     walls = np.array([[0.0, 0, 10, 0], [10, 0, 10, 8], [10, 8, 0, 8], [0, 8, 0, 0]])
     return Trace(
@@ -111,7 +113,26 @@ def trace(stored: StoredTrial, of: Experiment) -> Trace:
                  Moment(59.5, "the end")),
         goals=(Goal("kitchen", 7.0, 4.0, 3), Goal("printer", 1.0, 7.0, None)),
         visits=(Visited("kitchen", 3, True, 40.0, 10.0, 3.0, 0.1, ""), Visited("printer", 5, False, 50.0, 9.0, 1.0, 5.0, "no")),
-        kidnaps=(Carried(20.0, 13.0, 4.0),),
+        kidnaps=(Carried(20.0, 13.0, 4.0),), movements=movements(),
+    )  # fmt: skip
+
+
+def loop_times() -> tuple[np.ndarray, np.ndarray]:
+    """Times to a goal (s) and leads (s), (16, 16), on a wide ring about (8, 8); the goal is at (13, 8), 20 s from opposite."""
+    y, x = np.mgrid[:16, :16]
+    ring = np.abs(np.hypot(x - 8, y - 8) - 5) < 2.1
+    share = np.abs(np.arctan2(y - 8, x - 8)) / math.pi
+    return np.where(ring, 20 * share, np.inf), np.where(ring, 40 * (1 - share), np.inf)
+
+
+def movements() -> Movements:
+    """Three arcs that lead on and one turn on the spot: the first is barred, the second chosen."""
+    ahead = np.linspace(0, 0.4, 9)[:, None]
+    ways = [np.array([5.0, 4.0]) + ahead * np.array([math.cos(a), math.sin(a)]) for a in (0.5, 0.0, -0.5)]
+    return Movements(
+        time_s=30.0, robot=Pose2(5.0, 4.0, 0.0), radius_m=0.2, paths=np.array([*ways, np.full((9, 2), [5.0, 4.0])]),
+        cost=np.array([np.inf, 0.2, 0.5, 0.9]), drives=np.array([True, True, True, False]), chosen=1,
+        aim=np.array([5.8, 4.1]), route=np.array([[5.0, 4.1], [5.5, 4.1], [6.0, 4.2]]),
     )  # fmt: skip
 
 

@@ -10,8 +10,24 @@ import pytest
 
 from app.config import Config
 from app.session import Session
-from app.trials.course import Course, Tagged
-from app.trials.steps import Door, Drive, Explore, Kidnap, Move, Repeat, Set, Step, Tag, Tour, Visit, Wait
+from app.trials.course import Course
+from app.trials.notes import Tagged
+from app.trials.steps import (
+    Door,
+    Drive,
+    Explore,
+    Kidnap,
+    Move,
+    Repeat,
+    Send,
+    Set,
+    Step,
+    Tag,
+    TagHere,
+    Tour,
+    Visit,
+    Wait,
+)
 from sim2d import Place, load_world
 
 LOOP, LIVING = load_world("loop"), load_world("living")
@@ -190,3 +206,29 @@ def test_a_step_that_does_not_fit_is_refused_before_the_first_tick(step: Step, m
 def test_places_of_the_world_can_be_tagged_by_name_only_once_they_exist() -> None:
     world = replace(LOOP, places=(*LOOP.places, Place("desk", 3.0, 0.8)))
     assert "desk" in taken(Tag(do="tag", places=["desk"]), Wait(do="wait", seconds=0.2), world=world).tags
+
+
+def test_the_robot_is_told_that_this_is_a_goal_and_called_back_on_the_way_to_it() -> None:
+    course = taken(
+        TagHere(do="tag here", name="begin"),
+        Drive(do="drive", path=ROUND[:2], speed=0.3),
+        TagHere(do="tag here", name="corner"),
+        Drive(do="drive", path=["south-east corner"], speed=0.3),
+        Send(do="send", place="corner", seconds=3.0),
+        Visit(do="visit", places=["begin"], near_m=0.6),
+    )
+    home = LOOP.starts[0]
+    assert (course.tags["begin"].x, course.tags["begin"].y) == pytest.approx((home.x, home.y), abs=0.01)
+    said = words(course)
+    assert said.index("called back from the way to corner") < said.index("begin: reached")
+    assert [visit.name for visit in course.visits] == ["begin"]  # who is called back has not failed
+    assert course.visits[0].began_s - course.moments[said.index("called back from the way to corner")].time_s == 0.0
+
+
+def test_who_has_arrived_is_not_called_back() -> None:
+    course = taken(
+        TagHere(do="tag here", name="here"), Send(do="send", place="here", seconds=60.0), Wait(do="wait", seconds=0.1)
+    )
+    assert course.session.time_s < 10.0
+    assert "arrived at here before it was called back" in words(course)
+    assert "called back from the way to here" not in words(course)

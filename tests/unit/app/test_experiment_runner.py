@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -121,6 +122,45 @@ def test_workers_of_another_version_are_refused(client: Any, monkeypatch: pytest
         connected_to(client.cluster.scheduler_address, None),
     ):
         pass
+
+
+OTHERS = """
+import sys
+from distributed import LocalCluster
+if __name__ == "__main__":
+    cluster = LocalCluster(n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=":0")
+    print(cluster.scheduler_address, flush=True)
+    sys.stdin.read()
+"""
+
+
+def test_a_cluster_that_dies_is_told_of_and_what_had_come_is_kept(store: Store, tmp_path: Path) -> None:
+    script = tmp_path / "others_cluster.py"
+    script.write_text(OTHERS, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
+    trials = fake_trials.trials(2000)
+    with subprocess.Popen(
+        [sys.executable, str(script)], text=True, env=environment, start_new_session=True,
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+    ) as cluster:  # fmt: skip
+
+        def kill(_: object = None) -> None:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(cluster.pid, signal.SIGKILL)
+
+        try:
+            assert cluster.stdout is not None
+            address = cluster.stdout.readline().strip()
+            with (
+                pytest.raises(ValueError, match="the cluster has gone; the same command goes on"),
+                connected_to(address, None) as client,
+            ):
+                run_trials(trials, store, client, run=fake_trials.run, expected_s=0.1, tell=kill)
+        finally:
+            kill()
+    kept = len(trials) - len(pending(trials, store))
+    assert 0 < kept < len(trials)
+    assert all(trial.scores == {"mark": score_of(trials[trial.seed - 1000])} for trial in store.of_experiment("small"))
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)])

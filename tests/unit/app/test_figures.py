@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 
 from app.experiments.figures import KINDS, draw, wanted
 from app.experiments.figures.canvas import png_of, style, svg_of
 from app.experiments.figures.curves import positions
+from app.experiments.figures.goal_memory_panel import plateau
 from app.experiments.figures.map_panels import broken_path
 from app.experiments.figures.palette import CYCLE, ENGINE_COLOUR, THEMED
 from app.experiments.figures.survival import until
@@ -20,7 +23,7 @@ from app.experiments.intervals import wilson
 from app.experiments.words import value_of
 from app.trials.experiment import Axis, Level
 from app.trials.figure_options import OPTIONS, Shown
-from tests.unit.app.made_trials import RATES, SIZES, experiment, figure, material
+from tests.unit.app.made_trials import RATES, SIZES, experiment, figure, loop_times, material
 
 SHOWN = list(Shown.__args__)
 SPECS = [
@@ -146,7 +149,8 @@ def test_levels_with_long_names_lie_one_below_the_other():
 def test_only_the_levels_asked_for_are_drawn():
     asked = figure("curves", score="map error", along="N_vis", lines="size", at=["2 %", "10 %", "16"])
     panel = draw(asked, material()).figure.axes[0]
-    assert [label.get_text() for label in panel.get_xticklabels()] == ["2 %", "10 %"]
+    assert [label.get_text() for label in panel.get_xticklabels()] == ["2", "10"]
+    assert panel.get_xlabel() == "N_vis (%)"  # the unit that all share stands beside the axis
     assert len([line for line in panel.lines if line.get_linestyle() == "-" and len(line.get_xdata())]) == 1
 
 
@@ -213,6 +217,69 @@ def test_the_map_is_drawn_with_all_its_links_over_the_plan():
     walls = panel.collections[0].get_segments()
     np.testing.assert_array_equal(np.array(walls).reshape(-1, 4), trace.plan.walls)
     assert panel.patch.get_gid() == f"trial-{trace.trial.id}"
+
+
+def test_the_way_to_a_goal_is_drawn_apart_from_the_rest_of_the_path():
+    of = material(traced=True)
+    drawn = draw(figure("maps", show="path", each="seed", most=1), of)
+    panel = drawn.figure.axes[0]
+    trace = of.traces[wanted(drawn.spec, of)[0]]
+    way = next(line for line in panel.lines if line.get_label() == "truth, sent to a goal").get_xydata()
+    sent = (trace.time_s >= 40) & (trace.time_s <= 59)  # two visits, one after the other
+    np.testing.assert_array_equal(np.isfinite(way[:, 0]), sent)
+    np.testing.assert_array_equal(way[sent], trace.truth[sent, :2])
+
+
+def test_all_panels_show_the_same_stretch_and_odometry_is_cut_off_far_outside():
+    of = material(traced=True)
+    for trace in list(of.traces.values())[1:]:
+        of.traces[trace.trial.id] = replace(trace, odometry_path=trace.odometry_path * 10)
+    axes = draw(figure("maps", show="path", each="seed", most=2), of).figure.axes
+    assert len({(panel.get_xlim(), panel.get_ylim()) for panel in axes}) == 1
+    assert axes[0].get_xlim() == pytest.approx((-0.4, 10 + 3 + 0.4))
+    assert axes[0].get_ylim() == pytest.approx((-0.4, 8 + 3 + 0.4))
+
+
+def test_movements_are_drawn_as_the_trace_has_them():
+    of = material(traced=True)
+    drawn = draw(figure("maps", show="movements", each="seed", most=1), of)
+    panel = drawn.figure.axes[0]
+    shown = of.traces[wanted(drawn.spec, of)[0]].movements
+    arcs = {e.get_label(): np.array(e.get_segments()) for e in panel.collections if isinstance(e, LineCollection)}
+    np.testing.assert_array_equal(arcs["barred arc"], shown.paths[[0]])
+    np.testing.assert_array_equal(arcs["free arc"], shown.paths[[1, 2]])  # a turn on the spot has no arc
+    lines = {line.get_label(): line.get_xydata() for line in panel.lines}
+    np.testing.assert_array_equal(lines["chosen arc"], shown.paths[1, :-1])
+    np.testing.assert_array_equal(lines["route ahead"], shown.route)
+    np.testing.assert_array_equal(lines["point it steers towards"], [shown.aim])
+    for low, middle, high in zip(panel.viewLim.min, (5.0, 4.0), panel.viewLim.max, strict=True):
+        assert (low + high) / 2 == pytest.approx(middle)
+
+
+def test_a_run_without_a_choice_says_so_and_shows_the_plan():
+    of = material(traced=True)
+    spec = figure("maps", show="movements")
+    of.traces = {key: replace(trace, movements=None) for key, trace in of.traces.items()}
+    panel = draw(spec, of).figure.axes[0]
+    assert panel.get_xlabel() == "no choice between free and barred arcs"
+    assert len(panel.collections[0].get_segments()) == 4
+
+
+def test_the_plateau_is_marked_opposite_the_goal():
+    of = material(traced=True)
+    panel = draw(figure("maps", show="goal memory"), of).figure.axes[0]
+    rings = [line.get_xydata() for line in panel.lines if line.get_label().startswith("plateau")]
+    assert len(rings) == 1
+    assert rings[0] == pytest.approx(np.array([[3.0, 8.0]]), abs=1)
+
+
+def test_a_plateau_is_a_watershed_and_not_any_cell_with_two_ways():
+    times, lead = loop_times()
+    assert np.argwhere(plateau(times, np.zeros_like(lead), 4.0))[:, 1].max() <= 5  # however many cells have two ways
+    assert not plateau(times, np.full_like(lead, np.inf), 4.0).any()  # one way only
+    assert not plateau(np.full_like(times, np.inf), lead, 4.0).any()
+    across = np.roll(times, 7, axis=1), np.roll(lead, 7, axis=1)  # the faces are joined
+    assert (plateau(*across, 4.0) == np.roll(plateau(times, lead, 4.0), 7, axis=1)).all()
 
 
 def test_the_path_through_the_pose_cells_is_broken_at_faces_and_snaps():
@@ -295,4 +362,4 @@ def test_levels_that_were_not_run_are_left_out():
     of.trials = [trial for trial in of.trials if trial.levels[0] != "0 %" and trial.engine == "ours"]
     of.__post_init__()
     (panel,) = draw(SPECS[0], of).figure.axes
-    assert [label.get_text() for label in panel.get_xticklabels()] == ["2 %", "10 %"]
+    assert [label.get_text() for label in panel.get_xticklabels()] == ["2", "10"]

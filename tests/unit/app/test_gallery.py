@@ -14,8 +14,8 @@ from app.experiments.summary import summarise
 from app.gallery.gallery import StoredGallery
 from app.gallery.results import EARLIER, PUBLISHED, QUICK
 from app.trials.chosen import chosen_trial, first_levels
-from app.trials.course import Moment
 from app.trials.experiment import find_experiment
+from app.trials.notes import Moment
 from app.trials.trial import Result, Trial
 from web.http.experiments import Cell, Results
 

@@ -12,7 +12,7 @@ from app.session import Session
 from app.trials.course import Course
 from app.trials.measures import MEASURES, Measure
 from app.trials.scores import scores_of
-from app.trials.steps import Drive, Explore, Kidnap, Move, Step, Tag, Visit
+from app.trials.steps import Drive, Explore, Kidnap, Move, Step, Tag, Visit, Wait
 from app.trials.trial import watched
 from sim2d import load_world
 
@@ -116,10 +116,40 @@ def test_the_chosen_movement_ends_nearer_to_the_route_than_the_others() -> None:
 
 
 def test_false_and_true_snaps_are_all_snaps() -> None:
-    """Where a single look moves the packet, it jumps often."""
+    """Where a single look moves the packet, and it was carried unseen, it jumps often."""
     eager: dict[str, Value] = {"local_view__capped": False, "local_view__rest": 0.0, "local_view__learn_first": True}
-    scores, course = measured(["false snaps"], Explore(do="explore", minutes=3), world="office", **eager)
+    explore = Explore(do="explore", minutes=3)
+    scores, course = measured(
+        ["false snaps"],
+        explore,
+        Kidnap(do="kidnap", least_m=3),
+        explore,
+        world="office",
+        kidnap__enabled=False,
+        **eager,
+    )
     assert 1 <= scores["false_snaps"] + scores["true_snaps"] <= course.session.brain.relocalisations
+
+
+def test_packets_are_counted_while_they_compete() -> None:
+    """A second packet of a third of the activity is put far away, and taken away after a second."""
+    course = Course(Session(load_world("loop"), 3, Config()), [Wait(do="wait", seconds=3.0)])
+    session, packets = course.session, MEASURES["packets"](course)
+    cells = session.brain.pose_cells
+    for _ in range(10):
+        session.tick()
+        packets.note()
+    assert packets.scores() == {"packets_at_most": 1.0, "rival_s": 0.0}
+    _, n_y, n_x = cells.shape
+    here = cells.winner
+    far = np.array([(round(here.y) + n_y // 2) % n_y * n_x + (round(here.x) + n_x // 2) % n_x], np.int32)
+    cells.inject(far, np.array([0.5], np.float32))
+    cells.settle()
+    packets.note()
+    assert packets.scores() == {"packets_at_most": 2.0, "rival_s": pytest.approx(session.frame.dt)}
+    cells.place(round(here.x) % n_x, round(here.y) % n_y, 0)
+    packets.note()
+    assert packets.scores() == {"packets_at_most": 2.0, "rival_s": pytest.approx(session.frame.dt)}
 
 
 def test_scores_are_those_of_the_judges() -> None:

@@ -40,10 +40,11 @@ OTHER: dict[str, float] = {
     "near_blind_m": 3.0, "near_doubt_s": 0.0, "window_m": 0.3, "headway_m": 0.02, "headway_rad": 0.05, "trial_s": 1.0,
     "bar_ahead_m": 2.0, "bar_m": 0.1, "widest_bar_m": 0.6, "bar_fade_s": 5.0, "longest_bar_s": 60.0, "bar_delay_s": 1.0,
     "place_m": 0.2, "gap_m": 0.0, "gap_rad": 0.3, "gap_steps": 2, "gap_cost": 3.0, "no_headway_s": 8.0, "look_around_s": 3.0,
-    "seek": False, "seek_after_s": 20.0, "openings_every": 2, "opening_again_s": 5.0, "trip_most_s": 10.0, "return_after_m": 10.0,
+    "seek": False, "seek_after_s": 20.0, "openings_every": 1, "small_map_s": 1e6, "opening_again_s": 5.0, "trip_most_s": 10.0,
+    "return_after_m": 10.0,
     "old_after_s": 5.0, "long_ago_s": 900.0, "place_reach_m": 6.0, "opening_m": 4.9, "opening_gap_m": 1.2,
     "opening_most_m": 1.2, "opening_beams": 30, "thin_m": 0.4, "into_s": 2.0, "into_reach_m": 1.0, "into_free_m": 3.0,
-    "far_openings": False, "far_m": 4.0, "search": False, "search_share": 1.0, "search_beams": 30,
+    "far_openings": False, "far_m": 4.0, "search": False, "search_share": 1.0, "search_beams": 30, "search_home": 50.0,
     "home_share": 0.0, "return_sigma_m": 0.3, "loop_m": 200.0, "loop_share": 0.0, "loop_most_m": 20.0,
     "far_fine": 1,
     "loop_drive_m": 5.0, "loop_again_s": 10.0, "far_look_back_m": 2.0, "middle_m": 0.0, "middle_ahead_m": 0.5,
@@ -162,8 +163,13 @@ def on_trips(p: PilotParams, landed: int = 10**9) -> Trace:
 
 
 def on_near_trips(p: PilotParams) -> Trace:
-    """The same, where nothing is far, and openings are not all that there is to seek."""
-    yield from on_trips(replace(p, far_openings=False, loop_share=0.0, openings_every=2 * p.openings_every))
+    """The same, where nothing is far."""
+    yield from on_trips(replace(p, far_openings=False, loop_share=0.0))
+
+
+def in_a_large_map(p: PilotParams) -> Trace:
+    """The same, where openings are not all that there is to seek, either."""
+    yield from on_near_trips(replace(p, small_map_s=p.small_map_s / 10))
 
 
 def on_an_island(p: PilotParams) -> Trace:
@@ -214,7 +220,7 @@ SITUATIONS: dict[type, tuple[Callable[[PilotParams], Trace], ...]] = {
     ExploringParams: (exploring,),
     RouteParams: (past_a_shut_door, at_a_wall, standing, side_by_side, failing_again),
     FreeingParams: (getting_nowhere,),
-    SeekingParams: (on_trips, on_near_trips, on_an_island, along_a_corridor, at_a_loop),
+    SeekingParams: (on_trips, on_near_trips, in_a_large_map, on_an_island, along_a_corridor, at_a_loop),
 }
 
 

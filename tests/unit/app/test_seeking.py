@@ -199,6 +199,38 @@ def test_on_an_island_it_goes_into_every_opening(search: bool) -> None:
         assert seeker.returning == (not goes_into)
 
 
+def test_on_an_island_it_begins_where_that_began() -> None:
+    """Of two openings the one near the island's first experience is taken, though the other lies nearer to the robot."""
+    map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
+    map_.landed = 30
+    for home, chosen in ((0.0, 37), (5.0, 31)):
+        run = a_run(map_, seek_after_s=1.0, search_home=home, **NEAR_ONLY)
+        seeker = run.pilot._seeker
+        seeker.ground._seen_m[: seeker.ground.count] = 1.0
+        for row in (31, 37):
+            seeker.ground._seen_m[row, 6:8] = 5.0  # to the right
+        run.tick()
+        seeker._choose(map_, run.pilot._local, run.frame.ranges_m, run.pilot.params)  # type: ignore[arg-type]
+        assert seeker.follower is not None
+        assert seeker.follower.goal == chosen
+
+
+@pytest.mark.parametrize("small", [True, False])
+def test_in_a_small_map_every_trip_goes_into_an_opening(small: bool) -> None:
+    map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
+    run = a_run(map_, openings_every=2, small_map_s=60.0 if small else 10.0, **NEAR_ONLY)
+    seeker, into = run.pilot._seeker, []
+    seeker.ground.now_s = 1000.0
+    seeker.ground._last_s[: seeker.ground.count] = 100.0
+    seeker.ground._seen_m[: seeker.ground.count] = 1.0
+    seeker.ground._seen_m[10:14, 3:5] = 5.0  # ahead, that is along x
+    for _ in range(4):
+        seeker._choose(map_, run.pilot._local, run.frame.ranges_m, run.pilot.params)  # type: ignore[arg-type]
+        into.append(seeker._opening is not None)
+        seeker.stop()
+    assert into == ([True] * 4 if small else [False, True, False, True])
+
+
 @pytest.mark.parametrize("order", ["goal", "hand"])
 def test_an_order_ends_the_trip(order: str) -> None:
     map_ = HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))

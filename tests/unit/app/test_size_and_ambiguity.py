@@ -6,13 +6,14 @@ import pytest
 
 from app.config import Config
 from app.trials.experiment import EngineName
-from app.trials.size_and_ambiguity import trial_of
+from app.trials.size_and_ambiguity import SizeAndAmbiguity
 
 
 @pytest.mark.parametrize("engine", ["paper", "ours"])
-@pytest.mark.parametrize(("vision", "sees"), [("camera", True), ("scene", False)])
-def test_the_camera_is_on_for_a_brain_that_looks(engine: EngineName, vision: str, sees: bool) -> None:
-    trial = trial_of(16, 4.0, vision, engine, 9)
+@pytest.mark.parametrize("sees", [True, False])
+def test_the_camera_is_on_for_a_brain_that_looks(engine: EngineName, sees: bool) -> None:
+    vision = "camera" if sees else "scene"
+    trial = SizeAndAmbiguity(16, 4.0, vision, engine, 9).trial
     config = Config().with_values(trial.values)
     assert config.robot.camera is sees
     assert (config.local_view.front_end == "scene numbers") is not sees
@@ -24,6 +25,6 @@ def test_the_camera_is_on_for_a_brain_that_looks(engine: EngineName, vision: str
 
 
 def test_the_papers_trial_by_scene_numbers_is_that_of_its_table() -> None:
-    assert trial_of(64, 0.0, "scene", "paper", 20060).values.items() >= {
+    assert SizeAndAmbiguity(64, 0.0, "scene", "paper", 20060).trial.values.items() >= {
         "local_view.learning_rate": 0.015, "pilot.seek": True, "experience_map.sweep": "by experience",
     }.items()  # fmt: skip

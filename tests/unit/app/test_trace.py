@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,8 +11,8 @@ import pytest
 from app.trials.code_version import code_version
 from app.trials.final_map import placed
 from app.trials.steps import Explore, Kidnap, Tag, Visit
-from app.trials.trace import EVERY_S, trace_of
-from app.trials.trial import Trial, run_trial, text_of
+from app.trials.trace import EVERY_S, Recorder, trace_of
+from app.trials.trial import Trial, run_trial, text_of, watched
 from ratslam_core import Pose2
 from sim2d.importers import open_world
 
@@ -92,6 +93,60 @@ def test_the_plan_is_the_office_and_the_map_lies_over_it(trace):
     assert np.hypot(*(trace.map.poses - trace.map.truth)[:, :2].T).max() < 2.0
     assert trace.map.times_s[trace.map.goal] == 0.0
     assert (x2 - x1, y2 - y1) == (10.0, 8.0)
+
+
+# ------------------------------------------------------------ the choice among arcs
+
+TO_A_GOAL = replace(
+    MADE,
+    protocol=(
+        Tag(do="tag", places=["printer"]),
+        Explore(do="explore", minutes=4),
+        Visit(do="visit", places=["printer"], timeout_s=60),
+    ),
+)
+
+
+@pytest.fixture(scope="module")
+def watched_run():
+    """A course that went to its goals, and its recorder."""
+    course = TO_A_GOAL.begin()
+    recorder = Recorder(course)
+    watched(course, [recorder])
+    return course, recorder
+
+
+def test_recording_changes_nothing(watched_run):
+    course, _ = watched_run
+    assert course.session.state_hash() == run_trial(TO_A_GOAL)[0].state_hash
+
+
+def test_the_chosen_arc_is_free_and_no_arc_costs_less(watched_run):
+    shown = watched_run[1].movements
+    assert shown.free[shown.chosen]
+    assert shown.drives[shown.chosen]
+    assert shown.cost[shown.chosen] == shown.cost.min()
+    assert (shown.drives & ~shown.free).any()
+
+
+def test_arcs_begin_where_the_robot_truly_was_and_lead_the_way_it_then_went(watched_run):
+    course, recorder = watched_run
+    shown, session = recorder.movements, course.session
+    chose = round(shown.time_s / session.frame.dt) - 1  # the tick at whose end it was when it chose
+    here, then = session.evaluation.path[chose], session.evaluation.path[chose + 1]
+    began = shown.paths[:, 0]
+    assert np.abs(began - (shown.robot.x, shown.robot.y)).max() < 1e-9
+    assert np.hypot(*(began - here).T).max() < 0.01
+    ahead = shown.paths[shown.chosen, -1] - here
+    assert np.dot(ahead, then - here) > 0
+    x1, y1, x2, y2 = session.world.bounds
+    assert (shown.route > (x1, y1)).all()
+    assert (shown.route < (x2, y2)).all()
+    assert np.hypot(*(shown.route[0] - here)) < 1.0
+
+
+def test_who_never_follows_a_route_has_no_movements(trace):
+    assert trace.movements is None
 
 
 def test_what_only_looks_on_is_no_part_of_the_version():

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from app.experiments.outcome import Outcome
-from app.trials.course import Moment
 from app.trials.experiment import Experiment
+from app.trials.notes import Moment
 from app.trials.steps import Wait
 from app.trials.trial import Result, Trial
 

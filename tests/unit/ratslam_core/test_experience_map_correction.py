@@ -39,10 +39,12 @@ def lap(robot: Robot, reads: float, bias: float = 0.0) -> None:
 PLACES: dict[int, Pose2] = {}
 
 
-def loop(params: ExperienceMapParams, reads: float, bias: float, laps: int) -> Robot:
+def loop(params: ExperienceMapParams, reads: float, bias: float, laps: int, bias_sigma: float = 10.0) -> Robot:
+    """bias_sigma: 10, as good as no doubt of the bias."""
     PLACES.clear()
     PLACES[0] = Pose2(0.0, 0.0, 0.0)
     robot = Robot(params)
+    robot.map.optimiser.params = SolverParams(bias_sigma=bias_sigma)
     robot.see(0, new=True)
     for _ in range(laps):
         lap(robot, reads, bias)
@@ -59,6 +61,16 @@ def test_a_closed_loop_straightens_the_map_and_finds_the_bias() -> None:
         d_map = np.hypot(*(learnt.map.poses[i, :2] - learnt.map.poses[(i + 8) % 16, :2]))
         d_true = math.hypot(true[i].x - true[(i + 8) % 16].x, true[i].y - true[(i + 8) % 16].y)
         assert d_map == pytest.approx(d_true, rel=0.1)
+
+
+def test_the_more_a_bias_is_doubted_the_less_of_it_one_loop_shows() -> None:
+    bias = math.radians(1.0)
+    learnt = [
+        loop(ExperienceMapParams(solve_every=5), 1.0, bias, 6, sigma).map.yaw_bias for sigma in (1e-3, 0.01, 0.03)
+    ]
+    assert 0 < learnt[0] < 0.1 * bias
+    assert learnt == sorted(learnt)
+    assert 0.5 * bias < learnt[-1] < bias
 
 
 def test_the_bias_is_taken_off_the_links_that_told_it() -> None:

@@ -129,6 +129,19 @@ def test_sights_that_agree_win(needed: int) -> None:
     assert robot.map.closures == 1
 
 
+@pytest.mark.parametrize(("drift", "needed"), [(1.01, 8), (0.99, 900), (0.0, 900)])
+def test_a_long_loop_closes_soon(drift: float, needed: int) -> None:
+    """Sixteen metres of odometry that no loop has bridged may be off by as much as the drift says; then few sights win."""
+    robot = a_walk(gate_drift=drift)
+    assert robot.map.params.join_sights == 8
+    for _ in range(7):
+        assert robot.see(0) is (robot.map.gate.sights == 1)  # the first is taken for a new place
+    robot.see(0)
+    assert (robot.map.active == 0) is (needed == 8)
+    assert robot.map.corrected == 0  # odometry was as good as could be expected
+    assert (robot.map.transitions.weight[: robot.map.transitions.count] > 1e-3).all()
+
+
 def test_what_was_made_in_doubt_is_no_witness() -> None:
     """A place that was new only because a look was held back does not speak against that look."""
     robot = a_walk(gate_sights=5)

@@ -9,7 +9,7 @@ import pytest
 
 from ratslam_core import Pose2
 from ratslam_core.experience_map.transitions import Transitions
-from ratslam_core.extensions.torn import soften, torn
+from ratslam_core.extensions.torn import open_way_m, soften, torn
 
 
 def a_backbone(experiences: int, closures: list[tuple[int, int]]) -> Transitions:
@@ -40,6 +40,16 @@ def test_an_unnoticed_kidnap_is_found_in_the_backbone(
     closures: list[tuple[int, int]], first: int, last: int, found: list[int]
 ) -> None:
     assert torn(a_backbone(10, closures), first, last).tolist() == found
+
+
+@pytest.mark.parametrize(
+    ("closures", "first", "last", "way_m"),
+    [([], 0, 9, 9.0), ([], 3, 6, 3.0), ([(5, 0)], 0, 9, 4.0), ([(4, 2), (8, 6)], 0, 9, 5.0), ([(9, 0)], 0, 9, 0.0)],
+)
+def test_the_way_is_open_where_no_closure_bridges_it(
+    closures: list[tuple[int, int]], first: int, last: int, way_m: float
+) -> None:
+    assert open_way_m(a_backbone(10, closures), first, last) == pytest.approx(way_m)
 
 
 def test_a_closure_that_is_not_believed_bridges_nothing() -> None:

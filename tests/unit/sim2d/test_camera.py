@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -232,3 +233,14 @@ def test_a_side_is_painted_when_it_is_first_seen_and_never_otherwise() -> None:
     picture = fresh.image(*place, 0.3, 1.0, 0.0, rng)
     assert np.array_equal(picture, used.image(*place, 0.3, 1.0, 0.0, rng))
     assert 0 < fresh._atlas._painted.sum() < used._atlas._painted.sum() < used._atlas._painted.size
+
+
+def test_of_two_walls_in_one_place_always_the_first_is_seen() -> None:
+    """A plan may draw a line twice; in real plans hundreds of metres are. What is seen must not change with every tick."""
+    red = Wall(0.0, 3.0, 4.0, 3.0, "wall", 2.6, (250, 0, 0))
+    blue = Wall(3.7, 3.0, 0.3, 3.0, "wall", 2.6, (0, 0, 250))
+    for first, second, k in ((red, blue, 0), (blue, red, 2)):
+        world = replace(room(), walls=(*room().walls, first, second))
+        for x, y, heading in np.random.default_rng(3).uniform((1.7, 0.5, 1.3), (2.3, 2.0, 1.8), (100, 3)):
+            row = still(world, x, y, heading)[24, 16:48].astype(int)
+            assert (row[:, k] > row[:, 2 - k] + 50).all()

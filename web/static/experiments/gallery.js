@@ -20,6 +20,8 @@ export class Gallery {
     /** @type {Card[]} */
     this.cards = [];
     this.from = ""; // the experiment whose trials were looked at
+    this.begins = ""; // the experiment that was asked for and has not begun yet
+    this.doing = ""; // what is going on before the engine's first tick
     $("gallery-close").addEventListener("click", () => this.dialog.close());
     $("gallery-back").addEventListener("click", () => this.back());
     this.dialog.addEventListener("click", ({ target }) => target === this.dialog && this.dialog.close());
@@ -72,17 +74,34 @@ export class Gallery {
 
   /** @param {WatchExperiment} wish */
   async watch(wish) {
-    if (!(await this.mayLeave())) return;
+    if (this.begins || !(await this.mayLeave())) return;
+    const title = this.cards.find(({ name }) => name === wish.experiment)?.title ?? wish.experiment;
+    this.begins = title;
+    const slow = setTimeout(() => this.waking(this.doing), 400);
     const answer = await this.link.ask(wish, { quiet: true });
+    clearTimeout(slow);
+    this.begins = "";
+    this.waits("");
     if (!answer.accepted) {
       this.wrong(answer.detail.length ? reasons(answer) : "The connection is lost; nothing was begun.");
       return;
     }
     this.dialog.close();
-    const title = this.cards.find(({ name }) => name === wish.experiment)?.title ?? wish.experiment;
     toast(
       wish.moment_s === undefined ? `Watching: ${title}.` : `Seed ${wish.seed}: going to the moment that decided it.`,
     );
+  }
+
+  /** What is going on before the engine's first tick; "" after it. @param {string} doing */
+  waking(doing) {
+    this.doing = doing;
+    if (this.begins) this.waits(doing ? `First the engine wakes up: ${doing}.` : "It begins in a moment.");
+  }
+
+  /** @param {string} words */
+  waits(words) {
+    $("gallery-wait").hidden = !words;
+    $("gallery-wait").textContent = words && `“${this.begins}” was asked for. ${words}`;
   }
 
   /** What the server has at this address; null, and a sentence, if nothing can be had. @param {string} path */

@@ -8,13 +8,15 @@ import { picture } from "../model/pixels.js";
 export const colourOf = (name) => rgb(getComputedStyle(document.documentElement).getPropertyValue(`--${name}`));
 
 export class Picture {
-  constructor() {
+  /** @param {string} words what it shows, for people who cannot see it: from the beginning, before there is anything to show */
+  constructor(words) {
     this.canvas = make("canvas", { width: 1, height: 1, className: "pixels" });
     this.canvas.setAttribute("role", "img");
+    this.says(words);
     this.turn = 0; // number of the latest request: a picture that is unpacked after a newer one is dropped
   }
 
-  /** @param {string} words for people who cannot see it */
+  /** @param {string} words what it shows now */
   says(words) {
     if (this.canvas.getAttribute("aria-label") !== words) this.canvas.setAttribute("aria-label", words);
     return this;

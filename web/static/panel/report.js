@@ -20,9 +20,9 @@ export class Report {
     this.title = caption("");
     this.name = make("p", { className: "number" });
     this.words = make("p");
-    this.picture = new Picture();
-    this.now = new Picture().says("what the robot makes of it");
-    this.camera = new Picture().says("what the robot's camera sees now");
+    this.picture = new Picture("the stored view");
+    this.now = new Picture("what the robot makes of it");
+    this.camera = new Picture("what the robot's camera sees now");
     this.turns = new Histogram("activity by heading");
     this.aside = make("div");
     this.pair = make("div", { className: "pair" });

@@ -14,10 +14,10 @@ const PACKETS = ["packet-1", "packet-2", "packet-3", "packet-4"];
 export class SensesTab {
   /** @param {(wish: Record<string, number>) => void} inspect */
   constructor(inspect) {
-    this.camera = new Picture().says("what the robot's camera sees");
-    this.seen = new Picture();
-    this.best = new Picture();
-    this.above = new Picture().says("pose cells seen from above, x′ to the right");
+    this.camera = new Picture("what the robot's camera sees");
+    this.seen = new Picture("the present view, as it is compared");
+    this.best = new Picture("the best match");
+    this.above = new Picture("pose cells seen from above, x′ to the right");
     this.seenTitle = caption("");
     this.bestTitle = caption("best match");
     this.difference = caption("");
@@ -26,7 +26,7 @@ export class SensesTab {
     this.words = make("span");
     this.verdict = make("p", { className: "verdict" }, make("i"), this.words);
     this.view = -1;
-    this.match = make("button", { type: "button", className: "picture" }, this.best.canvas);
+    this.match = make("button", { type: "button", className: "picture", hidden: true }, this.best.canvas);
     this.match.addEventListener("click", () => inspect({ view: this.view }));
     this.none = make("p", { className: "blank", textContent: "none yet: every view is new" });
     this.bar = new Bar(0.5);

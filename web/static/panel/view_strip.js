@@ -11,7 +11,7 @@ export class ViewStrip {
   /** @param {(wish: Record<string, number>) => void} inspect */
   constructor(inspect) {
     this.inspect = inspect;
-    this.picture = new Picture();
+    this.picture = new Picture("the local view cells");
     this.picture.canvas.setAttribute("aria-hidden", "true");
     this.cursor = make("span", { className: "cursor" });
     this.box = make("div", { className: "view-strip", tabIndex: 0 }, this.picture.canvas, this.cursor);

@@ -1,0 +1,57 @@
+"""An estimate that need not be Cartesian is held against those of earlier passes through the same place."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.evaluation.earlier_passes import off_earlier_passes
+from ratslam_core import Pose2
+
+STRAIGHT = np.column_stack([np.arange(0.0, 6.0, 0.03), np.zeros(200), np.zeros(200)])  # 6 m along x
+
+
+def off(passes: np.ndarray, estimated: np.ndarray, here: Pose2, estimate: Pose2) -> tuple[float, float]:
+    return off_earlier_passes(passes, estimated, here, estimate)
+
+
+@given(st.floats(-20, 20), st.floats(-20, 20), st.floats(-3, 3), st.floats(-0.3, 0.3), st.floats(-0.2, 0.2))
+def test_wherever_the_cells_have_it_the_same_state_again_is_right(
+    x: float, y: float, turn: float, aside: float, facing: float
+) -> None:
+    """The cells' plane may lie anywhere and be turned: what counts is that the same place is the same state."""
+    frame = Pose2(x, y, turn)
+    estimated = np.array([[p.x, p.y, p.heading_rad] for p in (frame.compose(Pose2(*row)) for row in STRAIGHT.tolist())])
+    here = Pose2(1.0, aside, facing)
+    metres, radians = off(STRAIGHT, estimated, here, frame.compose(here))
+    assert metres == pytest.approx(0.0, abs=1e-9)
+    assert radians == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("passes_up", "off_m"), [([0], 1.0), ([0, 3], 1.0), ([0, 3, 3], 2.0), ([0, 0, 3], 1.0)])
+def test_another_state_is_as_far_off_as_it_is_from_half_of_the_passes(passes_up: list[int], off_m: float) -> None:
+    """passes_up: how many metres farther up the cells had the robot on each pass. Now they have it one metre up."""
+    away = np.array([[9.0, 0.0, 0.0]])
+    true = np.concatenate([np.concatenate([STRAIGHT[:100], away.repeat(5, axis=0)]) for _ in passes_up])
+    estimated = true.copy()
+    estimated[:, 1] += np.repeat(passes_up, 105)
+    metres, radians = off(true, estimated, Pose2(1.05, 0.0, 0.0), Pose2(1.05, 1.0, 0.5))
+    assert metres == pytest.approx(off_m, abs=1e-9)
+    assert radians == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    "here",
+    [
+        Pose2(1.0, 0.6, 0.0),  # beside the path
+        Pose2(1.0, 0.0, math.pi),  # the other way
+        Pose2(5.5, 0.0, 0.0),  # the pass is still going on
+    ],
+)
+def test_new_ground_and_this_pass_say_nothing(here: Pose2) -> None:
+    assert math.isnan(off(STRAIGHT, STRAIGHT, here, here)[0])
+    assert math.isnan(off(STRAIGHT[:0], STRAIGHT[:0], here, here)[0])
