@@ -6,30 +6,29 @@ No thread, no clock, no page: the same seed and the same calls give the same run
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Callable
 
 import numpy as np
 
-from app.config import Config, Value
+from app.config import Config
 from app.evaluation import Evaluation
-from app.pilot import Mode, Pilot
-from app.pilot.goal_place import nearest_to, of_its_place
+from app.order_book import Order
+from app.orders import Orders
+from app.pilot import Pilot
 from app.stopwatch import Stopwatch
 from disk import encode, kind
 from ratslam_core import Estimate, Odometry, RatSlam
 from ratslam_core.slam import STAGES
-from sim2d import SONAR_ANGLES_RAD, Drive, SensorFrame, Simulator, World, WorldText
+from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, World, WorldText
 
-MOST_TAGS = 24
 PARTS = ("pilot", "office and senses", *STAGES, "judging")  # of a tick; "judging" compares the estimate with the truth
 
 
 @kind("session/2")
-class Session:
+class Session(Orders):
     """One robot in one world with one brain."""
 
-    CACHES = ("world", "stopwatch", "frame", "_text")
+    CACHES = ("world", "stopwatch", "frame", "_text", "on_order", "under_orders")
 
     def __init__(
         self, world: World, seed: int = 0, config: Config | None = None, brain: RatSlam | None = None,
@@ -53,7 +52,7 @@ class Session:
         self.brain = brain
         self.pilot = Pilot(self.config.pilot, np.array(SONAR_ANGLES_RAD), np.random.default_rng(pilot_seed))
         self.evaluation = Evaluation(len(brain.experience_map))
-        self.tags: dict[str, int] = {}  # name -> the experience that was active when somebody gave it
+        self.tags = {}
         self._look()
         self.odometry = self._odometry()  # what the brain was told in its last step
         self.estimate: Estimate = self._think(self.stopwatch.lap)
@@ -66,16 +65,10 @@ class Session:
 
     def _look(self) -> None:
         self.stopwatch = Stopwatch(PARTS)
-        self.frame: SensorFrame = self.simulator.observe()
+        self.frame = self.simulator.observe()
         self._text = WorldText()
-
-    @property
-    def tick_count(self) -> int:
-        return self.frame.tick
-
-    @property
-    def time_s(self) -> float:
-        return self.frame.time_s
+        self.on_order = _nobody
+        self.under_orders = False
 
     def tick(self, watch: Callable[[str], None] | None = None) -> None:
         """Run one tick, one sensor period. watch: called after each stage of RatSLAM; it must not change anything."""
@@ -98,84 +91,7 @@ class Session:
         clock.lap("judging")
         clock.finish()
 
-    # ------------------------------------------------------------ orders; ValueError says why one cannot be carried out
-
-    def set_goal(self, x: float, y: float) -> int:
-        """Go to the place (x, y), metres in the map's frame: to the quickest of all experiences that stand for it. Returns
-        the one nearest to it."""
-        return self._go_to(nearest_to(self.brain.experience_map, x, y, self.pilot.params))
-
-    def tag(self, name: str) -> int:
-        """Name the place where the robot believes itself to be, as "the kitchen", to send it there later. A name that is
-        given again moves. Returns the active experience. IROS 2005 IV."""
-        name = name.strip()
-        if not name or not name.isprintable():
-            raise ValueError(f"a tag needs a name that can be printed, got {name!r}")
-        if name not in self.tags and len(self.tags) >= MOST_TAGS:
-            raise ValueError(f"{name!r} would be tag number {MOST_TAGS + 1}; {MOST_TAGS} are enough, remove one first")
-        self.tags[name] = self.brain.experience_map.active
-        return self.tags[name]
-
-    def untag(self, name: str) -> None:
-        del self.tags[self._tagged(name)]
-
-    def go_to_tag(self, name: str) -> int:
-        """Go to the place of this name, as after a click there. Returns its experience."""
-        return self._go_to(self.tags[self._tagged(name)])
-
-    def _go_to(self, experience: int) -> int:
-        """Go to this experience or another of its place. Returns the first of them."""
-        first, *others = of_its_place(self.brain.experience_map, experience, self.pilot.params)
-        self.pilot.set_goal(first, others)
-        return first
-
-    def _tagged(self, name: str) -> str:
-        if name not in self.tags:
-            known = f"one of: {', '.join(self.tags)}" if self.tags else "given first; there is none yet"
-            raise ValueError(f"there is no tag {name!r}; it must be {known}")
-        return name
-
-    def set_mode(self, mode: Mode) -> None:
-        self.pilot.set_mode(mode)
-
-    def kidnap(self, x: float | None = None, y: float | None = None, heading_rad: float | None = None) -> None:
-        """Put the robot at (x, y), metres in the office's frame, untold. Without a place: a random free one."""
-        if x is None and y is None:
-            x, y, by_chance = self.simulator.random_free_pose()
-            heading_rad = by_chance if heading_rad is None else heading_rad
-        if x is None or y is None:
-            raise ValueError("a kidnap needs both x and y, or neither for a place by chance")
-        heading = self.simulator.truth.heading_rad if heading_rad is None else heading_rad
-        self.simulator.teleport(x, y, heading)
-        self.frame = self.simulator.observe()
-        self.evaluation.kidnapped(self.time_s, self.brain.experience_map)
-
-    def set_parameter(self, name: str, value: Value) -> bool:
-        """Change one parameter. True if it takes effect at once, False if at the next reset."""
-        self.set_parameters({name: value})
-        return next(item.metadata["live"] for dotted, item, _ in self.config.items() if dotted == name)
-
-    def set_parameters(self, values: Mapping[str, Value]) -> list[str]:
-        """Change several parameters, all or none. Returns the names of those that wait for the next reset."""
-        config = self.config.with_values(values)
-        changes: dict[str, dict[str, Value]] = {"robot": {}}  # robot first: only it can refuse (no room)
-        waiting: list[str] = []
-        for (dotted, item, old), (_, _, new) in zip(self.config.items(), config.items(), strict=True):
-            section, key = dotted.split(".")
-            if old != new and item.metadata["live"]:
-                changes.setdefault(section, {})[key] = new
-            elif old != new:
-                waiting.append(dotted)
-        for section, change in changes.items():
-            if change:
-                self._take(section, change)
-        self.config = config
-        return waiting
-
-    def edit_world(self, world: World) -> None:
-        """Go on in an edited world; a reset begins in it, too. ValueError if something in it would cover the robot."""
-        self.simulator.set_world(world)
-        self.world = world
+    # ------------------------------------------------------------ looking
 
     def state_hash(self) -> str:
         """A digest of everything that decides the future, and of the evaluation. Equal runs have equal hashes."""
@@ -217,18 +133,6 @@ class Session:
         self.evaluation.record(self.time_s, self.simulator.truth, self.brain.experience_map, estimate.created, odometry)
         return estimate
 
-    def _take(self, section: str, change: dict[str, Value]) -> None:
-        """Hand the changed live parameters of a section to the part that uses them."""
-        brain = self.brain
-        if section == "robot":
-            self.simulator.set_params(replace(self.simulator.params, **change))  # type: ignore[arg-type]
-        elif section == "office":
-            self.simulator.office = replace(self.simulator.office, **change)  # type: ignore[arg-type]
-        elif section == "pilot":
-            self.pilot.params = replace(self.pilot.params, **change)  # type: ignore[arg-type]
-        else:
-            brain.set_params(replace(brain.params, **{section: replace(getattr(brain.params, section), **change)}))
-
 
 def spread_goals(session: Session, count: int) -> list[int]:
     """`count` experiences spread over the map. Each is the one farthest from the robot and from those chosen before."""
@@ -240,6 +144,10 @@ def spread_goals(session: Session, count: int) -> list[int]:
         chosen.append(int(np.argmax(away)))
         away = np.minimum(away, np.hypot(*(poses[:, :2] - poses[chosen[-1], :2]).T))
     return chosen
+
+
+def _nobody(_order: Order) -> None:
+    """The default for `on_order`: does nothing."""
 
 
 def is_lost(session: Session) -> bool:

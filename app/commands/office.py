@@ -11,26 +11,26 @@ from web import messages as m
 
 
 def set_door(engine: Engine, command: m.SetDoor) -> Outcome:
-    simulator = engine.run.session.simulator
+    session = engine.run.session
     words = "opens" if command.open else "shuts"
-    return _done(engine, command.name, words, lambda: simulator.set_door(command.name, command.open))
+    return _done(engine, command.name, words, lambda: session.set_door(command.name, command.open))
 
 
 def set_lamp(engine: Engine, command: m.SetLamp) -> Outcome:
-    simulator = engine.run.session.simulator
+    session = engine.run.session
     words = "on" if command.on else "off"
-    return _done(engine, command.name, words, lambda: simulator.set_lamp(command.name, command.on))
+    return _done(engine, command.name, words, lambda: session.set_lamp(command.name, command.on))
 
 
 def put_box(engine: Engine, command: m.PutBox) -> Outcome:
-    simulator, c = engine.run.session.simulator, command
+    session, c = engine.run.session, command
     box = Box(c.name, c.x, c.y, c.width, c.depth, c.height, c.angle_rad)
-    return _done(engine, command.name, "put down", lambda: simulator.put_box(box))
+    return _done(engine, command.name, "put down", lambda: session.put_box(box))
 
 
 def remove_box(engine: Engine, command: m.RemoveBox) -> Outcome:
-    simulator = engine.run.session.simulator
-    return _done(engine, command.name, "taken away", lambda: simulator.remove_box(command.name))
+    session = engine.run.session
+    return _done(engine, command.name, "taken away", lambda: session.remove_box(command.name))
 
 
 def _done(engine: Engine, name: str, words: str, order: Callable[[], None]) -> Outcome:

@@ -36,7 +36,7 @@ def go_to_tag(engine: Engine, command: m.GoToTag) -> Outcome:
 
 
 def cancel_goal(engine: Engine, _: m.CancelGoal) -> Outcome:
-    engine.run.session.pilot.cancel_goal()
+    engine.run.session.cancel_goal()
 
 
 def set_mode(engine: Engine, command: m.SetMode) -> Outcome:
@@ -44,7 +44,7 @@ def set_mode(engine: Engine, command: m.SetMode) -> Outcome:
 
 
 def drive(engine: Engine, command: m.Drive) -> Outcome:
-    engine.run.session.pilot.drive(command.speed, command.yaw_rate)
+    engine.run.session.drive(command.speed, command.yaw_rate)
     engine.pace.drive()
 
 

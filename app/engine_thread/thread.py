@@ -111,7 +111,7 @@ class EngineThread:
             self._inbox.give()
         engine, pace, session = self._engine, self.pace, self.session
         if pace.let_go() and session.pilot.mode == "manual":
-            session.pilot.drive(0.0, 0.0)
+            session.drive(0.0, 0.0)
         if engine.steps:
             self._step()
         elif engine.runs_ahead:

@@ -45,7 +45,7 @@ def visit(loop: Loop, goal: int, place: tuple[float, float], timeout_s: float, w
     session = loop.session
     shortest_m = session.simulator.free_space.shortest_m(_here(session), place)
     began_s, began_m = session.time_s, session.evaluation.path_m
-    session.pilot.set_goal(goal)
+    session.go_to(goal)
     while session.pilot.goal_state != (goal, "arrived") and session.time_s - began_s < timeout_s - 1e-9:
         loop.tick(what)
     _, state = session.pilot.goal_state or (goal, "given up")

@@ -8,7 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from app.config import Config
-from app.session import MOST_TAGS, Session
+from app.orders import MOST_TAGS
+from app.session import Session
 from app.session_laws.evaluation import evaluation
 from app.session_laws.pilot import pilot
 from app.session_laws.simulator import simulator

@@ -8,7 +8,16 @@ from functools import cache
 from pathlib import Path
 
 _ROOT = Path(__file__).parents[2]
-_DECIDES = ("ratslam_core", "sim2d", "app/session.py", "app/pilot", "app/config", "app/evaluation", "app/trials")
+_DECIDES = (
+    "ratslam_core",
+    "sim2d",
+    "app/session.py",
+    "app/orders.py",
+    "app/pilot",
+    "app/config",
+    "app/evaluation",
+    "app/trials",
+)
 _LOOKS_ON = {"figure_options.py", "final_map.py", "trace.py"}  # of app/trials: what is asked of a trial when it is over
 
 

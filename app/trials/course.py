@@ -89,7 +89,7 @@ class Course:
             case Tour():
                 yield from self._tour(step)
             case Wait():
-                self.session.pilot.drive(*_STANDING)
+                self.session.drive(*_STANDING)
                 yield from self._for(step.seconds, "waiting")
             case Repeat():
                 for _ in range(step.times):
@@ -110,7 +110,7 @@ class Course:
                 self.session.set_parameters(step.values)
                 self.mark(", ".join(f"{name} = {value}" for name, value in step.values.items()))
             case Door():
-                self.session.simulator.set_door(step.name, step.open)
+                self.session.set_door(step.name, step.open)
                 self.mark(f"{step.name} {'opens' if step.open else 'shuts'}")
             case _:
                 raise TypeError(f"nobody carries out {step.do}")
@@ -149,7 +149,7 @@ class Course:
         for lap in range(step.laps):
             for where in step.path:
                 yield from self._drive_to(self._place(where), step.speed, f"driven, lap {lap + 1} of {step.laps}")
-        self.session.pilot.drive(*_STANDING)
+        self.session.drive(*_STANDING)
 
     def _drive_to(self, place: tuple[float, float], speed: float, what: str) -> Iterator[str]:
         session, began_s = self.session, self.session.time_s
@@ -160,15 +160,15 @@ class Course:
             truth = session.simulator.truth
             aside = math.remainder(math.atan2(place[1] - truth.y, place[0] - truth.x) - truth.heading_rad, math.tau)
             turn = max(-MOST_TURN, min(MOST_TURN, aside / max(AIM_S, session.frame.dt)))
-            session.pilot.drive(speed * math.cos(aside) if abs(aside) < SHARP_RAD else 0.0, turn)
+            session.drive(speed * math.cos(aside) if abs(aside) < SHARP_RAD else 0.0, turn)
             yield from self._tick(what)
 
     def _move(self, step: Move) -> Iterator[str]:
         for _ in range(step.times):
             for speed, turn_deg, seconds in step.moves:
-                self.session.pilot.drive(speed, math.radians(turn_deg))
+                self.session.drive(speed, math.radians(turn_deg))
                 yield from self._for(seconds, "moved")
-        self.session.pilot.drive(*_STANDING)
+        self.session.drive(*_STANDING)
 
     def _tag_here(self, name: str) -> None:
         x, y = self._here
@@ -181,7 +181,7 @@ class Course:
         if tag.experience is None:
             self.mark(f"{step.place} was never approached, so that nobody is sent there")
             return
-        self.session.pilot.set_goal(tag.experience)
+        self.session.go_to(tag.experience)
         for what in self._for(step.seconds, f"sent to {step.place}"):
             if self.session.pilot.goal_state == (tag.experience, "arrived"):
                 self.mark(f"arrived at {step.place} before it was called back")
@@ -211,7 +211,7 @@ class Course:
 
     def _go(self, name: str, experience: int, place: tuple[float, float], step: Visit | Tour) -> Iterator[str]:
         session, beginning = self.session, self._beginning
-        session.pilot.set_goal(experience)
+        session.go_to(experience)
         while session.pilot.goal_state != (experience, "arrived"):
             if session.time_s - beginning[0] >= step.timeout_s - 1e-9:
                 self._visited(name, experience, place, f"not reached in {step.timeout_s:g} s", beginning)
@@ -248,7 +248,7 @@ class Course:
 
     def _far_away(self, least_m: float) -> tuple[float, float, float]:
         for _ in range(_TRIES):
-            x, y, heading = self.session.simulator.random_free_pose()
+            x, y, heading = self.session.random_free_pose()
             if math.dist((x, y), self._here) >= least_m:
                 return x, y, heading
         raise ValueError(f"least_m = {least_m:g}: no free place so far from the robot in {self.session.world.name}")

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.commands.inject_packet import put_packet
 from app.config import Config
 from app.session import Session, spread_goals
 from ratslam_core import laws, restore_snapshot, take_snapshot
 from sim2d import load_world
-from web.messages import InjectPacket
 
 ROBOTS = {
     "as it is": {},
@@ -37,7 +35,7 @@ def test_they_hold_of_a_robot_that_drives_and_is_carried_off(robot: str) -> None
         if tick == 60:
             session.kidnap()
         if tick == 90:
-            put_packet(session, InjectPacket(type="inject_packet", x=3, y=4, heading_rad=1.0, share=0.9))
+            session.put_packet(x=3, y=4, heading_rad=1.0, share=0.9)
             laws.check(session.brain)
         if tick == 120:
             session.pilot.set_goal(spread_goals(session, 1)[0])

@@ -7,10 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from app.commands.inject_packet import put_packet
 from app.session import Session
 from sim2d import load_world
-from web.messages import InjectPacket
 
 OFFICE = load_world("office")
 
@@ -24,7 +22,7 @@ def explored() -> Session:
 
 def test_a_packet_is_put_where_it_is_wanted_and_competes() -> None:
     session = explored()
-    words = put_packet(session, InjectPacket(type="inject_packet", x=63, y=2, heading_rad=-math.pi / 2, share=0.4))
+    words = session.put_packet(x=63, y=2, heading_rad=-math.pi / 2, share=0.4)
     assert words == "a packet of 40% put at cell (63, 2) by hand"
     activity = session.brain.pose_cells.activity
     around = np.roll(activity, (9 - 27, 5 - 2, 5 - 63), (0, 1, 2))[6:13, 2:9, 2:9]
@@ -45,7 +43,7 @@ def test_with_most_of_the_activity_it_wins() -> None:
     session = explored()
     session.set_mode("manual")
     before = session.brain.pose_cells.winner.id
-    put_packet(session, InjectPacket(type="inject_packet", x=5, y=5, share=0.9))
+    session.put_packet(x=5, y=5, share=0.9)
     for _ in range(30):
         session.tick()
     winner = session.brain.pose_cells.winner
@@ -58,7 +56,7 @@ def test_outside_the_pose_cells_nothing_is_put(place: tuple[int, int]) -> None:
     session = explored()
     before = session.state_hash()
     with pytest.raises(ValueError, match="x from 0 to 63 and y from 0 to 63, got"):
-        put_packet(session, InjectPacket(type="inject_packet", x=place[0], y=place[1]))
+        session.put_packet(x=place[0], y=place[1])
     assert session.state_hash() == before
 
 
@@ -66,7 +64,7 @@ def test_a_heading_of_many_turns_is_the_same_as_of_none() -> None:
     session = explored()
     layers = []
     for heading in (1.0, 1.0 + 1000 * math.tau, 1e308, -1e308):
-        put_packet(session, InjectPacket(type="inject_packet", x=3, y=2, heading_rad=heading, share=0.9))
+        session.put_packet(x=3, y=2, heading_rad=heading, share=0.9)
         layers.append(int(np.argmax(session.brain.pose_cells.activity[:, 2, 3])))
     assert layers[0] == layers[1]
     assert np.isfinite(session.brain.pose_cells.activity).all()
