@@ -1,0 +1,1 @@
+"""Recordings of real robots: what is in them, and the engine that plays them."""

@@ -1,0 +1,53 @@
+"""A recording of a robot, whatever format it came in: what it has, and its moments one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Pose = tuple[float, float, float]  # x, y (m), heading (rad, counter-clockwise)
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """What was sensed at one moment, usually that of a camera's picture. None: the recording does not have it."""
+
+    frame: int  # its number in the recording, from 0; pictures that cannot be read are left out, and their numbers with them
+    time_s: float  # since the recording's first moment; never goes back
+    dt: float  # s since the moment before; of the first one, that of a typical one. The motion below is that of this time
+    image: NDArray[np.uint8] | None = None  # (h, w, 3), RGB
+    speed: float | None = None  # m/s forwards, by wheels
+    yaw_rate: float | None = None  # rad/s counter-clockwise, by wheels or a gyro
+    throttle: float | None = None  # -1 to 1, of a car without wheel encoders
+    ranges_m: NDArray[np.float64] | None = None  # (beams,), of the laser or the sonars; inf: nothing in range
+    truth: Pose | None = None  # for judging and drawing, never for the robot
+
+
+@dataclass(frozen=True, slots=True)
+class About:
+    """What a recording says of itself before it is played."""
+
+    name: str
+    format: str  # "Donkey tub", "MCAP", ...
+    moments: int
+    seconds: float
+    has: frozenset[str]  # of "camera", "speed", "yaw rate", "throttle", "ranges", "truth"
+    image_shape: tuple[int, int] | None = None  # (h, w)
+    beam_angles_rad: tuple[float, ...] = ()  # of each range from straight ahead, left is positive
+    range_limit_m: float | None = None
+    problems: tuple[str, ...] = ()  # sentences with the message or line where something is wrong
+
+
+class Recording(Protocol):
+    """A file or folder that was opened. It can be played more than once, each time the same."""
+
+    @property
+    def about(self) -> About: ...
+
+    def moments(self) -> Iterator[Moment]:
+        """In order of time. Pictures are read one by one, so that a long recording needs no more memory than a short one."""
+        ...

@@ -1,0 +1,1 @@
+"""Any moment of a run, shown again and gone on from."""
