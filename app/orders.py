@@ -119,6 +119,11 @@ class Orders:
         """Put a packet of activity into the pose cells by hand. Returns what was done, in words."""
         return put_packet(self.brain.pose_cells, x, y, heading_rad, share)
 
+    @order
+    def forget_view(self, view: int) -> None:
+        """The brain forgets where it has seen this view."""
+        self.brain.forget_view(view)
+
     def set_parameter(self, name: str, value: Value) -> bool:
         """Change one parameter. True if it takes effect at once, False if at the next reset."""
         self.set_parameters({name: value})

@@ -145,6 +145,17 @@ class RatSlam:
         if self.lost:
             self.experience_map.declare_kidnapped(sure=sure)
 
+    def forget_view(self, view: int) -> None:
+        """[ours] Forget where a view was seen: its links to pose cells, and which experiences were made with it.
+
+        What would have happened had it led nowhere can then be seen. test_slam.py::test_a_forgotten_view_leads_nowhere.
+        ValueError: there is no such view.
+        """
+        if not 0 <= view < len(self.local_view):
+            raise ValueError(f"view must be from 0 to {len(self.local_view) - 1}, got {view}")
+        self.view_links.forget(view)
+        self.experience_map.forget_view(view)
+
     def _misses_what_it_expects(self) -> bool:
         """[ours] Whether a known view is seen, but the place where the robot believes itself to be is known and looks different.
 

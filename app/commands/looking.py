@@ -14,7 +14,7 @@ def inspect(engine: Engine, command: m.Inspect) -> Outcome:
     chosen = command.model_dump(exclude={"type"}, exclude_none=True)
 
     def choose() -> None:
-        inspection.inspect(run.session, run.visits, command)
+        inspection.inspect(run.session, run.visits, run.history.events.reasons, command)
         run.snapshots.inspected = command
 
     return attempt(", ".join(chosen) or "type", list(chosen.values()), choose)

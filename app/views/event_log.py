@@ -16,6 +16,8 @@ class EventLog:
         self.events: tuple[Event, ...] = ()
         self._number = 0
 
-    def note(self, kind: EventKind, text: str) -> None:
+    def note(self, kind: EventKind, text: str) -> Event:
         self._number += 1
-        self.events = (*self.events[-MOST_EVENTS:], Event(self._number, self._session.time_s, kind, text))
+        event = Event(self._number, self._session.time_s, kind, text)
+        self.events = (*self.events[-MOST_EVENTS:], event)
+        return event

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 from app.session import Session, is_lost
 from app.views.event_log import EventLog
-from app.views.snap_causes import SnapCauses, words_of
+from app.views.reasons import Reasons
+from app.views.snap_causes import words_of
 from ratslam_core import find_places
 from web.messages import Packet, Snap
 
 FALSE_EVERY_S = 5.0  # false positives are marked no more often
 PLACES_EVERY_S = 10.0
+NEW_GROUND, LONG_AGO_S = 20, 30.0  # after so many new experiences, one that was made so long before closes a loop
 DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
@@ -18,7 +22,10 @@ class EventWatch:
 
     def __init__(self, session: Session, log: EventLog) -> None:
         self._session, self._log = session, log
-        self._causes = SnapCauses(session)
+        self.reasons = Reasons(session)
+        self._active = session.brain.experience_map.active
+        self._made_s = [-math.inf] * len(session.brain.experience_map)  # when each experience was made
+        self._new = 0  # experiences since the robot was last at one that it made long before
         self.last_snap: Snap | None = None
         self.lost = False
         self._before = session.brain.pose_cells.winner
@@ -30,7 +37,9 @@ class EventWatch:
         self._diverged, self._diverged_due_s = False, 0.0
 
     def watch(self) -> None:
+        self.reasons.watch()
         self._watch_snaps()
+        self._watch_closures()
         self._watch_packets()
         self._watch_goal()
         self._watch_kidnaps()
@@ -41,22 +50,35 @@ class EventWatch:
 
     def _watch_snaps(self) -> None:
         session = self._session
-        self._causes.watch()
         packet = session.estimate.packet
         if session.estimate.relocalised:
             start, end = (Packet(p.x, p.y, p.heading_rad, p.mass, p.id) for p in (self._before, packet))
-            causes = self._causes.of(packet)
+            causes = self.reasons.causes.of(packet)
             self.last_snap = Snap(session.time_s, start, end, causes)
             ends = f"({start.x:.0f}, {start.y:.0f}) to ({end.x:.0f}, {end.y:.0f})"
-            self._log.note("snap", f"relocalised {words_of(causes)}: {ends}")
+            event = self._log.note("snap", f"relocalised {words_of(causes)}: {ends}")
+            self.reasons.snap(event, self._before, packet, causes)
         self._before = packet
+
+    def _watch_closures(self) -> None:
+        """Marks that the robot comes back from new ground to an experience that it made long before."""
+        session, map_, before = self._session, self._session.brain.experience_map, self._active
+        self._active = now = map_.active
+        self._made_s.extend([session.time_s] * (len(map_) - len(self._made_s)))
+        self._new += session.estimate.created
+        if session.estimate.created or now == before or session.time_s - self._made_s[now] < LONG_AGO_S:
+            return
+        new, self._new = self._new, 0
+        if new >= NEW_GROUND and (before, now) in map_.transitions.row_of and not session.brain.lost:
+            event = self._log.note("closure", f"after {new} new experiences at #{now} again")
+            self.reasons.closure(event, before, now, new)
 
     def _watch_packets(self) -> None:
         session, lost = self._session, is_lost(self._session)
         if lost and not self.lost:
             packets = len(session.brain.pose_cells.packets)
             why = "the image jumped: carried away?" if session.brain.lost else f"{packets} packets compete"
-            self._log.note("lost", why)
+            self.reasons.lost(self._log.note("lost", why))
         self.lost = lost
 
     def _watch_goal(self) -> None:
@@ -90,7 +112,8 @@ class EventWatch:
             return
         more = count - self._false_marked - 1
         words = f"view {seen.view} instead of {seen.best_view}"
-        self._log.note("false", words + (f", and {more} more since the last mark" if more else ""))
+        words += f", and {more} more since the last mark" if more else ""
+        self.reasons.false_look(self._log.note("false", words))
         self._false_marked, self._false_due_s = count, self._session.time_s + FALSE_EVERY_S
 
     def _watch_links(self) -> None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.pilot.behaviours import words_of
 from app.session import Session
 from app.views.arrays import frozen
+from app.views.brain_pictures import packet_of, present_picture, stored_picture
+from app.views.reasons import Reasons
 from app.views.visits import VisitLog
 from ratslam_core import Link, RatSlam
 from web.messages import (
@@ -26,11 +27,13 @@ STRONGEST = 300  # most links of a view that are reported
 VIEWS = 24  # most views of a cell that are reported
 
 
-def inspect(session: Session, visits: VisitLog, command: Inspect) -> Report | None:
+def inspect(session: Session, visits: VisitLog, reasons: Reasons, command: Inspect) -> Report | None:
     """What the brain holds about what was asked for; None if nothing was. ValueError names the valid range."""
     cell = command.x is not None or command.y is not None
-    if (command.experience is not None) + (command.view is not None) + cell > 1:
-        raise ValueError("choose an experience, a view, or a pose cell's x and y: one of them")
+    if sum(asked is not None for asked in (command.experience, command.view, command.event)) + cell > 1:
+        raise ValueError("choose an experience, a view, an event, or a pose cell's x and y: one of them")
+    if command.event is not None:
+        return reasons.of(command.event)
     if command.experience is not None:
         return experience_report(session, visits, command.experience)
     if command.view is not None:
@@ -103,19 +106,10 @@ def cell_report(session: Session, x: int | None, y: int | None) -> CellReport:
     )
 
 
-def stored_picture(brain: RatSlam, view: int) -> NDArray[np.uint8]:
-    """A stored view as an image for people."""
-    return frozen(brain.local_view.front_end.picture(brain.local_view.stored(view)).copy())
-
-
-def present_picture(brain: RatSlam) -> NDArray[np.uint8]:
-    return frozen(brain.local_view.front_end.picture(brain.local_view.features).copy())
-
-
 def _packet_at(session: Session, x: int, y: int) -> Packet:
     pose_cells = session.brain.pose_cells
     nearest = min(pose_cells.packets, key=lambda p: pose_cells.cells_apart(p.x, p.y, x, y))
-    return Packet(nearest.x, nearest.y, nearest.heading_rad, nearest.mass, nearest.id)
+    return packet_of(nearest)
 
 
 def _zones_at(session: Session, x: int, y: int) -> tuple[int, ...]:

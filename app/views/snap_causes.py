@@ -16,7 +16,7 @@ TICKS = 600  # how far back it is looked for, a minute at 10 Hz
 NEAR_CELLS, NEAR_LAYERS = 3.0, 3.0  # what is injected nearer to a packet than this feeds it
 MOST = 8  # causes that are told
 
-_Entry = tuple[dict[int, Packet], "tuple[int, NDArray[np.int32], NDArray[np.float32]] | None"]
+_Entry = tuple[float, dict[int, Packet], "tuple[int, NDArray[np.int32], NDArray[np.float32]] | None"]
 
 
 class SnapCauses:
@@ -25,12 +25,13 @@ class SnapCauses:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._ticks: deque[_Entry] = deque(maxlen=TICKS)
+        self.since_s = session.time_s  # when the first of the causes told last put activity there
 
     def watch(self) -> None:
         brain = self._session.brain
         injection = brain.association.injection
         injected = None if injection is None else (injection.view, injection.cells, injection.values)
-        self._ticks.append(({packet.id: packet for packet in brain.pose_cells.packets}, injected))
+        self._ticks.append((self._session.time_s, {packet.id: packet for packet in brain.pose_cells.packets}, injected))
 
     def of(self, winner: Packet) -> tuple[SnapCause, ...]:
         """The views that injected around this packet since it came into being, those that injected most first.
@@ -39,8 +40,8 @@ class SnapCauses:
         """
         amounts: dict[int, float] = {}
         looks: dict[int, int] = {}
-        at = winner
-        for packets, injected in reversed(self._ticks):
+        at, self.since_s = winner, self._session.time_s
+        for time_s, packets, injected in reversed(self._ticks):
             then = packets.get(winner.id)
             if then is None or self._apart(then, at) > NEAR_CELLS:
                 break
@@ -52,6 +53,7 @@ class SnapCauses:
             if amount > 0:
                 amounts[view] = amounts.get(view, 0.0) + amount
                 looks[view] = looks.get(view, 0) + 1
+                self.since_s = time_s
         whole = sum(amounts.values())
         most = sorted(amounts, key=lambda view: -amounts[view])[:MOST]
         return tuple(self._cause(view, looks[view], amounts[view], amounts[view] / whole, winner) for view in most)

@@ -41,7 +41,9 @@ class Snapshots:
         self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), ParameterRows()
         self._map = MapLayers(session)
         self._occupancy = Slow(OCCUPANCY_EVERY_S, lambda: occupancy_layer(session))
-        self._inspection = Slow(INSPECT_EVERY_S, lambda: inspect(session, history.visits, self.inspected))
+        self._inspection = Slow(
+            INSPECT_EVERY_S, lambda: inspect(session, history.visits, history.events.reasons, self.inspected)
+        )
         self._goal_memory = Slow(GOAL_MEMORY_EVERY_S, lambda: goal_memory_layer(session))
 
     def refresh(self) -> None:

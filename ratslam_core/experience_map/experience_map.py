@@ -69,7 +69,7 @@ class ExperienceMap(Looks):
             return True
         self._move(odometry)
         if seen.recruited:
-            self._experiences.forget_view(seen.view)
+            self.forget_view(seen.view)
         before = self._departure()
         # On familiar ground there is something to see, so the experiences of nothing do not count.
         best, seen = (-1, seen) if seen.familiar else self._seen_experience(packet, seen)
@@ -140,6 +140,10 @@ class ExperienceMap(Looks):
         if self.yaw_bias == 0.0 or (odometry.speed == 0 and odometry.yaw_rate == 0):
             return odometry
         return Odometry(odometry.speed, odometry.yaw_rate - self.yaw_bias, odometry.dt)
+
+    def forget_view(self, view: int) -> None:
+        """The view is no more: its experiences stay in the map as places where there is nothing to see."""
+        self._experiences.forget_view(view)
 
     # ------------------------------------------------------------ inside
 

@@ -76,8 +76,10 @@ from web.messages.reports import (
     HebbianReport,
     LinkReport,
     Report,
+    SeenView,
     Times,
     ViewReport,
+    WhyReport,
 )
 from web.messages.snapshot import Event, EventKind, Parameter, Series, Snapshot
 from web.messages.tick import TickStage, TickWalk, Timing
@@ -134,6 +136,7 @@ __all__ = [
     "Request",
     "Reset",
     "Resume",
+    "SeenView",
     "Senses",
     "Series",
     "SetDoor",
@@ -164,6 +167,7 @@ __all__ = [
     "ViewReport",
     "Warn",
     "WatchExperiment",
+    "WhyReport",
     "WorldDeleted",
     "WorldDrawing",
     "WorldRestored",

@@ -184,7 +184,8 @@ class InjectPacket(_Command):
 
 
 class Inspect(_Command):
-    """Choose what everybody inspects: an experience, a view, or the pose cells at x', y'. Without any of them: nothing.
+    """Choose what everybody inspects: an experience, a view, the pose cells at x', y', or why an event happened. Without
+    any of them: nothing.
 
     Changes nothing in the robot.
     """
@@ -194,6 +195,7 @@ class Inspect(_Command):
     view: Annotated[int, Field(ge=0)] | None = None
     x: Annotated[int, Field(ge=0)] | None = None
     y: Annotated[int, Field(ge=0)] | None = None
+    event: Annotated[int, Field(ge=1)] | None = None
 
 
 _Label = Annotated[str, Field(max_length=64)]

@@ -92,4 +92,32 @@ class CellReport:
     experiences: tuple[int, ...]  # those in whose zone of influence this is
 
 
-Report = ExperienceReport | ViewReport | CellReport
+@dataclass(frozen=True, slots=True, eq=False)
+class SeenView:
+    """A view that played a part in an event."""
+
+    view: int
+    words: str  # which part
+    picture: NDArray[np.uint8]  # (h, w) or (h, w, 3) as it was stored then
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WhyReport:
+    """Why something happened: the chain that led to it, from what was seen to what changed."""
+
+    event: int  # its number
+    time_s: float
+    kind: str  # of the event
+    text: str  # of the event
+    chain: tuple[tuple[float, str], ...]  # when (s) and what, in order
+    camera: NDArray[np.uint8]  # (h, w, 3) what was seen when it happened
+    views: tuple[SeenView, ...]  # those that count most first, at most 4
+    shape: tuple[int, int, int]  # of the pose cells: n_theta, n_y, n_x
+    before: tuple[Packet, ...]  # packets in the tick before, strongest first
+    after: tuple[Packet, ...]
+    experiences: tuple[int, ...]  # that were linked, or became active
+    since_s: float  # when the chain began; a run without it differs from here on
+    without: tuple[int, ...]  # views; had they led nowhere, this would not have happened
+
+
+Report = ExperienceReport | ViewReport | CellReport | WhyReport

@@ -34,7 +34,7 @@ from web.messages.trial import TrialView
 
 EventKind = Literal[
     "kidnap", "lost", "recovered", "snap", "goal", "arrived", "unreachable", "packet", "brain", "office", "parameter",
-    "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed",
+    "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed", "closure",
 ]  # fmt: skip
 
 

@@ -5,18 +5,31 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from web.messages import CellReport, ExperienceReport, HebbianReport, LinkReport, Report, Snapshot, Times, ViewReport
+from web.messages import (
+    CellReport,
+    ExperienceReport,
+    HebbianReport,
+    LinkReport,
+    Report,
+    Snapshot,
+    Times,
+    ViewReport,
+    WhyReport,
+)
 from web.panel.part import Content
 from web.panel.words import Rows, clock, degrees, often, percent, table
 
-LINKS, NUMBERS = 24, 6
+LINKS, NUMBERS, MOST_PACKETS, MOST_EVENTS = 24, 6, 6, 6
+EXPLAINED = ("snap", "closure", "false", "lost")  # events of which is known why
 
 
 def active(snapshot: Snapshot) -> Content:
     """What can be inspected just now; -1: nothing. When no view is active, the best one."""
     senses = snapshot.senses
     view = senses.active_view if senses.active_view >= 0 else senses.best_view
-    return Content({"experience": snapshot.active_experience, "view": view})
+    explained = [event for event in snapshot.events if event.kind in EXPLAINED][-MOST_EVENTS:]
+    events = [[event.number, event.kind, clock(event.time_s)] for event in reversed(explained)]
+    return Content({"experience": snapshot.active_experience, "view": view, "events": events})
 
 
 def inspected(report: Report | None) -> Content:
@@ -27,6 +40,8 @@ def inspected(report: Report | None) -> Content:
             return _view(report)
         case CellReport():
             return _cell(report)
+        case WhyReport():
+            return _why(report)
         case None:
             return Content({"kind": None})
 
@@ -93,6 +108,28 @@ def _cell(report: CellReport) -> Content:
         {"choices": _experiences("Experiences whose zone this is in", report.experiences)},
     ]
     return Content(data, {"by_heading": report.by_heading})
+
+
+def _why(report: WhyReport) -> Content:
+    """The chain, then packets before and after as seen from above, then the views. Pictures are `seen0` and so on."""
+    data: dict[str, Any] = {"kind": "why", "id": report.event, "number": clock(report.time_s), "words": report.text}
+    data |= {"event": report.kind, "since_s": report.since_s, "without": list(report.without)}
+    data["cells"] = list(report.shape[1:])
+    data["packets"] = [
+        [
+            [packet.id, round(packet.x, 1), round(packet.y, 1), round(packet.mass, 3)]
+            for packet in packets[:MOST_PACKETS]
+        ]
+        for packets in (report.before, report.after)
+    ]
+    data["seen"] = [[seen.view, seen.words] for seen in report.views]
+    linked = [(experience, "") for experience in report.experiences]
+    data["sections"] = [
+        {"chain": [[clock(at), words] for at, words in report.chain]},
+        {"choices": _choices("Experiences", "experience", linked, len(linked), "none")},
+    ]
+    pictures = {f"seen{k}": seen.picture for k, seen in enumerate(report.views)}
+    return Content(data, {"camera": report.camera, **pictures})
 
 
 def _head(kind: str, identity: int, number: str, is_active: bool) -> dict[str, Any]:

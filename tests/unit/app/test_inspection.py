@@ -6,29 +6,31 @@ import numpy as np
 import pytest
 
 from app.session import Session
+from app.views.brain_pictures import present_picture, stored_picture
 from app.views.history import History
-from app.views.inspection import inspect, present_picture, stored_picture
-from app.views.visits import VisitLog, Visits
+from app.views.inspection import inspect
+from app.views.visits import Visits
 from sim2d import load_world
 from web.messages import CellReport, ExperienceReport, Inspect, Report, ViewReport
 
 
 @pytest.fixture(scope="module")
-def watched() -> tuple[Session, VisitLog]:
+def watched() -> tuple[Session, History]:
     """A minute of exploring, watched."""
     session = Session(load_world("office"), 5)
     history = History(session)
     for _ in range(600):
         session.tick()
         history.watch()
-    return session, history.visits
+    return session, history
 
 
-def look(watched: tuple[Session, VisitLog], **wish: int) -> Report | None:
-    return inspect(*watched, Inspect(type="inspect", **wish))
+def look(watched: tuple[Session, History], **wish: int) -> Report | None:
+    session, history = watched
+    return inspect(session, history.visits, history.events.reasons, Inspect(type="inspect", **wish))
 
 
-def test_an_experience_is_told_with_its_links_and_times(watched: tuple[Session, VisitLog]) -> None:
+def test_an_experience_is_told_with_its_links_and_times(watched: tuple[Session, History]) -> None:
     session, _ = watched
     map_ = session.brain.experience_map
     active = map_.active
@@ -50,7 +52,7 @@ def test_an_experience_is_told_with_its_links_and_times(watched: tuple[Session, 
     assert not first.active
 
 
-def test_a_view_is_told_with_what_is_seen_now(watched: tuple[Session, VisitLog]) -> None:
+def test_a_view_is_told_with_what_is_seen_now(watched: tuple[Session, History]) -> None:
     session, _ = watched
     seen = session.estimate.recognition
     report = look(watched, view=seen.best_view)
@@ -65,7 +67,7 @@ def test_a_view_is_told_with_what_is_seen_now(watched: tuple[Session, VisitLog])
     assert report.hebbian.strength[0] == strength.max()
 
 
-def test_a_column_of_pose_cells_is_told_with_the_views_that_lead_there(watched: tuple[Session, VisitLog]) -> None:
+def test_a_column_of_pose_cells_is_told_with_the_views_that_lead_there(watched: tuple[Session, History]) -> None:
     session, _ = watched
     brain, winner = session.brain, session.brain.pose_cells.winner
     _, n_y, n_x = brain.pose_cells.shape
@@ -90,7 +92,7 @@ def test_a_column_of_pose_cells_is_told_with_the_views_that_lead_there(watched: 
         assert (k in report.experiences) == (brain.pose_cells.cells_apart(at[0], at[1], x, y) <= map_.params.zone_xy)
 
 
-def test_where_nothing_is_active_there_is_no_packet(watched: tuple[Session, VisitLog]) -> None:
+def test_where_nothing_is_active_there_is_no_packet(watched: tuple[Session, History]) -> None:
     session, _ = watched
     cells, _ = session.brain.pose_cells.active
     taken = {(x, y) for x, y in cells[:, :2].tolist()}
@@ -111,12 +113,12 @@ def test_where_nothing_is_active_there_is_no_packet(watched: tuple[Session, Visi
         ({"experience": 0, "view": 0}, "one of them"),
     ],
 )
-def test_what_is_not_there_is_refused(watched: tuple[Session, VisitLog], wish: dict[str, int], words: str) -> None:
+def test_what_is_not_there_is_refused(watched: tuple[Session, History], wish: dict[str, int], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         look(watched, **wish)
 
 
-def test_nothing_asked_nothing_shown_and_looking_changes_nothing(watched: tuple[Session, VisitLog]) -> None:
+def test_nothing_asked_nothing_shown_and_looking_changes_nothing(watched: tuple[Session, History]) -> None:
     session, _ = watched
     before = session.state_hash()
     assert look(watched) is None

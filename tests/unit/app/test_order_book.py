@@ -34,6 +34,7 @@ GIVEN: list[Callable[[Session], object]] = [
     lambda s: s.set_mode("manual"),
     lambda s: s.drive(0.3, -0.4),
     lambda s: s.put_packet(3, 4, 1.0, 0.8),
+    lambda s: s.forget_view(2),
     lambda s: s.set_parameter("pose_cells.inhibit", 0.0021),
     lambda s: s.set_door(DOOR, False),
     lambda s: s.set_lamp(LAMP, False),

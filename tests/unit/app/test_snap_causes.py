@@ -23,7 +23,7 @@ class Bench:
 
     def __init__(self) -> None:
         self.pose_cells, self.association = PoseCells(), VisualAssociation(LocalViewParams(rest=0.0, injection=0.3))
-        self.causes = SnapCauses(SimpleNamespace(brain=self))  # type: ignore[arg-type]
+        self.causes = SnapCauses(SimpleNamespace(brain=self, time_s=0.0))  # type: ignore[arg-type]
 
     def learn(self, view: int, place: tuple[int, int, int]) -> None:
         """Link a new view to a place, as strongly as by a long look."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ratslam_core import LocalViewParams, MemoryParams, Odometry, PoseCellParams, RatSlam, RatSlamParams
+from ratslam_core import LocalViewParams, MemoryParams, Odometry, PoseCellParams, RatSlam, RatSlamParams, laws
 from tests.unit.ratslam_core.drives import LAP, SONARS, Circle, start
 
 
@@ -25,6 +25,23 @@ def test_a_second_lap_finds_the_places_of_the_first(seed: int) -> None:
     assert float(np.median(missed)) < 0.2
     assert max(missed) < 0.6
     assert brain.experience_map.robot.heading_rad == pytest.approx(circle.truth.heading_rad, abs=0.3)
+
+
+def test_a_forgotten_view_leads_nowhere() -> None:
+    """After half a lap every view is forgotten: the second lap knows no place of the first half again."""
+    circle, brain = start()
+    circle.advance(brain, LAP // 2)
+    known = len(brain.experience_map)
+    for view in range(len(brain.local_view)):
+        brain.forget_view(view)
+        assert len(brain.view_links.of(view)[0]) == 0
+    assert (brain.experience_map.views == -1).all()
+    with pytest.raises(ValueError, match=f"view must be from 0 to {len(brain.local_view) - 1}, got -1"):
+        brain.forget_view(-1)
+    circle.advance(brain, LAP // 2)
+    there = [estimate.experience for estimate in circle.advance(brain, LAP // 2)]
+    assert min(there) >= known - 1
+    laws.check(brain)
 
 
 def test_equal_inputs_give_equal_runs() -> None:

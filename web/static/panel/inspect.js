@@ -1,8 +1,9 @@
 // Inspect: one experience, view or column of pose cells, chosen on the plates, by number or by what is active now.
 
 import { make } from "../elements/elements.js";
+import { nameOf } from "../model/event_kinds.js";
 import { InjectForm } from "./inject_form.js";
-import { note } from "./parts.js";
+import { choice, heading, note, renew } from "./parts.js";
 import { Report } from "./report.js";
 import { SwitchList } from "./switch_list.js";
 
@@ -29,9 +30,20 @@ export class InspectTab {
     );
     now.setAttribute("role", "group");
     now.setAttribute("aria-label", "Look at what is active now");
+    this.events = make("div", { className: "choices" });
     const numbers = make("div", { className: "pair" }, this.experience.label, this.view.label);
     const choose = make("div", { className: "choose" }, make("span", { textContent: "active now" }), now);
-    this.box = make("div", {}, this.switches.box, choose, numbers, this.nothing, this.report.box, this.inject.box);
+    this.box = make(
+      "div",
+      {},
+      this.switches.box,
+      choose,
+      numbers,
+      this.events,
+      this.nothing,
+      this.report.box,
+      this.inject.box,
+    );
   }
 
   /** @param {Record<string, number>} wish by the fields of `inspect` */
@@ -60,6 +72,14 @@ export class InspectTab {
     return button;
   }
 
+  /** Why something has happened, of what happened of late. @param {[number, string, string][]} events */
+  why(events) {
+    const buttons = events.map(([number, kind, at]) =>
+      choice("event", number, `${nameOf(kind)} ${at}`, (w) => this.look(w)),
+    );
+    return events.length ? [heading("Why did it happen?"), ...buttons] : [];
+  }
+
   /** @param {any} data @param {import("./senses.js").Arrays} arrays */
   inspected(data, arrays) {
     this.nothing.hidden = data.kind !== null;
@@ -72,9 +92,10 @@ export class InspectTab {
   get parts() {
     return {
       switches: this.switches.show.bind(this.switches),
-      /** @param {{ experience: number, view: number }} data */
+      /** @param {{ experience: number, view: number, events: [number, string, string][] }} data */
       active: (data) => {
         this.active = data;
+        renew(this.events, data.events, () => this.why(data.events));
       },
       inspected: this.inspected.bind(this),
     };

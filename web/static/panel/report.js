@@ -3,14 +3,16 @@
 import { make } from "../elements/elements.js";
 import { Picture } from "./canvases.js";
 import { Histogram } from "./histogram.js";
+import { Why } from "./why.js";
 import { Table, caption, choice, heading, note, renew, say } from "./parts.js";
 
-const TITLES = { experience: "experience", view: "local view cell", cell: "pose cells at" };
+const TITLES = { experience: "experience", view: "local view cell", cell: "pose cells at", why: "why, at" };
 
 /**
  * @typedef {{ title: string, kind: string, entries: [number, string][], more: number, empty: string }} Choices
  * @typedef {{ title: string, more: number, rows: { word: string, experience: number, way: string, known: string }[] }} Links
- * @typedef {{ table?: import("./parts.js").TableData, choices?: Choices, links?: Links }} Section
+ * @typedef {[string, string][]} Chain when and what, in order
+ * @typedef {{ table?: import("./parts.js").TableData, choices?: Choices, links?: Links, chain?: Chain }} Section
  */
 
 export class Report {
@@ -27,8 +29,9 @@ export class Report {
     this.aside = make("div");
     this.pair = make("div", { className: "pair" });
     this.sections = make("div");
+    this.why = new Why(inspect);
     const head = make("div", { className: "pair" }, make("div", {}, this.title, this.name, this.words), this.aside);
-    this.box = make("div", { hidden: true }, head, this.pair, this.sections);
+    this.box = make("div", { hidden: true }, head, this.pair, this.sections, this.why.box);
     this.kind = null;
     /** @type {(HTMLElement | Table)[]} */
     this.drawn = [];
@@ -42,6 +45,8 @@ export class Report {
     say(this.name, data.number);
     say(this.words, data.words);
     this.showPictures(data, arrays);
+    this.why.box.hidden = data.kind !== "why";
+    if (data.kind === "why") this.why.show(data, arrays);
     const shape = data.sections.map((/** @type {Section} */ section) => Object.keys(section)[0]).join();
     if (this.sections.dataset.shape !== shape) this.build(data.sections, shape);
     for (const [k, section] of data.sections.entries()) this.fill(section, this.drawn[k]);
@@ -65,6 +70,7 @@ export class Report {
   /** @param {any} data @param {boolean} seen */
   beside(data, seen) {
     if (data.kind === "view") return [caption("camera now"), this.camera.canvas];
+    if (data.kind === "why") return [caption("camera then"), this.camera.canvas];
     if (data.kind === "cell") return [caption("by heading θ′"), this.turns.box];
     if (!seen)
       return [caption("view"), make("p", { className: "blank", textContent: "made where there was nothing to see" })];
@@ -83,11 +89,12 @@ export class Report {
   }
 
   /** @param {Section} section @param {HTMLElement | Table} drawn */
-  fill({ table, choices, links }, drawn) {
+  fill({ table, choices, links, chain }, drawn) {
     if (drawn instanceof Table) {
       if (table) drawn.show(table);
     } else if (choices) renew(drawn, choices, () => this.choices(choices));
     else if (links) renew(drawn, links, () => this.links(links));
+    else if (chain) renew(drawn, chain, () => this.chain(chain));
   }
 
   /** @param {Choices} choices */
@@ -96,6 +103,12 @@ export class Report {
     const buttons = entries.map(([number, word]) => choice(kind, number, `#${number} ${word}`.trim(), this.inspect));
     const left = more > 0 ? [make("span", { className: "quiet", textContent: `and ${more} more` })] : [];
     return [heading(title), make("div", { className: "choices" }, ...buttons, ...left)];
+  }
+
+  /** @param {Chain} chain */
+  chain(chain) {
+    const steps = chain.map(([at, words]) => make("li", {}, make("time", { textContent: at }), ` ${words}`));
+    return [heading("What led to it"), make("ol", { className: "chain" }, ...steps)];
   }
 
   /** @param {Links} links */

@@ -1,0 +1,146 @@
+"""Why a packet snapped, a loop closed, a look was false, the robot felt lost: the chain that led there, kept when it happens.
+
+ACRA 2004 5.2, ACRA 2005 3.4 and 5.2, ACRA 2006 5.1.
+"""
+
+from __future__ import annotations
+
+import math
+
+from app.session import Session
+from app.views.brain_pictures import packet_of, stored_picture
+from app.views.snap_causes import SnapCauses
+from ratslam_core import Packet, Pose2
+from web import messages as m
+
+MOST_KEPT = 200
+MOST_VIEWS = 4
+LOOKS_BACK_S = 10.0  # a robot that feels lost: what it recognised in this time
+
+
+class Reasons:
+    """Call `watch` after each tick, and one of the others when something has happened in it."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self.causes = SnapCauses(session)
+        self._kept: dict[int, m.WhyReport] = {}
+        self._before = self._now = self._packets()
+        self._robot_before = self._robot = session.brain.experience_map.robot
+        self._seen: list[tuple[float, int]] = []  # when each of the views of late was recognised first
+
+    def of(self, event: int) -> m.WhyReport:
+        """ValueError: nothing is known of this event."""
+        if event not in self._kept:
+            known = f"; the newest is {max(self._kept)}" if self._kept else ": there has been none yet"
+            raise ValueError(f"event must be a snap, closure, false look or lost moment of late, got {event}{known}")
+        return self._kept[event]
+
+    def watch(self) -> None:
+        session = self._session
+        self.causes.watch()
+        self._before, self._now = self._now, self._packets()
+        self._robot_before, self._robot = self._robot, session.brain.experience_map.robot
+        view = session.estimate.recognition.view
+        if view >= 0 and (not self._seen or self._seen[-1][1] != view):
+            self._seen = [*self._seen[-50:], (session.time_s, view)]
+
+    # ------------------------------------------------------------ what has happened in this tick
+
+    def snap(self, event: m.Event, start: Packet, end: Packet, causes: tuple[m.SnapCause, ...]) -> None:
+        """The winner changed from `start` to `end`, the views in `causes` having put activity there."""
+        shares = {packet.id: packet.mass for packet in self._before}
+        chain = [
+            (self.causes.since_s, f"view {c.view}, learnt {c.age_s:.0f} s earlier, is seen: {_looks(c.looks)} put "
+             f"{c.share:.0%} of the activity there, over {c.links} links to pose cells")
+            for c in causes[:MOST_VIEWS]
+        ]  # fmt: skip
+        if end.id in shares:
+            words = f"packet {end.id} had {shares[end.id]:.0%} of all activity, packet {start.id} {shares.get(start.id, 0):.0%}"
+        else:
+            words = f"packet {end.id} is new"
+        apart = self._session.brain.pose_cells.cells_apart(start.x, start.y, end.x, end.y)
+        chain += [
+            (event.time_s, words),
+            (event.time_s, f"the winner is {apart:.0f} cells away now: the pose cells have relocalised"),
+            (event.time_s, f"experience {self._session.estimate.experience} is active"),
+        ]
+        views = [(c.view, f"{c.share:.0%} of what was injected") for c in causes[:MOST_VIEWS]]
+        self._keep(event, chain, views, self.causes.since_s, tuple(c.view for c in causes))
+
+    def closure(self, event: m.Event, start: int, end: int, new: int) -> None:
+        """After `new` new experiences, one that existed before them is active again and linked."""
+        seen, map_ = self._session.estimate.recognition, self._session.brain.experience_map
+        known = "its view is seen again" if seen.view < 0 else f"view {seen.view} is recognised ({self._differs()})"
+        chain = [
+            (event.time_s, f"{new} new experiences were made on new ground"),
+            (event.time_s, f"{known}, which belongs to experience #{end}"),
+            (event.time_s, f"#{start} is linked to #{end}: the loop is closed"),
+            (event.time_s, f"the robot's place in the map moves by {_apart(self._robot_before, self._robot):.2f} m"),
+            (event.time_s, f"{map_.link_count} links now pull the map straight"),
+        ]
+        views = [(seen.view, "recognised")] if seen.view >= 0 else []
+        self._keep(event, chain, views, event.time_s, tuple(view for view, _ in views), (start, end))
+
+    def false_look(self, event: m.Event) -> None:
+        """Another view than the right one was reported."""
+        seen = self._session.estimate.recognition
+        rate = self._session.config.local_view.false_positives
+        chain = [
+            (event.time_s, f"view {seen.best_view} is what the image shows ({self._differs()})"),
+            (
+                event.time_s,
+                f"view {seen.view} is reported instead: {rate:.0%} of all looks are made false, as a setting",
+            ),
+            (event.time_s, f"it puts activity where view {seen.view} was learnt"),
+        ]
+        views = [(seen.view, "reported"), (seen.best_view, "right")]
+        self._keep(event, chain, views, event.time_s, (seen.view,))
+
+    def lost(self, event: m.Event) -> None:
+        """The robot has declared itself lost, or packets compete."""
+        brain = self._session.brain
+        chain: list[tuple[float, str]] = []
+        if brain.lost:
+            change = brain.local_view.image_change
+            chain.append((event.time_s, f"the image changed {change:.1f} times as much as driving can explain"))
+            chain.append((event.time_s, "so it was carried: it looks for itself, and believes only sights that agree"))
+        else:
+            masses = " and ".join(f"{packet.mass:.0%}" for packet in self._now[:3])
+            chain.append((event.time_s, f"{len(self._now)} packets compete, with {masses} of all activity"))
+        since = [entry for entry in self._seen if entry[0] >= event.time_s - LOOKS_BACK_S]
+        looks = [(at, f"view {view} is recognised") for at, view in since[-MOST_VIEWS:]]
+        views = [(view, f"seen {event.time_s - at:.1f} s before") for at, view in reversed(since[-MOST_VIEWS:])]
+        self._keep(event, [*looks, *chain], views, since[0][0] if since else event.time_s, tuple(v for v, _ in views))
+
+    # ------------------------------------------------------------ inside
+
+    def _keep(
+        self, event: m.Event, chain: list[tuple[float, str]], views: list[tuple[int, str]], since_s: float,
+        without: tuple[int, ...], experiences: tuple[int, ...] = (),
+    ) -> None:  # fmt: skip
+        brain = self._session.brain
+        shown = [m.SeenView(view, words, stored_picture(brain, view)) for view, words in views if view >= 0]
+        while len(self._kept) >= MOST_KEPT:
+            del self._kept[next(iter(self._kept))]
+        self._kept[event.number] = m.WhyReport(
+            event.number, event.time_s, event.kind, event.text, tuple(sorted(chain, key=lambda entry: entry[0])),
+            self._session.frame.image, tuple(shown[:MOST_VIEWS]), brain.pose_cells.shape,
+            tuple(map(packet_of, self._before)), tuple(map(packet_of, self._now)),
+            experiences or (self._session.estimate.experience,), since_s, without,
+        )  # fmt: skip
+
+    def _packets(self) -> tuple[Packet, ...]:
+        return tuple(self._session.brain.pose_cells.packets)
+
+    def _differs(self) -> str:
+        limit = self._session.brain.local_view.front_end.threshold(self._session.config.local_view)
+        return f"it differs by {self._session.estimate.recognition.difference:.1f}, the threshold is {limit:.1f}"
+
+
+def _looks(count: int) -> str:
+    return "1 look" if count == 1 else f"{count} looks"
+
+
+def _apart(a: Pose2, b: Pose2) -> float:
+    return math.hypot(b.x - a.x, b.y - a.y)

@@ -1,0 +1,68 @@
+// Why something happened: the chain of what led to it, the packets before and after, and the views that played a part.
+
+import { make } from "../elements/elements.js";
+import { svg } from "../elements/icons.js";
+import { Picture } from "./canvases.js";
+import { caption, choice, heading, renew } from "./parts.js";
+
+const MOST_VIEWS = 4;
+
+/** @typedef {[number, number, number, number]} Packet number, x, y (cells), share of the activity */
+/** @typedef {{ event: string, number: string, cells: [number, number], packets: [Packet[], Packet[]], seen: [number, string][] }} Told */
+
+export class Why {
+  /** @param {(wish: Record<string, number>) => void} inspect */
+  constructor(inspect) {
+    this.inspect = inspect;
+    this.packets = make("div", { className: "pair" });
+    this.views = make("div", { className: "seen" });
+    this.pictures = Array.from({ length: MOST_VIEWS }, () => new Picture("a view"));
+    this.box = make("div", { hidden: true }, heading("Packets, from above"), this.packets, this.views);
+  }
+
+  /** @param {Told} told @param {import("./senses.js").Arrays} arrays */
+  show(told, arrays) {
+    renew(this.packets, told.packets, () =>
+      told.packets.map((packets, k) => {
+        const words = k === 0 ? "the tick before" : "then";
+        return make("div", {}, caption(words), fromAbove(packets, told.cells, words));
+      }),
+    );
+    renew(this.views, [told.number, told.seen], () => (told.seen.length ? this.seen(told.seen) : []));
+    for (const [k, [view]] of told.seen.entries())
+      this.pictures[k].says(`the stored view ${view}`).show(arrays[`seen${k}`]);
+  }
+
+  /** @param {[number, string][]} seen */
+  seen(seen) {
+    const cards = seen.map(([view, words], k) => {
+      const button = choice("view", view, `#${view}`, this.inspect);
+      return make("figure", {}, this.pictures[k].canvas, make("figcaption", {}, button, ` ${words}`));
+    });
+    return [heading("Views that played a part"), ...cards];
+  }
+}
+
+/** Packets as discs on the floor of the pose cells; the area is the share of the activity. */
+function fromAbove(/** @type {Packet[]} */ packets, /** @type {[number, number]} */ [height, width], words = "") {
+  const discs = packets.map(([id, x, y, mass]) => {
+    const r = Math.max(1.2, 0.22 * width * Math.sqrt(mass));
+    const at = { cx: x, cy: height - y };
+    return svg(
+      "g",
+      {},
+      svg("circle", { ...at, r, class: "disc" }),
+      svg(
+        "text",
+        { x: at.cx, y: at.cy, "font-size": width / 11, class: "share" },
+        `${id}: ${Math.round(100 * mass)} %`,
+      ),
+    );
+  });
+  const label = packets.map(([id, x, y, mass]) => `packet ${id} ${Math.round(100 * mass)} % at ${x}, ${y}`).join("; ");
+  return svg(
+    "svg",
+    { viewBox: `0 0 ${width} ${height}`, role: "img", class: "from-above", "aria-label": `${words}: ${label}` },
+    ...discs,
+  );
+}
