@@ -14,10 +14,12 @@ from web.messages import (
     Packet,
     Pose,
     Report,
+    SeenView,
     TickStage,
     TickWalk,
     Times,
     ViewReport,
+    WhyReport,
 )
 
 from .experience_map import NODES, map_layer
@@ -49,7 +51,12 @@ def fake_reports() -> dict[str, Report]:
             7, picture, frozen(255 - picture), camera, 12.5, 8.0, False, (12, 40), hebbian, Times(None, None, 0)
         ),
         "cell": CellReport(31, 22, frozen(by_heading), Packet(31.2, 22.4, 0.6, 0.62, 3), ((7, 0.05),), 1, (12, 40)),
-    }
+        "why": WhyReport(
+            9, 63.2, "snap", "relocalised by view 7", ((60.0, "view 7 is seen"), (63.2, "packet 2 wins")), camera,
+            (SeenView(7, "100 % of what was injected", picture),), SHAPE, (Packet(31.2, 22.4, 0.6, 0.62, 3),),
+            (Packet(11.0, 12.0, 0.6, 0.7, 4), Packet(31.2, 22.4, 0.6, 0.3, 3)), (12, 40), 60.0, (7,),
+        ),
+    }  # fmt: skip
 
 
 def fake_walk(at: int) -> TickWalk:

@@ -25,6 +25,7 @@ from web.messages import (
     TickWalk,
     TrialView,
     ViewReport,
+    WhyReport,
 )
 
 _OPTIONS = orjson.OPT_SERIALIZE_NUMPY
@@ -112,6 +113,8 @@ def _inspected(report: Report) -> str:
             return f"view #{report.id}"
         case CellReport():
             return f"pose cells at {report.x}, {report.y}"
+        case WhyReport():
+            return f"{report.kind} at {report.time_s:.1f} s"
 
 
 def _walk(walk: TickWalk) -> dict[str, Any]:

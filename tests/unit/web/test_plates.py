@@ -208,7 +208,7 @@ def test_seconds_in_words() -> None:
 # ---------------------------------------------------------------- what is inspected
 
 
-@pytest.mark.parametrize("kind", ["experience", "view", "cell"])
+@pytest.mark.parametrize("kind", ["experience", "view", "cell", "why"])
 def test_what_is_inspected_is_marked(bench: Bench, kind: str) -> None:
     bench.switch("goal_memory", False)
     bare = floor(bench)
@@ -217,8 +217,8 @@ def test_what_is_inspected_is_marked(bench: Bench, kind: str) -> None:
     assert bench.visible("/map/inspected") == (kind == "experience")
     assert bench.visible("/map/inspected_name") == (kind == "experience")
     assert len(bench.drawn("/map/inspected_links"))
-    assert bool(len(bench.drawn("/pose_cells/zone"))) == (kind != "view")
-    assert bool(len(bench.drawn("/pose_cells/view_cells", "batched_positions"))) == (kind != "cell")
+    assert bool(len(bench.drawn("/pose_cells/zone"))) == (kind not in ("view", "why"))
+    assert bool(len(bench.drawn("/pose_cells/view_cells", "batched_positions"))) == (kind not in ("cell", "why"))
     assert (floor(bench) == bare) == (kind != "experience")  # where its zone of influence is
     bench.show(replace(fake_snapshot(430), inspected=None), 5)
     bench.settle()

@@ -88,4 +88,9 @@ def test_the_page_is_told_of_the_walk_and_of_what_is_inspected(snapshot):
     names = {
         kind: page_fields(replace(snapshot, inspected=report))["inspected"] for kind, report in fake_reports().items()
     }
-    assert names == {"experience": "experience #12", "view": "view #7", "cell": "pose cells at 31, 22"}
+    assert names == {
+        "experience": "experience #12",
+        "view": "view #7",
+        "cell": "pose cells at 31, 22",
+        "why": "snap at 63.2 s",
+    }

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import viser
 
-from web.messages import CellReport, ExperienceReport, MapLayer, Report, ViewReport
+from web.messages import CellReport, ExperienceReport, MapLayer, Report, ViewReport, WhyReport
 from web.viewer.fits.cell_fit import HEIGHT, CellFit, broken_where_it_wraps
 from web.viewer.fits.map_fit import MapFit
 from web.viewer.primitives import meshes
@@ -44,15 +44,15 @@ class MapMark:
             ends = np.array([(link.start, link.end) for link in report.links], np.int64).reshape(-1, 2)[:LINKS]
             ends = ends[(ends < len(layer.xy)).all(1)]
             segments = meshes.lifted(fit.to_plate(layer.xy), 0.07)[ends].astype(np.float32).reshape(-1, 2, 3)
-        elif layer is not None and isinstance(report, ViewReport | CellReport):
+        elif layer is not None and isinstance(report, ViewReport | CellReport | WhyReport):
             rows = [row for row in report.experiences if row < len(layer.xy)][:SPOTS]
             spots = [meshes.circle(0.16, (x, y), SPOT_CORNERS) for x, y in fit.to_plate(layer.xy[rows]).tolist()]
             segments = np.concatenate([NOTHING, *(meshes.closed_line(spot, 0.09) for spot in spots)])
         self.frame.visible = at is not None
         self.pill.hide()
-        if at is not None and report is not None:
+        if at is not None and isinstance(report, ExperienceReport):
             self.frame.position = (*at, 0.0)
-            self.pill.show(f"#{report.id}", self._ink, (at[0], at[1] + 0.62, 0.3))  # type: ignore[union-attr]
+            self.pill.show(f"#{report.id}", self._ink, (at[0], at[1] + 0.62, 0.3))
         self.links.points = meshes.some(segments, LINKS + SPOTS * SPOT_CORNERS)
 
 
