@@ -137,3 +137,18 @@ def test_a_brain_goes_down_to_a_file_and_comes_up_again(walked, browser, tmp_pat
         told(page, "Started anew with the brain")
         after = walked.wait(lambda state: state["tick"] == 0)
         assert after["experiences"] >= known
+
+
+def test_why_a_loop_closed_or_the_packet_snapped_is_told(walked, browser):
+    walked.command("set_parameter", name="local_view.false_positives", value=0.2)
+    walked.command("step", ticks=100)
+    walked.command("set_parameter", name="local_view.false_positives", value=0.0)
+    with open_page(browser, walked.url) as page:
+        open_tab(page, "Inspect")
+        page.get_by_role("tabpanel").get_by_role("button", name=re.compile("^false positive 1:")).first.click()
+        says(page, "What led to it")
+        says(page, re.compile(r"^1:\d\d view \d+ is reported instead: 20%"))
+        expect(page.get_by_role("img", name=re.compile("^the tick before: packet "))).to_be_visible()
+        expect(page.locator("#panel .seen canvas")).to_have_count(2)
+        page.locator("#panel .seen").get_by_role("button").first.click()
+        says(page, "local view cell")
