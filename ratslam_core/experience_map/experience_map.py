@@ -110,7 +110,7 @@ class ExperienceMap(Looks):
 
         [ours] The paper counts every departure under a link's behaviour as a trial (`link_trials_are`). Where several
         links leave a place, however, the behaviour does not say which of them to expect. A robot on a route knows which
-        it tries. test_transitions.py::test_exploring_deletes_nothing_of_what_was_not_tried.
+        it tries. test_link_confidence.py::test_exploring_deletes_nothing_of_what_was_not_tried.
         """
         rows = [self.transitions.row_of.get(ends, -1) for ends in ((i, j), (j, i))]
         deleted = [self._judge(row, reached) for row in rows if row >= 0]

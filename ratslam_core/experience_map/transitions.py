@@ -87,7 +87,7 @@ class Transitions:
     def _room(self) -> int:
         """An empty row. [ours] That of a look that was deleted, or else one more, as in the plain twin (`reuses` off).
 
-        test_transitions.py::test_a_deleted_look_leaves_its_row_to_the_next.
+        test_link_confidence.py::test_a_deleted_look_leaves_its_row_to_the_next.
         """
         if self.reuses and self.free:
             row = self.free.pop()
