@@ -17,14 +17,14 @@ from app.recordings.survey import Survey, survey
 from ratslam_core.local_view.front_ends import named_front_end
 
 LEAST_SCALE, MOST_SCALE = 0.02, 50.0
-UNRELATED = 0.01  # share of unrelated views that may be taken for one another
+UNRELATED = 0.002  # share of unrelated views that may be taken for one another
 LOOK_SIGMA_M = 0.35  # of a look that is only just believed, in the office
 LOUD = ("local_view.", "kidnap.", "occupancy.")  # their lengths are those of echoes, which do not grow with the speed
 
 
 def rules(recording: Recording) -> tuple[Config, Motion]:
     """The parameters for this recording, and how its motion is read."""
-    base = Config()
+    base = Config().with_value("local_view.front_end", _front_end(recording))
     seen = survey(recording, named_front_end(base.local_view), base.local_view.shift)
     usual = base.pilot.cruise_speed
     levels_per_m = 1.0
@@ -35,6 +35,11 @@ def rules(recording: Recording) -> tuple[Config, Motion]:
     values: dict[str, Value] = {**_lengths(base, scale), **_views(seen, scale), "memory.familiar": False}
     motion = Motion(recording.about, seen.dt, seen.field_of_view, levels_per_m)
     return base.with_values(values), motion
+
+
+def _front_end(recording: Recording) -> str:
+    """Levels in even light, limited, for a real camera."""
+    return "limited levels"
 
 
 def _lengths(base: Config, scale: float) -> dict[str, Value]:

@@ -9,7 +9,8 @@ from app.recordings.visual_odometry import VisualOdometry
 from ratslam_core import Odometry
 
 THROTTLE_SPEED = 2.0  # m/s at full throttle, of a toy car; the rules measure all lengths by the typical speed anyway
-GAP_TIMES, GAP_S = 10.0, 1.0  # a moment that comes so many typical times later, and so many seconds, comes after a gap
+LATE_TIMES = 3.0  # a moment that comes so many typical times later is late: what it tells is not that of the whole time
+GAP_TIMES, GAP_S = 10.0, 3.0  # and so many times, and seconds, later, nobody knows what the robot did
 
 
 class Motion:
@@ -18,8 +19,10 @@ class Motion:
     def __init__(self, about: About, dt: float, field_of_view: float, levels_per_m: float = 1.0) -> None:
         """dt: of a typical moment, s; levels_per_m: how much a picture changes while the robot drives a metre."""
         self._about, self._dt, self._field_of_view, self._levels_per_m = about, dt, field_of_view, levels_per_m
-        self._sees = VisualOdometry(field_of_view) if "camera" in about.has and not _wheels(about) else None
-        self.gap = False  # whether the newest moment comes after a gap in which nobody knows what the robot did
+        wheels = "speed" in about.has
+        self._sees = VisualOdometry(field_of_view) if "camera" in about.has and not wheels else None
+        self._before: tuple[float, float] | None = None  # speed and yaw rate that were told last
+        self.gap = False  # whether the newest moment comes after a gap
 
     def anew(self) -> Motion:
         """The same for another time through the recording."""
@@ -28,21 +31,27 @@ class Motion:
     def of(self, moment: Moment) -> Odometry:
         """The movement that led to this moment.
 
-        Without wheels a robot stands while its picture does. A negative throttle brakes. Across a gap, nothing is told
-        by a gyro or a throttle of this moment: the robot counts as standing, and `gap` says so unless its picture stood.
+        Without wheels a robot stands while its picture does. A gyro and a throttle tell of an instant: of a late moment,
+        the mean of what they tell now and told before counts, and across a gap nothing (`gap`).
         """
-        turn, change, stands = self._look(moment)
+        self.gap = False
         dt = max(moment.dt, 1e-6)
-        speed, yaw_rate = moment.speed, moment.yaw_rate
-        self.gap = speed is None and not stands and dt > max(GAP_TIMES * self._dt, GAP_S)
-        if speed is None and (stands or self.gap):
-            return Odometry(0.0, 0.0 if stands or self.gap or yaw_rate is None else yaw_rate, dt)
-        if speed is None:
-            speed = change / self._levels_per_m / dt if moment.throttle is None else self._driven(moment.throttle)
-        return Odometry(speed, turn / dt if yaw_rate is None else yaw_rate, dt)
-
-    def _driven(self, throttle: float) -> float:
-        return THROTTLE_SPEED * max(throttle, 0.0)
+        if moment.speed is not None:
+            return Odometry(moment.speed, moment.yaw_rate or 0.0, dt)
+        turn, change, stands = self._look(moment)
+        speed = change / self._levels_per_m / dt if moment.throttle is None else _driven(moment.throttle)
+        yaw_rate = turn / dt if moment.yaw_rate is None else moment.yaw_rate
+        told, before = (speed, yaw_rate), self._before
+        self._before = told
+        if stands:
+            return Odometry(0.0, 0.0, dt)
+        self.gap = dt > max(GAP_TIMES * self._dt, GAP_S)
+        if self.gap:
+            return Odometry(0.0, 0.0, dt)
+        if dt > LATE_TIMES * self._dt and before is not None:
+            speed = speed if moment.throttle is None else (speed + before[0]) / 2
+            yaw_rate = yaw_rate if moment.yaw_rate is None else (yaw_rate + before[1]) / 2
+        return Odometry(speed, yaw_rate, dt)
 
     def _look(self, moment: Moment) -> tuple[float, float, bool]:
         if self._sees is None or moment.image is None:
@@ -50,8 +59,9 @@ class Motion:
         return self._sees.see(moment.image)
 
 
-def _wheels(about: About) -> bool:
-    return {"speed", "yaw rate"} <= about.has
+def _driven(throttle: float) -> float:
+    """m/s; a throttle below zero brakes."""
+    return THROTTLE_SPEED * max(throttle, 0.0)
 
 
 def typical(values: list[float]) -> float:

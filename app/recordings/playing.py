@@ -9,7 +9,6 @@ import numpy as np
 
 from app.config import Config
 from app.recordings.brain_rules import rules
-from app.recordings.motion import Motion
 from app.recordings.recording import Moment, Recording
 from ratslam_core import Estimate, Odometry, RatSlam
 
