@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from app.recordings.recording import About, Moment
+from app.recordings.scan_odometry import ScanOdometry, is_laser
 from app.recordings.visual_odometry import VisualOdometry
 from ratslam_core import Odometry
 
@@ -16,11 +17,12 @@ GAP_TIMES, GAP_S = 10.0, 3.0  # and so many times, and seconds, later, nobody kn
 class Motion:
     """One odometry for each moment. Who needs the turn from pictures has to know the camera's field of view."""
 
-    def __init__(self, about: About, dt: float, field_of_view: float, levels_per_m: float = 1.0) -> None:
-        """dt: of a typical moment, s; levels_per_m: how much a picture changes while the robot drives a metre."""
+    def __init__(self, about: About, dt: float, field_of_view: float, levels_per_m: float = 1.0, *, scans: bool = True) -> None:
+        """scans: whether a laser, if there is one, makes the wheels better; dt: of a typical moment, s; levels_per_m: how much a picture changes while the robot drives a metre."""
         self._about, self._dt, self._field_of_view, self._levels_per_m = about, dt, field_of_view, levels_per_m
         wheels = "speed" in about.has
         self._sees = VisualOdometry(field_of_view) if "camera" in about.has and not wheels else None
+        self._scans = ScanOdometry(about) if scans and wheels and is_laser(about) else None
         self._before: tuple[float, float] | None = None  # speed and yaw rate that were told last
         self.gap = False  # whether the newest moment comes after a gap
 
@@ -37,7 +39,8 @@ class Motion:
         self.gap = False
         dt = max(moment.dt, 1e-6)
         if moment.speed is not None:
-            return Odometry(moment.speed, moment.yaw_rate or 0.0, dt)
+            told = Odometry(moment.speed, moment.yaw_rate or 0.0, dt)
+            return told if self._scans is None or moment.ranges_m is None else self._scans.better(told, moment.ranges_m)
         turn, change, stands = self._look(moment)
         speed = change / self._levels_per_m / dt if moment.throttle is None else _driven(moment.throttle)
         yaw_rate = turn / dt if moment.yaw_rate is None else moment.yaw_rate

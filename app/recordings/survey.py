@@ -13,6 +13,7 @@ from app.recordings.motion import Motion, typical
 from app.recordings.recording import Moment, Recording
 from app.recordings.visual_odometry import COLUMNS, Profile, profile_of, shift_of, small_grey
 from ratslam_core.local_view.front_ends import FrontEnd
+from ratslam_core.local_view.front_ends.laser import Laser
 from ratslam_core.local_view.matcher import Features, least_difference
 
 MOST_MOMENTS = 6000  # that are looked at, from the beginning
@@ -38,7 +39,7 @@ class Survey:
 
 def survey(recording: Recording, front_end: FrontEnd, shift: int) -> Survey:
     """Look over a recording once, with the front end that is to be used and the shifts that are to be tried."""
-    motion = Motion(recording.about, 1.0, 1.0)
+    motion = Motion(recording.about, 1.0, 1.0, scans=False)
     dts: list[float] = []
     speeds: list[float] = []
     turns: list[float] = []
@@ -49,8 +50,9 @@ def survey(recording: Recording, front_end: FrontEnd, shift: int) -> Survey:
         speeds.append(abs(motion.of(moment).speed))
         turns.append((moment.yaw_rate or 0.0) * moment.dt)
         profiles.append(None if moment.image is None else profile_of(small_grey(moment.image)))
-        if seen := _view(moment, front_end):
-            views.append(seen[0])
+        seen = _view(moment, front_end)
+        if seen is not None:
+            views.append(seen)
     speed = typical(speeds)
     way = np.cumsum(np.multiply(speeds, np.minimum(dts, 1.0)))
     complete = len(views) == len(dts)
@@ -61,10 +63,11 @@ def survey(recording: Recording, front_end: FrontEnd, shift: int) -> Survey:
 _NONE = np.zeros(0), np.zeros(0)
 
 
-def _view(moment: Moment, front_end: FrontEnd) -> tuple[Features] | None:
-    if moment.image is None:
+def _view(moment: Moment, front_end: FrontEnd) -> Features | None:
+    """What the front end makes of a moment; None when the moment has nothing for it."""
+    if moment.image is None and not (isinstance(front_end, Laser) and moment.ranges_m is not None):
         return None
-    return (front_end.look(moment.image, None, moment.ranges_m),)
+    return front_end.look(moment.image, None, moment.ranges_m)
 
 
 def _field_of_view(profiles: list[Profile | None], turns: list[float]) -> float:
