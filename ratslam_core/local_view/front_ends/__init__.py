@@ -1,4 +1,4 @@
-"""Front ends: five ways from what is sensed (or a scene number) to the bytes that are stored and compared."""
+"""Front ends: seven ways from what is sensed (or a scene number) to the bytes that are stored and compared."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from ratslam_core.local_view.front_ends.complex_cells import ComplexCells
 from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.front_ends.hue_saturation import HueSaturation
 from ratslam_core.local_view.front_ends.image_and_sonars import ImageAndSonars
+from ratslam_core.local_view.front_ends.laser import Laser
+from ratslam_core.local_view.front_ends.limited_levels import LimitedLevels
 from ratslam_core.local_view.front_ends.scene_numbers import SceneNumbers
 from ratslam_core.local_view.front_ends.template import Template
 from ratslam_core.params import LocalViewParams
@@ -18,6 +20,10 @@ def named_front_end(params: LocalViewParams) -> FrontEnd:
     match params.front_end:
         case "image and sonars":
             return ImageAndSonars(params)
+        case "limited levels":
+            return LimitedLevels(params)
+        case "laser":
+            return Laser()
         case "template":
             return Template()
         case "complex cells":
