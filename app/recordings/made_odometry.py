@@ -56,7 +56,11 @@ class WithMadeOdometry:
             f"speed and yaw rate: made from the truth, with noise of {e.speed_noise:g} of the speed and "
             f"{e.yaw_noise:g} rad/s, and a bias of {e.yaw_bias:g} rad/s"
         )
-        return replace(about, has=about.has | {"speed", "yaw rate"}, uses=(*about.uses, made))
+        return replace(
+            about,
+            has=about.has | {"speed", "yaw rate"},
+            uses=(*(use for use in about.uses if not use.startswith("no odometry")), made),
+        )
 
     def moments(self) -> Iterator[Moment]:
         rng, rates = np.random.default_rng(self._seed), Rates()

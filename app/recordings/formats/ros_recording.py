@@ -80,10 +80,10 @@ class _Source:
 
     def sensed(self, problems: Problems) -> Iterator[Sensed]:
         """Everything that is used, in the order of time."""
-        self._rates = Rates()
+        rates = Rates()
         for time_ns, packet in self._in_order(problems):
             try:
-                sensed = self._unpacked(packet, time_ns)
+                sensed = self._unpacked(packet, time_ns, rates)
             except ValueError as error:
                 problems.add(f"messages of {packet.topic} left out", packet.where, f"left out: {error}")
                 continue
@@ -106,15 +106,15 @@ class _Source:
             time, _, packet = heapq.heappop(waiting)
             yield time, packet
 
-    def _unpacked(self, packet: Packet, time_ns: int) -> Sensed | None:
+    def _unpacked(self, packet: Packet, time_ns: int, rates: Rates) -> Sensed | None:
         r, where, name = self._roles, packet.where, packet.topic
         if name == r.camera:
             return Sensed(time_ns, where, partial(ros.picture, packet))
         told = ros.message(packet)
         if name == r.odometry:
-            return self._odometry(told, time_ns, where)
+            return self._odometry(told, time_ns, where, rates)
         if name == r.transforms:
-            return self._transform(told, time_ns, where)
+            return self._transform(told, time_ns, where, rates)
         if name == r.gyro:
             return Sensed(time_ns, where, yaw_rate=ros.gyro(told, self._topics[name].up))
         if name == r.truth:
@@ -123,20 +123,20 @@ class _Source:
             return Sensed(time_ns, where, behaviour=int(told.data))
         return self._scan(told, time_ns, where, name)
 
-    def _odometry(self, told: object, time_ns: int, where: str) -> Sensed | None:
+    def _odometry(self, told: object, time_ns: int, where: str, rates: Rates) -> Sensed | None:
         assert self._roles.odometry is not None
         if self._by_poses(self._topics[self._roles.odometry]):
-            moved = self._rates.since(time_ns, ros.pose(told))
+            moved = rates.since(time_ns, ros.pose(told))
         else:
             moved = ros.twist(told)
         if moved is None:
             return None
         return Sensed(time_ns, where, speed=moved[0], yaw_rate=None if self._roles.gyro else moved[1])
 
-    def _transform(self, told: object, time_ns: int, where: str) -> Sensed | None:
+    def _transform(self, told: object, time_ns: int, where: str, rates: Rates) -> Sensed | None:
         for part in getattr(told, "transforms", ()):
             if is_odometry(part.header.frame_id, part.child_frame_id):
-                moved = self._rates.since(time_ns, ros.pose(part))
+                moved = rates.since(time_ns, ros.pose(part))
                 return None if moved is None else Sensed(time_ns, where, speed=moved[0], yaw_rate=moved[1])
         return None
 
