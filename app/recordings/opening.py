@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import zlib
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -76,7 +77,7 @@ def _file(path: Path, opening: Opening) -> Recording:
     with open_whole(path) as file:
         try:
             start = file.read(_LOOK)
-        except (OSError, EOFError, ValueError) as error:
+        except (OSError, EOFError, zlib.error) as error:
             raise ValueError(f"{path.name}: cannot be unpacked: {error}") from None
     if start.startswith(MCAP):
         return open_ros(path, "MCAP", partial(mcap_packets, path), opening.topics)

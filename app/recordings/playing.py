@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.config import Config
 from app.recordings.recording import Moment, Recording
@@ -34,5 +35,13 @@ class Player:
         for moment in self.recording.moments():
             speed = moment.throttle if moment.speed is None else moment.speed
             motion = Odometry(speed or 0.0, moment.yaw_rate or 0.0, moment.dt)
-            estimate = brain.step(moment.image, motion, behaviour=moment.behaviour)
+            estimate = brain.step(_seen(moment), motion, behaviour=moment.behaviour)
             yield Step(moment, estimate, brain, motion)
+
+
+def _seen(moment: Moment) -> NDArray[np.uint8]:
+    """The picture, or the scan as one: each beam a column, the nearer the brighter."""
+    if moment.image is not None or moment.ranges_m is None:
+        return moment.image if moment.image is not None else np.zeros((8, 8), np.uint8)
+    row = np.uint8(255 * np.exp(-moment.ranges_m / 4))
+    return np.tile(np.repeat(row, max(1, -(-32 // len(row)))), (16, 1))

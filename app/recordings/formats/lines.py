@@ -10,7 +10,8 @@ from collections.abc import Generator
 from pathlib import Path
 from typing import IO, cast
 
-MOST_LINE, MOST_BYTES = 4_000_000, 4_000_000_000
+MOST_LINE, MOST_BYTES = 1_000_000, 4_000_000_000
+UNPACKED = 40  # times its size; more is a bomb
 
 
 def open_whole(path: Path) -> IO[bytes]:
@@ -29,7 +30,9 @@ def open_whole(path: Path) -> IO[bytes]:
 def lines_of(path: Path) -> Generator[tuple[int, str], None, None]:
     """Number (from 1) and text of each line, without its end. ValueError: the file is broken or far too large."""
     total, number = 0, 0
+    packed = path.suffix.lower() == ".gz"
     with open_whole(path) as file:
+        most = UNPACKED * path.stat().st_size + MOST_LINE if packed else MOST_BYTES
         while True:
             try:
                 line = file.readline(MOST_LINE + 1)
@@ -38,7 +41,9 @@ def lines_of(path: Path) -> Generator[tuple[int, str], None, None]:
             if not line:
                 return
             number, total = number + 1, total + len(line)
-            if len(line) > MOST_LINE or total > MOST_BYTES:
+            if packed and total > most:
+                raise ValueError(f"{path.name}: unpacks to more than {UNPACKED} times its size; no log of a robot does")
+            if len(line) > MOST_LINE or total > most:
                 raise ValueError(
                     f"{path.name}: line {number}: too long; at most {MOST_LINE} characters, {MOST_BYTES} in all"
                 )

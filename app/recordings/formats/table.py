@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import math
 import re
@@ -47,7 +48,9 @@ class Column:
 def header_of(path: Path) -> dict[str, Column]:
     """Meaning -> column, of those that are known; empty if the first line is no header of such a table."""
     for _, line in lines_of(path):
-        return _columns(next(csv.reader([line], delimiter=_delimiter(line)), list[str]()))
+        with contextlib.suppress(csv.Error):
+            return _columns(next(csv.reader([line], delimiter=_delimiter(line)), list[str]()))
+        break
     return {}
 
 
