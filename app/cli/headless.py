@@ -6,16 +6,20 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from app.cli.options import Verbs, add_session_options, session_of
+from app.cli.options import Verbs, add_session_options, config_of, session_of
 from app.cli.progress import compile_first, with_progress
+from app.cli.recording import add_recording_options, recording_of, require_no_recording_options
 from app.cli.reports import write_report
 from disk import require_writable
+from sim2d import DEFAULT_WORLD
+
+MINUTES = 20.0
 
 
 def add_headless(commands: Verbs) -> None:
     headless = commands.add_parser("headless", help="run the same closed loop without a server, as fast as possible")
     add_session_options(headless)
-    headless.add_argument("--minutes", type=float, default=20.0, help="simulated minutes of exploring (default 20)")
+    headless.add_argument("--minutes", type=float, help=f"simulated minutes of exploring (default {MINUTES:g})")
     headless.add_argument("--goals", type=int, default=0, metavar="K", help="then visit K places spread over the map")
     headless.add_argument("--kidnap-at", type=float, nargs="*", default=[], metavar="S", help="kidnap at these seconds")
     headless.add_argument(
@@ -25,10 +29,23 @@ def add_headless(commands: Verbs) -> None:
     headless.add_argument(
         "--report", type=Path, metavar="FILE", help="write the report to FILE as JSON (default: print it)"
     )
+    headless.add_argument(
+        "--recording", type=Path, metavar="PATH", help="play this recording of a real robot instead of a world"
+    )
+    headless.add_argument(
+        "--trace", type=Path, metavar="FILE", help="of a recording: write a row a frame to FILE as CSV"
+    )
+    add_recording_options(headless)
     headless.set_defaults(do=_headless)
 
 
 def _headless(args: argparse.Namespace) -> int:
+    if args.recording is not None:
+        return _recording(args)
+    require_no_recording_options(args)
+    if args.trace is not None:
+        raise ValueError("--trace goes with --recording only")
+    args.minutes = MINUTES if args.minutes is None else args.minutes
     kidnap_at_s = _checked(args)
     world, config, brain = session_of(args)
     for option, file in (("--report", args.report), ("--save-brain", args.save_brain)):
@@ -51,6 +68,46 @@ def _headless(args: argparse.Namespace) -> int:
         if brain_file is not None:
             brain_file.save()
     return 0
+
+
+def _recording(args: argparse.Namespace) -> int:
+    """Play a recording. Parameters that are given change those which the rules choose for it."""
+    for option, given in (
+        ("--brain", args.brain), ("--scale", args.scale), ("--kidnap-at", args.kidnap_at), ("--kidnaps", args.kidnaps),
+        ("--goals", args.goals), ("--minutes", args.minutes), ("--world", args.world != DEFAULT_WORLD),
+    ):  # fmt: skip
+        if given:
+            raise ValueError(f"{option} does not go with --recording: it has happened where and as it did")
+    for option, file in (("--report", args.report), ("--trace", args.trace), ("--save-brain", args.save_brain)):
+        require_writable(option, file)
+    recording = recording_of(args.recording, args)
+    from app.headless.recorded import run_recording
+    from app.recordings.playing import Player
+    from ratslam_core import save_brain
+
+    compile_first()
+    player = Player(recording, args.seed)
+    if args.set or args.config is not None or args.preset is not None:
+        player = Player(recording, args.seed, config_of(args, player.config))
+    report, trace, brain = with_progress(recording.about.seconds, lambda progress: run_recording(player, progress))
+    try:
+        write_report(report, args.report, _recorded_words(report))
+    finally:
+        if args.trace is not None:
+            trace.write(args.trace, brain.experience_map)
+        if args.save_brain is not None:
+            save_brain(brain, args.save_brain)
+    return 0
+
+
+def _recorded_words(report: dict[str, Any]) -> str:
+    error = report.get("error_m")
+    judged = "" if error is None else f"map error {error['map']} m, odometry alone {error['odometry']} m; "
+    wrong = f"; {len(report['problems'])} problems, see `ratslam recording check`" if report["problems"] else ""
+    return (
+        f"{report['recording']}, {report['frames']} frames: {judged}{report['experiences']} experiences, "
+        f"{report['views']} views; {report['real_time_factor']:g} x real time{wrong}"
+    )
 
 
 def _checked(args: argparse.Namespace) -> list[float]:

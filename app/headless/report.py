@@ -7,6 +7,7 @@ from typing import Any
 
 from app.evaluation import Coverage, backbone, looks, loops_closed
 from app.session import Session
+from ratslam_core import RatSlam
 
 # Keys that tell of the machine; all others are the same whenever the same run is made.
 MACHINE = ("wall_s", "real_time_factor", "real_time_factors", "rss_mb")
@@ -15,7 +16,6 @@ ISLAND_M2 = 4.0  # a loop leads round an island that is at least this large; des
 
 def counts(session: Session, wall_s: float) -> dict[str, Any]:
     """World, length and size of a run."""
-    brain = session.brain
     return {
         "world": session.world.name,
         "seed": session.seed,
@@ -24,6 +24,13 @@ def counts(session: Session, wall_s: float) -> dict[str, Any]:
         "real_time_factor": round(session.time_s / max(wall_s, 1e-9), 1),
         "ticks": session.tick_count,
         "metres": round(session.evaluation.path_m, 3),
+        **size(session.brain),
+    }
+
+
+def size(brain: RatSlam) -> dict[str, Any]:
+    """What a brain has learnt."""
+    return {
         "views": len(brain.local_view),
         "false_positives": brain.local_view.false_positives,
         "experiences": len(brain.experience_map),
