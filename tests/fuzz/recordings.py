@@ -92,8 +92,8 @@ def _others() -> list[bytes]:
 def _text_spoilt(data: bytes, rng: Random) -> bytes:
     """Some numbers and words exchanged, lines lost, doubled, exchanged."""
     for _ in range(rng.choice((1, 1, 3, 10))):
-        kind = rng.random()
-        found = list((NUMBER if rng.random() < 0.6 else WORD).finditer(data[:200_000]))
+        data, kind = data[:500_000], rng.random()
+        found = list((NUMBER if rng.random() < 0.6 else WORD).finditer(data))
         if kind < 0.6 and found:
             where = rng.choice(found)
             data = data[: where.start()] + rng.choice(VALUES) + data[where.end() :]

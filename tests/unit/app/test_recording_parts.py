@@ -116,8 +116,8 @@ def test_times_are_read_to_the_nanosecond() -> None:
 def test_pictures_are_rgb_and_their_size_is_checked_first() -> None:
     image = drive()[0].image
     assert np.array_equal(unpacked(png(image)), image)
-    with pytest.raises(ValueError, match="60000 x 5000 pixels"):
-        unpacked(b"P6 60000 5000 255\n")
+    with pytest.raises(ValueError, match="10000 x 9000 pixels"):
+        unpacked(b"P6\n10000 9000\n255\n")
     with pytest.raises(ValueError, match="broken"):
         unpacked(png(image)[:-40])
 
