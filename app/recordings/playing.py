@@ -43,5 +43,5 @@ def _seen(moment: Moment) -> NDArray[np.uint8]:
     """The picture, or the scan as one: each beam a column, the nearer the brighter."""
     if moment.image is not None or moment.ranges_m is None:
         return moment.image if moment.image is not None else np.zeros((8, 8), np.uint8)
-    row = np.uint8(255 * np.exp(-moment.ranges_m / 4))
+    row = (255 * np.exp(-moment.ranges_m / 4)).astype(np.uint8)
     return np.tile(np.repeat(row, max(1, -(-32 // len(row)))), (16, 1))

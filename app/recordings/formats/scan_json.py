@@ -66,4 +66,4 @@ def _sensed(name: str, scans: dict[str, dict[str, Any]], beams: Beams, problems:
             continue
         speed, yaw_rate = rates.since(time_ns, pose) or (None, None)
         ranges = np.where((ranges >= SICK_LIMIT_M) | (ranges <= 0), np.inf, ranges)
-        yield Sensed(time_ns, where, None, ranges, speed, yaw_rate)
+        yield Sensed(time_ns, where, None, ranges, speed, yaw_rate, frame=number)
