@@ -227,6 +227,7 @@ def mcap(
 def bag1(path: Path, packing: str = "LZ4", **kind: Any) -> Path:
     """Written by rosbags."""
     bag = Bag1(path)
+    bag.chunk_threshold = 2000
     if packing:
         bag.set_compression(Bag1.CompressionFormat[packing])
     with bag:

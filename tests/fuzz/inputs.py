@@ -17,7 +17,7 @@ from app.session import Session
 from sim2d import load_world
 from sim2d.importers import import_world
 from sim2d.world.world_file import WORLDS, complaints
-from tests.fuzz import brains, sessions
+from tests.fuzz import brains, recordings, sessions
 from tests.fuzz.mutators import bytes_spoilt, text_of, tree_spoilt
 
 YAML = "image: plan.pgm\nresolution: 0.05\norigin: [0.0, -1.0, 0.1]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
@@ -139,6 +139,7 @@ def warm() -> None:
     """Compile whatever a case needs."""
     brains.warm()
     sessions.warm()
+    recordings.warm()
     for kind in ("pgm", "png", "jpg", "bmp", "ppm"):
         _drive_in({f"plan.{kind}": _picture(kind)}, 0.05)
     for tree in _worlds():
@@ -181,4 +182,5 @@ KINDS: dict[str, tuple[Callable[[Random], str], int]] = {
     "brain file": (brain_file, 15), "brain state": (brain_state, 30), "session file": (session_file, 5),
     "session state": (session_state, 20), "world": (world, 15), "vector plan": (vector_plan, 8),
     "picture": (picture, 8), "map_server": (map_server, 7), "parameters": (parameters, 8), "setting": (setting, 4),
+    "recording": (recordings.recording, 30),
 }  # fmt: skip

@@ -13,7 +13,15 @@ from tests.fuzz.__main__ import MOST_MIB, SOUND, Worker
 from tests.fuzz.inputs import KINDS
 from tests.fuzz.messages import MESSAGES
 
-SHARES = {"brain state": 60, "brain file": 20, "session state": 60, "session file": 10, "messages": 3, "requests": 2}
+SHARES = {
+    "brain state": 60,
+    "brain file": 20,
+    "session state": 60,
+    "session file": 10,
+    "recording": 150,
+    "messages": 3,
+    "requests": 2,
+}
 
 
 @pytest.fixture(scope="module")

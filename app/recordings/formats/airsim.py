@@ -33,6 +33,7 @@ def open_airsim(folder: Path) -> StreamedRecording:
 
 def _sensed(folder: Path, problems: Problems) -> Iterator[Sensed]:
     columns: dict[str, int] = {}
+    row = -1
     for number, line in lines_of(folder / FILE):
         cells = line.split("\t")
         where = f"{FILE}: line {number}"
@@ -41,14 +42,15 @@ def _sensed(folder: Path, problems: Problems) -> Iterator[Sensed]:
             if missing := [name for name in _NEEDED if name not in columns]:
                 raise ValueError(f"{where}: the columns {', '.join(missing)} are missing")
         elif line.strip():
+            row += 1
             try:
-                yield _row(folder, [cells[columns[name]] for name in _NEEDED], where)
+                yield _row(folder, [cells[columns[name]] for name in _NEEDED], where, row)
             except (ValueError, IndexError) as error:
                 what = "too few columns" if isinstance(error, IndexError) else str(error)
                 problems.add("lines left out", where, f"left out: {what}")
 
 
-def _row(folder: Path, cells: list[str], where: str) -> Sensed:
+def _row(folder: Path, cells: list[str], where: str, row: int) -> Sensed:
     x, y, w, qx, qy, qz = (float(cell) for cell in cells[1:7])
     if not (math.hypot(x, y) < _FAR_M and 0.5 < math.hypot(w, qx, qy, qz) < 2):
         raise ValueError("its pose is none")
@@ -57,4 +59,4 @@ def _row(folder: Path, cells: list[str], where: str) -> Sensed:
     if not path.exists():
         path = within(folder, f"images/{name}")
     heading = -heading_of(w, qx, qy, qz)
-    return Sensed(ns_of(cells[0], 1_000_000), where, partial(read_picture, path), truth=(x, -y, heading))
+    return Sensed(ns_of(cells[0], 1_000_000), where, partial(read_picture, path), truth=(x, -y, heading), frame=row)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -62,7 +63,7 @@ def open_carmen(path: Path) -> StreamedRecording:
 
 
 def _sensed(path: Path, scans: _Scans, problems: Problems) -> Iterator[Sensed]:
-    rates = Rates()
+    rates, scan = Rates(), -1
     for number, line in lines_of(path):
         cells = line.split()
         if not cells or cells[0] not in (scans.word, "ODOM"):
@@ -73,7 +74,8 @@ def _sensed(path: Path, scans: _Scans, problems: Problems) -> Iterator[Sensed]:
                 if scans.word == "RAWLASER1":
                     yield _moved(ns_of(cells[7]), where, None, _pose(cells[1:4]), rates)
             else:
-                yield _READERS[cells[0]](cells, where, scans, rates)
+                scan += 1
+                yield replace(_READERS[cells[0]](cells, where, scans, rates), frame=scan)
         except (ValueError, IndexError, OverflowError) as error:
             what = "too few numbers" if isinstance(error, IndexError) else str(error)
             problems.add("lines left out", f"{path.name}: line {number}", f"left out: {what}")

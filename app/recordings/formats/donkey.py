@@ -112,7 +112,7 @@ def _made(folder: Path, record: dict[str, Any], where: str, row: int, clock: str
         time_ns, where, partial(read_picture, path),
         speed=next((speed for key in SPEEDS if (speed := _number(record, key)) is not None), None),
         yaw_rate=None if gyro is None else math.radians(gyro),
-        throttle=_number(record, f"{driver}/throttle"),
+        throttle=_number(record, f"{driver}/throttle"), frame=row,
     )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -77,9 +78,10 @@ def _rows(
 ) -> Iterator[Sensed]:
     """Each row with its picture. Without a column of times, there are `rate_hz` rows a second; without one of pictures,
     each row is that of the next picture."""
-    rates = Rates()
+    rates, frame = Rates(), -1
     for row, (number, cells) in enumerate(table.rows(problems)):
-        where = table.where(number)
+        where, named = table.where(number), table.text(cells, "image")
+        frame += "image" not in table.columns or bool(named)
         try:
             if "time" in table.columns:
                 time_ns = table.time_ns(cells)
@@ -87,7 +89,7 @@ def _rows(
                     raise ValueError("it has no time")
             else:
                 time_ns = round(row * 1e9 / (rate_hz or RATE_HZ))
-            image = _picture_of(folder, table.text(cells, "image"), pictures)
+            image = _picture_of(folder, named, pictures)
             if "image" not in table.columns:
                 image = pictures[row] if row < len(pictures) else None
             picture = None if image is None else partial(read_picture, image)
@@ -95,7 +97,7 @@ def _rows(
         except ValueError as error:
             problems.add("lines left out", where, f"left out: {error}")
             continue
-        yield sensed
+        yield replace(sensed, frame=frame)
 
 
 def _picture_of(folder: Path, name: str, pictures: list[Path]) -> Path | None:

@@ -13,7 +13,7 @@ from typing import Any, cast
 import numpy as np
 
 from app.recordings.formats.carmen import SICK_LIMIT_M, front_angles
-from app.recordings.formats.lines import open_whole
+from app.recordings.formats.lines import UNPACKED, open_whole
 from app.recordings.formats.problems import Problems
 from app.recordings.formats.sensed import Rates, Sensed, ns_of
 from app.recordings.formats.streamed import Beams, StreamedRecording
@@ -36,9 +36,10 @@ def open_scans(path: Path) -> StreamedRecording:
 def _read(path: Path) -> dict[str, dict[str, Any]]:
     try:
         with open_whole(path) as file:
-            data = file.read(MOST_BYTES + 1)
-        if len(data) > MOST_BYTES:
-            raise ValueError(f"more than {MOST_BYTES} bytes")
+            most = min(MOST_BYTES, UNPACKED * path.stat().st_size + 1_000_000)
+            data = file.read(most + 1)
+        if len(data) > most:
+            raise ValueError(f"more than {most} bytes")
         tree: Any = json.loads(data)
     except (ValueError, RecursionError, EOFError, zlib.error, OSError) as error:
         raise ValueError(f"{path.name}: cannot be read as JSON: {str(error)[:200]}") from None
@@ -65,4 +66,4 @@ def _sensed(name: str, scans: dict[str, dict[str, Any]], beams: Beams, problems:
             continue
         speed, yaw_rate = rates.since(time_ns, pose) or (None, None)
         ranges = np.where((ranges >= SICK_LIMIT_M) | (ranges <= 0), np.inf, ranges)
-        yield Sensed(time_ns, where, None, ranges, speed, yaw_rate)
+        yield Sensed(time_ns, where, None, ranges, speed, yaw_rate, frame=number)

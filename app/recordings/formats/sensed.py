@@ -30,6 +30,7 @@ class Sensed:
     throttle: float | None = None
     truth: Pose | None = None
     behaviour: int | None = None
+    frame: int | None = None  # the picture's or scan's number, where some that cannot be read are counted, too
 
 
 class Rates:

@@ -153,7 +153,8 @@ class _Gathering:
         return moment
 
     def _wait(self, sensed: Sensed) -> None:
-        number, self._seen = self._seen, self._seen + 1
+        number = self._seen if sensed.frame is None else sensed.frame
+        self._seen = number + 1
         if self._waiting is not None or (self._begun and sensed.time_ns <= self._last_ns):
             self._problems.add(
                 "moments without time", sensed.where, "left out: no time has passed since the one before"
