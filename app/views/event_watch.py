@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.session import Session, is_lost
 from app.views.event_log import EventLog
 from app.views.snap_causes import SnapCauses, words_of
+from disk import kind
 from ratslam_core import find_places
 from web.messages import Packet, Snap
 
@@ -13,8 +14,11 @@ PLACES_EVERY_S = 10.0
 DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
+@kind("event_watch/1")
 class EventWatch:
     """Call `watch` after each tick."""
+
+    CACHES = ("_session", "_log", "_causes", "last_snap")
 
     def __init__(self, session: Session, log: EventLog) -> None:
         self._session, self._log = session, log
@@ -28,6 +32,11 @@ class EventWatch:
         self._dropped = len(session.brain.experience_map.dropped_links)
         self._places_due_s = session.time_s + PLACES_EVERY_S
         self._diverged, self._diverged_due_s = False, 0.0
+
+    def settle(self, session: Session, log: EventLog, last_snap: Snap | None) -> None:
+        """Go on in a history that was restored. What made a snap is known from here on."""
+        self._session, self._log, self.last_snap = session, log, last_snap
+        self._causes = SnapCauses(session)
 
     def watch(self) -> None:
         self._watch_snaps()

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from app.session import Session
+from disk import kind
 from web.messages import Times
 
 
+@kind("visits/1")
 class Visits:
     """Visits of experiences, or of views. Those that a brain brought with it have no times until they are met again."""
 
@@ -35,13 +37,20 @@ class Visits:
         return Times(float(self._first_s[number]), float(self._last_s[number]), int(self._count[number]))
 
 
+@kind("visit_log/1")
 class VisitLog:
     """Call `watch` after each tick."""
+
+    CACHES = ("_session",)
 
     def __init__(self, session: Session) -> None:
         self._session = session
         self.experiences, self.views = Visits(), Visits()
         self.watch()
+
+    def settle(self, session: Session) -> None:
+        """Go on in a history that was restored."""
+        self._session = session
 
     def watch(self) -> None:
         session = self._session

@@ -1,0 +1,98 @@
+"""The past of a run, kept while it runs: any moment can be looked at again, and gone on from as another branch. [ours]
+
+No paper has this: a run is the same bit for bit, so a keyframe now and then and the orders in between are enough.
+tests/unit/app/test_time_machine.py.
+"""
+
+from __future__ import annotations
+
+from app.order_book import Order
+from app.session import Session
+from app.time_machine.branch import Branch, Keyframe
+from app.time_machine.chunks import Chunks
+from app.time_machine.moment import Moment
+from app.views.history import History
+from disk import encode
+
+EVERY_TICKS = 150  # between two keyframes, until there are too many
+BUDGET_BYTES = 200_000_000
+MOST_BRANCHES = 12
+
+
+class TimeMachine:
+    """Call `ticked` after each tick of the live session, and `told` for each order that it was given."""
+
+    def __init__(self, session: Session, history: History, budget_bytes: int = BUDGET_BYTES) -> None:
+        """The session must be at the beginning of what can be gone back to."""
+        self._chunks, self._budget_bytes = Chunks(), budget_bytes
+        self.live = Branch(1, session, history, from_tick=session.tick_count)
+        self.branches = [self.live]
+        self._keep()
+
+    @property
+    def nbytes(self) -> int:
+        """Of all keyframes."""
+        return self._chunks.nbytes + self._chunks.copy_nbytes
+
+    def told(self, order: Order) -> None:
+        self.live.orders.append(order)
+
+    def ticked(self) -> None:
+        if self.live.end_tick >= self.live.keyframes[-1].tick + EVERY_TICKS:
+            self._keep()
+
+    def moment(self, branch: Branch, tick: int, near: Moment | None = None) -> Moment:
+        """A moment of a branch. near: another one; if it is on the way to this, it goes on to it. ValueError names what
+        can be gone to."""
+        root = self.branches[0].from_tick
+        if not root <= tick <= branch.end_tick:
+            raise ValueError(f"tick must be from {root} to {branch.end_tick}, got {tick}")
+        if near is not None and near.branch is branch and branch.at(tick).keyframe(tick).tick <= near.tick_count <= tick:
+            near.go_to(tick)
+            return near
+        return Moment(branch, tick)
+
+    def go_on_from(self, moment: Moment) -> Branch:
+        """Make the moment the end of a new branch, which is then the live one. The moment must not be used again."""
+        if len(self.branches) >= MOST_BRANCHES:
+            raise ValueError(f"there are {MOST_BRANCHES} branches already; reset the run to begin without any")
+        tick = moment.tick_count
+        parent = moment.branch.at(tick)
+        moment.history.settle(
+            moment.session,
+            moment.branch.history.log.until(moment.session.time_s, moment.session),
+            moment.history.events.last_snap,
+        )
+        self.live = Branch(self.branches[-1].number + 1, moment.session, moment.history, parent, tick)
+        self.branches.append(self.live)
+        self._keep()
+        return self.live
+
+    def change_to(self, number: int) -> Branch:
+        """Make this branch the live one. ValueError names those that there are."""
+        found = [branch for branch in self.branches if branch.number == number]
+        if not found:
+            raise ValueError(f"there is no branch {number}; there are 1 to {len(self.branches)}")
+        self.live = found[0]
+        return self.live
+
+    def _keep(self) -> None:
+        live = self.live
+        kept = self._chunks.keep(encode((live.session, live.history)))
+        live.keyframes.append(Keyframe(live.end_tick, kept, live.session.world, live.history.events.last_snap))
+        while self.nbytes > self._budget_bytes and self._thin():
+            pass
+
+    def _thin(self) -> bool:
+        """Drop the keyframe that is missed least: where they lie closest together, and of these the oldest."""
+        gaps = [
+            (branch.keyframes[i + 1].tick - branch.keyframes[i - 1].tick, branch.keyframes[i].tick, branch.number, i)
+            for branch in self.branches
+            for i in range(1, len(branch.keyframes) - 1)
+        ]
+        if not gaps:
+            return False
+        _, _, number, i = min(gaps)
+        branch = next(branch for branch in self.branches if branch.number == number)
+        self._chunks.drop(branch.keyframes.pop(i).state)
+        return True
