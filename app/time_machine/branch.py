@@ -18,6 +18,8 @@ class Keyframe:
     """A session and its history at the end of a tick, before the orders that came after it."""
 
     tick: int
+    time_s: float
+    dt: float
     state: KeptState
     world: World
     last_snap: Snap | None

@@ -6,6 +6,8 @@ tests/unit/app/test_time_machine.py.
 
 from __future__ import annotations
 
+from bisect import bisect_right
+
 from app.order_book import Order
 from app.session import Session
 from app.time_machine.branch import Branch, Keyframe
@@ -41,13 +43,26 @@ class TimeMachine:
         if self.live.end_tick >= self.live.keyframes[-1].tick + EVERY_TICKS:
             self._keep()
 
+    def tick_at(self, time_s: float) -> int:
+        """The tick of the live branch that ends at this simulated time, or the nearest."""
+        owner = self.live
+        while owner.parent is not None and time_s < owner.keyframes[0].time_s:
+            owner = owner.parent
+        first = max(0, bisect_right(owner.keyframes, time_s + 1e-9, key=lambda frame: frame.time_s) - 1)
+        frame = owner.keyframes[first]
+        return frame.tick + max(0, round((time_s - frame.time_s) / frame.dt))
+
     def moment(self, branch: Branch, tick: int, near: Moment | None = None) -> Moment:
         """A moment of a branch. near: another one; if it is on the way to this, it goes on to it. ValueError names what
         can be gone to."""
         root = self.branches[0].from_tick
         if not root <= tick <= branch.end_tick:
             raise ValueError(f"tick must be from {root} to {branch.end_tick}, got {tick}")
-        if near is not None and near.branch is branch and branch.at(tick).keyframe(tick).tick <= near.tick_count <= tick:
+        if (
+            near is not None
+            and near.branch is branch
+            and branch.at(tick).keyframe(tick).tick <= near.tick_count <= tick
+        ):
             near.go_to(tick)
             return near
         return Moment(branch, tick)
@@ -79,7 +94,10 @@ class TimeMachine:
     def _keep(self) -> None:
         live = self.live
         kept = self._chunks.keep(encode((live.session, live.history)))
-        live.keyframes.append(Keyframe(live.end_tick, kept, live.session.world, live.history.events.last_snap))
+        session, frame = live.session, live.session.frame
+        live.keyframes.append(
+            Keyframe(frame.tick, frame.time_s, frame.dt, kept, session.world, live.history.events.last_snap)
+        )
         while self.nbytes > self._budget_bytes and self._thin():
             pass
 

@@ -23,6 +23,7 @@ from web.messages import (
     Report,
     Snapshot,
     TickWalk,
+    TimeView,
     TrialView,
     ViewReport,
 )
@@ -80,11 +81,29 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
         "inspected": None if snapshot.inspected is None else _inspected(snapshot.inspected),
         "walk": None if snapshot.walk is None else _walk(snapshot.walk),
         "moving": None if snapshot.living is None else _moving(snapshot.living),
+        "time": None if snapshot.time is None else time_fields(snapshot.time),
     }
 
 
 def office_fields(office: OfficeEdition) -> dict[str, Any]:
     return {"edition": office.number, "undo": office.undo, "redo": office.redo, "saved": office.saved}
+
+
+def time_fields(time: TimeView) -> dict[str, Any]:
+    branches = [
+        {"number": branch.number, "parent": branch.parent, "from_s": branch.from_s, "end_s": branch.end_s}
+        for branch in time.branches
+    ]
+    return {
+        "past": time.past,
+        "end_tick": time.end_tick,
+        "end_s": time.end_s,
+        "begin_s": time.begin_s,
+        "branch": time.branch,
+        "branches": branches,
+        "loop": time.loop,
+        "differs": time.differs,
+    }
 
 
 def trial_fields(trial: TrialView) -> dict[str, Any]:
