@@ -14,15 +14,25 @@ class EventLog:
     def __init__(self, session: Session) -> None:
         self._session = session
         self.events: tuple[Event, ...] = ()
+        self.of_tick = False  # whether what is noted belongs to the tick, and not to an order after it
         self._number = 0
+        self._of_ticks: set[int] = set()
 
     def note(self, kind: EventKind, text: str) -> None:
         self._number += 1
+        if self.of_tick:
+            self._of_ticks.add(self._number)
         self.events = (*self.events[-MOST_EVENTS:], Event(self._number, self._session.time_s, kind, text))
 
     def until(self, time_s: float, session: Session) -> EventLog:
-        """Another log, of this session, with the events up to this time. Simulated seconds."""
+        """Another log, of this session, with the events up to the end of the tick at this simulated time, without those of
+        the orders after it."""
         cut = EventLog(session)
-        cut.events = tuple(event for event in self.events if event.time_s <= time_s + 1e-9)
-        cut._number = self._number  # no number is given twice
+        cut.events = tuple(event for event in self.events if self._is_before(event, time_s))
+        cut._number, cut._of_ticks = self._number, set(self._of_ticks)  # no number is given twice
         return cut
+
+    def _is_before(self, event: Event, time_s: float) -> bool:
+        if abs(event.time_s - time_s) < 1e-9:
+            return event.number in self._of_ticks
+        return event.time_s < time_s

@@ -31,5 +31,7 @@ class History:
             part.settle(session)
 
     def watch(self) -> None:
+        self.log.of_tick = True
         for part in (self.trails, self.visits, self.events, self.series):
             part.watch()
+        self.log.of_tick = False

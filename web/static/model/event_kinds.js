@@ -26,6 +26,7 @@ const KINDS = {
   tagged: { name: "place tagged", weight: 3, d: "M0 7l-5-8a5 5 0 1 1 10 0z", open: true },
   reached: { name: "reached", weight: 5, d: "M-6-6h12v12h-12zM-3 0l2 3 4-6", open: true },
   failed: { name: "failed", weight: 5, d: "M-6-6h12v12h-12zM-3-3l6 6M3-3l-6 6", open: true },
+  branch: { name: "branch", weight: 4, d: "M-4 7V-7M-4 3c0-6 8-3 8-10", open: true },
 };
 const UNKNOWN = { weight: 1, d: "M0-5l5 5-5 5-5-5z", open: true };
 
