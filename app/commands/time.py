@@ -9,7 +9,7 @@ from web import messages as m
 PAST = "this is the past: go on from here, or come back to now"
 IN_THE_PAST = {  # the commands that change nothing, or begin another run
     m.Pause, m.Resume, m.Step, m.StepStage, m.SetSpeed, m.Inspect, m.Reset, m.WatchExperiment,
-    m.Seek, m.BackToNow, m.GoOnFromHere, m.ChangeBranch, m.Loop,
+    m.Seek, m.BackToNow, m.GoOnFromHere, m.ChangeBranch, m.CompareBranch, m.Loop,
 }  # fmt: skip
 
 
@@ -42,6 +42,10 @@ def go_on_from_here(engine: Engine, _: m.GoOnFromHere) -> Outcome:
 
 def change_branch(engine: Engine, command: m.ChangeBranch) -> Outcome:
     return attempt("number", command.number, lambda: engine.change_branch(command.number))
+
+
+def compare_branch(engine: Engine, command: m.CompareBranch) -> Outcome:
+    return attempt("number", command.number, lambda: engine.time.compare(command.number))
 
 
 def loop(engine: Engine, command: m.Loop) -> Outcome:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from app.engine.run import Run
-from app.time_machine import Branch, Moment, TimeMachine
+from app.time_machine import Branch, Moment, TimeMachine, first_difference, side_of
 from app.views.tick_stages import TickRecorder
-from web.messages import BranchView, TimeView
+from web.messages import BranchView, Side, TimeView
 
 
 class TimeTravel:
@@ -17,6 +17,9 @@ class TimeTravel:
         self._moment: Moment | None = None
         self.past: Run | None = None  # the moment of the past that is shown; None: the present
         self.loop: tuple[float, float] | None = None
+        self._beside: Branch | None = None  # the branch that the live one is compared with
+        self._other: Moment | None = None  # of that branch
+        self._differs = ""
         run.keep_past(self._machine)
 
     @property
@@ -90,6 +93,7 @@ class TimeTravel:
         run.keep_past(self._machine)
         run.event_log.note("branch", f"{branch.number} leaves branch {moment.branch.number} here")
         self._runs[branch.number] = run
+        self.compare(None)
         self.past = self._moment = self.loop = None
         return run
 
@@ -97,10 +101,19 @@ class TimeTravel:
         """The run of this branch, which is then the live one."""
         shown = self.past or self._live
         self._machine.change_to(number)
+        self.compare(None)
         self.past = self._moment = self.loop = None
         self._live.snapshots.continue_from(shown.snapshots)
         self._live.snapshots.refresh()
         return self._live
+
+    def compare(self, number: int | None) -> None:
+        """Show this branch beside the live one; None: none. ValueError names those that there are."""
+        beside = None if number is None else self._machine.branch(number)
+        if beside is self._machine.live:
+            raise ValueError(f"branch {number} is the live one: it is compared with another")
+        self._beside, self._other = beside, None
+        self._differs = "" if beside is None else first_difference(self._machine.live, beside)
 
     # ------------------------------------------------------------ for the page
 
@@ -115,7 +128,20 @@ class TimeTravel:
             branch=live.number,
             branches=tuple(map(_view, machine.branches)),
             loop=self.loop,
+            sides=self._sides(),
+            differs=self._differs,
         )
+
+    def _sides(self) -> tuple[Side, ...]:
+        """The live branch as it is shown, and the other one at the same tick, or at its end if that was before."""
+        machine, beside = self._machine, self._beside
+        if beside is None:
+            return ()
+        shown = self.past or self._live
+        tick = shown.session.tick_count
+        self._other = machine.moment(beside, tick, self._other) if tick < beside.end_tick else None
+        history = beside.history if self._other is None else self._other.history
+        return side_of(machine.live, self._moment, shown.history), side_of(beside, self._other, history)
 
 
 def _view(branch: Branch) -> BranchView:

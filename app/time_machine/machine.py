@@ -85,11 +85,15 @@ class TimeMachine:
 
     def change_to(self, number: int) -> Branch:
         """Make this branch the live one. ValueError names those that there are."""
-        found = [branch for branch in self.branches if branch.number == number]
-        if not found:
-            raise ValueError(f"there is no branch {number}; there are 1 to {len(self.branches)}")
-        self.live = found[0]
+        self.live = self.branch(number)
         return self.live
+
+    def branch(self, number: int) -> Branch:
+        """The branch of this number. ValueError names those that there are."""
+        for branch in self.branches:
+            if branch.number == number:
+                return branch
+        raise ValueError(f"there is no branch {number}; there are 1 to {len(self.branches)}")
 
     def _keep(self) -> None:
         live = self.live

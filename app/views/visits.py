@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.session import Session
 from disk import kind
@@ -30,6 +31,11 @@ class Visits:
             self._last_s[number] = time_s
             self._count[number] += number != self._active
         self._active = number
+
+    @property
+    def first_s(self) -> NDArray[np.float64]:
+        """When each was active first, simulated seconds; NaN: never."""
+        return self._first_s
 
     def of(self, number: int) -> Times:
         if number >= len(self._count) or self._count[number] == 0:

@@ -21,6 +21,7 @@ from web.messages import (
     OfficeEdition,
     Pose,
     Report,
+    Side,
     Snapshot,
     TickWalk,
     TimeView,
@@ -103,6 +104,28 @@ def time_fields(time: TimeView) -> dict[str, Any]:
         "branches": branches,
         "loop": time.loop,
         "differs": time.differs,
+        "sides": [_side(side) for side in time.sides],
+    }
+
+
+def _side(side: Side) -> dict[str, Any]:
+    """One branch beside another. Its map is some of its experiences, centimetres."""
+    return {
+        "number": side.number,
+        "time_s": side.time_s,
+        "error_m": {"map": side.error_map_m, "odometry": side.error_odometry_m},
+        "views": side.views,
+        "experiences": side.experiences,
+        "links": side.links,
+        "packet": {
+            "x": side.packet.x,
+            "y": side.packet.y,
+            "heading_rad": side.packet.heading_rad,
+            "mass": side.packet.mass,
+        },
+        "xy": side.xy.round(2),
+        "robot": _pose(side.robot),
+        "turn_rad": side.turn_rad,
     }
 
 

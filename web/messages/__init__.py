@@ -22,6 +22,7 @@ from web.messages.commands import (
     CancelGoal,
     ChangeBranch,
     Command,
+    CompareBranch,
     Drive,
     EditOrder,
     EditStep,
@@ -87,7 +88,7 @@ from web.messages.reports import (
 )
 from web.messages.snapshot import Event, EventKind, Parameter, Series, Snapshot
 from web.messages.tick import TickStage, TickWalk, Timing
-from web.messages.time import BranchView, TimeView
+from web.messages.time import BranchView, Side, TimeView
 from web.messages.trial import TrialState, TrialView
 
 __all__ = [
@@ -99,6 +100,7 @@ __all__ = [
     "CellReport",
     "ChangeBranch",
     "Command",
+    "CompareBranch",
     "Drive",
     "EditOrder",
     "EditStep",
@@ -155,6 +157,7 @@ __all__ = [
     "SetMode",
     "SetParameter",
     "SetSpeed",
+    "Side",
     "Snap",
     "SnapCause",
     "Snapshot",

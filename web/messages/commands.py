@@ -284,6 +284,13 @@ class ChangeBranch(_Command):
     number: Annotated[int, Field(ge=1, le=1000)]
 
 
+class CompareBranch(_Command):
+    """Show another branch beside the live one, at the same time, and say where they differ first. Without a number: none."""
+
+    type: Literal["compare_branch"]
+    number: Annotated[int, Field(ge=1, le=1000)] | None = None
+
+
 class Loop(_Command):
     """Play the past between two times (simulated seconds) again and again. Without them: no longer."""
 
@@ -293,7 +300,7 @@ class Loop(_Command):
 
 
 EditOrder = EditWorld | UndoEdit | RedoEdit
-TimeOrder = Seek | BackToNow | GoOnFromHere | ChangeBranch | Loop
+TimeOrder = Seek | BackToNow | GoOnFromHere | ChangeBranch | CompareBranch | Loop
 TagOrder = Tag | Untag | GoToTag
 OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
 LookOrder = Inspect | StepStage | InjectPacket

@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
+from web.messages.brain import Packet, Pose
+
 
 @dataclass(frozen=True, slots=True)
 class BranchView:
@@ -13,6 +18,23 @@ class BranchView:
     parent: int | None  # None: the run as it began
     from_s: float
     end_s: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Side:
+    """One of two branches that are shown side by side, at one moment or at its end. Map frame, metres."""
+
+    number: int
+    time_s: float
+    error_map_m: float
+    error_odometry_m: float
+    views: int
+    experiences: int
+    links: int
+    packet: Packet
+    xy: NDArray[np.float32]  # (n, 2) some of the experiences
+    robot: Pose
+    turn_rad: float  # turns the map to lie as the office does
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,4 +48,5 @@ class TimeView:
     branch: int
     branches: tuple[BranchView, ...]
     loop: tuple[float, float] | None  # simulated seconds, between which the past is played again and again
-    differs: str = ""  # in words, where two branches that were compared differ first
+    sides: tuple[Side, ...] = ()  # the live branch and the one that it is compared with; empty: with none
+    differs: str = ""  # in words, where these two differ first

@@ -171,6 +171,20 @@ def test_a_branch_without_the_kidnap_is_the_run_that_was_never_kidnapped() -> No
     view = shown(engine).time
     assert view is not None
     assert view.branches == (m.BranchView(1, None, 0.0, 23.0), m.BranchView(2, 1, 17.0, 23.0))
+    tell(engine, type="compare_branch", number=1)
+    view = shown(engine).time
+    assert view is not None
+    assert [(side.number, side.time_s) for side in view.sides] == [(2, 23.0), (1, 23.0)]
+    assert view.differs.startswith(
+        "first difference at tick 171; told before it: nothing in 2, kidnap in 1; first view"
+    )
+    tell(engine, type="seek", tick=160)
+    view = shown(engine).time
+    assert view is not None
+    assert [side.time_s for side in view.sides] == [16.0, 16.0]
+    assert (view.sides[0].xy == view.sides[1].xy).all()
+    with pytest.raises(ValueError, match="branch 2 is the live one"):
+        tell(engine, type="compare_branch", number=2)
     tell(engine, type="seek", tick=90)  # before the branch: of its parent
     assert shown(engine).tick == 90
     tell(engine, type="change_branch", number=1)
