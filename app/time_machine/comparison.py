@@ -26,7 +26,7 @@ def first_difference(a: Branch, b: Branch) -> str:
     shared, last = parted_at(a, b), min(a.end_tick, b.end_tick)
     shared = _same_orders(a, b, shared, last)
     if shared >= last or _same(a, b, last):
-        return f"branches {a.number} and {b.number} are the same up to {last / 10:.1f} s, where one of them ends"
+        return f"branches {a.number} and {b.number} are the same up to tick {last}, where one of them ends"
     low, high = shared, shared + 1
     while not high >= last and _same(a, b, high):  # so that the search stays near its begin, where it mostly ends
         low, high = high, min(last, high + 2 * (high - shared))

@@ -104,7 +104,20 @@ type TimeFields = {
   branch: number;
   branches: BranchFields[];
   loop: [number, number] | null;
+  sides: SideFields[];
   differs: string;
+};
+type SideFields = {
+  number: number;
+  time_s: number;
+  error_m: { map: number; odometry: number };
+  views: number;
+  experiences: number;
+  links: number;
+  packet: Pose & { mass: number };
+  xy: number[][];
+  robot: Pose;
+  turn_rad: number;
 };
 type TimelineEvent = { number: number; time_s: number; kind: string; text: string };
 type Wrong = { field: string | null; value: unknown; reason: string };

@@ -7,6 +7,7 @@ import { svg } from "../elements/icons.js";
 import { clock, tickTimesIn } from "../model/clock.js";
 import { nameOf } from "../model/event_kinds.js";
 import { fine, labelsOf, marksOf, parted, whole, within, words, zoomed } from "../model/timeline.js";
+import { Comparison } from "./comparison.js";
 import { EventList } from "./event_list.js";
 import { legend, markAt } from "./events.js";
 import { Pointers } from "./pointers.js";
@@ -43,6 +44,7 @@ export class Timeline {
     this.seeker = new Seeker(link);
     this.list = new EventList(this);
     this.tools = new Tools(this, link);
+    this.comparison = new Comparison(this, link);
     new Pointers(this);
     new ResizeObserver(() => this.redraw(true)).observe(this.place);
     for (const kind of /** @type {const} */ (["pointermove", "pointerdown"]))
@@ -93,7 +95,10 @@ export class Timeline {
     const follows = this.part && !time?.past && this.time_s <= this.part.to;
     [this.tick, this.time_s, this.time] = [tick, time_s, time];
     if (this.part && follows && time_s > this.part.to) this.pan(0.5);
-    if (time) this.tools.show(time, time_s);
+    if (time) {
+      this.tools.show(time, time_s);
+      this.comparison.show(time);
+    }
     this.redraw(Boolean(moved || jumped || looped));
   }
 

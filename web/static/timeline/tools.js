@@ -2,6 +2,7 @@
 
 import { $, find } from "../elements/dom.js";
 import { labelled, make } from "../elements/elements.js";
+import { icon } from "../elements/icons.js";
 import { clock } from "../model/clock.js";
 import { fine, nextEvent } from "../model/timeline.js";
 
@@ -66,13 +67,13 @@ export class Tools {
     $("past").title = `${fine(time_s)} of ${clock(time.end_s)}`;
     $("loop-off").hidden = !time.loop && this.a === null;
     $("tick-back").disabled = $("second-back").disabled = time_s <= time.begin_s + 0.05;
-    const told = JSON.stringify([time.branch, time.branches.length]);
+    const told = JSON.stringify([time.branch, time.branches.length, time.sides.length]);
     if (told !== this.told) this.branches(time);
     this.told = told;
   }
 
   /** @param {TimeFields} time */
-  branches({ branch, branches }) {
+  branches({ branch, branches, sides }) {
     const place = $("branches");
     place.hidden = branches.length < 2;
     place.replaceChildren(
@@ -89,6 +90,18 @@ export class Tools {
         button.addEventListener("click", () => this.link.ask({ type: "change_branch", number }));
         return button;
       }),
+      this.besideButton(sides.length > 0),
     );
+  }
+
+  /** @param {boolean} on */
+  besideButton(on) {
+    const button = labelled(
+      "Branches side by side",
+      make("button", { type: "button", className: "tiny" }, icon("sides")),
+    );
+    button.setAttribute("aria-pressed", String(on));
+    button.addEventListener("click", () => this.timeline.comparison.toggle());
+    return button;
   }
 }
