@@ -18,7 +18,8 @@ export class Comparison {
   toggle() {
     const { branch = 1, branches = [], sides = [] } = this.timeline.time ?? {};
     const other = branches.filter(({ number }) => number !== branch).at(-1);
-    if (sides.length) this.link.ask({ type: "compare_branch" });
+    if (sides.length && !this.timeline.list.open) this.timeline.list.toggle();
+    else if (sides.length) this.link.ask({ type: "compare_branch" });
     else if (other) this.with(other.number);
   }
 
@@ -72,7 +73,7 @@ function picture(side, frame) {
     ],
   ].flatMap(([name, value]) => [make("dt", { textContent: name }), make("dd", { textContent: value })]);
   const title = make("p", {}, make("b", { textContent: `Branch ${side.number}` }), ` at ${fine(side.time_s)}`);
-  return make("div", { className: "side" }, title, map, make("dl", {}, ...rows));
+  return make("div", { className: "branch-side" }, title, map, make("dl", {}, ...rows));
 }
 
 /** @param {number} rad */
