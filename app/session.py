@@ -57,10 +57,10 @@ class Session(Orders):
         self.odometry = self._odometry()  # what the brain was told in its last step
         self.estimate: Estimate = self._think(self.stopwatch.lap)
 
-    def settle(self, world: World) -> None:
-        """Compute the caches anew in a session that was restored from a state (session_snapshot.py)."""
+    def settle(self, world: World, before: Session | None = None) -> None:
+        """Compute the caches anew in a session that was restored from a state (session_snapshot.py). before: as above."""
         self.world = world
-        self.simulator.settle(world)
+        self.simulator.settle(world, None if before is None else before.simulator)
         self._look()
 
     def _look(self) -> None:

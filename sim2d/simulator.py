@@ -74,11 +74,14 @@ class Simulator:
             raise ValueError(f"{world.name}: the robot cannot start at {start.name}: {refusal}")
         self.reset(seed)
 
-    def settle(self, world: World) -> None:
-        """Compute the caches anew in a simulator that was restored from a state. `reset` then begins in this world."""
+    def settle(self, world: World, before: Simulator | None = None) -> None:
+        """Compute the caches anew in a simulator that was restored from a state. `reset` then begins in this world.
+
+        before: another one, as for a new simulator.
+        """
         self.actors.settle(world)
         self._sensors.settle(world, self.params, self.actors)
-        self._begin_in(world, None)
+        self._begin_in(world, None if before is None else before._measured)
         self._frame.freeze()
 
     def _begin_in(self, world: World, measured: FreeSpace | None) -> None:

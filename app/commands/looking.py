@@ -10,7 +10,7 @@ from web import messages as m
 
 def inspect(engine: Engine, command: m.Inspect) -> Outcome:
     """Show this on every page from now on."""
-    run = engine.run
+    run = engine.shown
     chosen = command.model_dump(exclude={"type"}, exclude_none=True)
 
     def choose() -> None:
@@ -21,7 +21,7 @@ def inspect(engine: Engine, command: m.Inspect) -> Outcome:
 
 
 def read_experience(engine: Engine, request: m.ReadExperience) -> Outcome:
-    run = engine.run
+    run = engine.shown
     try:
         report = inspection.experience_report(run.session, run.visits, request.experience)
     except ValueError as error:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from app.commands import brains, editing, looking, office, parameters, robot, transport, worlds
+from app.commands import brains, editing, looking, office, parameters, robot, time, transport, worlds
 from app.commands.experiments import after_order, watch_experiment
 from app.commands.inject_packet import inject_packet
 from app.commands.outcome import Later, Outcome
@@ -41,6 +41,12 @@ COMMANDS: dict[type, Handler] = {
     m.Inspect: looking.inspect,
     m.InjectPacket: inject_packet,
     m.WatchExperiment: watch_experiment,
+    m.Seek: time.seek,
+    m.BackToNow: time.back_to_now,
+    m.GoOnFromHere: time.go_on_from_here,
+    m.ChangeBranch: time.change_branch,
+    m.CompareBranch: time.compare_branch,
+    m.Loop: time.loop,
 }
 REQUESTS: dict[type, Handler] = {
     m.ReadExperience: looking.read_experience,
@@ -61,11 +67,13 @@ def carry_out(engine: Engine, command: m.Command | m.EngineRequest) -> m.Accepte
     kind = type(command)
     if kind in REQUESTS:
         outcome = REQUESTS[kind](engine, command)
+    elif engine.time.past is not None and kind not in time.IN_THE_PAST:
+        outcome = m.Refused("type", getattr(command, "type", ""), time.PAST)
     elif kind in COMMANDS:
         outcome = _commanded(engine, COMMANDS[kind], command)
     else:
         raise TypeError(f"nobody carries out {getattr(command, 'type', kind.__name__)}")
-    return m.Accepted(engine.run.session.tick_count) if outcome is None else outcome
+    return m.Accepted(engine.shown.session.tick_count) if outcome is None else outcome
 
 
 def _commanded(engine: Engine, handler: Handler, command: object) -> Outcome:
@@ -73,7 +81,7 @@ def _commanded(engine: Engine, handler: Handler, command: object) -> Outcome:
     run, before = engine.run, engine.run.session.config.warnings
     outcome = handler(engine, command)
     if outcome is None:
-        run.snapshots.refresh()
+        engine.shown.snapshots.refresh()
         after_order(engine, command)
     for words in run.session.config.warnings:
         if words not in before:

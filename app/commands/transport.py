@@ -34,7 +34,7 @@ def step_stage(engine: Engine, command: m.StepStage) -> Outcome:
     refused = engine.pause_for(command.type)
     if refused is not None:
         return refused
-    run = engine.run
+    run = engine.shown
     engine.break_off()
     if run.walk(command.back):
         return None

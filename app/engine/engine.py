@@ -14,6 +14,7 @@ from app.engine.library import Library
 from app.engine.pace import Pace
 from app.engine.run import Run
 from app.engine.steps import Steps
+from app.engine.time_travel import TimeTravel
 from app.engine.watchdog import Watchdog
 from app.engine.watched_trial import WatchedTrial
 from app.session import Session
@@ -43,12 +44,24 @@ class Engine:
         self.running = running
         self.fault: str | None = None
         self._run: Run | None = None
+        self._time: TimeTravel | None = None
         self._watchdog, self._answer = watchdog, answer
 
     @property
     def run(self) -> Run:
+        """The live one."""
         assert self._run is not None
         return self._run
+
+    @property
+    def time(self) -> TimeTravel:
+        assert self._time is not None
+        return self._time
+
+    @property
+    def shown(self) -> Run:
+        """The run as it is shown: the live one, or a moment of its past."""
+        return self.run if self.time.past is None else self.time.past
 
     def begin(self, world: World, seed: int, config: Config, brain: RatSlam | None = None) -> Run:
         """Begin another run. If that fails, the old run is left as it is. ValueError says why."""
@@ -77,9 +90,17 @@ class Engine:
         return run
 
     def _make_run(self, session: Session) -> Run:
-        return Run(self._run.number + 1 if self._run else 1, session, self.library.titles)
+        return Run(self._next_number, session, self.library.titles)
+
+    @property
+    def _next_number(self) -> int:
+        return self._time.last_number + 1 if self._time else 1
 
     def _change_to(self, run: Run, world: World) -> Run:
+        self._time = TimeTravel(run)
+        return self._go_on_with(run, world)
+
+    def _go_on_with(self, run: Run, world: World) -> Run:
         self.break_off()
         self.library.close(world.name)
         run.snapshots.worlds = self.library.titles
@@ -99,7 +120,11 @@ class Engine:
         playing = self.trial_plays
         self._watchdog.begin()
         try:
-            self.run.tick(recorder)
+            if self.time.past is None:
+                self.run.tick(recorder)
+            elif self.time.play(recorder):
+                self.running = False  # it has come to the present
+                self.break_off()
         except BaseException as error:
             self._watchdog.end()
             self.fail(error)
@@ -125,7 +150,7 @@ class Engine:
 
     def _accept(self, requests: list[m.Request]) -> None:
         for request in requests:
-            self._answer(request, m.Accepted(self.run.session.tick_count))
+            self._answer(request, m.Accepted(self.shown.session.tick_count))
 
     # ------------------------------------------------------------ trials
 
@@ -142,7 +167,7 @@ class Engine:
     @property
     def runs_ahead(self) -> bool:
         """Whether a trial is to be run, as fast as possible, to shortly before its moment."""
-        return self.run.trial is not None and self.run.trial.runs_ahead
+        return self.run.trial is not None and self.run.trial.runs_ahead and self.time.past is None
 
     def run_ahead(self, for_s: float) -> bool:
         """Run ticks for so long (wall time), or until the trial is where it is to be seen; from there it plays in real time.
@@ -166,11 +191,27 @@ class Engine:
             self.running = False
             self.break_off()
 
+    # ------------------------------------------------------------ the past
+
+    def go_on_from_here(self) -> Run:
+        """Make the moment that is shown the present of a new branch, paused. ValueError says why that cannot be."""
+        run = self.time.go_on_from_here(self._next_number)
+        return self._go_on_paused(run)
+
+    def change_branch(self, number: int) -> Run:
+        """Go on with another branch, paused. ValueError names those that there are."""
+        return self._go_on_paused(self.time.change_to(number))
+
+    def _go_on_paused(self, run: Run) -> Run:
+        self._go_on_with(run, run.session.world)
+        self.running = False
+        return run
+
     # ------------------------------------------------------------ stopping
 
     def pause_for(self, kind: str) -> m.Refused | None:
         """Pause, to carry out a command of this kind. Refused after a fault."""
-        if self.fault is not None:
+        if self.fault is not None and self.time.past is None:
             return m.Refused("type", kind, f"the session stopped at a fault ({self.fault}); reset it")
         self.running = False
         if self.run.trial is not None:
@@ -194,8 +235,8 @@ class Engine:
         """The session as it is now."""
         run, speed = self.run, self.pace.speed if self.pace.speed > 0 else math.inf
         self.editor.follow(run.session.simulator.world)
-        run.snapshots.office = self.editor.edition
-        run.snapshots.trial = None if run.trial is None else run.trial.view()
-        return run.snapshots.build(
-            running=self.running, speed=speed, real_time_factor=self.pace.factor, fault=self.fault
-        )
+        snapshots = self.shown.snapshots
+        snapshots.office = self.editor.edition
+        snapshots.trial = None if run.trial is None else run.trial.view()
+        snapshots.time = self.time.view()
+        return snapshots.build(running=self.running, speed=speed, real_time_factor=self.pace.factor, fault=self.fault)

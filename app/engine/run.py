@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from app.config import Config
 from app.engine.faults import require_finite
 from app.engine.watched_trial import WatchedTrial
+from app.order_book import Order
 from app.session import Session
+from app.time_machine import TimeMachine
 from app.views.event_log import EventLog
 from app.views.history import History
 from app.views.snapshots import Snapshots
@@ -16,15 +20,30 @@ from app.views.visits import VisitLog
 class Run:
     """A session with its history and snapshots."""
 
-    def __init__(self, number: int, session: Session, titles: tuple[tuple[str, str], ...]) -> None:
-        """titles: names and titles of all worlds."""
+    def __init__(
+        self, number: int, session: Session, titles: tuple[tuple[str, str], ...], history: History | None = None
+    ) -> None:
+        """titles: names and titles of all worlds. history: of a session that has one already."""
         self.number, self.session = number, session
+        self.machine: TimeMachine | None = None
+        self.on_order: list[Callable[[Order], object]] = []  # are told of each order that the session was given
         self.trial: WatchedTrial | None = None
         self.config_before: Config | None = None  # a trial's settings go with it
-        self.history = History(self.session)
+        self.history = history or History(self.session)
         self.snapshots = Snapshots(self.session, self.history, number, titles)
-        for words in session.config.warnings:
-            self.event_log.note("warning", words)
+        if history is None:
+            for words in session.config.warnings:
+                self.event_log.note("warning", words)
+        session.on_order = self._told
+
+    def keep_past(self, machine: TimeMachine) -> None:
+        """Let the machine keep, from now on, what is needed to go back to any tick of this run."""
+        self.machine = machine
+        self.on_order.append(machine.told)
+
+    def _told(self, order: Order) -> None:
+        for listen in self.on_order:
+            listen(order)
 
     @property
     def event_log(self) -> EventLog:
@@ -40,6 +59,8 @@ class Run:
         self.session.tick(recorder)
         require_finite(self.session)
         self.history.watch()
+        if self.machine is not None:  # before the orders of the trial, which come after this tick
+            self.machine.ticked()
         if self.trial is not None:
             self.trial.advance()
 

@@ -109,9 +109,9 @@ class EngineThread:
         if self._inbox.has_answers:
             self._publish()  # before answering: whoever has the answer and reads the state must see its effect
             self._inbox.give()
-        engine, pace, session = self._engine, self.pace, self.session
-        if pace.let_go() and session.pilot.mode == "manual":
-            session.drive(0.0, 0.0)
+        engine, pace, session = self._engine, self.pace, self._engine.shown.session
+        if pace.let_go() and self.session.pilot.mode == "manual":
+            self.session.drive(0.0, 0.0)
         if engine.steps:
             self._step()
         elif engine.runs_ahead:

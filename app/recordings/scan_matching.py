@@ -64,7 +64,9 @@ def match(before: Points, now: Points, told: Pose2) -> Pose2 | None:
     return best
 
 
-def _settle(tree: cKDTree, walls: Points, normals: Points, now: Points, told: Pose2, turn: float) -> tuple[float, Pose2]:
+def _settle(
+    tree: cKDTree, walls: Points, normals: Points, now: Points, told: Pose2, turn: float
+) -> tuple[float, Pose2]:
     """From one start to where it settles: (share of the points that lie on a wall, less how far off they are; pose)."""
     x, y, heading = told.x, told.y, told.heading_rad + turn
     fits = 0.0
@@ -79,7 +81,9 @@ def _settle(tree: cKDTree, walls: Points, normals: Points, now: Points, told: Po
         n, p = normals[which[on]], at[on]
         off = ((p - walls[which[on]]) * n).sum(axis=1)
         rows = np.stack([n[:, 0], n[:, 1], n[:, 1] * (p[:, 0] - x) - n[:, 0] * (p[:, 1] - y)], axis=1)
-        doubt = np.diag([1e-2, 1e-2, 1e-3]) * len(rows)  # where all walls are parallel, it stays where the wheels put it
+        doubt = np.diag([1e-2, 1e-2, 1e-3]) * len(
+            rows
+        )  # where all walls are parallel, it stays where the wheels put it
         step = np.linalg.solve(rows.T @ rows + doubt, -rows.T @ off)
         x, y, heading = x + float(step[0]), y + float(step[1]), heading + float(step[2])
         fits = float(on.mean()) - float(np.abs(off).mean()) / near / 4

@@ -1,1 +1,8 @@
-"""Any moment of a run, shown again and gone on from."""
+"""The past of a run: keyframes, moments made again from them, and branches."""
+
+from app.time_machine.branch import Branch
+from app.time_machine.comparison import first_difference, side_of
+from app.time_machine.machine import TimeMachine
+from app.time_machine.moment import Moment
+
+__all__ = ["Branch", "Moment", "TimeMachine", "first_difference", "side_of"]

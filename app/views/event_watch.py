@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 from app.session import Session, is_lost
 from app.views.event_log import EventLog
 from app.views.reasons import Reasons
 from app.views.snap_causes import words_of
+from disk import kind
 from ratslam_core import find_places
 from web.messages import Packet, Snap
 
@@ -17,14 +16,16 @@ NEW_GROUND, LONG_AGO_S = 20, 30.0  # after so many new experiences, one that was
 DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
+@kind("event_watch/1")
 class EventWatch:
     """Call `watch` after each tick."""
 
+    CACHES = ("_session", "_log", "reasons", "last_snap")
+
     def __init__(self, session: Session, log: EventLog) -> None:
         self._session, self._log = session, log
-        self.reasons = Reasons(session)
+        self.reasons = Reasons(session, log)
         self._active = session.brain.experience_map.active
-        self._made_s = [-math.inf] * len(session.brain.experience_map)  # when each experience was made
         self._new = 0  # experiences since the robot was last at one that it made long before
         self.last_snap: Snap | None = None
         self.lost = False
@@ -35,6 +36,11 @@ class EventWatch:
         self._dropped = len(session.brain.experience_map.dropped_links)
         self._places_due_s = session.time_s + PLACES_EVERY_S
         self._diverged, self._diverged_due_s = False, 0.0
+
+    def settle(self, session: Session, log: EventLog, last_snap: Snap | None) -> None:
+        """Go on in a history that was restored. What made a snap is known from here on."""
+        self._session, self._log, self.last_snap = session, log, last_snap
+        self.reasons = Reasons(session, log)
 
     def watch(self) -> None:
         self.reasons.watch()
@@ -64,9 +70,10 @@ class EventWatch:
         """Marks that the robot comes back from new ground to an experience that it made long before."""
         session, map_, before = self._session, self._session.brain.experience_map, self._active
         self._active = now = map_.active
-        self._made_s.extend([session.time_s] * (len(map_) - len(self._made_s)))
         self._new += session.estimate.created
-        if session.estimate.created or now == before or session.time_s - self._made_s[now] < LONG_AGO_S:
+        if session.estimate.created or now == before:
+            return
+        if session.time_s - session.evaluation.births(len(map_))[now, 3] < LONG_AGO_S:
             return
         new, self._new = self._new, 0
         if new >= NEW_GROUND and (before, now) in map_.transitions.row_of and not session.brain.lost:

@@ -9,6 +9,7 @@ import math
 
 from app.session import Session
 from app.views.brain_pictures import packet_of, stored_picture
+from app.views.event_log import EventLog
 from app.views.snap_causes import SnapCauses
 from ratslam_core import Packet, Pose2
 from web import messages as m
@@ -21,10 +22,10 @@ LOOKS_BACK_S = 10.0  # a robot that feels lost: what it recognised in this time
 class Reasons:
     """Call `watch` after each tick, and one of the others when something has happened in it."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, session: Session, log: EventLog) -> None:
+        """log: the chain is kept with its event."""
+        self._session, self._kept = session, log.why
         self.causes = SnapCauses(session)
-        self._kept: dict[int, m.WhyReport] = {}
         self._before = self._now = self._packets()
         self._robot_before = self._robot = session.brain.experience_map.robot
         self._seen: list[tuple[float, int]] = []  # when each of the views of late was recognised first

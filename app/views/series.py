@@ -3,29 +3,40 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.evaluation import Coverage
 from app.session import Session
 from app.views.arrays import frozen
 from app.views.map_turn import map_turn
+from disk import kind
 from web.messages import Series
 
 SERIES_POINTS = 600
 ERROR_POINTS = 1000
 
 
+@kind("run_series/1")
 class RunSeries:
     """Call `watch` after each tick."""
 
+    CACHES = ("_session", "series")
+
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._samples: list[tuple[float, ...]] = []
+        self._samples: NDArray[np.float64] = np.zeros((0, 7))
         self._sample_every_s = 1.0
         self.error_map_m = self.error_odometry_m = self.coverage = 0.0
         self._covered = Coverage()
         self.map_turn_rad = self._turn(None)
-        self.series = Series(*(np.zeros(0) for _ in range(7)))
+        self.series = self._shown()
         self._sample()
+
+    def settle(self, session: Session) -> None:
+        """Go on in a history that was restored."""
+        self._session = session
+        self._covered.settle(session.simulator.free_space)
+        self.series = self._shown()
 
     def watch(self) -> None:
         if self._session.time_s >= len(self._samples) * self._sample_every_s:
@@ -45,8 +56,12 @@ class RunSeries:
         views, experiences = len(brain.local_view), len(brain.experience_map)
         metres, radians = brain.experience_map.residual
         residual = 1000 * metres, 1000 * radians
-        self._samples.append((session.time_s, self.error_map_m, self.error_odometry_m, views, experiences, *residual))
+        sample = session.time_s, self.error_map_m, self.error_odometry_m, views, experiences, *residual
+        self._samples = np.vstack([self._samples, sample])
         if len(self._samples) > SERIES_POINTS:
             self._samples = self._samples[::2]
             self._sample_every_s *= 2
-        self.series = Series(*frozen(np.array(self._samples, np.float64).T.copy()))
+        self.series = self._shown()
+
+    def _shown(self) -> Series:
+        return Series(*frozen(self._samples.T.copy()))

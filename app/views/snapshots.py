@@ -21,7 +21,7 @@ from app.views.senses import senses_of
 from app.views.throttle import Slow
 from app.views.tick_stages import Walk
 from app.views.world_drawing import DrawnWorld
-from web.messages import Inspect, OfficeEdition, Pose, Snapshot, Timing, TrialView
+from web.messages import Inspect, OfficeEdition, Pose, Snapshot, TimeView, Timing, TrialView
 
 OCCUPANCY_EVERY_S = 2.0  # of wall time
 GOAL_MEMORY_EVERY_S = 0.5
@@ -36,6 +36,7 @@ class Snapshots:
         self._session, self._history, self._run, self.worlds = session, history, run, worlds
         self.office: OfficeEdition | None = None
         self.trial: TrialView | None = None
+        self.time: TimeView | None = None
         self.inspected = Inspect(type="inspect")  # at first nothing
         self.walk: Walk | None = None  # through the stages of the last tick
         self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), ParameterRows()
@@ -45,6 +46,11 @@ class Snapshots:
             INSPECT_EVERY_S, lambda: inspect(session, history.visits, history.events.reasons, self.inspected)
         )
         self._goal_memory = Slow(GOAL_MEMORY_EVERY_S, lambda: goal_memory_layer(session))
+
+    def continue_from(self, other: Snapshots) -> None:
+        """Show the same run at another moment: what is drawn and inspected stays, and is not drawn anew."""
+        self.inspected, self.worlds = other.inspected, other.worlds
+        self._drawn, self._actors, self._parameters = other._drawn, other._actors, other._parameters
 
     def refresh(self) -> None:
         """Rebuild everything for the next snapshot, since a command has changed something."""
@@ -105,6 +111,7 @@ class Snapshots:
             preset=preset,
             office=self.office,
             trial=self.trial,
+            time=self.time,
             no_room=session.simulator.fit.refusal,
         )
 

@@ -9,19 +9,28 @@ from numpy.typing import NDArray
 
 from app.session import Session
 from app.views.arrays import frozen
+from disk import kind
 
 TRAIL_S = 120.0  # of driving
 STILL_M, STILL_CELLS = 0.005, 0.02  # smaller movements add no point
 
 
+@kind("trails/1")
 class Trails:
     """Call `watch` after each tick. A trail is the same object as long as nothing is added to it."""
+
+    CACHES = ("_session",)
 
     def __init__(self, session: Session) -> None:
         self._session = session
         self._most = int(TRAIL_S / session.frame.dt) // 2
         self.robot = _no_points(2)  # true path, (t, 2), office frame
         self.packet = _no_points(3)  # of the winning packet, (p, 3): x', y' (cells), heading (rad)
+
+    def settle(self, session: Session) -> None:
+        """Go on in a history that was restored."""
+        self._session = session
+        self.robot, self.packet = frozen(self.robot), frozen(self.packet)
 
     def watch(self) -> None:
         session = self._session

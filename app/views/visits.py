@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.session import Session
+from disk import kind
 from web.messages import Times
 
 
+@kind("visits/1")
 class Visits:
     """Visits of experiences, or of views. Those that a brain brought with it have no times until they are met again."""
 
@@ -29,19 +32,31 @@ class Visits:
             self._count[number] += number != self._active
         self._active = number
 
+    @property
+    def first_s(self) -> NDArray[np.float64]:
+        """When each was active first, simulated seconds; NaN: never."""
+        return self._first_s
+
     def of(self, number: int) -> Times:
         if number >= len(self._count) or self._count[number] == 0:
             return Times(None, None, 0)
         return Times(float(self._first_s[number]), float(self._last_s[number]), int(self._count[number]))
 
 
+@kind("visit_log/1")
 class VisitLog:
     """Call `watch` after each tick."""
+
+    CACHES = ("_session",)
 
     def __init__(self, session: Session) -> None:
         self._session = session
         self.experiences, self.views = Visits(), Visits()
         self.watch()
+
+    def settle(self, session: Session) -> None:
+        """Go on in a history that was restored."""
+        self._session = session
 
     def watch(self) -> None:
         session = self._session

@@ -163,16 +163,16 @@ class Bucket:
 
 
 class Limits:
-    """One sender's limits: drive 60 a second, all other commands 10 a second."""
+    """One sender's limits: drive and seek 60 a second each, all other commands 10 a second."""
 
     def __init__(self) -> None:
-        self._drive = Bucket(60.0)
+        self._often = {"drive": Bucket(60.0), "seek": Bucket(60.0)}
         self._other = Bucket(10.0)
 
     def refusal(self, kind: str) -> str | None:
         """Why a command of this type may not go on now, or None."""
-        if kind == "drive":
-            return None if self._drive.take() else "at most 60 drive commands a second; send them less often"
+        if kind in self._often:
+            return None if self._often[kind].take() else f"at most 60 {kind} commands a second; send them less often"
         return None if self._other.take() else "at most 10 commands a second; wait a moment and send it again"
 
     def pass_on(self, kind: str) -> None:

@@ -21,8 +21,10 @@ from web.messages import (
     OfficeEdition,
     Pose,
     Report,
+    Side,
     Snapshot,
     TickWalk,
+    TimeView,
     TrialView,
     ViewReport,
     WhyReport,
@@ -81,11 +83,51 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
         "inspected": None if snapshot.inspected is None else _inspected(snapshot.inspected),
         "walk": None if snapshot.walk is None else _walk(snapshot.walk),
         "moving": None if snapshot.living is None else _moving(snapshot.living),
+        "time": None if snapshot.time is None else time_fields(snapshot.time),
     }
 
 
 def office_fields(office: OfficeEdition) -> dict[str, Any]:
     return {"edition": office.number, "undo": office.undo, "redo": office.redo, "saved": office.saved}
+
+
+def time_fields(time: TimeView) -> dict[str, Any]:
+    branches = [
+        {"number": branch.number, "parent": branch.parent, "from_s": branch.from_s, "end_s": branch.end_s}
+        for branch in time.branches
+    ]
+    return {
+        "past": time.past,
+        "end_tick": time.end_tick,
+        "end_s": time.end_s,
+        "begin_s": time.begin_s,
+        "branch": time.branch,
+        "branches": branches,
+        "loop": time.loop,
+        "differs": time.differs,
+        "sides": [_side(side) for side in time.sides],
+    }
+
+
+def _side(side: Side) -> dict[str, Any]:
+    """One branch beside another. Its map is some of its experiences, centimetres."""
+    return {
+        "number": side.number,
+        "time_s": side.time_s,
+        "error_m": {"map": side.error_map_m, "odometry": side.error_odometry_m},
+        "views": side.views,
+        "experiences": side.experiences,
+        "links": side.links,
+        "packet": {
+            "x": side.packet.x,
+            "y": side.packet.y,
+            "heading_rad": side.packet.heading_rad,
+            "mass": side.packet.mass,
+        },
+        "xy": side.xy.round(2),
+        "robot": _pose(side.robot),
+        "turn_rad": side.turn_rad,
+    }
 
 
 def trial_fields(trial: TrialView) -> dict[str, Any]:

@@ -256,7 +256,53 @@ class RedoEdit(_Command):
     type: Literal["redo_edit"]
 
 
+_Moment = Annotated[float, Field(ge=0, le=1e9)]
+
+
+class Seek(_Command):
+    """Pause and show a moment of the run, by simulated time or by tick. From the last one on: the present. Changes nothing."""
+
+    type: Literal["seek"]
+    time_s: _Moment | None = None
+    tick: Annotated[int, Field(ge=0, le=10**9)] | None = None
+
+
+class BackToNow(_Command):
+    """Show the present again, paused."""
+
+    type: Literal["back_to_now"]
+
+
+class GoOnFromHere(_Command):
+    """Make the moment of the past that is shown the present of another branch. The run as it was stays as its own branch."""
+
+    type: Literal["go_on_from_here"]
+
+
+class ChangeBranch(_Command):
+    """Go on with another branch, from its end."""
+
+    type: Literal["change_branch"]
+    number: Annotated[int, Field(ge=1, le=1000)]
+
+
+class CompareBranch(_Command):
+    """Show another branch beside the live one, at the same time, and say where they differ first. Without a number: none."""
+
+    type: Literal["compare_branch"]
+    number: Annotated[int, Field(ge=1, le=1000)] | None = None
+
+
+class Loop(_Command):
+    """Play the past between two times (simulated seconds) again and again. Without them: no longer."""
+
+    type: Literal["loop"]
+    begin_s: _Moment | None = None
+    end_s: _Moment | None = None
+
+
 EditOrder = EditWorld | UndoEdit | RedoEdit
+TimeOrder = Seek | BackToNow | GoOnFromHere | ChangeBranch | CompareBranch | Loop
 TagOrder = Tag | Untag | GoToTag
 OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
 LookOrder = Inspect | StepStage | InjectPacket
@@ -276,6 +322,7 @@ Command = Annotated[
     | OfficeOrder
     | EditOrder
     | LookOrder
+    | TimeOrder
     | WatchExperiment,
     Field(discriminator="type"),
 ]

@@ -30,11 +30,13 @@ from web.messages.brain import (
 from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
 from web.messages.reports import Report
 from web.messages.tick import TickWalk, Timing
+from web.messages.time import TimeView
 from web.messages.trial import TrialView
 
 EventKind = Literal[
     "kidnap", "lost", "recovered", "snap", "goal", "arrived", "unreachable", "packet", "brain", "office", "parameter",
     "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed", "closure",
+    "branch",
 ]  # fmt: skip
 
 
@@ -128,4 +130,5 @@ class Snapshot:
     belief: Belief | None = None  # None: there is no experience map
     trial: TrialView | None = None  # None: no trial of an experiment was begun in this run
     tags: tuple[TaggedPlace, ...] = ()  # in the order in which they were given
+    time: TimeView | None = None  # None: nothing of this run can be gone back to
     map_turn_rad: float = 0.0  # turns the map, for the eye only, so that it lies as the office does

@@ -103,7 +103,9 @@ def _goal(goal: Goal | None) -> dict[str, Any]:
 
 
 def _log(snapshot: Snapshot) -> dict[str, Any]:
-    snaps = [event for event in snapshot.events if event.kind in SNAP_KINDS][-LOG:]
+    is_past = snapshot.time is not None and snapshot.time.past
+    until_s = snapshot.time_s + 1e-9 if is_past else math.inf  # those that are still to come are none yet
+    snaps = [event for event in snapshot.events if event.kind in SNAP_KINDS and event.time_s <= until_s][-LOG:]
     rows = [(clock(event.time_s), event.text) for event in reversed(snaps)]
     return table("Snaps", rows, _no_snaps(snapshot))
 

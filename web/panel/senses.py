@@ -23,12 +23,12 @@ class RecentViews:
     def __init__(self) -> None:
         self.numbers: tuple[int, ...] = ()
         self._kept: deque[int] = deque(maxlen=RECENT)
-        self._run = -1
+        self._run = self._tick = -1
 
     def remember(self, snapshot: Snapshot) -> None:
-        if snapshot.run != self._run:
-            self._run = snapshot.run
+        if snapshot.run != self._run or snapshot.tick < self._tick:  # another run, or gone back in time
             self._kept.clear()
+        self._run, self._tick = snapshot.run, snapshot.tick
         active = snapshot.senses.active_view
         if active >= 0 and (not self._kept or self._kept[-1] != active):
             self._kept.append(active)

@@ -24,7 +24,7 @@ import { Watched } from "./experiments/watched.js";
 const page = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 const link = new Connection(page);
 const header = new Header();
-const timeline = new Timeline();
+const timeline = new Timeline(link);
 const drive = new HandDrive((command) => link.tell(command));
 const keys = new Keys({ drive: (name, down) => drive.key(name, down), act, allUp: () => drive.allUp() });
 const viewer = new Viewer(link, keys);
@@ -60,7 +60,7 @@ link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   header.show(state, detail.page);
   watched.show(state, detail.page);
   panel.inspected(detail.page.inspected);
-  timeline.at(state.time_s);
+  timeline.at(state, detail.page.time);
   office = detail.page.office;
   editor.at(state, detail.page);
   kept.ask();
@@ -198,6 +198,13 @@ $("help-dialog").addEventListener("click", ({ target }) => target === $("help-di
 const KEYS = {
   " ": playOrPause,
   ".": oneTick,
+  b: () => timeline.tools.tick(-1),
+  j: () => timeline.tools.tick(-10),
+  l: () => timeline.tools.tick(10),
+  "[": () => timeline.tools.event(-1),
+  "]": () => timeline.tools.event(1),
+  n: () => timeline.tools.now(),
+  v: () => timeline.list.toggle(),
   ",": () => oneStage(),
   e: explore,
   k: kidnap,
@@ -214,7 +221,7 @@ function act(name) {
   if (view) viewer.show(view);
   else if (name === "x" && state?.goal) cancelGoal();
   else if (Object.hasOwn(KEYS, name)) KEYS[name]();
-  else return name === "Escape" && (closeOpenMenu() || dismissToast());
+  else return name === "Escape" && (closeOpenMenu() || timeline.list.close() || dismissToast());
   return true;
 }
 

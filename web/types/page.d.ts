@@ -93,6 +93,31 @@ type PageFields = {
   inspected: string | null;
   walk: Walk | null;
   moving: Moving | null;
+  time: TimeFields | null;
+};
+type BranchFields = { number: number; parent: number | null; from_s: number; end_s: number };
+type TimeFields = {
+  past: boolean;
+  end_tick: number;
+  end_s: number;
+  begin_s: number;
+  branch: number;
+  branches: BranchFields[];
+  loop: [number, number] | null;
+  sides: SideFields[];
+  differs: string;
+};
+type SideFields = {
+  number: number;
+  time_s: number;
+  error_m: { map: number; odometry: number };
+  views: number;
+  experiences: number;
+  links: number;
+  packet: Pose & { mass: number };
+  xy: number[][];
+  robot: Pose;
+  turn_rad: number;
 };
 type TimelineEvent = { number: number; time_s: number; kind: string; text: string };
 type Wrong = { field: string | null; value: unknown; reason: string };

@@ -25,8 +25,14 @@ type RedoEdit = { type: "redo_edit" };
 type Inspect = { type: "inspect"; experience?: number | null; view?: number | null; x?: number | null; y?: number | null; event?: number | null };
 type StepStage = { type: "step_stage"; back?: boolean };
 type InjectPacket = { type: "inject_packet"; x: number; y: number; heading_rad?: number; share?: number };
+type Seek = { type: "seek"; time_s?: number | null; tick?: number | null };
+type BackToNow = { type: "back_to_now" };
+type GoOnFromHere = { type: "go_on_from_here" };
+type ChangeBranch = { type: "change_branch"; number: number };
+type CompareBranch = { type: "compare_branch"; number?: number | null };
+type Loop = { type: "loop"; begin_s?: number | null; end_s?: number | null };
 type WatchExperiment = { type: "watch_experiment"; experiment: string; engine?: "paper" | "ours" | null; levels?: (string)[] | null; seed?: number | null; quick?: boolean; trial?: string | null; moment_s?: number | null };
-type Command = SetGoal | CancelGoal | Tag | Untag | GoToTag | SetMode | Drive | Kidnap | Pause | Resume | Step | SetSpeed | Reset | SetParameter | SetDoor | SetLamp | PutBox | RemoveBox | UsePreset | EditWorld | UndoEdit | RedoEdit | Inspect | StepStage | InjectPacket | WatchExperiment;
+type Command = SetGoal | CancelGoal | Tag | Untag | GoToTag | SetMode | Drive | Kidnap | Pause | Resume | Step | SetSpeed | Reset | SetParameter | SetDoor | SetLamp | PutBox | RemoveBox | UsePreset | EditWorld | UndoEdit | RedoEdit | Inspect | StepStage | InjectPacket | Seek | BackToNow | GoOnFromHere | ChangeBranch | CompareBranch | Loop | WatchExperiment;
 type BoxItem = { name: string; x: number; y: number; width: number; depth: number; height?: number; angle_deg?: number; colour?: string; present?: boolean };
 type DaylightItem = { points: ([number, number])[]; repeat_s?: number };
 type DoorItem = { name: string; hinge: [number, number]; angle_deg: number; width: number; height?: number; colour?: string; swing_deg?: number; slides?: boolean; open?: boolean; period_s?: number; open_s?: number; phase_s?: number };
@@ -56,6 +62,7 @@ type IndexIds = {
   "brain-file": HTMLElementTagNameMap["input"];
   "brain-load": HTMLElementTagNameMap["button"];
   "brain-save": HTMLElementTagNameMap["a"];
+  "branches": HTMLElementTagNameMap["span"];
   "cancel": HTMLElementTagNameMap["button"];
   "cell-dots": HTMLElementTagNameMap["ul"];
   "cell-none": HTMLElementTagNameMap["p"];
@@ -63,6 +70,10 @@ type IndexIds = {
   "cell-watch": HTMLElementTagNameMap["button"];
   "cell-words": HTMLElementTagNameMap["p"];
   "clock": HTMLElementTagNameMap["time"];
+  "compare": HTMLElementTagNameMap["section"];
+  "compare-sides": HTMLElementTagNameMap["div"];
+  "compare-with": HTMLElementTagNameMap["span"];
+  "compare-words": HTMLElementTagNameMap["p"];
   "daylight-add": HTMLElementTagNameMap["form"];
   "daylight-again": HTMLElementTagNameMap["label"];
   "daylight-curve": SVGElementTagNameMap["svg"];
@@ -92,8 +103,16 @@ type IndexIds = {
   "edit-undo": HTMLElementTagNameMap["button"];
   "edit-unsaved": HTMLElementTagNameMap["span"];
   "editor": HTMLElementTagNameMap["section"];
+  "event-back": HTMLElementTagNameMap["button"];
+  "event-kinds": HTMLElementTagNameMap["div"];
+  "event-list": HTMLElementTagNameMap["ul"];
+  "event-on": HTMLElementTagNameMap["button"];
   "event-tip": HTMLElementTagNameMap["div"];
   "events": HTMLElementTagNameMap["ol"];
+  "events-box": HTMLElementTagNameMap["section"];
+  "events-close": HTMLElementTagNameMap["button"];
+  "events-count": HTMLElementTagNameMap["span"];
+  "events-open": HTMLElementTagNameMap["button"];
   "experiments": HTMLElementTagNameMap["button"];
   "explore": HTMLElementTagNameMap["button"];
   "extra": HTMLElementTagNameMap["div"];
@@ -108,6 +127,7 @@ type IndexIds = {
   "gallery-title": HTMLElementTagNameMap["h2"];
   "gallery-wait": HTMLElementTagNameMap["p"];
   "gallery-wrong": HTMLElementTagNameMap["p"];
+  "go-on": HTMLElementTagNameMap["button"];
   "goal": HTMLElementTagNameMap["p"];
   "grid": HTMLElementTagNameMap["select"];
   "help": HTMLElementTagNameMap["button"];
@@ -123,6 +143,9 @@ type IndexIds = {
   "leave-dialog": HTMLElementTagNameMap["dialog"];
   "leave-title": HTMLElementTagNameMap["h2"];
   "legend": HTMLElementTagNameMap["ul"];
+  "loop-off": HTMLElementTagNameMap["button"];
+  "mark-a": HTMLElementTagNameMap["button"];
+  "mark-b": HTMLElementTagNameMap["button"];
   "messages": HTMLElementTagNameMap["div"];
   "more": HTMLElementTagNameMap["button"];
   "new-close": HTMLElementTagNameMap["button"];
@@ -137,6 +160,7 @@ type IndexIds = {
   "new-width": HTMLElementTagNameMap["input"];
   "new-world": HTMLElementTagNameMap["button"];
   "new-wrong": HTMLElementTagNameMap["p"];
+  "now": HTMLElementTagNameMap["button"];
   "one-asks": HTMLElementTagNameMap["p"];
   "one-cell": HTMLElementTagNameMap["section"];
   "one-engines": HTMLElementTagNameMap["fieldset"];
@@ -163,6 +187,7 @@ type IndexIds = {
   "panel": HTMLElementTagNameMap["aside"];
   "panel-show": HTMLElementTagNameMap["button"];
   "panels": HTMLElementTagNameMap["button"];
+  "past": HTMLElementTagNameMap["p"];
   "plan": SVGElementTagNameMap["svg"];
   "plan-status": HTMLElementTagNameMap["p"];
   "play": HTMLElementTagNameMap["button"];
@@ -187,6 +212,8 @@ type IndexIds = {
   "script-add": HTMLElementTagNameMap["form"];
   "script-lines": HTMLElementTagNameMap["ol"];
   "script-none": HTMLElementTagNameMap["p"];
+  "second-back": HTMLElementTagNameMap["button"];
+  "second-on": HTMLElementTagNameMap["button"];
   "seed": HTMLElementTagNameMap["b"];
   "snap": HTMLElementTagNameMap["input"];
   "speed": HTMLElementTagNameMap["select"];
@@ -195,6 +222,8 @@ type IndexIds = {
   "status": HTMLElementTagNameMap["p"];
   "step": HTMLElementTagNameMap["button"];
   "theme": HTMLElementTagNameMap["button"];
+  "tick-back": HTMLElementTagNameMap["button"];
+  "tick-on": HTMLElementTagNameMap["button"];
   "time": HTMLElementTagNameMap["section"];
   "time-close": HTMLElementTagNameMap["button"];
   "timeline": SVGElementTagNameMap["svg"];
@@ -213,6 +242,9 @@ type IndexIds = {
   "wall-kind": HTMLElementTagNameMap["select"];
   "wall-options": HTMLElementTagNameMap["span"];
   "world": HTMLElementTagNameMap["select"];
+  "zoom-all": HTMLElementTagNameMap["button"];
+  "zoom-in": HTMLElementTagNameMap["button"];
+  "zoom-out": HTMLElementTagNameMap["button"];
 };
 type DocsIds = {
   "answer": HTMLElementTagNameMap["pre"];

@@ -124,15 +124,15 @@ def test_false_positives_are_all_counted_and_marked_now_and_then() -> None:
     assert re.fullmatch(r"view \d+ instead of \d+, and \d+ more since the last mark", marked[1].text)
 
 
-def test_events_are_numbered_and_the_last_five_hundred_kept() -> None:
+def test_events_are_numbered_and_the_last_two_thousand_kept() -> None:
     history = History(a_session())
     first = history.log.events
-    for number in range(700):
+    for number in range(2200):
         history.log.note("parameter", f"change {number}")
     assert first == ()
-    assert [event.number for event in history.log.events[-500:]] == list(range(201, 701))
-    assert len(history.log.events) <= 501
-    assert (history.log.events[-1].kind, history.log.events[-1].text) == ("parameter", "change 699")
+    assert [event.number for event in history.log.events[-2000:]] == list(range(201, 2201))
+    assert len(history.log.events) <= 2001
+    assert (history.log.events[-1].kind, history.log.events[-1].text) == ("parameter", "change 2199")
 
 
 def test_arrival_and_unreachable_goals_are_noted_once() -> None:

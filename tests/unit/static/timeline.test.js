@@ -2,9 +2,20 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { clock, tickTimes } from "../../../web/static/model/clock.js";
+import { clock, tickTimes, tickTimesIn } from "../../../web/static/model/clock.js";
 import { kinds, markOf, nameOf, weightOf } from "../../../web/static/model/event_kinds.js";
-import { labelsOf, marksOf, words } from "../../../web/static/model/timeline.js";
+import { frameOf, lying } from "../../../web/static/model/side_maps.js";
+import {
+  fine,
+  labelsOf,
+  marksOf,
+  nextEvent,
+  parted,
+  whole,
+  within,
+  words,
+  zoomed,
+} from "../../../web/static/model/timeline.js";
 import { EVENT_KINDS } from "../../../web/static/shared.js";
 import { chance } from "./chance.js";
 
@@ -81,4 +92,58 @@ test("names are within the timeline and none lies over another; what counts most
 
 test("an event is told with its time and its name", () => {
   assert.equal(words({ ...event(1, 61, "unreachable"), text: "to 5" }), "1:01 no way: to 5");
+});
+
+test("a span keeps its middle when it is made shorter, stays in the whole, and becomes the whole again", () => {
+  const all = whole(1000);
+  const near = zoomed(all, 0.1, 500, all);
+  assert.ok(near && Math.abs(near.to - near.from - 103) < 1e-9);
+  const share = (500 - near.from) / (near.to - near.from);
+  assert.ok(Math.abs(share - 500 / 1030) < 1e-9);
+  assert.equal(zoomed(near, 20, 500, all), null);
+  const shortest = zoomed(near, 1e-9, 0, all);
+  assert.ok(shortest && Math.abs(shortest.to - shortest.from - 5) < 1e-9 && shortest.from >= 0);
+  assert.deepEqual(within({ from: 1000, to: 1100 }, all), { from: 930, to: 1030 });
+});
+
+test("times beneath a part are within it and round", () => {
+  for (const [from, to] of [
+    [100, 105],
+    [930, 1030],
+    [3600, 7200],
+  ]) {
+    const times = tickTimesIn(from, to, 700);
+    assert.ok(times.length >= 2 && times.length < 12, `${times}`);
+    assert.ok(times.every((time) => time >= from && time <= to && Number.isInteger(time)));
+  }
+  assert.deepEqual(tickTimesIn(0, 60, 700), tickTimes(60, 700));
+});
+
+test("the next event and the one before", () => {
+  const events = [event(1, 5, "snap"), event(2, 6, "office"), event(3, 9, "lost")];
+  assert.deepEqual([nextEvent(events, 6, 1), nextEvent(events, 6, -1), nextEvent(events, 9, 1)], [9, 5, undefined]);
+});
+
+test("a moment is told to the tenth", () => {
+  assert.deepEqual([fine(0), fine(74), fine(61.3), fine(3661.9)], ["0:00.0", "1:14.0", "1:01.3", "1:01:01.9"]);
+});
+
+test("branches part where the first of them leaves the other", () => {
+  const line = (/** @type {number} */ number, /** @type {number | null} */ parent, /** @type {number} */ from_s) => ({
+    number,
+    parent,
+    from_s,
+    end_s: 100,
+  });
+  const branches = [line(1, null, 0), line(2, 1, 40), line(3, 2, 60), line(4, 1, 20)];
+  assert.deepEqual([parted(branches, 1, 2), parted(branches, 3, 1), parted(branches, 2, 3)], [40, 40, 60]);
+  assert.deepEqual([parted(branches, 3, 4), parted(branches, 4, 1)], [20, 20]);
+});
+
+test("two maps lie in one frame, turned as on the stage", () => {
+  const [[x, y]] = lying([[1, 0]], Math.PI / 2);
+  assert.ok(Math.abs(x) < 1e-9 && Math.abs(y - 1) < 1e-9);
+  const robot = { x: 0, y: 0, heading_rad: 0 };
+  const sides = [[[3, 0]], [[0, -2]]].map((xy) => /** @type {SideFields} */ ({ xy, robot, turn_rad: 0 }));
+  assert.equal(frameOf(sides), "-0.60 -0.60 4.20 3.20");
 });

@@ -42,6 +42,7 @@ def test_greets_then_tells_the_state_and_the_events(server):
             "inspected",
             "walk",
             "moving",
+            "time",
         }
         assert until(socket, "events")["fresh"]
 

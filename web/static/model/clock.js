@@ -11,6 +11,16 @@ export function clock(seconds) {
   return hours ? `${hours}:${two(minutes)}:${two(whole % 60)}` : `${minutes}:${two(whole % 60)}`;
 }
 
+/** The times written below the part of a timeline from `from` to `to` that is `width` pixels wide. @param {number} from @param {number} to @param {number} width */
+export function tickTimesIn(from, to, width) {
+  if (from <= 0) return tickTimes(to, width);
+  const most = Math.max(3, Math.floor(width / PER_TICK_PX));
+  const step = [1, 2, 5, ...STEPS_S].find((value) => (to - from) / value <= most) ?? tickTimes(to - from, width)[1];
+  const times = [];
+  for (let time = Math.ceil(from / step) * step; time <= to; time += step) times.push(time);
+  return times;
+}
+
 /** The times written below a timeline of `end` seconds that is `width` pixels wide. @param {number} end @param {number} width */
 export function tickTimes(end, width) {
   const most = Math.max(3, Math.floor(width / PER_TICK_PX));

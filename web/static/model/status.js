@@ -13,10 +13,11 @@ const GOALS = {
 
 /**
  * @param {Pick<State, "running" | "mode" | "goal" | "pose_cells">} state
- * @param {Pick<PageFields, "fault" | "lost">} page
+ * @param {Pick<PageFields, "fault" | "lost"> & { time?: TimeFields | null }} page
  * @returns {Chip}
  */
 export function statusOf(state, page) {
+  if (page.time?.past) return ["clock", "past", state.running ? "the past, played" : "the past"];
   if (page.fault) return ["warn", "bad", state.running ? "in a long tick" : "stopped by a fault"];
   if (!state.running) return ["pause", "", "paused"];
   const packets = state.pose_cells.packets.length;

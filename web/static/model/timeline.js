@@ -1,4 +1,4 @@
-// Which events have room on the timeline. No DOM.
+// Which events have room on the timeline, which part of it is shown, and which event is next. No DOM.
 
 import { clock } from "./clock.js";
 import { nameOf, weightOf } from "./event_kinds.js";
@@ -46,4 +46,73 @@ export function labelsOf(events, x, width) {
     if (!labels.some((other) => Math.abs(at - other.at) < half + other.half)) labels.push({ kind, at, half });
   }
   return labels;
+}
+
+/** @typedef {{ from: number, to: number }} Span simulated seconds */
+
+const LEAST_S = 5; // no shorter span is shown
+
+/** The whole timeline of a run of this length. @param {number} end_s @returns {Span} */
+export const whole = (end_s) => ({ from: 0, to: Math.max(60, end_s * 1.03) });
+
+/**
+ * A span by a factor longer (> 1) or shorter, in which `at` keeps its place; null: the whole.
+ * @param {Span} span
+ * @param {number} factor
+ * @param {number} at
+ * @param {Span} all
+ * @returns {Span | null}
+ */
+export function zoomed(span, factor, at, all) {
+  const length = Math.max(LEAST_S, (span.to - span.from) * factor);
+  if (length >= all.to - all.from) return null;
+  const share = (at - span.from) / (span.to - span.from);
+  return within({ from: at - share * length, to: at + (1 - share) * length }, all);
+}
+
+/** The span moved into the whole. @param {Span} span @param {Span} all @returns {Span} */
+export function within(span, all) {
+  const length = span.to - span.from;
+  const from = Math.min(Math.max(span.from, all.from), Math.max(all.from, all.to - length));
+  return { from, to: from + length };
+}
+
+/**
+ * The time of the next event after a time (`way` 1) or before it (-1); undefined: there is none.
+ * @param {TimelineEvent[]} events oldest first
+ * @param {number} time_s
+ * @param {1 | -1} way
+ */
+export function nextEvent(events, time_s, way) {
+  const times = events.map((event) => event.time_s).filter((time) => (time - time_s) * way > 0.05);
+  return way > 0 ? times[0] : times.at(-1);
+}
+
+/** A time for people, to the tenth. @param {number} seconds */
+export const fine = (seconds) => `${clock(seconds)}.${Math.floor(seconds * 10 + 1e-6) % 10}`;
+
+/**
+ * When two branches parted: the first time that they do not share.
+ * @param {BranchFields[]} branches
+ * @param {number} a
+ * @param {number} b
+ */
+export function parted(branches, a, b) {
+  const lines = [a, b].map((number) => lineOf(branches, number));
+  let same = 0;
+  while (lines[0][same] && lines[0][same] === lines[1][same]) same++;
+  return Math.min(...lines.map((line) => line[same]?.from_s ?? Infinity));
+}
+
+/** A branch and its forebears, the first of them first. @param {BranchFields[]} branches @param {number} number */
+function lineOf(branches, number) {
+  /** @type {BranchFields[]} */
+  const line = [];
+  for (
+    let at = branches.find((one) => one.number === number);
+    at;
+    at = branches.find((one) => one.number === at?.parent)
+  )
+    line.unshift(at);
+  return line;
 }

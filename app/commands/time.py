@@ -1,0 +1,61 @@
+"""Looking at earlier moments of a run, going on from one of them, and changing between branches."""
+
+from __future__ import annotations
+
+from app.commands.outcome import Outcome, attempt
+from app.engine.engine import Engine
+from web import messages as m
+
+PAST = "this is the past: go on from here, or come back to now"
+IN_THE_PAST = {  # the commands that change nothing, or begin another run
+    m.Pause, m.Resume, m.Step, m.StepStage, m.SetSpeed, m.Inspect, m.Reset, m.WatchExperiment,
+    m.Seek, m.BackToNow, m.GoOnFromHere, m.ChangeBranch, m.CompareBranch, m.Loop,
+}  # fmt: skip
+
+
+def seek(engine: Engine, command: m.Seek) -> Outcome:
+    """Looking at the past pauses the present; while the past plays, it plays on from the new moment."""
+    if (command.time_s is None) == (command.tick is None):
+        return m.Refused("time_s", command.time_s, "seek takes either time_s or tick")
+    time, playing = engine.time, engine.running and engine.time.past is not None
+    engine.break_off()
+    engine.running = False
+
+    def go() -> None:
+        time.seek(time.tick_at(command.time_s) if command.time_s is not None else command.tick or 0)
+
+    refused = attempt("tick", command.tick, go)
+    engine.running = playing and time.past is not None
+    return refused
+
+
+def back_to_now(engine: Engine, _: m.BackToNow) -> Outcome:
+    if engine.time.past is not None:
+        engine.running = False
+        engine.break_off()
+        engine.time.back_to_now()
+
+
+def go_on_from_here(engine: Engine, _: m.GoOnFromHere) -> Outcome:
+    return attempt("type", "go_on_from_here", engine.go_on_from_here)
+
+
+def change_branch(engine: Engine, command: m.ChangeBranch) -> Outcome:
+    return attempt("number", command.number, lambda: engine.change_branch(command.number))
+
+
+def compare_branch(engine: Engine, command: m.CompareBranch) -> Outcome:
+    return attempt("number", command.number, lambda: engine.time.compare(command.number))
+
+
+def loop(engine: Engine, command: m.Loop) -> Outcome:
+    begin_s, end_s = command.begin_s, command.end_s
+    if begin_s is None and end_s is None:
+        engine.time.loop = None
+        return None
+    if begin_s is None or end_s is None or end_s - begin_s < 0.1:
+        return m.Refused(
+            "end_s", end_s, f"a loop needs begin_s and, at least 0.1 s later, end_s; got {begin_s} and {end_s}"
+        )
+    engine.time.loop = (begin_s, end_s)
+    return None

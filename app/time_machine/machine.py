@@ -1,0 +1,120 @@
+"""The past of a run, kept while it runs: any moment can be looked at again, and gone on from as another branch. [ours]
+
+No paper has this: a run is the same bit for bit, so a keyframe now and then and the orders in between are enough.
+tests/unit/app/test_time_machine.py.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+
+from app.order_book import Order
+from app.session import Session
+from app.time_machine.branch import Branch, Keyframe
+from app.time_machine.chunks import Chunks
+from app.time_machine.moment import Moment
+from app.views.history import History
+from disk import encode
+
+EVERY_TICKS = 150  # between two keyframes, until there are too many
+BUDGET_BYTES = 200_000_000
+MOST_BRANCHES = 12
+
+
+class TimeMachine:
+    """Call `ticked` after each tick of the live session, and `told` for each order that it was given."""
+
+    def __init__(self, session: Session, history: History, budget_bytes: int = BUDGET_BYTES) -> None:
+        """The session must be at the beginning of what can be gone back to."""
+        self._chunks, self._budget_bytes = Chunks(), budget_bytes
+        self.live = Branch(1, session, history, from_tick=session.tick_count)
+        self.branches = [self.live]
+        self._keep()
+
+    @property
+    def nbytes(self) -> int:
+        """Of all keyframes."""
+        return self._chunks.nbytes + self._chunks.copy_nbytes
+
+    def told(self, order: Order) -> None:
+        self.live.orders.append(order)
+
+    def ticked(self) -> None:
+        if self.live.end_tick >= self.live.keyframes[-1].tick + EVERY_TICKS:
+            self._keep()
+
+    def tick_at(self, time_s: float) -> int:
+        """The tick of the live branch that ends at this simulated time, or the nearest."""
+        owner = self.live
+        while owner.parent is not None and time_s < owner.keyframes[0].time_s:
+            owner = owner.parent
+        first = max(0, bisect_right(owner.keyframes, time_s + 1e-9, key=lambda frame: frame.time_s) - 1)
+        frame = owner.keyframes[first]
+        return frame.tick + max(0, round((time_s - frame.time_s) / frame.dt))
+
+    def moment(self, branch: Branch, tick: int, near: Moment | None = None) -> Moment:
+        """A moment of a branch. near: another one; if it is on the way to this, it goes on to it. ValueError names what
+        can be gone to."""
+        root = self.branches[0].from_tick
+        if not root <= tick <= branch.end_tick:
+            raise ValueError(f"tick must be from {root} to {branch.end_tick}, got {tick}")
+        if (
+            near is not None
+            and near.branch is branch
+            and branch.at(tick).keyframe(tick).tick <= near.tick_count <= tick
+        ):
+            near.go_to(tick)
+            return near
+        return Moment(branch, tick)
+
+    def go_on_from(self, moment: Moment) -> Branch:
+        """Make the moment the end of a new branch, which is then the live one. The moment must not be used again."""
+        if len(self.branches) >= MOST_BRANCHES:
+            raise ValueError(f"there are {MOST_BRANCHES} branches already; reset the run to begin without any")
+        tick = moment.tick_count
+        parent = moment.branch.at(tick)
+        moment.history.settle(
+            moment.session,
+            moment.branch.history.log.until(moment.session.time_s, moment.session),
+            moment.history.events.last_snap,
+        )
+        self.live = Branch(self.branches[-1].number + 1, moment.session, moment.history, parent, tick)
+        self.branches.append(self.live)
+        self._keep()
+        return self.live
+
+    def change_to(self, number: int) -> Branch:
+        """Make this branch the live one. ValueError names those that there are."""
+        self.live = self.branch(number)
+        return self.live
+
+    def branch(self, number: int) -> Branch:
+        """The branch of this number. ValueError names those that there are."""
+        for branch in self.branches:
+            if branch.number == number:
+                return branch
+        raise ValueError(f"there is no branch {number}; there are 1 to {len(self.branches)}")
+
+    def _keep(self) -> None:
+        live = self.live
+        kept = self._chunks.keep(encode((live.session, live.history)))
+        session, frame = live.session, live.session.frame
+        live.keyframes.append(
+            Keyframe(frame.tick, frame.time_s, frame.dt, kept, session.world, live.history.events.last_snap)
+        )
+        while self.nbytes > self._budget_bytes and self._thin():
+            pass
+
+    def _thin(self) -> bool:
+        """Drop the keyframe that is missed least: where they lie closest together, and of these the oldest."""
+        gaps = [
+            (branch.keyframes[i + 1].tick - branch.keyframes[i - 1].tick, branch.keyframes[i].tick, branch.number, i)
+            for branch in self.branches
+            for i in range(1, len(branch.keyframes) - 1)
+        ]
+        if not gaps:
+            return False
+        _, _, number, i = min(gaps)
+        branch = next(branch for branch in self.branches if branch.number == number)
+        self._chunks.drop(branch.keyframes.pop(i).state)
+        return True

@@ -1,0 +1,109 @@
+"""The timeline as a person uses it: drag it, step, go back to now, go on from there, and look at two branches."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.e2e.browser import box_of, open_page, told, until
+from tests.e2e.program import Program
+
+# Every visible part of the footer: its box against all others and against the window.
+WRONG = """() => {
+    const wrong = [], name = (part) => part.id || part.textContent;
+    const parts = [...document.querySelectorAll("footer button, footer .past-chip, #timeline")]
+        .filter((part) => part.checkVisibility({visibilityProperty: true}) && !part.closest("#events-box"));
+    for (const part of parts) {
+        const box = part.getBoundingClientRect();
+        if (box.bottom > innerHeight + 0.5) wrong.push(`${name(part)} sticks out`);
+        for (const other of parts) {
+            if (other === part) continue;
+            const its = other.getBoundingClientRect();
+            const across = Math.min(box.right, its.right) - Math.max(box.left, its.left);
+            const down = Math.min(box.bottom, its.bottom) - Math.max(box.top, its.top);
+            if (across > 0.5 && down > 0.5) wrong.push(`${name(part)} covers ${name(other)}`);
+        }
+    }
+    return wrong;
+}"""
+
+
+@pytest.fixture(scope="module")
+def driven(program: Program) -> Program:
+    """A run of a minute with a kidnap in its middle."""
+    program.command("step", ticks=300)
+    program.command("kidnap")
+    program.command("step", ticks=300)
+    return program
+
+
+def drag(page: Page, *times_s: float) -> None:
+    """Drag the timeline from one time over the others."""
+    box = box_of(page.locator("#timeline"))
+    end_s = max(60.0, 60.0 * 1.03)
+    xs = [box["x"] + 6 + (box["width"] - 12) * time_s / end_s for time_s in times_s]
+    y = box["y"] + box["height"] / 2
+    page.mouse.move(xs[0], y)
+    page.mouse.down()
+    for x in xs[1:]:
+        page.mouse.move(x, y, steps=5)
+    page.mouse.up()
+
+
+def test_drag_step_and_come_back(driven: Program, browser) -> None:
+    before = driven.state()
+    with open_page(browser, driven.url, 1280, 800, stage=False) as page:
+        drag(page, 50.0, 10.0, 20.0)
+        expect(page.locator("#past")).to_be_visible()
+        past = driven.wait(lambda state: 190 <= state["tick"] <= 210)
+        assert not past["running"]
+        expect(page.locator("#status")).to_contain_text("the past")
+        page.click("#tick-back")
+        driven.wait(lambda state: state["tick"] == past["tick"] - 1)
+        page.keyboard.press("l")
+        driven.wait(lambda state: state["tick"] == past["tick"] + 9)
+        page.keyboard.press("]")
+        at_kidnap = driven.wait(lambda state: state["tick"] == 300)
+        assert at_kidnap["time_s"] == 30.0
+        page.focus("#timeline")
+        page.keyboard.press("ArrowLeft")
+        driven.wait(lambda state: state["tick"] == 299)
+        until(page, "() => document.querySelector('#timeline').ariaValueText.startsWith('0:29.9 of 1:00, the past')")
+        page.keyboard.press("k")
+        told(page, "This is the past: go on from here, or come back to now")
+        page.keyboard.press("n")
+        expect(page.locator("#past")).to_be_hidden()
+        after = driven.state()
+        assert (after["tick"], after["robot"], after["running"]) == (600, before["robot"], False)
+
+
+def test_go_on_without_the_kidnap_and_compare(driven: Program, browser) -> None:
+    with open_page(browser, driven.url, 1280, 800, stage=False) as page:
+        page.keyboard.press("v")
+        page.get_by_role("button", name="0:30 kidnap").click()
+        driven.wait(lambda state: state["tick"] == 300)
+        page.keyboard.press("v")
+        page.click("#go-on")
+        expect(page.locator("#branches [aria-pressed=true]")).to_have_text("2")
+        driven.command("step", ticks=100)
+        page.get_by_role("button", name="Branches side by side").click()
+        expect(page.locator("#compare-words")).to_contain_text("first difference at tick 301")
+        expect(page.locator(".branch-side")).to_have_count(2)
+        page.keyboard.press("Escape")
+        page.get_by_role("button", name="Branch 1, the run as it began").click()
+        driven.wait(lambda state: state["tick"] == 600)
+
+
+@pytest.mark.parametrize("size", [(1024, 768), (1280, 800), (1920, 1080), (390, 844)])
+def test_nothing_is_covered_in_the_present_and_in_the_past(driven: Program, browser, size) -> None:
+    with open_page(browser, driven.url, *size, stage=False) as page:
+        assert page.evaluate(WRONG) == []
+        driven.command("seek", time_s=12.0)
+        expect(page.locator("#now")).to_be_visible()
+        assert page.evaluate(WRONG) == []
+        for part in ("#go-on", "#now"):
+            box = box_of(page.locator(part))
+            assert box["x"] >= 0
+            assert box["x"] + box["width"] <= size[0]
+        page.click("#now")
+        expect(page.locator("#now")).to_be_hidden()

@@ -1,0 +1,80 @@
+// Two branches side by side on one clock: both maps, both packets, both errors, and where they differ first.
+
+import { $ } from "../elements/dom.js";
+import { make } from "../elements/elements.js";
+import { svg } from "../elements/icons.js";
+import { fine } from "../model/timeline.js";
+import { frameOf, lying } from "../model/side_maps.js";
+
+export class Comparison {
+  /** @param {import("./timeline.js").Timeline} timeline @param {import("../net/connection.js").Connection} link */
+  constructor(timeline, link) {
+    this.timeline = timeline;
+    this.link = link;
+    this.told = "";
+  }
+
+  /** Begins or ends it. */
+  toggle() {
+    const { branch = 1, branches = [], sides = [] } = this.timeline.time ?? {};
+    const other = branches.filter(({ number }) => number !== branch).at(-1);
+    if (sides.length && !this.timeline.list.open) this.timeline.list.toggle();
+    else if (sides.length) this.link.ask({ type: "compare_branch" });
+    else if (other) this.with(other.number);
+  }
+
+  /** @param {number} number */
+  async with(number) {
+    const answer = await this.link.ask({ type: "compare_branch", number });
+    if (answer.accepted && !this.timeline.list.open) this.timeline.list.toggle();
+  }
+
+  /** @param {TimeFields} time */
+  show({ branch, branches, sides, differs }) {
+    const told = JSON.stringify([branch, branches.length, sides, differs]);
+    if (told === this.told) return;
+    this.told = told;
+    $("compare").hidden = sides.length === 0;
+    if (!sides.length) return;
+    const others = branches.filter(({ number }) => number !== branch);
+    $("compare-with").replaceChildren(
+      ...others.map(({ number }) => {
+        const button = make("button", { type: "button", className: "tiny", textContent: String(number) });
+        button.setAttribute("aria-label", `Compare with branch ${number}`);
+        button.setAttribute("aria-pressed", String(number === sides[1].number));
+        button.addEventListener("click", () => this.with(number));
+        return button;
+      }),
+    );
+    const frame = frameOf(sides);
+    $("compare-sides").replaceChildren(...sides.map((side) => picture(side, frame)));
+    $("compare-words").textContent = `${differs}.`;
+  }
+}
+
+/** @param {SideFields} side @param {string} frame */
+function picture(side, frame) {
+  const { packet, robot, turn_rad } = side;
+  const dots = lying(side.xy, turn_rad).map(([x, y]) => `M${x.toFixed(2)} ${(-y).toFixed(2)}h0`);
+  const [[x, y]] = lying([[robot.x, robot.y]], turn_rad);
+  const map = svg(
+    "svg",
+    { viewBox: frame, class: "side-map", role: "img", "aria-label": `The map of branch ${side.number}` },
+    svg("path", { d: dots.join(""), class: "dots" }),
+    svg("circle", { cx: x, cy: -y, r: 0.28, class: "robot" }),
+  );
+  const rows = [
+    ["error of the map", `${side.error_m.map.toFixed(2)} m`],
+    ["of odometry", `${side.error_m.odometry.toFixed(2)} m`],
+    ["experiences, links", `${side.experiences}, ${side.links}`],
+    [
+      "packet x′ y′ θ′",
+      `${packet.x.toFixed(0)}, ${packet.y.toFixed(0)}, ${degrees(packet.heading_rad)}°: ${Math.round(100 * packet.mass)} %`,
+    ],
+  ].flatMap(([name, value]) => [make("dt", { textContent: name }), make("dd", { textContent: value })]);
+  const title = make("p", {}, make("b", { textContent: `Branch ${side.number}` }), ` at ${fine(side.time_s)}`);
+  return make("div", { className: "branch-side" }, title, map, make("dl", {}, ...rows));
+}
+
+/** @param {number} rad */
+const degrees = (rad) => ((Math.round((180 * rad) / Math.PI) % 360) + 360) % 360;

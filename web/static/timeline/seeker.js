@@ -1,0 +1,24 @@
+// Asks for moments of the past, one at a time: while one is on its way, only the newest wish waits.
+
+export class Seeker {
+  /** @param {import("../net/connection.js").Connection} link */
+  constructor(link) {
+    this.link = link;
+    /** @type {Seek | null} */
+    this.wish = null;
+    this.busy = false;
+  }
+
+  /** @param {Omit<Seek, "type">} where */
+  async seek(where) {
+    this.wish = { type: "seek", ...where };
+    if (this.busy) return;
+    this.busy = true;
+    while (this.wish) {
+      const wish = this.wish;
+      this.wish = null;
+      await this.link.ask(wish);
+    }
+    this.busy = false;
+  }
+}

@@ -1,0 +1,107 @@
+// The buttons above the timeline: steps, events, marks of a loop, branches, going on from the past and back to now.
+
+import { $, find } from "../elements/dom.js";
+import { labelled, make } from "../elements/elements.js";
+import { icon } from "../elements/icons.js";
+import { clock } from "../model/clock.js";
+import { fine, nextEvent } from "../model/timeline.js";
+
+export class Tools {
+  /** @param {import("./timeline.js").Timeline} timeline @param {import("../net/connection.js").Connection} link */
+  constructor(timeline, link) {
+    this.timeline = timeline;
+    this.link = link;
+    /** @type {number | null} */
+    this.a = null; // where a loop is to begin, until it has an end
+    this.told = "";
+    const steps = /** @type {const} */ ({ "second-back": -10, "tick-back": -1, "tick-on": 1, "second-on": 10 });
+    for (const [id, ticks] of Object.entries(steps))
+      $(/** @type {keyof typeof steps} */ (id)).addEventListener("click", () => this.tick(ticks));
+    $("event-back").addEventListener("click", () => this.event(-1));
+    $("event-on").addEventListener("click", () => this.event(1));
+    $("now").addEventListener("click", () => this.now());
+    $("go-on").addEventListener("click", () => link.ask({ type: "go_on_from_here" }));
+    $("mark-a").addEventListener("click", () => this.mark(timeline.time_s, this.b));
+    $("mark-b").addEventListener("click", () => this.mark(this.a ?? timeline.time?.loop?.[0] ?? null, timeline.time_s));
+    $("loop-off").addEventListener("click", () => this.mark(null, null));
+  }
+
+  get b() {
+    return this.timeline.time?.loop?.[1] ?? null;
+  }
+
+  /** Goes on or back by ticks. Beyond the present, it is made. @param {number} ticks */
+  tick(ticks) {
+    const { tick, time } = this.timeline;
+    if (!time) return;
+    if (ticks > 0 && !time.past) this.link.ask({ type: "step", ticks });
+    else this.timeline.seeker.seek({ tick: Math.min(time.end_tick, Math.max(0, tick + ticks)) });
+  }
+
+  /** @param {1 | -1} way */
+  event(way) {
+    const { list, time_s, time } = this.timeline;
+    const at = nextEvent(list.shown, time_s, way);
+    if (at !== undefined) this.timeline.seeker.seek({ time_s: at });
+    else if (way > 0 && time?.past) this.now();
+  }
+
+  now() {
+    if (this.timeline.time?.past) this.link.ask({ type: "back_to_now" });
+  }
+
+  /** @param {number | null} a @param {number | null} b */
+  mark(a, b) {
+    const whole = a !== null && b !== null && b - a >= 0.1;
+    this.a = whole ? null : a;
+    if (whole) this.link.ask({ type: "loop", begin_s: a, end_s: b });
+    else if (this.timeline.time?.loop) this.link.ask({ type: "loop" });
+    this.timeline.redraw(true);
+  }
+
+  /** @param {TimeFields} time @param {number} time_s */
+  show(time, time_s) {
+    document.body.dataset.past = String(time.past);
+    for (const id of /** @type {const} */ (["past", "go-on", "now"])) $(id).hidden = !time.past;
+    find($("past"), "b").textContent = fine(time_s);
+    $("past").title = `${fine(time_s)} of ${clock(time.end_s)}`;
+    $("loop-off").hidden = !time.loop && this.a === null;
+    $("tick-back").disabled = $("second-back").disabled = time_s <= time.begin_s + 0.05;
+    const told = JSON.stringify([time.branch, time.branches.length, time.sides.length]);
+    if (told !== this.told) this.branches(time);
+    this.told = told;
+  }
+
+  /** @param {TimeFields} time */
+  branches({ branch, branches, sides }) {
+    const place = $("branches");
+    place.hidden = branches.length < 2;
+    place.replaceChildren(
+      ...branches.map(({ number, parent, from_s }) => {
+        const words =
+          parent === null
+            ? "Branch 1, the run as it began"
+            : `Branch ${number}, from ${clock(from_s)} of branch ${parent}`;
+        const button = labelled(
+          words,
+          make("button", { type: "button", className: "tiny", textContent: String(number) }),
+        );
+        button.setAttribute("aria-pressed", String(number === branch));
+        button.addEventListener("click", () => this.link.ask({ type: "change_branch", number }));
+        return button;
+      }),
+      this.besideButton(sides.length > 0),
+    );
+  }
+
+  /** @param {boolean} on */
+  besideButton(on) {
+    const button = labelled(
+      "Branches side by side",
+      make("button", { type: "button", className: "tiny" }, icon("sides")),
+    );
+    button.setAttribute("aria-pressed", String(on));
+    button.addEventListener("click", () => this.timeline.comparison.toggle());
+    return button;
+  }
+}
