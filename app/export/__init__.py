@@ -1,1 +1,6 @@
 """Runs in the formats of other programs."""
+
+
+
+
+
