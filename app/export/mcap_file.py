@@ -157,8 +157,10 @@ class _Recorder:
         frame, robot = self._session.frame, self._session.config.robot
         if len(frame.laser_m):
             fan = robot.laser_fov_rad
-            step = fan / max(len(frame.laser_m) - 1, 1)
-            return ros.scan(self._now, -fan / 2, step, frame.dt, robot.laser_range_m, frame.laser_m[::-1].copy())
+            n = len(frame.laser_m)
+            step = fan / n if fan > math.tau - 1e-9 else fan / max(n - 1, 1)  # round about, both ends would be one beam
+            first = fan / 2 - step * (n - 1)
+            return ros.scan(self._now, first, step, frame.dt, robot.laser_range_m, frame.laser_m[::-1].copy())
         first = SONAR_ANGLES_RAD[-1]
         places = [round((angle - first) / SONAR_STEP_RAD) for angle in SONAR_ANGLES_RAD]
         beams = np.full(max(places) + 1, np.nan, np.float32)
