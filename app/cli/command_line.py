@@ -1,4 +1,4 @@
-"""The command `ratslam`: run (the dashboard), headless, deliver, trial, experiment, config, bench, worlds."""
+"""The command `ratslam`: run (the dashboard), headless, deliver, trial, experiment, export, config, bench, worlds."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from app.cli.bench import add_bench
 from app.cli.config import add_config
 from app.cli.deliver import add_deliver
 from app.cli.experiment import add_experiment
+from app.cli.export import add_export
 from app.cli.headless import add_headless
 from app.cli.run import add_run
 from app.cli.trial import add_trial
@@ -29,6 +30,7 @@ def main(argv: list[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="ratslam", description="RatSLAM, alive in a browser.")
     commands = parser.add_subparsers(title="commands", required=True)
-    for add in (add_run, add_headless, add_deliver, add_trial, add_experiment, add_config, add_bench, add_worlds):
+    runs, others = (add_run, add_headless, add_deliver, add_trial, add_experiment), (add_config, add_bench, add_worlds)
+    for add in (*runs, add_export, *others):
         add(commands)
     return parser

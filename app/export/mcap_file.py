@@ -26,13 +26,13 @@ from ratslam_core import Pose2
 from sim2d import SONAR_ANGLES_RAD
 
 Pictures: TypeAlias = Literal["png", "jpeg", "none"]
-MAP_EVERY_S = 30.0  # a map is large
+MAP_EVERY_S = 60.0  # a map is large
 _LINKS, _EXPERIENCES = (5, 0.03, (0.35, 0.38, 0.42)), (8, 0.08, (0.0, 0.45, 0.7))
 SONAR_STEP_RAD = math.radians(20)  # the sonars stand at multiples of it from the rightmost one; some places are empty
 
 
 def write_mcap(ticks: Iterator[Session], file: IO[bytes], pictures: Pictures = "png") -> int:
-    """Write a message of each kind for every tick. Returns the number of ticks.
+    """Write what was sensed and believed in every tick; numbers that stay the same only once. Returns the number of ticks.
 
     pictures: "png" loses nothing; with "jpeg" a fifth is left, but what the robot sees in it is no longer the same.
     """
@@ -91,7 +91,8 @@ class _Recorder:
         self._odometry = Pose2(0.0, 0.0, 0.0)
         self._log = EventLog(session)
         self._events = EventWatch(session, self._log)
-        self._told = 0
+        self._values: dict[str, float] = {}
+        self._told, self._kidnaps = 0, len(session.evaluation.kidnaps)
         self._map_due_s = session.time_s + MAP_EVERY_S
         self._first = True
 
@@ -99,13 +100,8 @@ class _Recorder:
         self._senses()
         self._poses()
         self._beliefs()
-        if not self._first:
-            self._events.watch()
+        self._happenings()
         self._first = False
-        for event in self._log.events:
-            if event.number > self._told:
-                self._told = event.number
-                self._put("/events", "std_msgs/String", f"{event.kind}: {event.text}")
         if self._session.time_s >= self._map_due_s:
             self._map_due_s += MAP_EVERY_S
             self.map()
@@ -128,6 +124,12 @@ class _Recorder:
     def _put(self, topic: str, kind: str, *fields: object) -> None:
         self._bag.put(topic, kind, ros.message(kind, *fields), self._now)
 
+    def _change(self, topic: str, kind: str, value: float) -> None:
+        """Only when it is another one: what was said last holds."""
+        if self._values.get(topic) != value:
+            self._values[topic] = value
+            self._put(topic, kind, value)
+
     def _senses(self) -> None:
         """What the brain was given in this tick, and nothing else."""
         session, now = self._session, self._now
@@ -146,11 +148,11 @@ class _Recorder:
             "/odom", "nav_msgs/Odometry", ros.odometry(now, self._odometry, told.speed, told.yaw_rate), now
         )
         self._bag.put("/scan", "sensor_msgs/LaserScan", self._scan(), now)
-        self._bag.put("/sonars", "std_msgs/Float32MultiArray", ros.floats(frame.ranges_m), now)
-        self._put("/dt", "std_msgs/Float64", told.dt)
-        self._put("/behaviour", "std_msgs/UInt8", session.pilot.behaviour.number)
+        self._bag.put("/sonars", "std_msgs/Float64MultiArray", ros.floats(frame.ranges_m), now)
+        self._change("/dt", "std_msgs/Float64", told.dt)
+        self._change("/behaviour", "std_msgs/UInt8", session.pilot.behaviour.number)
         if session.brain.params.local_view.front_end == "scene numbers":
-            self._put("/scene_number", "std_msgs/Int64", frame.scene)
+            self._change("/scene_number", "std_msgs/Int64", frame.scene)
 
     def _scan(self) -> object:
         """The laser, or of a robot without one its sonars in the places of a laser's beams."""
@@ -180,10 +182,23 @@ class _Recorder:
         ]  # fmt: skip
         self._put("/tf", "tf2_msgs/TFMessage", tree)
 
+    def _happenings(self) -> None:
+        """What the timeline of the page marks, so far as it is seen in the session."""
+        kidnaps = len(self._session.evaluation.kidnaps)
+        if kidnaps > self._kidnaps:
+            self._log.note("kidnap", "carried to another place")
+        self._kidnaps = kidnaps
+        if not self._first:
+            self._events.watch()
+        for event in self._log.events:
+            if event.number > self._told:
+                self._told = event.number
+                self._put("/events", "std_msgs/String", f"{event.kind}: {event.text}")
+
     def _beliefs(self) -> None:
         estimate = self._session.estimate
-        self._put("/view_template", "std_msgs/Int32", estimate.recognition.view)
-        self._put("/experience", "std_msgs/Int32", estimate.experience)
+        self._change("/view_template", "std_msgs/Int32", estimate.recognition.view)
+        self._change("/experience", "std_msgs/Int32", estimate.experience)
 
 
 def topological_map(session: Session) -> str:

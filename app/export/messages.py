@@ -104,4 +104,4 @@ def marker(time_ns: int, number: int, kind: int, size_m: float, colour: tuple[fl
 
 def floats(values: NDArray[np.float32]) -> Any:
     layout = message("std_msgs/MultiArrayLayout", [], 0)
-    return message("std_msgs/Float32MultiArray", layout, values)
+    return message("std_msgs/Float64MultiArray", layout, values.astype(np.float64))

@@ -44,8 +44,6 @@ def ticks_in(run: Played, window: Window, progress: Progress, what: str) -> Iter
     said_s = end_s = 0.0
     some = False
     for session in run.play():
-        if session.time_s > window.until_s + _CLOSE_S:
-            break
         end_s = session.time_s
         if end_s - said_s >= 1.0:
             progress(end_s - said_s, what)
@@ -53,6 +51,8 @@ def ticks_in(run: Played, window: Window, progress: Progress, what: str) -> Iter
         if window.holds(end_s):
             some = True
             yield session
+        if end_s + session.frame.dt > window.until_s + _CLOSE_S:  # the next tick would be in the same object
+            break
     if not some:
         raise ValueError(f"the run is {end_s:g} s long, so there is nothing in it from {window.from_s:g} s on")
 
