@@ -33,9 +33,11 @@ def add_export(commands: Verbs) -> None:
     parser.add_argument("--until", dest="until_s", type=float, default=math.inf, metavar="S", help="until this second")
     parser.add_argument(
         "--pictures", choices=("png", "jpeg", "none"), default="png",
-        help="of the camera in an mcap: png is exact (default), jpeg is a fifth as large, none a thirtieth",
+        help="of the camera in an mcap: png is exact (default), jpeg a third as large, none a tenth",
     )  # fmt: skip
-    parser.add_argument("--speed", type=float, default=10.0, metavar="X", help="of an mp4, times the run's (default 10)")
+    parser.add_argument(
+        "--speed", type=float, default=10.0, metavar="X", help="of an mp4, times the run's (default 10)"
+    )
     parser.set_defaults(do=_export)
 
 

@@ -56,9 +56,9 @@ def export_run(
     """Play a run and write it. Returns the files. OSError names the file; what was there before is then still there."""
     chosen, said = choices or Choices(), f"to {to}"
     if to in AT_A_MOMENT:
-        _write_parts(out, at_a_moment(to, end_of(run, window, progress, said)))
+        write_parts(out, at_a_moment(to, end_of(run, window, progress, said)))
     elif to == "tum":
-        _write_parts(out, tum_files(ticks_in(run, window, progress, said)))
+        write_parts(out, tum_files(ticks_in(run, window, progress, said)))
     else:
         write: dict[Format, Callable[[IO[bytes]], int]] = {
             "mcap": lambda file: write_mcap(ticks_in(run, window, progress, said), file, chosen.pictures),
@@ -70,7 +70,7 @@ def export_run(
     return files_of(to, out)
 
 
-def _write_parts(out: Path, parts: dict[str, bytes]) -> None:
+def write_parts(out: Path, parts: dict[str, bytes]) -> None:
     for part, data in parts.items():
         with whole_file(_part(out, part)) as file:
             file.write(data)

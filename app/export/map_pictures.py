@@ -88,7 +88,9 @@ def _paths(panel: Axes, session: Session) -> None:
     start = session.world.starts[0]
     from_start = np.array([[start.x, start.y]])
     c, s = np.cos(start.heading_rad), np.sin(start.heading_rad)
-    panel.plot(*(odometry @ np.array([[c, s], [-s, c]]) + from_start).T, color=ORANGE, lw=0.7, zorder=2, label="odometry")
+    panel.plot(
+        *(odometry @ np.array([[c, s], [-s, c]]) + from_start).T, color=ORANGE, lw=0.7, zorder=2, label="odometry"
+    )
     panel.plot(*truth.T, color=INK, lw=1.4, zorder=3, label="truth")
     fit = placed(mapped, alignment(mapped, truth))
     panel.plot(*fit.T, color=BLUE, lw=0.7, zorder=4, label="as the map tells it")

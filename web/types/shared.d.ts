@@ -96,6 +96,13 @@ type IndexIds = {
   "events": HTMLElementTagNameMap["ol"];
   "experiments": HTMLElementTagNameMap["button"];
   "explore": HTMLElementTagNameMap["button"];
+  "export": HTMLElementTagNameMap["button"];
+  "export-close": HTMLElementTagNameMap["button"];
+  "export-dialog": HTMLElementTagNameMap["dialog"];
+  "export-doing": HTMLElementTagNameMap["p"];
+  "export-list": HTMLElementTagNameMap["ul"];
+  "export-title": HTMLElementTagNameMap["h2"];
+  "export-wrong": HTMLElementTagNameMap["p"];
   "extra": HTMLElementTagNameMap["div"];
   "fields": HTMLElementTagNameMap["form"];
   "gallery-all": HTMLElementTagNameMap["div"];

@@ -27,7 +27,9 @@ TICKS = 300
 
 @pytest.fixture(scope="module")
 def run() -> AgainAndAgain:
-    return AgainAndAgain(TICKS, orders={100: lambda s: s.kidnap(), 200: lambda s: s.set_parameter("robot.sensor_rate_hz", 12)})
+    return AgainAndAgain(
+        TICKS, orders={100: lambda s: s.kidnap(), 200: lambda s: s.set_parameter("robot.sensor_rate_hz", 12)}
+    )
 
 
 @pytest.fixture(scope="module")
@@ -39,9 +41,9 @@ def messages(bag: Path, *topics: str) -> dict[str, list]:
     """All messages by topic, decoded by the MCAP project's own reader."""
     found: dict[str, list] = {}
     with bag.open("rb") as file:
-        for _, channel, record, decoded in make_reader(file, decoder_factories=[DecoderFactory()]).iter_decoded_messages(
-            topics=topics or None
-        ):
+        for _, channel, record, decoded in make_reader(
+            file, decoder_factories=[DecoderFactory()]
+        ).iter_decoded_messages(topics=topics or None):
             found.setdefault(channel.topic, []).append((record.log_time, decoded))
     return found
 
@@ -57,9 +59,12 @@ def test_a_brain_that_is_given_the_recording_comes_to_the_same(run: AgainAndAgai
     given = messages(bag)
     dts, behaviours = (dict(given[topic]) for topic in ("/dt", "/behaviour"))
     senses = (given[topic] for topic in ("/camera/image/compressed", "/odom", "/sonars"))
+    dt = behaviour = None
     for (at, image), (_, odom), (_, sonars) in zip(*senses, strict=True):
-        dt, behaviour = dts.get(at, dt if at else None), behaviours.get(at, behaviour if at else None)
+        dt, behaviour = dts.get(at, dt), behaviours.get(at, behaviour)
         picture = cv2.cvtColor(cv2.imdecode(np.frombuffer(image.data, np.uint8), cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
+        assert dt is not None
+        assert behaviour is not None
         told = Odometry(odom.twist.twist.linear.x, odom.twist.twist.angular.z, dt.data)
         brain.step(picture, told, behaviour=behaviour.data, ranges_m=np.array(sonars.data))
     *_, session = run.play()
@@ -80,7 +85,8 @@ def test_what_is_in_it(run: AgainAndAgain, bag: Path) -> None:
         true, robot = session.simulator.truth, session.estimate.pose_map_robot
         assert (truth.pose.position.x, truth.pose.position.y) == (true.x, true.y)
         view = views.get(at_ns, view)
-        assert view is not None and view.data == session.estimate.recognition.view
+        assert view is not None
+        assert view.data == session.estimate.recognition.view
         estimate = found["/estimate"][tick][1].pose
         assert (estimate.position.x, estimate.position.y) == (robot.x, robot.y)
         assert 2 * math.atan2(estimate.orientation.z, estimate.orientation.w) == pytest.approx(robot.heading_rad)
