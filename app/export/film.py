@@ -129,4 +129,5 @@ def _cells(session: Session) -> _Image:
     """From above: of each column the layer with the most activity, brighter than in proportion so that weak packets show."""
     above = session.brain.pose_cells.activity.max(axis=0)
     bright = np.sqrt(above / max(float(above.max()), 1e-12)) * 255
-    return _inside(cv2.applyColorMap(bright.astype(np.uint8)[::-1].copy(), cv2.COLORMAP_INFERNO), cv2.INTER_NEAREST)
+    coloured = cv2.applyColorMap(bright.astype(np.uint8)[::-1].copy(), cv2.COLORMAP_INFERNO)
+    return _inside(np.asarray(coloured, np.uint8), cv2.INTER_NEAREST)

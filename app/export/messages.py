@@ -18,7 +18,7 @@ _STORE = get_typestore(Stores.ROS2_HUMBLE)
 _NO_COVARIANCE = np.zeros(36)
 
 
-def message(name: str, *fields: object) -> Any:
+def message(name: str, *fields: Any) -> Any:
     """A message such as "nav_msgs/Path" with its fields in order."""
     return _STORE.types[_full(name)](*fields)
 

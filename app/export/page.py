@@ -43,7 +43,7 @@ class PageExports:
 
     async def write(self, to: str, submit: Submit, out: Path) -> list[Path]:
         """Write the run on the page as it is now. ValueError says why it cannot be."""
-        (known,) = (one for one in FORMATS if one == to)
+        known = next(known for known in FORMATS if known == to)
         if known in AT_A_MOMENT:
             try:
                 state = (await told(submit, ReadSession(), COPY_TIMEOUT_S)).result

@@ -7,6 +7,7 @@ import contextlib
 import re
 import tempfile
 import zipfile
+from collections.abc import Coroutine
 from pathlib import Path
 from typing import Protocol
 
@@ -85,14 +86,14 @@ def add_exports(app: FastAPI, exports: Exports | None, latest: Latest[Snapshot],
         )  # fmt: skip
 
 
-async def _written(writing: object, request: Request, out: Path) -> Path:
+async def _written(writing: Coroutine[None, None, list[Path]], request: Request, out: Path) -> Path:
     """The one file to be sent. Ends the writing when nobody waits for it any more."""
-    task = asyncio.ensure_future(writing)  # type: ignore[arg-type]
+    task = asyncio.create_task(writing)
     try:
         while not (await asyncio.wait({task}, timeout=LOOK_S))[0]:
             if await request.is_disconnected():
                 raise NoAnswer.of(503, "nobody waits for this file any more")
-        files: list[Path] = task.result()
+        files = task.result()
     finally:
         task.cancel()
         with contextlib.suppress(asyncio.CancelledError, Exception):

@@ -68,7 +68,7 @@ def test_a_kept_run_is_played_again_by_a_process_of_its_own(program: Path, tmp_p
     assert asyncio.run(exports.write("csv", submit, out)) == [out]
     assert out.read_text() == f"-m app export {tmp_path / 'kept run'} --to csv --out {out}\n"
     will(program, "echo ratslam: the disk is full >&2; exit 2")
-    with pytest.raises(ValueError, match="^the disk is full$"):
+    with pytest.raises(ValueError, match=r"^the disk is full$"):
         asyncio.run(exports.write("csv", submit, out))
 
 
