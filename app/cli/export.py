@@ -47,10 +47,10 @@ def _export(args: argparse.Namespace) -> int:
 
     window = Window(args.from_s, args.until_s)
     run = open_run(args.run)
-    out = args.out or Path(f"{Path(args.run).stem}.{args.to}")
+    out = args.out or Path(f"{run.name}.{args.to}")
     check_export(args.to, out)
     compile_first()
-    length_s = min(window.until_s, run.last_tick / 10)
+    length_s = min(window.until_s, run.length_s)
     choices = Choices(args.pictures, args.speed)
     files = with_progress(length_s, lambda progress: export_run(run, args.to, out, window, progress, choices))
     for file in files:

@@ -1,5 +1,8 @@
 """A run as a film: what the camera sees, the map as the robot has it over the office, and the pose cells."""
 
+# OpenCV tells the types of its functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false
+
 from __future__ import annotations
 
 import tempfile

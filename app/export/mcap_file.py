@@ -66,7 +66,9 @@ class _Bag:
             "code_version": code_version(),
             "config": to_toml(session.config),
             "sonar_angles_rad": json.dumps(SONAR_ANGLES_RAD),
-            "began_with_experiences": str(len(session.brain.experience_map) if session.tick_count else 0),
+            "began_with_experiences": str(
+                len(session.brain.experience_map) - (session.tick_count == 0 and session.estimate.created)
+            ),
             "began_at_tick": str(session.tick_count),
         }
         self._writer.add_metadata("ratslam", said)

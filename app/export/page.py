@@ -43,17 +43,18 @@ class PageExports:
 
     async def write(self, to: str, submit: Submit, out: Path) -> list[Path]:
         """Write the run on the page as it is now. ValueError says why it cannot be."""
-        known = next(known for known in FORMATS if known == to)
-        if known in AT_A_MOMENT:
+        if to not in FORMATS:
+            raise ValueError(f"a run can be had as {', '.join(FORMATS)}, got {to!r}")
+        if to in AT_A_MOMENT:
             try:
                 state = (await told(submit, ReadSession(), COPY_TIMEOUT_S)).result
             except Malformed as error:
                 raise ValueError(str(error)) from None
             assert isinstance(state, State)
-            await asyncio.to_thread(_write_now, known, state, out)
+            await asyncio.to_thread(_write_now, to, state, out)
         else:
-            await _play_again(self._kept(), known, out)
-        return files_of(known, out)
+            await _play_again(self._kept(), to, out)
+        return files_of(to, out)
 
 
 def _write_now(to: Format, state: State, out: Path) -> None:

@@ -21,6 +21,11 @@ class AgainAndAgain:
     seed: int = 3
     config: Config | None = None
     orders: dict[int, Callable[[Session], object]] = field(default_factory=dict)
+    name: str = "2026-01-02-office"
+
+    @property
+    def length_s(self) -> float:
+        return self.last_tick / 10
 
     def play(self, until: int | None = None) -> Iterator[Session]:
         session = Session(self.world, self.seed, self.config)
