@@ -1,4 +1,4 @@
-"""The command `ratslam`: run (the dashboard), headless, deliver, trial, experiment, config, bench, worlds, recording."""
+"""The command `ratslam`, one file for each of its verbs: run (the dashboard), headless, experiment, export, recording ..."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from app.cli.bench import add_bench
 from app.cli.config import add_config
 from app.cli.deliver import add_deliver
 from app.cli.experiment import add_experiment
+from app.cli.export import add_export
 from app.cli.headless import add_headless
 from app.cli.recording import add_recording
 from app.cli.run import add_run
@@ -31,15 +32,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="ratslam", description="RatSLAM, alive in a browser.")
     commands = parser.add_subparsers(title="commands", required=True)
     for add in (
-        add_run,
-        add_headless,
-        add_deliver,
-        add_trial,
-        add_experiment,
-        add_config,
-        add_bench,
-        add_worlds,
-        add_recording,
+        *(add_run, add_headless, add_deliver, add_trial, add_experiment),
+        *(add_export, add_recording, add_worlds, add_config, add_bench),
     ):
         add(commands)
     return parser

@@ -146,6 +146,7 @@ def _compiling(serve: Callable[[Compiling], int]) -> int:
 
 def _serve(serving: Serving, first: First, compiling: Compiling, kept: KeptBrain | None) -> int:
     from app.engine_thread import EngineThread
+    from app.export.page import PageExports
     from app.gallery.gallery import StoredGallery
     from app.kept_brains.keeper import BrainKeeper
     from web.http.kept_offer import Offered
@@ -159,8 +160,9 @@ def _serve(serving: Serving, first: First, compiling: Compiling, kept: KeptBrain
     viewers = Viewers(engine.latest, engine.submit)
     offered = kept and Offered(**asdict(kept.about), read=partial(load_brain, kept.path))
     dashboard = Dashboard(
-        engine.latest, engine.submit, viewers, port=serving.port, offered=offered, experiments=StoredGallery()
-    )
+        engine.latest, engine.submit, viewers, port=serving.port, offered=offered, experiments=StoredGallery(),
+        exports=PageExports(),
+    )  # fmt: skip
     try:
         dashboard.bind()
     except CannotListen as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.commands.outcome import Outcome, attempt
 from app.engine.engine import Engine
+from app.session_snapshot import take_session
 from app.views import inspection
 from web import messages as m
 
@@ -27,6 +28,11 @@ def read_experience(engine: Engine, request: m.ReadExperience) -> Outcome:
     except ValueError as error:
         return m.Refused("experience", request.experience, str(error))
     return m.Accepted(run.session.tick_count, report)
+
+
+def read_session(engine: Engine, _: m.ReadSession) -> Outcome:
+    session = engine.run.session
+    return m.Accepted(session.tick_count, take_session(session))
 
 
 def warn(engine: Engine, request: m.Warn) -> Outcome:

@@ -52,6 +52,7 @@ REQUESTS: dict[type, Handler] = {
     m.ReadExperience: looking.read_experience,
     m.Warn: looking.warn,
     m.ReadBrain: brains.read_brain,
+    m.ReadSession: looking.read_session,
     m.UseBrain: brains.use_brain,
     m.ReadWorld: worlds.read_world,
     m.ReadFiled: worlds.read_filed,

@@ -22,6 +22,7 @@ from web.http.brain_download import BrainDownload
 from web.http.brain_files import unpacked
 from web.http.commands import READER, CommandAccepted, Declined, Malformed, Problem, check, problem, read_object, wrong
 from web.http.experiments import Gallery, add_experiments
+from web.http.export import Exports, add_exports
 from web.http.kept_offer import Offered, add_kept_offer
 from web.http.proxy import PAGE_ID, Cameras, ViewersLike, ViserProxy, spoken
 from web.http.security import MAX_BRAIN_BYTES, Guard, Limits
@@ -46,11 +47,12 @@ _ERRORS: dict[int | str, dict[str, Any]] = {
 
 def create_app(
     latest: Latest[Snapshot], submit: Submit, viewers: ViewersLike, port: int, offered: Offered | None = None,
-    experiments: Gallery | None = None,
+    experiments: Gallery | None = None, exports: Exports | None = None,
 ) -> ASGIApp:  # fmt: skip
     """The whole application behind its guard.
 
     port: the one that Host and Origin must name. offered: a kept brain. experiments: those of the page's gallery.
+    exports: the formats in which the run can be had.
     """
     cameras, themes = Cameras(), Themes()
     stream = Stream(latest, submit, cameras, themes, viewers.switches)
@@ -77,6 +79,7 @@ def create_app(
     _add_commands(app, submit)
     add_worlds(app, latest, submit)
     add_experiments(app, experiments)
+    add_exports(app, exports, latest, submit)
     _add_stream(app, stream)
     _add_viser(app, ViserProxy(viewers, cameras, themes))
     _add_pages(app)

@@ -26,7 +26,7 @@ from web.http.commands import Declined, problem, wrong
 MAX_BODY_BYTES = 64 * 1024
 BRAIN_PATH, MAX_BRAIN_BYTES = "/api/brain", 256 * 1024 * 1024
 PLAN_PATH, MAX_PLAN_BYTES = "/api/worlds/open", 24 * 1024 * 1024  # a picture of 16 MB in base64
-COSTLY_PATHS = (BRAIN_PATH, "/api/state", "/api/experience/", "/api/experiments", "/api/world")
+COSTLY_PATHS = (BRAIN_PATH, "/api/state", "/api/experience/", "/api/experiments", "/api/export", "/api/world")
 HOST_NAMES = ("127.0.0.1", "localhost", "[::1]")
 
 PAGE_POLICY = (

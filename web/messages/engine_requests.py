@@ -22,6 +22,11 @@ class ReadBrain:
 
 
 @dataclass(frozen=True, slots=True)
+class ReadSession:
+    """The answer's `result` is a copy of the whole session as a disk.State; nothing runs it."""
+
+
+@dataclass(frozen=True, slots=True)
 class Warn:
     """Put a warning on the timeline."""
 
@@ -85,6 +90,7 @@ class WorldRestored:
 EngineRequest = (
     ReadExperience
     | ReadBrain
+    | ReadSession
     | Warn
     | UseBrain
     | ReadWorld

@@ -3,6 +3,7 @@
 import { $, find } from "./elements/dom.js";
 import { HandDrive } from "./driving/drive.js";
 import { Editor } from "./editor/editor.js";
+import { Exports } from "./export/export.js";
 import { Files } from "./worlds/files.js";
 import { Gallery } from "./experiments/gallery.js";
 import { Header } from "./header/header.js";
@@ -43,6 +44,7 @@ const own = new OwnWorlds(
 const files = new Files(isSaved, own);
 const fresh = new NewWorld(isSaved, () => editor.toggle(true));
 const editor = new Editor(link, { open: () => files.open(), begin: () => fresh.ask() });
+const exports = new Exports();
 const kept = new KeptBrain(async (world) => world === state?.world || mayLeave());
 const gallery = new Gallery(link, mayLeave);
 const watched = new Watched({
@@ -156,6 +158,10 @@ $("brain-file").addEventListener("change", () => {
   const input = $("brain-file");
   if (input.files?.length) loadBrain(input.files[0]);
   input.value = ""; // so that the same file can be chosen again
+});
+on("export", () => {
+  $("restart").open = false;
+  exports.open();
 });
 on("open-world", () => {
   $("restart").open = false;

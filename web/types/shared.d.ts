@@ -115,6 +115,13 @@ type IndexIds = {
   "events-open": HTMLElementTagNameMap["button"];
   "experiments": HTMLElementTagNameMap["button"];
   "explore": HTMLElementTagNameMap["button"];
+  "export": HTMLElementTagNameMap["button"];
+  "export-close": HTMLElementTagNameMap["button"];
+  "export-dialog": HTMLElementTagNameMap["dialog"];
+  "export-doing": HTMLElementTagNameMap["p"];
+  "export-list": HTMLElementTagNameMap["ul"];
+  "export-title": HTMLElementTagNameMap["h2"];
+  "export-wrong": HTMLElementTagNameMap["p"];
   "extra": HTMLElementTagNameMap["div"];
   "fields": HTMLElementTagNameMap["form"];
   "gallery-all": HTMLElementTagNameMap["div"];

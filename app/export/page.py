@@ -1,0 +1,80 @@
+"""The exports of the page's menu: from a copy of the session where that is enough, else from the run that keeps itself."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from app.export.export import AT_A_MOMENT, FORMATS, Format, at_a_moment, files_of, write_parts
+from app.session_snapshot import restore_session
+from disk import State
+from web.http.asking import Submit, told
+from web.http.commands import Malformed
+from web.http.export import Offer
+from web.messages import ReadSession
+
+COPY_TIMEOUT_S = 10.0  # the engine copies between two ticks
+WORDS: dict[Format, str] = {
+    "mcap": "MCAP: ROS 2 messages of every tick, for ROS 2, Foxglove, Rerun",
+    "tum": "TUM: true path and estimate, for evo",
+    "g2o": "g2o: the experience map as a pose graph",
+    "graphml": "GraphML: the experience map as a graph",
+    "csv": "CSV: a row for each tick",
+    "png": "PNG: pictures of map, temporal map and paths",
+    "mp4": "MP4: a film of camera, map and pose cells",
+}
+NOT_KEPT = "this run does not keep itself, so it cannot be played again"
+
+
+class PageExports:
+    """kept: gives the file in which the run on the page keeps itself, None while it does not."""
+
+    def __init__(self, kept: Callable[[], Path | None] = lambda: None) -> None:
+        self._kept = kept
+
+    def offers(self) -> list[Offer]:
+        kept = self._kept() is not None
+        return [
+            Offer(format=to, words=WORDS[to], refusal=None if kept or to in AT_A_MOMENT else NOT_KEPT) for to in FORMATS
+        ]
+
+    async def write(self, to: str, submit: Submit, out: Path) -> list[Path]:
+        """Write the run on the page as it is now. ValueError says why it cannot be."""
+        if to not in FORMATS:
+            raise ValueError(f"a run can be had as {', '.join(FORMATS)}, got {to!r}")
+        if to in AT_A_MOMENT:
+            try:
+                state = (await told(submit, ReadSession(), COPY_TIMEOUT_S)).result
+            except Malformed as error:
+                raise ValueError(str(error)) from None
+            assert isinstance(state, State)
+            await asyncio.to_thread(_write_now, to, state, out)
+        else:
+            await _play_again(self._kept(), to, out)
+        return files_of(to, out)
+
+
+def _write_now(to: Format, state: State, out: Path) -> None:
+    write_parts(out, at_a_moment(to, restore_session(state)))
+
+
+async def _play_again(kept: Path | None, to: Format, out: Path) -> None:
+    """In a process of its own: it takes as long as minutes, and the engine must not wait for it."""
+    if kept is None:
+        raise ValueError(NOT_KEPT)
+    command = (sys.executable, "-m", "app", "export", str(kept), "--to", to, "--out", str(out))
+    nothing, pipe = asyncio.subprocess.DEVNULL, asyncio.subprocess.PIPE
+    process = await asyncio.create_subprocess_exec(*command, stdin=nothing, stdout=nothing, stderr=pipe)
+    try:
+        _, said = await process.communicate()
+    finally:
+        if process.returncode is None:
+            with contextlib.suppress(ProcessLookupError):
+                process.kill()
+            await process.wait()
+    if process.returncode != 0:
+        lines = said.decode(errors="replace").strip().splitlines()
+        raise ValueError(lines[-1].removeprefix("ratslam: ") if lines else f"it ended with code {process.returncode}")

@@ -1,0 +1,89 @@
+"""The page's exports: what a copy of the session is enough for, and what a run that keeps itself is played again for."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from concurrent.futures import Future
+from pathlib import Path
+
+import networkx as nx
+import pytest
+
+from app.export import FORMATS
+from app.export import page as page_exports
+from app.export.page import NOT_KEPT, PageExports
+from app.export.pose_graph import g2o_text
+from app.session_snapshot import take_session
+from web.messages import Accepted, ReadSession, Refused
+
+from .sessions import a_session
+
+SESSION = a_session(60)
+
+
+def submit(request: object) -> Future[Accepted | Refused]:
+    assert isinstance(request, ReadSession)
+    answer: Future[Accepted | Refused] = Future()
+    answer.set_result(Accepted(60, take_session(SESSION)))
+    return answer
+
+
+def test_what_can_be_had_depends_on_whether_the_run_keeps_itself() -> None:
+    refused = {offer.format for offer in PageExports().offers() if offer.refusal == NOT_KEPT}
+    assert refused == {"mcap", "tum", "csv", "mp4"}
+    offers = PageExports(lambda: Path("run")).offers()
+    assert [offer.format for offer in offers] == list(FORMATS)
+    assert all(offer.refusal is None and offer.words for offer in offers)
+
+
+def test_the_map_now_comes_from_a_copy(tmp_path: Path) -> None:
+    def write(to: str) -> list[Path]:
+        return asyncio.run(PageExports().write(to, submit, tmp_path / f"run.{to}"))
+
+    (graph,), (poses,), pictures = write("graphml"), write("g2o"), write("png")
+    assert len(nx.read_graphml(graph)) == len(SESSION.brain.experience_map)
+    assert poses.read_bytes() == g2o_text(SESSION)
+    assert [picture.name for picture in pictures] == ["run-map.png", "run-times.png", "run-paths.png"]
+    with pytest.raises(ValueError, match="does not keep itself"):
+        write("mcap")
+
+
+@pytest.fixture
+def program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Stands in for Python: a script that is given the words of the command."""
+    script = tmp_path / "program"
+    monkeypatch.setattr(page_exports.sys, "executable", str(script))
+    return script
+
+
+def will(script: Path, do: str) -> None:
+    script.write_text(f"#!/bin/sh\n{do}\n")
+    script.chmod(0o700)
+
+
+def test_a_kept_run_is_played_again_by_a_process_of_its_own(program: Path, tmp_path: Path) -> None:
+    exports, out = PageExports(lambda: tmp_path / "kept run"), tmp_path / "run.csv"
+    will(program, 'echo "$@" > ' + f'"{out}"')
+    assert asyncio.run(exports.write("csv", submit, out)) == [out]
+    assert out.read_text() == f"-m app export {tmp_path / 'kept run'} --to csv --out {out}\n"
+    will(program, "echo ratslam: the disk is full >&2; exit 2")
+    with pytest.raises(ValueError, match=r"^the disk is full$"):
+        asyncio.run(exports.write("csv", submit, out))
+
+
+def test_what_nobody_waits_for_is_ended(program: Path, tmp_path: Path) -> None:
+    pid = tmp_path / "pid"
+    will(program, f'echo $$ > "{pid}.new"; mv "{pid}.new" "{pid}"; exec sleep 1000')
+
+    async def ask_and_leave() -> None:
+        writing = asyncio.create_task(PageExports(lambda: tmp_path).write("csv", submit, tmp_path / "run.csv"))
+        while not pid.exists():
+            await asyncio.sleep(0.01)
+        writing.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await writing
+
+    asyncio.run(ask_and_leave())
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(pid.read_text()), 0)
