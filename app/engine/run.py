@@ -5,6 +5,8 @@ from __future__ import annotations
 from app.config import Config
 from app.engine.faults import require_finite
 from app.engine.watched_trial import WatchedTrial
+from app.order_book import Order
+from app.runs.book import Book
 from app.session import Session
 from app.views.event_log import EventLog
 from app.views.history import History
@@ -21,6 +23,8 @@ class Run:
         self.number, self.session = number, session
         self.trial: WatchedTrial | None = None
         self.config_before: Config | None = None  # a trial's settings go with it
+        self.book: Book | None = None  # in which the run is kept
+        session.on_order = self._ordered
         self.history = History(self.session)
         self.snapshots = Snapshots(self.session, self.history, number, titles)
         for words in session.config.warnings:
@@ -39,9 +43,16 @@ class Run:
         self.snapshots.walk = None
         self.session.tick(recorder)
         require_finite(self.session)
+        if self.book is not None:
+            self.book.tick(self.session)
         self.history.watch()
         if self.trial is not None:
             self.trial.advance()
+
+    def _ordered(self, order: Order) -> None:
+        """An order was carried out. It can be one of a trial, while its run is still being made."""
+        if self.book is not None:
+            self.book.order(order)
 
     def require_showable(self) -> None:
         """Build a snapshot, to raise what would be raised later."""
