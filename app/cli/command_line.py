@@ -1,4 +1,4 @@
-"""The command `ratslam`: run (the dashboard), headless, deliver, trial, experiment, config, bench, worlds."""
+"""The command `ratslam`: run (the dashboard), runs, replay, headless, deliver, trial, experiment, config, bench, worlds."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from app.cli.deliver import add_deliver
 from app.cli.experiment import add_experiment
 from app.cli.headless import add_headless
 from app.cli.run import add_run
+from app.cli.runs import add_replay, add_runs
 from app.cli.trial import add_trial
 from app.cli.worlds import add_worlds
 from app.startup.ending import ended
@@ -29,6 +30,9 @@ def main(argv: list[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="ratslam", description="RatSLAM, alive in a browser.")
     commands = parser.add_subparsers(title="commands", required=True)
-    for add in (add_run, add_headless, add_deliver, add_trial, add_experiment, add_config, add_bench, add_worlds):
+    for add in (
+        add_run, add_runs, add_replay, add_headless, add_deliver, add_trial, add_experiment, add_config, add_bench,
+        add_worlds,
+    ):  # fmt: skip
         add(commands)
     return parser

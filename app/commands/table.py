@@ -47,6 +47,7 @@ REQUESTS: dict[type, Handler] = {
     m.Warn: looking.warn,
     m.ReadBrain: brains.read_brain,
     m.UseBrain: brains.use_brain,
+    m.GoOn: brains.go_on,
     m.ReadWorld: worlds.read_world,
     m.ReadFiled: worlds.read_filed,
     m.OpenWorld: worlds.open_world,

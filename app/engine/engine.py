@@ -87,9 +87,11 @@ class Engine:
         """Go on with a run that was kept, in this session: the one where it was left. ValueError says why that fails."""
         run = self._make_run(session, kept)
         run.require_showable()
-        run.event_log.note("run", f"goes on where it was left, {session.time_s:.1f} s after its beginning")
+        run.event_log.note("brain", f"the run goes on where it was left, {session.time_s:.1f} s after its beginning")
         if kept.header.trial:
-            run.event_log.note("warning", f"{kept.header.trial} does not go on with the run: the robot has no orders of it")
+            run.event_log.note(
+                "warning", f"{kept.header.trial} does not go on with the run: the robot has no orders of it"
+            )
         if session.world.name not in dict(self.library.titles):
             self.library.add(session.world)
         return self._change_to(run, session.world)

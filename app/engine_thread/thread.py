@@ -51,7 +51,9 @@ class EngineThread:
         )
         self._inbox = Inbox()
         self._watchdog = Watchdog(stall_s, self._tell_stall)
-        self._engine = Engine(world, self.pace, self._watchdog, running=running, answer=self._inbox.answer, keeper=keeper)
+        self._engine = Engine(
+            world, self.pace, self._watchdog, running=running, answer=self._inbox.answer, keeper=keeper
+        )
         self._stopping = False
         self._thread = threading.Thread(target=self._loop, name="engine", daemon=True)
 

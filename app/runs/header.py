@@ -86,7 +86,9 @@ def read_header(line: dict[str, Any]) -> Header:
         header = _HEADER.validate_json(json.dumps(line.get("run")))  # strict, but from a dictionary
     except ValidationError as error:
         first = error.errors()[0]
-        raise ValueError(f"its header is wrong at {'.'.join(map(str, first['loc'])) or 'run'}: {first['msg']}") from None
+        raise ValueError(
+            f"its header is wrong at {'.'.join(map(str, first['loc'])) or 'run'}: {first['msg']}"
+        ) from None
     if header.format != FORMAT:
         raise ValueError(f"its format is {header.format!r}; this program reads {FORMAT!r}")
     return header

@@ -40,7 +40,9 @@ def read_lines(path: Path) -> Lines:
         while line := file.readline(LONGEST):
             value, after = _value_of(line, check)
             if value is None:
-                return Lines(values, size, check, f"line {len(values) + 1} is cut off or damaged; what follows is left out")
+                return Lines(
+                    values, size, check, f"line {len(values) + 1} is cut off or damaged; what follows is left out"
+                )
             values.append(value)
             size, check = size + len(line), after
             if size > MOST_BYTES:

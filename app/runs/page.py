@@ -7,7 +7,6 @@ import shutil
 import time
 from collections.abc import Callable
 from itertools import count
-from pathlib import Path
 
 from app.order_book import Order
 from app.runs.book import Book, Copy, Ended, Hashed, Told

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from app.runs.folder import STATE
+from app.runs.pulse import pulse_of
 from app.runs.run_file import KeptRun
 from app.session import Session
 from app.session_snapshot import load_session
-from app.runs.pulse import pulse_of
 
 TELL_AFTER = 10  # ticks between two calls of `tell`
 Tell = Callable[[float], object]  # simulated seconds since the last call
 
 
-class Differs(ValueError):
-    """A run comes out differently from how it was kept. tick: the first one after which that was seen."""
+class ReplayError(ValueError):
+    """A run came out differently from how it was kept. tick: the first one after which that was seen."""
 
     def __init__(self, run: KeptRun, tick: int, what: str) -> None:
         self.tick = tick
@@ -30,7 +30,7 @@ class Differs(ValueError):
 def replay(run: KeptRun, tell: Tell = lambda _s: None) -> Session:
     """Run it again from its beginning and compare each pulse and each hash. Returns the session at its end, with all orders.
 
-    Differs: it comes out differently. ValueError: it cannot be run again.
+    ReplayError: it comes out differently. ValueError: it cannot be run again.
     """
     return _to_the_end(run, run.play(), tell)
 
@@ -38,7 +38,7 @@ def replay(run: KeptRun, tell: Tell = lambda _s: None) -> Session:
 def resumed(run: KeptRun, tell: Tell = lambda _s: None) -> Session:
     """The session where the run was when it was left: from the newest state beside it, else from its beginning.
 
-    Differs: it comes out differently. ValueError: it cannot be run again.
+    ReplayError: it comes out differently. ValueError: it cannot be run again.
     """
     return _to_the_end(run, run.play(session=newest_state(run)), tell)
 
@@ -58,9 +58,9 @@ def _to_the_end(run: KeptRun, sessions: Iterator[Session], tell: Tell) -> Sessio
     for session in sessions:
         tick = session.tick_count
         if pulse_of(session) != run.pulse(tick):
-            raise Differs(run, tick, "the robot or what it sees is elsewhere")
+            raise ReplayError(run, tick, "the robot or what it sees is elsewhere")
         if tick in run.hashes and session.state_hash() != run.hashes[tick]:
-            raise Differs(run, tick, "its state has another hash")
+            raise ReplayError(run, tick, "its state has another hash")
         if (tick - began) % TELL_AFTER == 0:
             tell(TELL_AFTER * session.frame.dt)
     return session

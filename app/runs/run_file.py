@@ -52,6 +52,11 @@ class KeptRun:
         """Simulated seconds, if the rate of ticks was never changed."""
         return self.last_tick / float(self.header.values.get("robot.sensor_rate_hz", 10.0))
 
+    @property
+    def left_at(self) -> float:
+        """When its last line was written, seconds since 1970."""
+        return (self.folder / LINES).stat().st_mtime
+
     def begin(self) -> Session:
         """The session before its first tick. ValueError says why it cannot begin."""
         header = self.header

@@ -56,6 +56,7 @@ from web.messages.commands import (
 from web.messages.engine_requests import (
     Accepted,
     EngineRequest,
+    GoOn,
     OpenWorld,
     ReadBrain,
     ReadExperience,
@@ -98,6 +99,7 @@ __all__ = [
     "EventKind",
     "ExperienceReport",
     "Finite",
+    "GoOn",
     "GoToTag",
     "Goal",
     "GoalMemoryLayer",
