@@ -70,7 +70,7 @@ class Session(Orders):
         self.stopwatch = Stopwatch(PARTS)
         self.frame = self.simulator.observe()
         self._text, self._text_now = WorldText(), WorldText()
-        self.on_order = _nobody
+        self.on_order: Callable[[Order], object] = _nobody
         self.under_orders = False
 
     def tick(self, watch: Callable[[str], None] | None = None) -> None:
@@ -161,7 +161,7 @@ def spread_goals(session: Session, count: int) -> list[int]:
     return chosen
 
 
-def _nobody(_order: Order) -> None:
+def _nobody(_order: Order) -> object:
     """The default for `on_order`: does nothing."""
 
 

@@ -195,11 +195,16 @@ def _serve(
     from app.gallery.gallery import StoredGallery
     from app.kept_brains.keeper import BrainKeeper
     from app.runs.keeper import RunKeeper
+    from web import messages as m
     from web.http.kept_offer import Offered
     from web.http.server import CannotListen, Dashboard
     from web.viewer.viewers import Viewers
 
-    runs = RunKeeper(lambda words: _warn(engine, words), serving.keep_mb) if serving.keep_mb > 0 else None
+    def warn(words: str) -> None:
+        print(f"ratslam: {words}", file=sys.stderr, flush=True)
+        engine.submit(m.Warn(words))
+
+    runs = RunKeeper(warn, serving.keep_mb) if serving.keep_mb > 0 else None
     engine = EngineThread(
         first.world, first.seed, first.config, speed=serving.speed, running=serving.running, brain=first.brain,
         first=first.begin, keeper=runs,
@@ -242,14 +247,6 @@ def _going_on(kept: KeptRun) -> m.GoOn:
     from web import messages as m
 
     return m.GoOn(kept, resumed(kept))
-
-
-def _warn(engine: EngineThread, words: str) -> None:
-    """On the terminal and on the page."""
-    from web import messages as m
-
-    print(f"ratslam: {words}", file=sys.stderr, flush=True)
-    engine.submit(m.Warn(words))
 
 
 def _cut_off() -> KeptRun | None:

@@ -6,7 +6,7 @@ import json
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 MOST_BYTES = 64 << 20  # of a file; an hour has less than one MB
 LONGEST = 16 << 20  # bytes of a line; the longest holds the text of a world
@@ -57,7 +57,7 @@ def _value_of(line: bytes, check: int) -> tuple[dict[str, Any] | None, int]:
     if line[-1:] != b"\n" or line[:9] != b"%08x " % after:
         return None, check
     try:
-        value = json.loads(text)
+        value: object = json.loads(text)
     except (ValueError, RecursionError):
         return None, check
-    return (value, after) if isinstance(value, dict) else (None, check)
+    return (cast("dict[str, Any]", value), after) if isinstance(value, dict) else (None, check)

@@ -29,6 +29,7 @@ class Page:
     def __init__(self, book: Book, complain: Callable[[str], object]) -> None:
         self._book, self._complain = book, complain
         self._complained = self._given_up = False
+        self._end = "the program ended"
         self._folder = runs_folder()
         self._journal: Journal | None = None
         try:
@@ -53,6 +54,7 @@ class Page:
             return
         self._states.finish(STATES_PATIENCE_S)
         self.write()
+        self._try(self._lines.end, self._end)
         self._journal.close()
         if self._lines.is_empty:
             shutil.rmtree(self._folder, ignore_errors=True)
@@ -71,7 +73,7 @@ class Page:
             if book.brain is not None:
                 with whole_file(self._folder / BRAIN) as file:
                     write_state(encode(book.brain), file)
-        self._states = States(self._folder, lambda *hashed: book.told.append(Hashed(*hashed)))
+        self._states = States(self._folder, lambda tick, hash_, known: book.told.append(Hashed(tick, hash_, known)))
         if isinstance(beginning, KeptRun):
             self._try(self._lines.again, code_version())
         else:
@@ -86,7 +88,7 @@ class Page:
             case Hashed():
                 self._lines.hash(told.tick, told.state_hash, told.experiences)
             case Ended():
-                self._lines.end(told.why)
+                self._end = told.why
             case (tick, pulse):
                 self._lines.tick(tick, pulse)
 

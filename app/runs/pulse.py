@@ -20,4 +20,4 @@ def pulse_of(session: Session) -> bytes:
         truth.x, truth.y, truth.heading_rad, frame.odometry_speed, frame.odometry_yaw_rate, pose.x, pose.y,
         pose.heading_rad, packet.mass, estimate.experience, estimate.recognition.view,
     )  # fmt: skip
-    return zlib.crc32(frame.image, zlib.crc32(numbers)).to_bytes(SIZE, "little")
+    return zlib.crc32(frame.image.tobytes(), zlib.crc32(numbers)).to_bytes(SIZE, "little")

@@ -31,12 +31,12 @@ class KeptRun:
 
     folder: Path
     header: Header
-    orders: list[Order] = field(default_factory=list)
+    orders: list[Order] = field(default_factory=list[Order])
     last_tick: int = 0
     experiences: int | None = None
     pulses: bytearray = field(default_factory=bytearray)
-    hashes: dict[int, str] = field(default_factory=dict)
-    again: list[tuple[int, str]] = field(default_factory=list)
+    hashes: dict[int, str] = field(default_factory=dict[int, str])
+    again: list[tuple[int, str]] = field(default_factory=list[tuple[int, str]])
     end: str = ""
     damage: str = ""
     size: int = 0  # bytes and checksum up to the last whole line
