@@ -28,7 +28,7 @@ PARTS = ("pilot", "office and senses", *STAGES, "judging")  # of a tick; "judgin
 class Session(Orders):
     """One robot in one world with one brain."""
 
-    CACHES = ("world", "stopwatch", "frame", "_text", "on_order", "under_orders")
+    CACHES = ("world", "stopwatch", "frame", "_text", "_text_now", "on_order", "under_orders")
 
     def __init__(
         self, world: World, seed: int = 0, config: Config | None = None, brain: RatSlam | None = None,
@@ -57,17 +57,20 @@ class Session(Orders):
         self.odometry = self._odometry()  # what the brain was told in its last step
         self.estimate: Estimate = self._think(self.stopwatch.lap)
 
-    def settle(self, world: World, before: Session | None = None) -> None:
-        """Compute the caches anew in a session that was restored from a state (session_snapshot.py). before: as above."""
-        self.world = world
+    def settle(self, first: World, world: World, before: Session | None = None) -> None:
+        """Compute the caches anew in a session that was restored from a state (session_snapshot.py).
+
+        first: the world that a reset begins in; world: the one that the robot is in; before: as above.
+        """
+        self.world = first
         self.simulator.settle(world, None if before is None else before.simulator)
         self._look()
 
     def _look(self) -> None:
         self.stopwatch = Stopwatch(PARTS)
         self.frame = self.simulator.observe()
-        self._text = WorldText()
-        self.on_order = _nobody
+        self._text, self._text_now = WorldText(), WorldText()
+        self.on_order: Callable[[Order], object] = _nobody
         self.under_orders = False
 
     def tick(self, watch: Callable[[str], None] | None = None) -> None:
@@ -95,17 +98,14 @@ class Session(Orders):
 
     def state_hash(self) -> str:
         """A digest of everything that decides the future, and of the evaluation. Equal runs have equal hashes."""
-        parts = (
-            self.world_text,
-            self.seed,
-            self.config,
-            self.simulator,
-            self.pilot,
-            self.brain,
-            self.evaluation,
-            self.tags,
-        )
-        return hashlib.sha256("".join(encode(part).digest() for part in parts).encode()).hexdigest()
+        return digest_of(self.world_texts, self)
+
+    @property
+    def world_texts(self) -> tuple[str, str]:
+        """The texts of two worlds: the one that a reset begins in, and the one that the robot is in. They differ when
+        boxes were put down or taken away."""
+        text, now = self.world_text, self.simulator.world
+        return text, text if now is self.world else self._text_now.of(now)
 
     @property
     def world_text(self) -> str:
@@ -134,6 +134,21 @@ class Session(Orders):
         return estimate
 
 
+def digest_of(world_texts: tuple[str, str], session: Session) -> str:
+    """`state_hash` of a session or of a copy of one, which has no worlds."""
+    parts = (
+        *world_texts,
+        session.seed,
+        session.config,
+        session.simulator,
+        session.pilot,
+        session.brain,
+        session.evaluation,
+        session.tags,
+    )
+    return hashlib.sha256("".join(encode(part).digest() for part in parts).encode()).hexdigest()
+
+
 def spread_goals(session: Session, count: int) -> list[int]:
     """`count` experiences spread over the map. Each is the one farthest from the robot and from those chosen before."""
     poses = session.brain.experience_map.poses
@@ -146,7 +161,7 @@ def spread_goals(session: Session, count: int) -> list[int]:
     return chosen
 
 
-def _nobody(_order: Order) -> None:
+def _nobody(_order: Order) -> object:
     """The default for `on_order`: does nothing."""
 
 

@@ -1,7 +1,8 @@
 """A whole session as a state and as a file: office, robot, brain, pilot and evaluation. A restored one goes on bit for
 bit.
 
-The world is kept as the text of its file and checked like any world file. The rest must keep the laws in session_laws.
+Two worlds are kept as the texts of their files and checked like any world file: the one that a reset begins in, and the
+one that the robot is in, where boxes may have been put down. The rest must keep the laws in session_laws.
 """
 
 from __future__ import annotations
@@ -18,15 +19,19 @@ from disk.archive import BROKEN
 from disk.state_file import load_as, read_as, save_state
 from disk.state_reading import words_of
 from ratslam_core.laws.measures import array
-from sim2d import SimParams, world_from_json
+from sim2d import SimParams, World, world_from_json
 
 SMALLEST = SimParams(robot_radius_m=0.05)  # the world is checked for the smallest robot: its radius can be changed
 
 
 def take_session(session: Session) -> State:
     """The whole state, as a copy: the session may go on."""
-    text = np.frombuffer(session.world_text.encode(), np.uint8)
-    return encode((text, copy_state(session)))
+    return _state_of(session.world_texts, copy_state(session))
+
+
+def save_copy(world_texts: tuple[str, str], copy: Session, path: Path) -> None:
+    """Write a file as `save_session` does, from a copy of a session (`disk.copy_state`) and its `world_texts`."""
+    save_state(_state_of(world_texts, copy), path)
 
 
 def restore_session(state: State) -> Session:
@@ -55,15 +60,25 @@ def read_session(file: IO[bytes]) -> Session:
     return read_as("session", file, _settled)
 
 
+def _state_of(world_texts: tuple[str, str], copy: Session) -> State:
+    return encode((*(np.frombuffer(text.encode(), np.uint8) for text in world_texts), copy))
+
+
 def _settled(state: State) -> Session:
     parts = decode(state)
-    if not isinstance(parts, tuple) or len(cast("tuple[object, ...]", parts)) != 2:
-        raise ValueError("it must hold a world and a session")
-    text, session = cast("tuple[object, object]", parts)
+    if not isinstance(parts, tuple) or len(cast("tuple[object, ...]", parts)) != 3:
+        raise ValueError("it must hold two worlds and a session")
+    first_text, text, session = cast("tuple[object, object, object]", parts)
     if not isinstance(session, Session):
         raise ValueError(f"it must hold a session, got a {type(session).__name__}")
-    text = array("the text of its world", text, np.uint8, (None,))
-    world = world_from_json(text.tobytes().decode(), "its world", SMALLEST.robot_radius_m)
-    session_laws.check(session, world)
-    session.settle(world)
+    first, now = _world_of(first_text, "the text of its first world"), _world_of(text, "the text of its world")
+    if first == now:
+        first = now
+    session_laws.check(session, now)
+    session.settle(first, now)
     return session
+
+
+def _world_of(text: object, name: str) -> World:
+    text = array(name, text, np.uint8, (None,))
+    return world_from_json(text.tobytes().decode(), "its world", SMALLEST.robot_radius_m)

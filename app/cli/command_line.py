@@ -13,6 +13,7 @@ from app.cli.export import add_export
 from app.cli.headless import add_headless
 from app.cli.recording import add_recording
 from app.cli.run import add_run
+from app.cli.runs import add_replay, add_runs
 from app.cli.trial import add_trial
 from app.cli.worlds import add_worlds
 from app.startup.ending import ended
@@ -32,7 +33,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="ratslam", description="RatSLAM, alive in a browser.")
     commands = parser.add_subparsers(title="commands", required=True)
     for add in (
-        *(add_run, add_headless, add_deliver, add_trial, add_experiment),
+        *(add_run, add_runs, add_replay, add_headless, add_deliver, add_trial, add_experiment),
         *(add_export, add_recording, add_worlds, add_config, add_bench),
     ):
         add(commands)

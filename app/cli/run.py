@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.options import Verbs, add_session_options, session_of
 from app.config import Config
+from app.runs.folder import BUDGET_MB
 from app.startup.compiling import Compiling
 from app.startup.waking import Waking
 from ratslam_core import RatSlam, load_brain
@@ -22,7 +23,9 @@ from sim2d.importers import open_world
 if TYPE_CHECKING:
     from app.engine.engine import Engine
     from app.kept_brains.files import KeptBrain
+    from app.runs.run_file import KeptRun
     from app.trials.trial import Trial
+    from web import messages as m
 
 ENGINE_PATIENCE_S = 2.0  # how long leaving waits for a tick that hangs
 _NOT_WITH_EXPERIMENT = ("scale", "brain", "preset", "config", "set", "resume_brain")
@@ -36,6 +39,7 @@ class Serving:
     browser: bool = True  # open the page where there is a screen
     speed: float = 1.0
     running: bool = True
+    keep_mb: float = BUDGET_MB  # room for runs that are kept
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +65,13 @@ def add_run(commands: Verbs) -> None:
     run.add_argument(
         "--resume-brain", action="store_true", help="go on with the brain kept last, in its world and with its seed"
     )
+    run.add_argument(
+        "--resume", metavar="ID", help="go on with a run that was kept, as `ratslam runs` lists it, or `last`"
+    )
+    run.add_argument(
+        "--keep-runs", type=float, default=BUDGET_MB, metavar="MB",
+        help=f"room for the runs that are kept; the oldest are deleted first (default {BUDGET_MB:g}, 0 = keep none)",
+    )  # fmt: skip
     run.add_argument("--experiment", metavar="NAME|FILE", help="watch a trial of this experiment (--seed: this one)")
     run.add_argument("--engine", choices=("ours", "paper"), help="with --experiment: our rules or the paper's")
     run.add_argument("--levels", nargs="+", metavar="LEVEL", help="with --experiment: one level of each of its axes")
@@ -79,7 +90,11 @@ def _run(args: argparse.Namespace) -> int:
 
     if not is_speed(args.speed):
         raise ValueError(f"--speed must be {SPEEDS}, got {args.speed:g}")
-    serving = Serving(args.port, not args.no_browser, args.speed, not args.paused)
+    serving = Serving(args.port, not args.no_browser, args.speed, not args.paused, args.keep_runs)
+    if not args.keep_runs >= 0:
+        raise ValueError(f"--keep-runs must be megabytes from 0 on, got {args.keep_runs:g}")
+    if args.resume is not None:
+        return _resume_run(args, serving)
     if args.experiment is not None:
         return _run_experiment(args, serving)
     for name in ("engine", "levels"):
@@ -88,8 +103,36 @@ def _run(args: argparse.Namespace) -> int:
     args.seed = 1 if args.seed is None else args.seed
     own_worlds.tidy()
     kept = _resume(args)
+    cut_off = None if args.resume_brain or args.brain is not None else _cut_off()
     world, config, brain = session_of(args)
-    return _compiling(lambda compiling: _serve(serving, First(world, args.seed, config, brain), compiling, kept))
+    return _compiling(
+        lambda compiling: _serve(serving, First(world, args.seed, config, brain), compiling, kept, cut_off)
+    )
+
+
+def _resume_run(args: argparse.Namespace, serving: Serving) -> int:
+    """Go on with a run where it was left; what led there is run again first."""
+    from app.cli.progress import compile_first, with_progress
+    from app.runs.folder import is_open
+    from app.runs.replay import resumed
+    from app.runs.run_file import open_run
+
+    for name in ("scale", "seed", "brain", "preset", "config", "set", "resume_brain", "experiment", "engine", "levels"):
+        if getattr(args, name):
+            raise ValueError(f"--{name.replace('_', '-')} does not go with --resume: the run has its own")
+    if args.world != DEFAULT_WORLD:
+        raise ValueError(f"--world {args.world} does not go with --resume: the run has its own world")
+    kept = open_run(args.resume)
+    if is_open(kept.folder):
+        raise ValueError(f"the run {kept.name} is going on in another program")
+    compile_first()
+    session = with_progress(
+        kept.length_s, lambda tell: resumed(kept, lambda s: tell(s, "running again what led there"))
+    )
+    print(f"The run {kept.name} goes on at tick {session.tick_count}", flush=True)
+    own_worlds.tidy()
+    first = First(session.world, session.seed, session.config, begin=lambda engine: engine.go_on(kept, session))
+    return _compiling(lambda compiling: _serve(serving, first, compiling, None))
 
 
 def _run_experiment(args: argparse.Namespace, serving: Serving) -> int:
@@ -144,21 +187,35 @@ def _compiling(serve: Callable[[Compiling], int]) -> int:
         compiling.stop()
 
 
-def _serve(serving: Serving, first: First, compiling: Compiling, kept: KeptBrain | None) -> int:
+def _serve(
+    serving: Serving, first: First, compiling: Compiling, kept: KeptBrain | None, cut_off: KeptRun | None = None
+) -> int:
     from app.engine_thread import EngineThread
     from app.export.page import PageExports
     from app.gallery.gallery import StoredGallery
     from app.kept_brains.keeper import BrainKeeper
+    from app.runs.keeper import RunKeeper
+    from web import messages as m
     from web.http.kept_offer import Offered
     from web.http.server import CannotListen, Dashboard
     from web.viewer.viewers import Viewers
 
+    def warn(words: str) -> None:
+        print(f"ratslam: {words}", file=sys.stderr, flush=True)
+        engine.submit(m.Warn(words))
+
+    runs = RunKeeper(warn, serving.keep_mb) if serving.keep_mb > 0 else None
     engine = EngineThread(
         first.world, first.seed, first.config, speed=serving.speed, running=serving.running, brain=first.brain,
-        first=first.begin,
+        first=first.begin, keeper=runs,
     )  # fmt: skip
     viewers = Viewers(engine.latest, engine.submit)
     offered = kept and Offered(**asdict(kept.about), read=partial(load_brain, kept.path))
+    if cut_off is not None:
+        offered = Offered(
+            cut_off.header.world_name, cut_off.header.seed, cut_off.length_s, cut_off.experiences or 0, cut_off.left_at,
+            partial(_going_on, cut_off), run=cut_off.name,
+        )  # fmt: skip
     dashboard = Dashboard(
         engine.latest, engine.submit, viewers, port=serving.port, offered=offered, experiments=StoredGallery(),
         exports=PageExports(),
@@ -172,14 +229,41 @@ def _serve(serving: Serving, first: First, compiling: Compiling, kept: KeptBrain
     dashboard.on_ready, engine.on_stillborn = partial(_tell, serving), dashboard.stop
     waking.start()
     keeper.start()
+    if runs is not None:
+        runs.start()
     try:
         dashboard.run()
     finally:
         keeper.stop()
         waking.stop(ENGINE_PATIENCE_S)
+        if runs is not None:
+            runs.stop()
     if engine.stillborn is not None:
         raise ValueError(f"the engine could not begin: {engine.stillborn}")
     return 0
+
+
+def _going_on(kept: KeptRun) -> m.GoOn:
+    from app.runs.replay import resumed
+    from web import messages as m
+
+    return m.GoOn(kept, resumed(kept))
+
+
+def _cut_off() -> KeptRun | None:
+    """The newest run, if it was cut off in the middle, by a crash or a kill."""
+    from app.runs.folder import all_runs, is_open
+    from app.runs.run_file import open_run
+
+    for folder in all_runs()[:1]:
+        try:
+            run = open_run(folder)
+        except ValueError:
+            return None
+        if run.last_tick > 0 and not run.end and not is_open(folder):
+            print(f"The run {run.name} was cut off: go on with it by `ratslam run --resume {run.name}`", flush=True)
+            return run
+    return None
 
 
 def _tell(serving: Serving, url: str) -> None:

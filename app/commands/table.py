@@ -54,6 +54,7 @@ REQUESTS: dict[type, Handler] = {
     m.ReadBrain: brains.read_brain,
     m.ReadSession: looking.read_session,
     m.UseBrain: brains.use_brain,
+    m.GoOn: brains.go_on,
     m.ReadWorld: worlds.read_world,
     m.ReadFiled: worlds.read_filed,
     m.OpenWorld: worlds.open_world,

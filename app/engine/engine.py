@@ -17,10 +17,15 @@ from app.engine.steps import Steps
 from app.engine.time_travel import TimeTravel
 from app.engine.watchdog import Watchdog
 from app.engine.watched_trial import WatchedTrial
+from app.runs.book import Book, Fork
+from app.runs.header import Beginning, beginning_of
+from app.runs.keeper import RunKeeper
+from app.runs.run_file import KeptRun
 from app.session import Session
 from app.trials.trial import Trial
 from app.views.tick_stages import TickRecorder
 from app.world_editor import WorldEditor
+from disk import copy_state
 from ratslam_core import RatSlam
 from sim2d import World
 from web import messages as m
@@ -37,15 +42,16 @@ class Engine:
         *,
         running: bool,
         answer: Callable[[m.Request, m.Accepted], None],
+        keeper: RunKeeper | None = None,
     ) -> None:
-        """answer: is called for each request whose ticks are done or were broken off."""
+        """answer: is called for each request whose ticks are done or were broken off. keeper: keeps each run on disk."""
         self.library, self.editor = Library(world), WorldEditor(world)
         self.pace, self.steps = pace, Steps()
         self.running = running
         self.fault: str | None = None
         self._run: Run | None = None
         self._time: TimeTravel | None = None
-        self._watchdog, self._answer = watchdog, answer
+        self._watchdog, self._answer, self._keeper = watchdog, answer, keeper
 
     @property
     def run(self) -> Run:
@@ -67,7 +73,9 @@ class Engine:
         """Begin another run. If that fails, the old run is left as it is. ValueError says why."""
         old = self._run
         before = None if old is None or self.fault is not None else old.session  # after a fault it may be half changed
-        run = self._make_run(Session(world, seed, config, brain, before))
+        kept = None if brain is None else copy_state(brain)  # the session will go on with the brain itself
+        session = Session(world, seed, config, brain, before)
+        run = self._make_run(session, beginning_of(session, brain=brain is not None), kept)
         if brain is not None:  # a foreign brain must be one that can be shown: try it before it is accepted
             run.require_showable()
         return self._change_to(run, world)
@@ -79,7 +87,7 @@ class Engine:
         If that fails, the old run is left as it is. ValueError says why.
         """
         course = trial.begin()
-        run = self._make_run(course.session)
+        run = self._make_run(course.session, beginning_of(course.session, trial=title))
         run.trial = WatchedTrial(trial, title, course, run.event_log, moment_s)
         run.config_before = None if self._run is None else self.next_config
         world = course.session.world
@@ -89,8 +97,28 @@ class Engine:
         self.running = True
         return run
 
-    def _make_run(self, session: Session) -> Run:
-        return Run(self._next_number, session, self.library.titles)
+    def go_on(self, kept: KeptRun, session: Session) -> Run:
+        """Go on with a run that was kept, in this session: the one where it was left. ValueError says why that fails."""
+        run = self._make_run(session, kept)
+        run.require_showable()
+        run.event_log.note("brain", f"the run goes on where it was left, {session.time_s:.1f} s after its beginning")
+        if kept.header.trial:
+            run.event_log.note(
+                "warning", f"{kept.header.trial} does not go on with the run: the robot has no orders of it"
+            )
+        if session.world.name not in dict(self.library.titles):
+            self.library.add(session.world)
+        return self._change_to(run, session.world)
+
+    def _make_run(self, session: Session, beginning: Beginning | KeptRun, brain: RatSlam | None = None) -> Run:
+        run = Run(self._next_number, session, self.library.titles)
+        run.book = self._book(session, beginning, brain)
+        return run
+
+    def _book(
+        self, session: Session, beginning: Beginning | KeptRun | Fork, brain: RatSlam | None = None
+    ) -> Book | None:
+        return None if self._keeper is None else self._keeper.book(session, beginning, brain)
 
     @property
     def _next_number(self) -> int:
@@ -107,6 +135,8 @@ class Engine:
         self.editor.begin(world)
         self.running = self.running or self.fault is not None
         self._run, self.fault = run, None
+        if self._keeper is not None and run.book is not None:
+            self._keeper.begin(run.book)
         self.pace.begin()
         return run
 
@@ -195,12 +225,18 @@ class Engine:
 
     def go_on_from_here(self) -> Run:
         """Make the moment that is shown the present of a new branch, paused. ValueError says why that cannot be."""
+        before = self.run.book
         run = self.time.go_on_from_here(self._next_number)
+        if before is not None:
+            run.book = self._book(run.session, Fork(before, run.session.tick_count))
         return self._go_on_paused(run)
 
     def change_branch(self, number: int) -> Run:
         """Go on with another branch, paused. ValueError names those that there are."""
-        return self._go_on_paused(self.time.change_to(number))
+        run = self.time.change_to(number)
+        if run.book is not None:
+            run.book = self._book(run.session, Fork(run.book))
+        return self._go_on_paused(run)
 
     def _go_on_paused(self, run: Run) -> Run:
         self._go_on_with(run, run.session.world)
@@ -226,6 +262,8 @@ class Engine:
             with contextlib.suppress(Exception):  # there may be nobody to print to
                 traceback.print_exception(error)
         self.break_off()
+        if self._run is not None and self._run.book is not None:
+            self._run.book.end(f"it stopped at a fault: {words}")
         if new and self._run is not None:
             self._run.event_log.note("fault", words)
 

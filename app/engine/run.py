@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from app.config import Config
 from app.engine.faults import require_finite
 from app.engine.watched_trial import WatchedTrial
 from app.order_book import Order
+from app.runs.book import Book
 from app.session import Session
 from app.time_machine import TimeMachine
 from app.views.event_log import EventLog
@@ -25,10 +24,10 @@ class Run:
     ) -> None:
         """titles: names and titles of all worlds. history: of a session that has one already."""
         self.number, self.session = number, session
-        self.machine: TimeMachine | None = None
-        self.on_order: list[Callable[[Order], object]] = []  # are told of each order that the session was given
+        self.machine: TimeMachine | None = None  # keeps, from some tick on, what is needed to go back to any other
         self.trial: WatchedTrial | None = None
         self.config_before: Config | None = None  # a trial's settings go with it
+        self.book: Book | None = None  # in which the run is kept
         self.history = history or History(self.session)
         self.snapshots = Snapshots(self.session, self.history, number, titles)
         if history is None:
@@ -36,14 +35,11 @@ class Run:
                 self.event_log.note("warning", words)
         session.on_order = self._told
 
-    def keep_past(self, machine: TimeMachine) -> None:
-        """Let the machine keep, from now on, what is needed to go back to any tick of this run."""
-        self.machine = machine
-        self.on_order.append(machine.told)
-
     def _told(self, order: Order) -> None:
-        for listen in self.on_order:
-            listen(order)
+        if self.book is not None:
+            self.book.order(order)
+        if self.machine is not None:
+            self.machine.told(order)
 
     @property
     def event_log(self) -> EventLog:
@@ -58,6 +54,8 @@ class Run:
         self.snapshots.walk = None
         self.session.tick(recorder)
         require_finite(self.session)
+        if self.book is not None:
+            self.book.tick(self.session)
         self.history.watch()
         if self.machine is not None:  # before the orders of the trial, which come after this tick
             self.machine.ticked()

@@ -20,7 +20,7 @@ class TimeTravel:
         self._beside: Branch | None = None  # the branch that the live one is compared with
         self._other: Moment | None = None  # of that branch
         self._differs = ""
-        run.keep_past(self._machine)
+        run.machine = self._machine
 
     @property
     def last_number(self) -> int:
@@ -90,7 +90,7 @@ class TimeTravel:
         branch = self._machine.go_on_from(moment)
         run = Run(number, branch.session, past.snapshots.worlds, branch.history)
         run.snapshots.continue_from(past.snapshots)
-        run.keep_past(self._machine)
+        run.machine = self._machine
         run.event_log.note("branch", f"{branch.number} leaves branch {moment.branch.number} here")
         self._runs[branch.number] = run
         self.compare(None)

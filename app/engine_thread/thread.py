@@ -20,6 +20,7 @@ from app.engine.faults import words_of
 from app.engine.pace import LONGEST_WAIT_S, SLICE_S, Pace
 from app.engine.watchdog import Watchdog
 from app.engine_thread.inbox import Inbox
+from app.runs.keeper import RunKeeper
 from app.session import Session
 from ratslam_core import RatSlam
 from sim2d import World
@@ -35,10 +36,11 @@ class EngineThread:
     def __init__(
         self, world: World, seed: int, config: Config, *, speed: float = 1.0, running: bool = True,
         brain: RatSlam | None = None, first: Callable[[Engine], object] | None = None, stall_s: float = STALL_S,
+        keeper: RunKeeper | None = None,
     ) -> None:  # fmt: skip
         """brain: one that already knows places. first: begins the first run, instead of one in this world with this seed.
 
-        stall_s: a tick that takes longer than this is shown as a fault.
+        stall_s: a tick that takes longer than this is shown as a fault. keeper: keeps each run on disk.
         """
         self.latest: Latest[m.Snapshot] = Latest()
         self.stillborn: str | None = None  # why the engine could not begin; then the thread has ended ...
@@ -49,7 +51,9 @@ class EngineThread:
         )
         self._inbox = Inbox()
         self._watchdog = Watchdog(stall_s, self._tell_stall)
-        self._engine = Engine(world, self.pace, self._watchdog, running=running, answer=self._inbox.answer)
+        self._engine = Engine(
+            world, self.pace, self._watchdog, running=running, answer=self._inbox.answer, keeper=keeper
+        )
         self._stopping = False
         self._thread = threading.Thread(target=self._loop, name="engine", daemon=True)
 

@@ -21,7 +21,7 @@ class Keyframe:
     time_s: float
     dt: float
     state: KeptState
-    world: World
+    worlds: tuple[World, World]  # the one that a reset begins in, and the one that the robot is in
     last_snap: Snap | None
 
 

@@ -98,10 +98,9 @@ class TimeMachine:
     def _keep(self) -> None:
         live = self.live
         kept = self._chunks.keep(encode((live.session, live.history)))
-        session, frame = live.session, live.session.frame
-        live.keyframes.append(
-            Keyframe(frame.tick, frame.time_s, frame.dt, kept, session.world, live.history.events.last_snap)
-        )
+        session, frame, snap = live.session, live.session.frame, live.history.events.last_snap
+        worlds = session.world, session.simulator.world
+        live.keyframes.append(Keyframe(frame.tick, frame.time_s, frame.dt, kept, worlds, snap))
         while self.nbytes > self._budget_bytes and self._thin():
             pass
 

@@ -41,6 +41,6 @@ class Moment:
 
 def _restored(keyframe: Keyframe, branch: Branch) -> tuple[Session, History]:
     session, history = cast("tuple[Session, History]", decode(keyframe.state.state()))
-    session.settle(keyframe.world, branch.session)
+    session.settle(*keyframe.worlds, branch.session)
     history.settle(session, branch.history.log.until(session.time_s, session), keyframe.last_snap)
     return session, history

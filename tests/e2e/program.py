@@ -30,13 +30,14 @@ class Program:
     """`ratslam run` with these arguments, alive when the constructor returns."""
 
     def __init__(self, *arguments: str, start: str = START, **environment: str) -> None:
-        self._brains = tempfile.TemporaryDirectory()  # where the program keeps them; removed afterwards
+        self._brains = tempfile.TemporaryDirectory()  # where the program keeps them and its runs; removed afterwards
+        kept = {"RATSLAM_BRAINS": self._brains.name, "RATSLAM_RUNS": os.path.join(self._brains.name, "runs")}
         self.process = subprocess.Popen(
             [sys.executable, "-c", start, "run", "--no-browser", *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            env={**os.environ, "PYTHONUNBUFFERED": "1", "RATSLAM_BRAINS": self._brains.name, **environment},
+            env={**os.environ, "PYTHONUNBUFFERED": "1", **kept, **environment},
         )
         assert self.process.stdout is not None
         self.said: list[str] = []

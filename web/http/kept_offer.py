@@ -1,4 +1,5 @@
-"""The brain of an earlier run of the program, offered to whoever opens the page: it is woken up or put aside for good."""
+"""What an earlier run of the program left, offered to whoever opens the page: a run that was cut off goes on, or a brain
+is woken up, or it is put aside for good."""
 
 from __future__ import annotations
 
@@ -18,21 +19,25 @@ from web.http.commands import Malformed, wrong
 from web.http.security import Limits
 from web.http.state import to_json
 from web.latest import Latest
-from web.messages import ReadFiled, Snapshot, UseBrain
+from web.messages import GoOn, ReadFiled, Snapshot, UseBrain
 
 WAKE_TIMEOUT_S = 60.0  # in a world of 10,000 walls
 
 
 @dataclass(frozen=True, slots=True)
 class Offered:
-    """What the kept brain is of. `read` gives the brain; its ValueError names the file. It waits for the disk."""
+    """What the kept brain is of. `read` gives the brain; its ValueError names the file. It waits for the disk.
+
+    run: id of a run that was cut off; `read` then runs it again to where it was, which may take a minute.
+    """
 
     world: str
     seed: int
     time_s: float  # simulated
     experiences: int
     kept_at: float  # seconds since 1970
-    read: Callable[[], RatSlam]
+    read: Callable[[], RatSlam | GoOn]
+    run: str | None = None
 
 
 class AnswerOffer(Body):
@@ -42,7 +47,7 @@ class AnswerOffer(Body):
 
 
 class KeptBrain(BaseModel):
-    """A brain that an earlier program kept."""
+    """A brain that an earlier program kept. run: id of the run that can go on, with its brain; null for a brain alone."""
 
     world: str
     title: str
@@ -50,6 +55,7 @@ class KeptBrain(BaseModel):
     time_s: float
     experiences: int
     kept_at: float
+    run: str | None
 
 
 class Answered(BaseModel):
@@ -72,7 +78,7 @@ class KeptOffer:
         title = dict(snapshot.worlds if snapshot is not None else ()).get(kept.world, kept.world)
         return to_json(KeptBrain(
             world=kept.world, title=title, seed=kept.seed, time_s=kept.time_s, experiences=kept.experiences,
-            kept_at=kept.kept_at,
+            kept_at=kept.kept_at, run=kept.run,
         ).model_dump())  # fmt: skip
 
     async def take(self, request: Request) -> bytes:
@@ -86,7 +92,11 @@ class KeptOffer:
         return to_json({"used": use})
 
     async def _wake(self, kept: Offered) -> None:
-        """Begin a new run with the brain. Raises Malformed, and leaves everything as it was, when that fails."""
+        """Begin a new run with the brain, or go on with the run. Raises Malformed, and leaves everything as it was, when
+        that fails."""
+        if kept.run is not None:
+            await self._go_on(kept)
+            return
         world = (await told(self._submit, ReadFiled(kept.world))).result
         try:
             if not isinstance(world, World):
@@ -96,17 +106,25 @@ class KeptOffer:
             raise Malformed([wrong("use", True, f"this brain cannot be woken up: {error}")]) from None
         await told(self._submit, UseBrain(brain, world, kept.seed), WAKE_TIMEOUT_S)
 
+    async def _go_on(self, kept: Offered) -> None:
+        try:
+            request = await asyncio.to_thread(kept.read)
+        except ValueError as error:
+            raise Malformed([wrong("use", True, f"this run cannot go on: {error}")]) from None
+        assert isinstance(request, GoOn)
+        await told(self._submit, request, WAKE_TIMEOUT_S)
+
 
 def add_kept_offer(app: FastAPI, offered: Offered | None, latest: Latest[Snapshot], submit: Submit) -> None:
     offer = KeptOffer(offered, latest, submit)
 
     @app.get("/api/brain/kept", tags=["brain"], responses={200: {"model": KeptBrain | None}})
     async def kept() -> Response:
-        """The brain that an earlier program kept last; null when there is none or somebody has answered the offer."""
+        """The run that was cut off, or the brain that was kept last; null when there is none or somebody has answered."""
         return json_response(offer.told())
 
     @app.post("/api/brain/kept", tags=["brain"], openapi_extra=takes(AnswerOffer),
               responses={200: {"model": Answered}, **ERRORS})  # fmt: skip
     async def answer(request: Request) -> Response:
-        """Begin anew with the kept brain in its world and seed, or put it aside: it is not offered again."""
+        """Go on with the run, or begin anew with the kept brain in its world and seed; or never offer it again."""
         return json_response(await offer.take(request))

@@ -63,6 +63,7 @@ from web.messages.commands import (
 from web.messages.engine_requests import (
     Accepted,
     EngineRequest,
+    GoOn,
     OpenWorld,
     ReadBrain,
     ReadExperience,
@@ -113,6 +114,7 @@ __all__ = [
     "EventKind",
     "ExperienceReport",
     "Finite",
+    "GoOn",
     "GoOnFromHere",
     "GoToTag",
     "Goal",

@@ -45,6 +45,14 @@ class UseBrain:
     seed: int | None = None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class GoOn:
+    """Go on with a run that was kept. run, session: of the engine's own classes; the session is where the run was left."""
+
+    run: object
+    session: object
+
+
 class ReadWorld:
     """The answer's `result` is the World as it is now and its OfficeEdition."""
 
@@ -93,6 +101,7 @@ EngineRequest = (
     | ReadSession
     | Warn
     | UseBrain
+    | GoOn
     | ReadWorld
     | ReadFiled
     | OpenWorld

@@ -124,7 +124,7 @@ type Wrong = { field: string | null; value: unknown; reason: string };
 // `wrong`: sentences, where something was.
 type Told = { [key: string]: any; wrong?: string; field?: string | null };
 type Answer = { accepted: boolean; detail: Wrong[]; id?: number; tick?: number };
-type KeptOffer = { world: string; title: string; experiences: number; time_s: number; kept_at: number };
+type KeptOffer = { world: string; title: string; experiences: number; time_s: number; kept_at: number; run: string | null };
 type EngineName = "paper" | "ours";
 type Axis = { name: string; levels: string[] };
 type PlanDrawing = { width: number; depth: number; left: number; bottom: number; walls: string; way: string; places: Point[] };

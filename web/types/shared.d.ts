@@ -143,6 +143,7 @@ type IndexIds = {
   "help-title": HTMLElementTagNameMap["h2"];
   "kept": HTMLElementTagNameMap["section"];
   "kept-not-now": HTMLElementTagNameMap["button"];
+  "kept-title": HTMLElementTagNameMap["b"];
   "kept-wake": HTMLElementTagNameMap["button"];
   "kept-words": HTMLElementTagNameMap["span"];
   "kidnap": HTMLElementTagNameMap["button"];

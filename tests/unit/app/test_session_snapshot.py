@@ -118,8 +118,8 @@ def test_after_a_kidnap_an_edit_and_other_parameters() -> None:
     session.kidnap(5.0, 1.5, 0.3)
     session.edit_world(replace(session.world, lamps=(*session.world.lamps, Lamp("new", 3.0, 3.0, 2.0, 0.4))))
     session.simulator.put_box(Box("crate", 4.0, 2.0, 0.4, 0.4, angle_rad=0.1234567))
-    session.edit_world(session.simulator.world)
     other = saved_and_loaded(session)
+    assert other.simulator.world == session.simulator.world != other.world
     assert (other.world, other.config, other.seed) == (session.world, session.config, session.seed)
     goes_on(session, 40)
     assert len(session.evaluation.kidnaps) == 1
@@ -185,7 +185,7 @@ def test_a_file_that_is_no_session_is_refused_in_a_sentence(tmp_path: Path) -> N
     bits = bytearray(whole)
     bits[middle_of_the_largest(path)] ^= 1  # not in a header, parts of which nobody reads
     for name, data, words in (
-        ("brain.npz", (tmp_path / "brain.npz").read_bytes(), "it must hold a world and a session"),
+        ("brain.npz", (tmp_path / "brain.npz").read_bytes(), "it must hold two worlds and a session"),
         ("cut.npz", whole[: len(whole) // 2], "the file is not a zip file"),
         ("empty.npz", b"", "the file is empty"),
         ("bits.npz", bytes(bits), "."),

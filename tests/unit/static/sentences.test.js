@@ -37,7 +37,7 @@ test("a new world has the first name that nobody has", () => {
 });
 
 test("what was kept today is told by the hour, what is older by the day too", () => {
-  const kept = { world: "office", title: "Office", experiences: 1, time_s: 600, kept_at: 1_700_000_000 };
+  const kept = { world: "office", title: "Office", experiences: 1, time_s: 600, kept_at: 1_700_000_000, run: null };
   assert.match(keptWords(kept, kept.kept_at + 60), /^Office, 10 simulated minutes, 1 experience, kept \d\d:\d\d$/);
   assert.match(keptWords(kept, kept.kept_at + 13 * 3600), /kept 1[45] Nov 2023, \d\d:\d\d$/);
 });

@@ -18,7 +18,7 @@ from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers
 from web.http.api import create_app
 from web.http.kept_offer import Offered
 from web.latest import Latest
-from web.messages import Accepted, ReadFiled, Refused, Snapshot, UseBrain
+from web.messages import Accepted, GoOn, ReadFiled, Refused, Snapshot, UseBrain
 
 PATH = "/api/brain/kept"
 FACTS = {"world": "loop", "seed": 7, "time_s": 90.0, "experiences": 12, "kept_at": 1e9}
@@ -80,7 +80,7 @@ def test_what_is_kept_is_told_and_wakes_up_in_its_world_with_its_seed(offering, 
     page = offering(read)
     titles = dict(fake_snapshot(12).worlds)
     for _ in range(2):
-        assert page.told() == {**FACTS, "title": titles.get("loop", "loop")}
+        assert page.told() == {**FACTS, "title": titles.get("loop", "loop"), "run": None}
     assert page.engine.commands == []
     assert page.answer(True) == (200, {"used": True})
     asked, use = page.engine.commands
@@ -99,6 +99,23 @@ def test_a_world_that_the_engine_has_read_is_not_read_again(offering, brain) -> 
     assert page.answer(True) == (200, {"used": True})
     assert isinstance(page.engine.commands[1].world, World)
     assert page.engine.commands[1].world is loop
+
+
+def test_a_run_that_was_cut_off_goes_on(offering) -> None:
+    request, broken = GoOn("run", "session"), [ValueError("the run r comes out differently from tick 7 on")]
+
+    def read() -> GoOn:
+        if broken:
+            raise broken.pop()
+        return request
+
+    page = offering(read, run="r")
+    assert page.told()["run"] == "r"
+    assert page.refused(True) == "this run cannot go on: the run r comes out differently from tick 7 on"
+    assert page.told()["run"] == "r"
+    assert page.answer(True) == (200, {"used": True})
+    assert page.engine.commands == [request]
+    assert page.told() is None
 
 
 def test_not_now_is_for_good(offering, brain) -> None:

@@ -1,0 +1,88 @@
+"""The folder in which runs keep themselves: one folder a run, the oldest of which are deleted under a budget."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO
+
+from disk import kept_folder
+
+try:
+    import fcntl
+except ImportError:  # a system without such locks: two programs are not told apart there
+    fcntl = None
+
+LINES, BRAIN, STATE = "run.jsonl", "brain.npz", "state.npz"
+BUDGET_MB = 200.0
+MOST_RUNS = 200
+MOST_STATES = 3  # runs that keep a state to be resumed from fast; the others are resumed from their orders
+
+
+def runs_folder() -> Path:
+    """RATSLAM_RUNS, or `.ratslam/runs` in the home directory; it need not exist. ValueError without a home."""
+    return Path(os.environ.get("RATSLAM_RUNS") or kept_folder() / "runs")
+
+
+def all_runs() -> list[Path]:
+    """The folders of all runs, the newest first."""
+    try:
+        found = [path.parent for path in runs_folder().glob(f"*/{LINES}")]
+    except ValueError:  # no home directory: nothing is kept
+        return []
+    return sorted(found, key=_age, reverse=True)
+
+
+def lock(file: IO[bytes]) -> bool:
+    """Keep other programs from writing to this file until it is closed. False: another one is writing to it."""
+    if fcntl is not None:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            return False
+    return True
+
+
+def is_open(folder: Path) -> bool:
+    """Whether a program is writing this run now."""
+    try:
+        with (folder / LINES).open("rb") as file:
+            return not lock(file)
+    except OSError:
+        return False
+
+
+def delete(folder: Path) -> None:
+    """ValueError: the run is still going on. OSError: it cannot be deleted."""
+    if is_open(folder):
+        raise ValueError(f"the run {folder.name} is still going on; end its program first")
+    shutil.rmtree(folder)
+
+
+def tidy(budget_mb: float = BUDGET_MB, most: int = MOST_RUNS) -> None:
+    """Delete the oldest runs until the rest is within the budget. Runs that go on and what cannot be deleted stay."""
+    room, runs = budget_mb * 1e6, all_runs()
+    for number, folder in enumerate(runs):
+        if number >= MOST_STATES and not is_open(folder):
+            with contextlib.suppress(OSError):
+                (folder / STATE).unlink(missing_ok=True)
+        room -= sum(_sizes(folder))
+        if (room < 0 or number >= most) and not is_open(folder):
+            with contextlib.suppress(OSError, ValueError):
+                delete(folder)
+
+
+def _sizes(folder: Path) -> Iterator[int]:
+    with contextlib.suppress(OSError):
+        for path in folder.iterdir():
+            yield path.stat().st_size
+
+
+def _age(folder: Path) -> float:
+    try:
+        return (folder / LINES).stat().st_mtime
+    except OSError:
+        return 0.0

@@ -1,0 +1,42 @@
+"""The file of a run that goes on. What a full disk does not take is kept and written later, so that no line is missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import IO, Any
+
+from app.runs.folder import LINES, lock
+from app.runs.lines import line_of
+
+MOST_WAITING = 16 << 20  # bytes that wait for a disk that takes nothing
+
+
+class Journal:
+    """Use it from one thread. OSError: the disk took nothing, or a part; the next `add` or `flush` tries again."""
+
+    def __init__(self, folder: Path, size: int = 0, check: int = 0) -> None:
+        """size, check: of the whole lines of a run that goes on. ValueError: another program is doing that."""
+        folder.mkdir(parents=True, exist_ok=size > 0)
+        self._file: IO[bytes] = (folder / LINES).open("r+b" if size else "xb", buffering=0)
+        self._size, self._check, self._waiting = size, check, b""
+        if not lock(self._file):
+            self._file.close()
+            raise ValueError(f"the run {folder.name} is going on in another program")
+        self._file.truncate(size)
+
+    def add(self, value: dict[str, Any]) -> None:
+        line, self._check = line_of(value, self._check)
+        self._waiting += line
+        self.flush()
+
+    def flush(self) -> None:
+        """Write what waits. A full disk takes a part of a line first and fails then; the rest follows when there is room."""
+        if len(self._waiting) > MOST_WAITING:
+            raise ValueError("the disk has taken nothing for too long")
+        while self._waiting:
+            self._file.seek(self._size)
+            written = self._file.write(self._waiting) or 0
+            self._size, self._waiting = self._size + written, self._waiting[written:]
+
+    def close(self) -> None:
+        self._file.close()

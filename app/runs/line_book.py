@@ -1,0 +1,60 @@
+"""The lines of a run's file, from what the engine tells."""
+
+from __future__ import annotations
+
+import base64
+from typing import Any
+
+from app.order_book import Order
+from app.runs.journal import Journal
+from app.runs.world_edits import edit_of
+
+TICKS_A_LINE = 10
+
+
+class LineBook:
+    """Ticks are gathered to lines; every other line comes behind all ticks up to its own."""
+
+    def __init__(self, journal: Journal, world_text: str, tick: int) -> None:
+        """world_text: as last edited; tick: the last one in the journal."""
+        self._journal, self._text, self._tick = journal, world_text, tick
+        self._pulses = b""
+        self.is_empty = tick == 0
+
+    def tick(self, tick: int, pulse: bytes) -> None:
+        self._tick, self._pulses, self.is_empty = tick, self._pulses + pulse, False
+        if tick % TICKS_A_LINE == 0:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the ticks that wait for their line, and what waits for the disk."""
+        if self._pulses:
+            pulses, self._pulses = base64.b64encode(self._pulses).decode(), b""
+            self._journal.add({"tick": self._tick, "pulses": pulses})
+        self._journal.flush()
+
+    def order(self, order: Order) -> None:
+        line: dict[str, Any] = {"tick": order.tick, "order": order.name, "values": order.values}
+        if "world" in order.values:
+            text = order.values["world"]
+            line |= {"values": {key: value for key, value in order.values.items() if key != "world"}}
+            line |= {"edit": edit_of(self._text, text)}
+            self._text = text
+        self.is_empty = False
+        self._add(line)
+
+    def hash(self, tick: int, state_hash: str, experiences: int) -> None:
+        self._add({"tick": tick, "hash": state_hash, "experiences": experiences})
+
+    def again(self, version: str) -> None:
+        """Another program goes on with the run."""
+        self._add({"tick": self._tick, "again": version})
+
+    def end(self, why: str) -> None:
+        self._add({"tick": self._tick, "end": why})
+
+    def _add(self, line: dict[str, Any]) -> None:
+        try:
+            self.flush()
+        finally:  # a full disk keeps nothing out of the file: it waits in the journal
+            self._journal.add(line)

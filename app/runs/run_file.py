@@ -1,0 +1,159 @@
+"""A run as it was kept: what it began from, each order with its tick, a pulse of each tick, a hash of the state now and
+then. It is enough to run it again, bit for bit."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from app.order_book import SMALLEST_M, Order, carry_out
+from app.runs.folder import BRAIN, LINES, all_runs, runs_folder
+from app.runs.header import Header, read_header
+from app.runs.lines import read_lines
+from app.runs.pulse import SIZE
+from app.runs.world_edits import edited
+from app.session import Session
+from ratslam_core import load_brain
+from sim2d import world_from_json
+
+
+@dataclass(slots=True)
+class KeptRun:
+    """A run up to its last whole line.
+
+    last_tick: the last tick that is known to have been run. end: why the run ended; empty when it was cut off.
+    pulses: SIZE bytes for each tick from the first on. hashes: of the state after a tick, before the orders given then.
+    again: ticks at which another program went on with it, and its version. damage: what is wrong at the end of the file.
+    """
+
+    folder: Path
+    header: Header
+    orders: list[Order] = field(default_factory=list[Order])
+    last_tick: int = 0
+    experiences: int | None = None
+    pulses: bytearray = field(default_factory=bytearray)
+    hashes: dict[int, str] = field(default_factory=dict[int, str])
+    again: list[tuple[int, str]] = field(default_factory=list[tuple[int, str]])
+    end: str = ""
+    damage: str = ""
+    size: int = 0  # bytes and checksum up to the last whole line
+    check: int = 0
+    world_text: str = ""  # as last edited
+
+    @property
+    def name(self) -> str:
+        return self.folder.name
+
+    @property
+    def length_s(self) -> float:
+        """Simulated seconds, if the rate of ticks was never changed."""
+        return self.last_tick / float(self.header.values.get("robot.sensor_rate_hz", 10.0))
+
+    @property
+    def left_at(self) -> float:
+        """When its last line was written, seconds since 1970."""
+        return (self.folder / LINES).stat().st_mtime
+
+    def begin(self) -> Session:
+        """The session before its first tick. ValueError says why it cannot begin."""
+        header = self.header
+        world = world_from_json(header.world, f"the world of {self.name}", SMALLEST_M)
+        brain = load_brain(self.folder / BRAIN) if header.brain else None
+        return Session(world, header.seed, header.config, brain)
+
+    def play(self, until: int | None = None, session: Session | None = None) -> Iterator[Session]:
+        """Run it again. Yields the session before its first tick and after each tick; the orders of a tick are carried out
+        right after that.
+
+        until: the last tick, by default that of the run. session: one of this run to go on from, before the orders of its
+        tick. ValueError: an order cannot be carried out again.
+        """
+        session = self.begin() if session is None else session
+        until = self.last_tick if until is None else min(until, self.last_tick)
+        orders = iter([order for order in self.orders if order.tick >= session.tick_count])
+        following = next(orders, None)
+        while True:
+            yield session
+            while following is not None and following.tick == session.tick_count:
+                _again(session, following)
+                following = next(orders, None)
+            if session.tick_count >= until:
+                return
+            session.tick()
+
+    def pulse(self, tick: int) -> bytes:
+        return bytes(self.pulses[SIZE * (tick - 1) : SIZE * tick])
+
+
+def open_run(name: str | Path) -> KeptRun:
+    """A run by its id, by `last`, or by the path of its folder or file. ValueError says why it cannot be opened."""
+    folder = _found(name)
+    try:
+        lines = read_lines(folder / LINES)
+    except OSError as error:
+        raise ValueError(f"{folder / LINES}: {error.strerror or error}") from None
+    if not lines.values:
+        raise ValueError(f"{folder / LINES} is no run: it does not begin with a whole line")
+    try:
+        run = KeptRun(folder, read_header(lines.values[0]), damage=lines.damage, size=lines.size, check=lines.check)
+    except ValueError as error:
+        raise ValueError(f"{folder / LINES} is no run that can be read: {error}") from None
+    run.world_text = run.header.world
+    for number, line in enumerate(lines.values[1:], start=2):
+        try:
+            _take(run, line)
+        except (ValueError, TypeError, KeyError, AttributeError) as error:
+            raise ValueError(f"{folder / LINES}, line {number}: {error}") from None
+    return run
+
+
+def _found(name: str | Path) -> Path:
+    if name == "last":
+        runs = all_runs()
+        if not runs:
+            raise ValueError(f"no run is kept in {runs_folder()}")
+        return runs[0]
+    path = Path(name)
+    for folder in (path, path.parent if path.name == LINES else path, runs_folder() / path):
+        if (folder / LINES).is_file():
+            return folder
+    raise ValueError(f"there is no run {str(name)!r}: give an id as `ratslam runs` lists them, `last`, or a file")
+
+
+def _take(run: KeptRun, line: dict[str, Any]) -> None:
+    """Take in one line. ValueError, TypeError, KeyError: it is not one that a run writes."""
+    tick = line["tick"]
+    if type(tick) is not int:
+        raise ValueError(f"a tick must be a whole number, got {str(tick)[:40]}")
+    if "pulses" in line:
+        pulses = base64.b64decode(line["pulses"], validate=True)
+        if not pulses or len(pulses) % SIZE or tick != run.last_tick + len(pulses) // SIZE:
+            raise ValueError(f"it has {len(pulses)} bytes for the ticks from {run.last_tick + 1} to {tick}")
+        run.pulses += pulses
+        run.last_tick = tick
+        return
+    if "hash" in line and 0 <= tick <= run.last_tick:
+        run.hashes[tick], run.experiences = str(line["hash"]), line["experiences"]
+        return
+    if tick != run.last_tick:
+        raise ValueError(f"it is of tick {tick}, after tick {run.last_tick}")
+    if "order" in line:
+        values = dict(line["values"])
+        if "edit" in line:
+            run.world_text = values["world"] = edited(run.world_text, line["edit"])
+        run.orders.append(Order(tick, str(line["order"]), values))
+    elif "again" in line:
+        run.again.append((tick, str(line["again"])))
+        run.end = ""
+    else:
+        run.end = str(line["end"])
+
+
+def _again(session: Session, order: Order) -> None:
+    try:
+        carry_out(session, order)
+    except ValueError as error:
+        raise ValueError(f"tick {order.tick}: the order {order.name} cannot be carried out again: {error}") from None

@@ -1,0 +1,59 @@
+"""A file of lines opens up to its last whole line, wherever it was cut off and whatever was damaged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.runs.lines import line_of, read_lines
+
+VALUES = st.lists(st.dictionaries(st.text(max_size=5), st.integers() | st.text(max_size=20), max_size=3), max_size=8)
+
+
+def file_of(values: list[dict]) -> tuple[bytes, list[int]]:
+    """The bytes of a file, and where its lines end."""
+    data, ends, check = b"", [], 0
+    for value in values:
+        line, check = line_of(value, check)
+        data += line
+        ends.append(len(data))
+    return data, ends
+
+
+@given(VALUES, st.integers(0, 10_000))
+def test_a_file_cut_off_anywhere_opens_up_to_its_last_whole_line(tmp_path_factory, values: list[dict], at: int) -> None:
+    data, ends = file_of(values)
+    at = min(at, len(data))
+    path: Path = tmp_path_factory.mktemp("lines") / "file"
+    path.write_bytes(data[:at])
+    lines, whole = read_lines(path), sum(end <= at for end in ends)
+    assert lines.values == values[:whole]
+    assert lines.size == (ends[whole - 1] if whole else 0)
+    assert bool(lines.damage) == (lines.size < at)
+
+
+@given(VALUES, st.integers(0, 10_000), st.integers(1, 255))
+def test_a_damaged_byte_ends_what_is_read_and_nothing_else_is_read(
+    tmp_path_factory, values: list[dict], at: int, flip: int
+) -> None:
+    data, ends = file_of([*values, {"last": 1}])
+    at %= len(data)
+    path: Path = tmp_path_factory.mktemp("lines") / "file"
+    path.write_bytes(data[:at] + bytes([data[at] ^ flip]) + data[at + 1 :])
+    lines = read_lines(path)
+    assert lines.values == [*values, {"last": 1}][: sum(end <= at for end in ends)]
+    assert lines.damage
+
+
+@given(VALUES.filter(len), st.data())
+def test_a_line_that_is_missing_or_twice_is_noticed(tmp_path_factory, values: list[dict], data: st.DataObject) -> None:
+    whole, ends = file_of([{"first": 0}, *values, {"last": 1}])
+    number, times = data.draw(st.integers(0, len(values))), data.draw(st.sampled_from([0, 2]))
+    begin, end = (ends[number - 1] if number else 0), ends[number]
+    path: Path = tmp_path_factory.mktemp("lines") / "file"
+    path.write_bytes(whole[:begin] + whole[begin:end] * times + whole[end:])
+    lines = read_lines(path)
+    assert lines.damage
+    assert len(lines.values) <= number + 1
