@@ -218,7 +218,7 @@ def _serve(
         )  # fmt: skip
     dashboard = Dashboard(
         engine.latest, engine.submit, viewers, port=serving.port, offered=offered, experiments=StoredGallery(),
-        exports=PageExports(),
+        exports=PageExports(lambda: runs and runs.folder),
     )  # fmt: skip
     try:
         dashboard.bind()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import queue
 import threading
 from collections.abc import Callable
+from pathlib import Path
 
 from app.runs.book import Book, Fork
 from app.runs.folder import BUDGET_MB, tidy
@@ -40,6 +41,11 @@ class RunKeeper:
         self._told.set()
         if self._thread.ident is not None:
             self._thread.join(LEAVING_S)
+
+    @property
+    def folder(self) -> Path | None:
+        """Where the run that goes on is kept; None: not yet, or it cannot be."""
+        return None if self._book is None else self._book.folder
 
     def book(self, session: Session, beginning: Beginning | KeptRun | Fork, brain: RatSlam | None = None) -> Book:
         """A book for a session that has just begun. brain: a copy of the brain it began with. Nothing is kept before
