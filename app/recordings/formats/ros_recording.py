@@ -149,6 +149,6 @@ class _Source:
             ranges = ros.scan_ranges(told, len(self.beams.angles_rad))
             return None if r.sonars else Sensed(time_ns, where, ranges_m=ranges)
         ranges = np.array(getattr(told, "data", ()), np.float64)
-        if np.isnan(ranges).any() or len(ranges) > 10_000:
-            raise ValueError("its ranges are no numbers")
+        if np.isnan(ranges).any() or len(ranges) != len(self.beams.angles_rad or ranges):
+            raise ValueError("its ranges are no numbers, or not as many as those of the scan")
         return Sensed(time_ns, where, ranges_m=ranges)
