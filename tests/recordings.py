@@ -22,7 +22,7 @@ from rosbags.rosbag2 import Writer as Bag2
 from rosbags.typesys import Stores, get_typestore
 
 N, HZ, BEGAN_NS = 8, 10, 1_700_000_000_000_000_000
-HEIGHT, WIDTH, BEAMS = 12, 16, 5
+HEIGHT, WIDTH, BEAMS = 12, 16, 61
 ROS1, ROS2 = get_typestore(Stores.ROS1_NOETIC), get_typestore(Stores.ROS2_HUMBLE)
 
 
@@ -48,7 +48,7 @@ def drive() -> list[Row]:
             x, y = pose[0] + speed * dt * math.cos(middle), pose[1] + speed * dt * math.sin(middle)
             pose = (x, y, math.remainder(pose[2] + yaw_rate * dt, math.tau))
         image = rng.integers(0, 256, (HEIGHT, WIDTH, 3), np.uint8)
-        ranges = np.linspace(1, 2, BEAMS).astype(np.float32) + k
+        ranges = np.float32(1 + k) + np.arange(BEAMS, dtype=np.float32) / 64
         rows.append(Row(BEGAN_NS + k * 10**9 // HZ, image, speed, yaw_rate, pose, ranges))
     return rows
 
@@ -125,7 +125,7 @@ def carmen(path: Path, word: str = "FLASER") -> Path:
     for row in drive():
         ranges, (x, y, heading) = " ".join(str(r) for r in row.ranges), row.pose
         time = f"{row.time_ns // 10**9}.{row.time_ns % 10**9:09d}"
-        raw = f"0 -1.5 3.0 0.75 20.0 0.01 0 {BEAMS} {ranges} 1 7"
+        raw = f"0 -1.5 3.0 0.05 20.0 0.01 0 {BEAMS} {ranges} 1 7"
         lines += {
             "FLASER": [f"FLASER {BEAMS} {ranges} 9 9 9 {x} {y} {heading} {time} host {time}"],
             "ROBOTLASER1": [f"ROBOTLASER1 {raw} 9 9 9 {x} {y} {heading} 0 0 0 0 0 {time} host {time}"],
@@ -198,7 +198,7 @@ def ros_messages(ros1: bool, poses_only: bool = False, packed: bool = False) -> 
             t["nav_msgs/msg/Odometry"](h, "base_link", with_pose, with_twist),
         )
         beams = t["sensor_msgs/msg/LaserScan"](
-            h, -1.0, 1.0, 0.5, 0.0, 0.1, 0.1, 30.0, row.ranges, np.zeros(0, np.float32)
+            h, -1.5, 1.5, 0.05, 0.0, 0.1, 0.1, 30.0, row.ranges, np.zeros(0, np.float32)
         )
         yield "/scan", "sensor_msgs/msg/LaserScan", row.time_ns, beams
         yield "/truth", "geometry_msgs/msg/PoseStamped", row.time_ns, t["geometry_msgs/msg/PoseStamped"](h, pose)

@@ -12,12 +12,12 @@ from typing import Any
 import lz4.frame  # pyright: ignore[reportMissingTypeStubs]
 import zstandard
 from mcap.exceptions import McapError
-from mcap.records import Channel, Chunk, Footer, McapRecord, Message, Schema
+from mcap.records import Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 
 from app.recordings.formats.lines import open_whole
 from app.recordings.formats.problems import Problems, plain
-from app.recordings.formats.ros_packets import MOST_CHUNK, Packet, type_of
+from app.recordings.formats.ros_packets import MOST_CHUNK, SONAR_ANGLES, Packet, type_of
 
 BROKEN = (McapError, ValueError, struct.error, EOFError, OSError, OverflowError, MemoryError)
 MAGIC = b"\x89MCAP0\r\n"
@@ -35,6 +35,9 @@ def mcap_packets(path: Path, problems: Problems) -> Iterator[Packet]:
             kind = {"cdr": False, "ros1": True}.get(record.message_encoding)
             known = kind is not None and record.schema_id in schemas
             channels[record.id] = (plain(record.topic, 100), schemas[record.schema_id], bool(kind)) if known else None
+        elif isinstance(record, Metadata):
+            if record.name == "ratslam" and "sonar_angles_rad" in record.metadata:
+                yield Packet("ratslam", SONAR_ANGLES, False, 0, record.metadata["sonar_angles_rad"].encode(), number)
         elif isinstance(record, Message):
             channel = channels.get(record.channel_id)
             if channel is not None:

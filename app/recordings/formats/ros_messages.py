@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import struct
 from functools import cache
@@ -116,6 +117,16 @@ def scan_beams(told: Any) -> Beams:
     if not (0 < n <= _MOST_BEAMS and abs(start) < 10 and abs(step) < 10 and 0 < limit < 1e6):
         raise ValueError("its angles or its range are none of a laser")
     return Beams(tuple(start + k * step for k in range(n)), limit)
+
+
+def told_angles(packet: Packet) -> Beams:
+    """Where the sonars of a run of ours look; a scan of ROS can hold only beams that are spread evenly."""
+    try:
+        angles: Any = json.loads(packet.data)
+        beams = tuple(float(angle) for angle in angles)
+    except (ValueError, TypeError, RecursionError):
+        beams = ()
+    return Beams(beams if len(beams) <= _MOST_BEAMS and all(abs(angle) < 10 for angle in beams) else ())
 
 
 def scan_ranges(told: Any, beams: int) -> NDArray[np.float64]:

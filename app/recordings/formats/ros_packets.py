@@ -27,4 +27,5 @@ def type_of(name: str) -> str:
     return f"{parts[0]}/msg/{parts[1]}" if len(parts) == 2 else name
 
 
+SONAR_ANGLES = "angles of the sonars"  # type of a packet that is no message: what a run of ours says of itself
 MOST_CHUNK = 256_000_000  # bytes, packed and unpacked; a file that claims more is not believed

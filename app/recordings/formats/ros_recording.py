@@ -11,7 +11,7 @@ import numpy as np
 
 from app.recordings.formats import ros_messages as ros
 from app.recordings.formats.problems import Problems
-from app.recordings.formats.ros_packets import Packet
+from app.recordings.formats.ros_packets import SONAR_ANGLES, Packet
 from app.recordings.formats.ros_topics import Choice, Roles, Topic, is_odometry, roles_of
 from app.recordings.formats.sensed import Rates, Sensed
 from app.recordings.formats.streamed import Beams, StreamedRecording
@@ -93,6 +93,8 @@ class _Source:
     def _in_order(self, problems: Problems) -> Iterator[tuple[int, Packet]]:
         used, waiting, size, newest = {*self._used()}, list[tuple[int, int, Packet]](), 0, 0
         for order, packet in enumerate(self._packets(problems)):
+            if packet.type == SONAR_ANGLES and self._roles.sonars and not self.beams.angles_rad:
+                self.beams = ros.told_angles(packet)
             if packet.topic not in used or packet.type != self._topics[packet.topic].type:
                 continue
             time = ros.stamp_ns(packet) if self._stamped else packet.time_ns
@@ -144,11 +146,13 @@ class _Source:
         r = self._roles
         if name == r.scan:
             beams = ros.scan_beams(told)
-            if not self.beams.angles_rad:
-                self.beams = beams
+            if self.beams.limit_m is None:
+                self.beams = Beams(self.beams.angles_rad or beams.angles_rad, beams.limit_m)
+            if r.sonars:
+                return None
             ranges = ros.scan_ranges(told, len(self.beams.angles_rad))
-            return None if r.sonars else Sensed(time_ns, where, ranges_m=ranges)
+            return Sensed(time_ns, where, ranges_m=ranges)
         ranges = np.array(getattr(told, "data", ()), np.float64)
-        if np.isnan(ranges).any() or len(ranges) > 10_000:
-            raise ValueError("its ranges are no numbers")
+        if np.isnan(ranges).any() or len(ranges) != len(self.beams.angles_rad or ranges):
+            raise ValueError("its ranges are no numbers, or not as many as those of the scan")
         return Sensed(time_ns, where, ranges_m=ranges)

@@ -59,6 +59,7 @@ def _sensed(path: Path, table: Table | None, problems: Problems) -> Iterator[Sen
 def _frames(path: Path, problems: Problems) -> Iterator[Sensed]:
     os.environ.setdefault("OPENCV_FFMPEG_CAPTURE_OPTIONS", _OPTIONS)
     os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what is wrong is said here, once
     try:
         video = cv2.VideoCapture(str(path.absolute()), cv2.CAP_FFMPEG)
     except cv2.error:

@@ -17,7 +17,7 @@ from app.recordings.formats.ros_recording import open_ros
 from app.recordings.formats.ros_topics import Choice
 from app.recordings.opening import open_recording
 from app.recordings.recording import Recording
-from tests.recordings import BEGAN_NS, ROS2, N, bag1, bag2, drive, mcap, ros_messages
+from tests.recordings import BEAMS, BEGAN_NS, ROS2, N, bag1, bag2, drive, mcap, ros_messages
 
 T = ROS2.types
 S = 10**9
@@ -130,7 +130,7 @@ def test_red_is_red(encoding: str) -> None:
 
 
 def test_a_run_of_ours_brings_its_sonars_and_movements_exactly() -> None:
-    messages, exact = list(ros_messages(False)), [0.1 + k / 3 for k in range(5)]
+    messages, exact = list(ros_messages(False)), [0.1 + k / 3 for k in range(BEAMS)]
     layout = T["std_msgs/msg/MultiArrayLayout"]([], 0)
     for k, row in enumerate(drive()):
         messages.append(("/sonars", ros.FLOATS, row.time_ns, T[ros.FLOATS](layout, np.array(exact) + k)))
