@@ -146,7 +146,7 @@ def spread_goals(session: Session, count: int) -> list[int]:
     return chosen
 
 
-def _nobody(_order: Order) -> None:
+def _nobody(_order: Order) -> object:
     """The default for `on_order`: does nothing."""
 
 

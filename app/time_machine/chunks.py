@@ -7,7 +7,7 @@ import json
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import zstandard
@@ -163,8 +163,8 @@ def _count(nbytes: int) -> int:
 
 def _places(tree: Any, place: str) -> Iterator[tuple[int, str]]:
     """The number of each array in a tree, and its place there."""
-    items: dict[Any, Any] = dict(enumerate(tree)) if isinstance(tree, list) else tree
-    for name, item in items.items():
+    items = cast("list[Any]", tree) if isinstance(tree, list) else cast("dict[str, Any]", tree)
+    for name, item in enumerate(items) if isinstance(items, list) else items.items():
         if name in ("array", "numbers", "keys", "values") and type(item) is int:
             yield item, f"{place}/{name}"
         elif isinstance(item, list | dict):
