@@ -133,7 +133,8 @@ def _kept(array: NDArray[Any], before: tuple[Bytes, KeptArray] | None) -> tuple[
     if len(changed) == 0 and array.shape == old.shape:
         return before
     parts, chunks = _parts(old.starts, len(raw)), list(old.chunks)
-    for number in changed.tolist():
+    numbers: list[int] = changed.tolist()
+    for number in numbers:
         part = slice(*parts[number])
         copy[part] = raw[part]
         chunks[number] = _chunk(raw[part], array.itemsize, chunks[number])
@@ -165,9 +166,9 @@ def _starts(raw: Bytes, itemsize: int) -> NDArray[np.int64]:
     cuts = 4 * np.flatnonzero(hashes[:-1] == CUT) + 4
     cuts = np.concatenate([[0], cuts[np.diff(cuts, prepend=0) >= LEAST]])
     ends = np.append(cuts[1:], len(raw))
-    long = np.flatnonzero(ends - cuts > MOST).tolist()
-    more = [np.arange(cuts[number], ends[number], MOST) for number in long]
-    return np.unique(np.concatenate([cuts, *more]))
+    long: list[int] = np.flatnonzero(ends - cuts > MOST).tolist()
+    more: list[NDArray[np.int64]] = [np.arange(cuts[number], ends[number], MOST) for number in long]
+    return np.unique(np.concatenate((cuts, *more)))
 
 
 def _parts(starts: NDArray[np.int64], size: int) -> list[tuple[int, int]]:
