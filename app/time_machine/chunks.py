@@ -16,6 +16,9 @@ from numpy.typing import NDArray
 from disk import State
 
 CHUNK = 8192  # bytes
+LARGE = 1 << 20  # arrays from this size on are cut by their content ...
+CUT_BITS, CUT = 11, 77  # ... after a word whose hash has these first bits, ...
+LEAST, MOST = 1024, 32768  # ... in chunks of about these sizes, bytes
 ENTRY = 160  # bytes that a chunk takes besides its content
 WORTH = 0.7  # a difference is kept where it takes less than this share of the whole
 _PACK, _UNPACK = zstandard.ZstdCompressor(level=1), zstandard.ZstdDecompressor()  # fast: the engine waits for them
@@ -39,15 +42,18 @@ class Chunk:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KeptArray:
+    """starts: of the chunks, bytes."""
+
     dtype: np.dtype[Any]
     shape: tuple[int, ...]
     chunks: tuple[Chunk, ...]
+    starts: NDArray[np.int64]
 
     def array(self) -> NDArray[Any]:
         whole = np.empty(self.shape, self.dtype)
         raw = whole.reshape(-1).view(np.uint8)
-        for number, chunk in enumerate(self.chunks):
-            raw[number * CHUNK : (number + 1) * CHUNK] = chunk.content()
+        for (start, end), chunk in zip(_parts(self.starts, len(raw)), self.chunks, strict=True):
+            raw[start:end] = chunk.content()
         return whole
 
 
@@ -120,21 +126,55 @@ class Chunks:
 def _kept(array: NDArray[Any], before: tuple[Bytes, KeptArray] | None) -> tuple[Bytes, KeptArray]:
     """A copy of an array's bytes, and the array as it is kept. `before` is the same for the state before; it is used up."""
     raw = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
-    if before is None or before[1].dtype != array.dtype:
-        before = np.zeros(0, np.uint8), KeptArray(array.dtype, (0,), ())
+    if before is None or before[1].dtype != array.dtype or len(before[0]) != len(raw):
+        return raw.copy(), _kept_anew(array, raw, before)
     copy, old = before
-    changed = _changed(copy, raw)
-    if not changed and array.shape == old.shape:
+    changed = _changed(copy, raw, old.starts)
+    if len(changed) == 0 and array.shape == old.shape:
         return before
-    if len(copy) != len(raw):
-        copy = np.concatenate([copy[: len(raw)], raw[len(copy) :]])
-    chunks: list[Chunk | None] = list(old.chunks[: _count(len(raw))])
-    chunks += [None] * (_count(len(raw)) - len(chunks))
-    for number in changed:
-        part = slice(number * CHUNK, (number + 1) * CHUNK)
+    parts, chunks = _parts(old.starts, len(raw)), list(old.chunks)
+    numbers: list[int] = changed.tolist()
+    for number in numbers:
+        part = slice(*parts[number])
         copy[part] = raw[part]
         chunks[number] = _chunk(raw[part], array.itemsize, chunks[number])
-    return copy, KeptArray(array.dtype, array.shape, tuple(chunk for chunk in chunks if chunk is not None))
+    return copy, KeptArray(array.dtype, array.shape, tuple(chunks), old.starts)
+
+
+def _kept_anew(array: NDArray[Any], raw: Bytes, before: tuple[Bytes, KeptArray] | None) -> KeptArray:
+    """An array that has another size than before. What has only moved within it is found again by its content."""
+    known: dict[bytes, Chunk] = {}
+    if before is not None:
+        copy, old = before
+        for (start, end), chunk in zip(_parts(old.starts, len(copy)), old.chunks, strict=True):
+            known[copy[start:end].tobytes()] = chunk
+    starts = _starts(raw, array.itemsize)
+    chunks: list[Chunk] = []
+    for start, end in _parts(starts, len(raw)):
+        content = raw[start:end].tobytes()
+        if content not in known:
+            known[content] = Chunk(_PACK.compress(content))
+        chunks.append(known[content])
+    return KeptArray(array.dtype, array.shape, tuple(chunks), starts)
+
+
+def _starts(raw: Bytes, itemsize: int) -> NDArray[np.int64]:
+    """Where chunks begin, bytes: of a large array where its content says so, so that what has moved is cut as before."""
+    if len(raw) < LARGE or itemsize != 4:
+        return np.arange(0, len(raw), CHUNK)
+    hashes = (raw.view(np.uint32) * np.uint32(2654435761)) >> np.uint32(32 - CUT_BITS)
+    cuts = 4 * np.flatnonzero(hashes[:-1] == CUT) + 4
+    cuts = np.concatenate([[0], cuts[np.diff(cuts, prepend=0) >= LEAST]])
+    ends = np.append(cuts[1:], len(raw))
+    long: list[int] = np.flatnonzero(ends - cuts > MOST).tolist()
+    more: list[NDArray[np.int64]] = [np.arange(cuts[number], ends[number], MOST) for number in long]
+    return np.unique(np.concatenate((cuts, *more)))
+
+
+def _parts(starts: NDArray[np.int64], size: int) -> list[tuple[int, int]]:
+    """Begin and end of each chunk of an array of this size, bytes."""
+    begins: list[int] = starts.tolist()
+    return list(zip(begins, [*begins[1:], size], strict=True)) if begins else []
 
 
 def _chunk(raw: Bytes, itemsize: int, before: Chunk | None) -> Chunk:
@@ -148,23 +188,19 @@ def _chunk(raw: Bytes, itemsize: int, before: Chunk | None) -> Chunk:
     return Chunk(_PACK.compress(raw.data))
 
 
-def _changed(before: Bytes, now: Bytes) -> list[int]:
-    """The numbers of the chunks that differ, among them those that are new."""
-    whole = min(len(before), len(now)) // CHUNK
-    a, b = (side[: whole * CHUNK].view(np.uint64) for side in (before, now))
-    differ = np.flatnonzero((a != b).reshape(whole, CHUNK // 8).any(1)).tolist() if whole else []
-    same_end = len(before) == len(now) and np.array_equal(before[whole * CHUNK :], now[whole * CHUNK :])
-    return differ if same_end else [*differ, *range(whole, _count(len(now)))]
-
-
-def _count(nbytes: int) -> int:
-    return -(-nbytes // CHUNK)
+def _changed(before: Bytes, now: Bytes, starts: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The numbers of the chunks that differ. Both have the same length."""
+    whole = len(now) // 8 * 8
+    differ = np.flatnonzero(before[:whole].view(np.uint64) != now[:whole].view(np.uint64)) * 8
+    rest = np.flatnonzero(before[whole:] != now[whole:]) + whole
+    first = np.concatenate([differ, np.minimum(differ + 7, len(now) - 1), rest])  # eight bytes may be of two chunks
+    return np.unique(np.searchsorted(starts, first, side="right") - 1)
 
 
 def _places(tree: Any, place: str) -> Iterator[tuple[int, str]]:
     """The number of each array in a tree, and its place there."""
-    items: dict[Any, Any] = dict(enumerate(cast("list[Any]", tree))) if isinstance(tree, list) else tree
-    for name, item in items.items():
+    items = cast("list[Any]", tree) if isinstance(tree, list) else cast("dict[str, Any]", tree)
+    for name, item in enumerate(items) if isinstance(items, list) else items.items():
         if name in ("array", "numbers", "keys", "values") and type(item) is int:
             yield item, f"{place}/{name}"
         elif isinstance(item, list | dict):

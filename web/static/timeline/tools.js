@@ -66,7 +66,6 @@ export class Tools {
     find($("past"), "b").textContent = fine(time_s);
     $("past").title = `${fine(time_s)} of ${clock(time.end_s)}`;
     $("loop-off").hidden = !time.loop && this.a === null;
-    $("tick-back").disabled = $("second-back").disabled = time_s <= time.begin_s + 0.05;
     const told = JSON.stringify([time.branch, time.branches.length, time.sides.length]);
     if (told !== this.told) this.branches(time);
     this.told = told;
