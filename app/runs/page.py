@@ -61,6 +61,7 @@ class Page:
 
     def _begin(self, book: Book) -> None:
         beginning = book.beginning
+        version = code_version()  # takes a second: a program that is killed before leaves nothing, not a file of nothing
         if isinstance(beginning, KeptRun):
             self._folder = beginning.folder
             self._journal = Journal(self._folder, beginning.size, beginning.check)
@@ -75,7 +76,7 @@ class Page:
                     write_state(encode(book.brain), file)
         self._states = States(self._folder, lambda tick, hash_, known: book.told.append(Hashed(tick, hash_, known)))
         if isinstance(beginning, KeptRun):
-            self._try(self._lines.again, code_version())
+            self._try(self._lines.again, version)
         else:
             self._try(self._journal.add, written(header_of(beginning)))
 
