@@ -22,6 +22,7 @@ from sim2d.world.robot_fit import RobotFit
 from sim2d.world.world import World
 
 _TRIES = 1000  # random places tried to find one where the robot fits
+_OF_BOXES = ("box_appear", "box_vanish")  # lines of the script
 FREE_M = 0.02  # margin added to how far the robot can come in a tick, when deciding whether it may touch anything
 
 
@@ -215,7 +216,7 @@ class Simulator:
                 f"no box named {name!r}; expected one of: {', '.join(names) or 'none, since there are none'}"
             )
         boxes = tuple(box for box in self.world.boxes if box.name != name)
-        script = tuple(event for event in self.world.script if (event.do, event.name) not in _moves(name))
+        script = tuple(event for event in self.world.script if not (event.do in _OF_BOXES and event.name == name))
         self.set_world(replace(self.world, boxes=boxes, script=script))
 
     def set_world(self, world: World) -> None:

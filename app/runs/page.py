@@ -61,7 +61,9 @@ class Page:
 
     def _begin(self, book: Book) -> None:
         beginning = book.beginning
-        version = code_version()  # takes a second: a program that is killed before leaves nothing, not a file of nothing
+        version = (
+            code_version()
+        )  # takes a second: a program that is killed before leaves nothing, not a file of nothing
         if isinstance(beginning, KeptRun):
             self._folder = beginning.folder
             self._journal = Journal(self._folder, beginning.size, beginning.check)
