@@ -22,7 +22,6 @@ from sim2d.importers import open_world
 
 if TYPE_CHECKING:
     from app.engine.engine import Engine
-    from app.engine_thread import EngineThread
     from app.kept_brains.files import KeptBrain
     from app.runs.run_file import KeptRun
     from app.trials.trial import Trial

@@ -75,7 +75,7 @@ def test_after_a_kill_the_run_is_offered_and_goes_on(tmp_path: Path, monkeypatch
 def test_killed_at_any_moment_it_opens_and_comes_out_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path))
     chance = random.Random(5)
-    for _ in range(2):
+    for _ in range(1):
         program = Program("--port", "0", "--speed", "0", "--world", "loop", RATSLAM_RUNS=str(tmp_path))
         time.sleep(chance.uniform(0.5, 3.0))
         program.process.kill()
