@@ -22,6 +22,7 @@ from sim2d.world.robot_fit import RobotFit
 from sim2d.world.world import World
 
 _TRIES = 1000  # random places tried to find one where the robot fits
+_OF_BOXES = ("box_appear", "box_vanish")  # lines of the script
 FREE_M = 0.02  # margin added to how far the robot can come in a tick, when deciding whether it may touch anything
 
 
@@ -211,13 +212,15 @@ class Simulator:
         self.set_world(replace(self.world, boxes=(*self.world.boxes, as_in_a_file)))
 
     def remove_box(self, name: str) -> None:
-        """Take a box away for good."""
+        """Take a box away for good, with the lines of the script that move it."""
         names = [box.name for box in self.world.boxes]
         if name not in names:
             raise ValueError(
                 f"no box named {name!r}; expected one of: {', '.join(names) or 'none, since there are none'}"
             )
-        self.set_world(replace(self.world, boxes=tuple(box for box in self.world.boxes if box.name != name)))
+        boxes = tuple(box for box in self.world.boxes if box.name != name)
+        script = tuple(event for event in self.world.script if not (event.do in _OF_BOXES and event.name == name))
+        self.set_world(replace(self.world, boxes=boxes, script=script))
 
     def set_world(self, world: World) -> None:
         """Go on in an edited world. Robot, time and everything that kept its name stay as they are. `reset` undoes it.

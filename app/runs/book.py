@@ -19,7 +19,7 @@ from disk import copy_state
 from ratslam_core import RatSlam
 
 COPY_EVERY_S = 10.0  # simulated time between two copies of the state, at least
-COPY_SHARE = 0.01  # of the engine's computing time may go into copies; they grow dearer as the map grows
+COPY_SHARE = 0.004  # of the engine's computing time may go into copies; they grow dearer as the map grows
 LOOK_AFTER = 10  # ticks between two looks whether a copy is due
 
 

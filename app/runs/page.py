@@ -65,6 +65,9 @@ class Page:
         beginning = book.beginning
         if isinstance(beginning, Fork):
             beginning = _forked(beginning)
+        version = (
+            code_version()
+        )  # takes a second: a program that is killed before leaves nothing, not a file of nothing
         if isinstance(beginning, KeptRun):
             self._folder = beginning.folder
             self._journal = Journal(self._folder, beginning.size, beginning.check)
@@ -79,7 +82,7 @@ class Page:
         book.folder = self._folder
         self._states = States(self._folder, lambda tick, hash_, known: book.told.append(Hashed(tick, hash_, known)))
         if isinstance(beginning, KeptRun):
-            self._try(self._lines.again, code_version())
+            self._try(self._lines.again, version)
         else:
             self._try(self._journal.add, written(header_of(beginning)))
 

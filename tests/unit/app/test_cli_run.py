@@ -106,6 +106,7 @@ def test_run_binds_first_then_starts_and_stops(
         "bound", "engine starts", "serving", "opens http://127.0.0.1:8000/", "compiling ends", "engine stops", "compiling ends",
     ]  # fmt: skip
     name, seed, config, options = doubles.made["engine"]
+    assert options.pop("keeper") is not None
     assert (name, seed, options) == ("loop", 9, {"speed": 3.0, "running": False, "brain": None, "first": None})
     assert config == Config().with_value("robot.light", 0.8)
     assert doubles.made["dashboard"][1:] == ("submit", "viewers", 0)

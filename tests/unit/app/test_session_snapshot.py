@@ -125,6 +125,14 @@ def test_after_a_kidnap_an_edit_and_other_parameters() -> None:
     assert len(session.evaluation.kidnaps) == 1
 
 
+def test_after_a_box_of_the_script_was_taken_away() -> None:
+    session = driven("living", 2)
+    moved = [event.name for event in session.world.script if event.do == "box_appear"]
+    session.remove_box(moved[0])
+    assert moved[0] not in [event.name for event in session.simulator.world.script]
+    goes_on(session, 3)
+
+
 def do(session: Session, order: int) -> None:
     match order:
         case 0:

@@ -89,7 +89,7 @@ def test_a_run_that_differs_says_so_with_its_tick(tmp_path: Path, monkeypatch: p
     lines = read_lines(run.folder / LINES).values
     lines[0]["run"]["version"] = "000000000000"
     order = next(line for line in lines if line.get("order") == "drive")
-    order["values"]["speed"] = -0.2
+    order["values"]["speed"] = 0.9
     data, check = b"", 0
     for value in lines:
         line, check = line_of(value, check)
