@@ -17,8 +17,13 @@ GAP_TIMES, GAP_S = 10.0, 3.0  # and so many times, and seconds, later, nobody kn
 class Motion:
     """One odometry for each moment. Who needs the turn from pictures has to know the camera's field of view."""
 
-    def __init__(self, about: About, dt: float, field_of_view: float, levels_per_m: float = 1.0, *, scans: bool = True) -> None:
-        """scans: whether a laser, if there is one, makes the wheels better; dt: of a typical moment, s; levels_per_m: how much a picture changes while the robot drives a metre."""
+    def __init__(
+        self, about: About, dt: float, field_of_view: float, levels_per_m: float = 1.0, *, scans: bool = True
+    ) -> None:
+        """scans: whether a laser, if there is one, makes the wheels better; dt: of a typical moment, s.
+
+        levels_per_m: how much a picture changes while the robot drives a metre.
+        """
         self._about, self._dt, self._field_of_view, self._levels_per_m = about, dt, field_of_view, levels_per_m
         wheels = "speed" in about.has
         self._sees = VisualOdometry(field_of_view) if "camera" in about.has and not wheels else None

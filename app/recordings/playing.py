@@ -10,6 +10,8 @@ import numpy as np
 from app.config import Config
 from app.recordings.brain_rules import rules
 from app.recordings.recording import Moment, Recording
+from app.recordings.scan_odometry import is_laser
+from app.recordings.scan_ties import ScanTies
 from ratslam_core import Estimate, Odometry, RatSlam
 
 
@@ -42,9 +44,12 @@ class Player:
         """Every moment in turn. It counts moments and not time, so the pace of whoever asks changes nothing."""
         brain = self.brain()
         motion = self._motion.anew()
+        ties = ScanTies(self.recording.about) if is_laser(self.recording.about) else None
         for moment in self.recording.moments():
             moved = motion.of(moment)
             if motion.gap:
                 brain.declare_kidnapped()
             estimate = brain.step(moment.image, moved, ranges_m=moment.ranges_m)
+            if ties is not None and estimate.created and moment.ranges_m is not None:
+                ties.made(brain.experience_map, moment.ranges_m)
             yield Step(moment, estimate, brain, moved)
