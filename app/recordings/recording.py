@@ -25,6 +25,7 @@ class Moment:
     throttle: float | None = None  # -1 to 1, of a car without wheel encoders
     ranges_m: NDArray[np.float64] | None = None  # (beams,), of the laser or the sonars; inf: nothing in range
     truth: Pose | None = None  # for judging and drawing, never for the robot
+    behaviour: int = 0  # the local movement that led here, 0 to 15; only runs of ours have it
 
 
 @dataclass(frozen=True, slots=True)
