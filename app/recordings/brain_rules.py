@@ -20,7 +20,9 @@ from ratslam_core.local_view.front_ends import named_front_end
 LEAST_SCALE, MOST_SCALE = 0.02, 50.0
 UNRELATED = 0.0025  # share of unrelated views that may be taken for one another
 LOOK_SIGMA_M = 0.35  # of a look that is only just believed, in the office
-JOIN_VIEWS = 4  # that must agree after a gap: in an office of ours half of the rooms may be twins, elsewhere they are rare
+JOIN_VIEWS = (
+    4  # that must agree after a gap: in an office of ours half of the rooms may be twins, elsewhere they are rare
+)
 LASER_SHIFT = 5  # columns of 3 degrees: a laser sees so well that a turn need not spoil a view
 LOUD = ("local_view.", "kidnap.", "occupancy.")  # their lengths are those of echoes, which do not grow with the speed
 
@@ -47,7 +49,9 @@ def _front_end(recording: Recording) -> str:
     about = recording.about
     if "camera" not in about.has:
         if not is_laser(about):
-            raise ValueError(f"{about.name}: neither a camera nor a laser, so there is nothing that could be recognised")
+            raise ValueError(
+                f"{about.name}: neither a camera nor a laser, so there is nothing that could be recognised"
+            )
         return "laser"
     return "image and sonars" if about.beam_angles_rad and not is_laser(about) else "limited levels"
 
@@ -72,7 +76,11 @@ def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]
     if "camera" not in recording.about.has and is_laser(recording.about):
         values["local_view.field_of_view"] = _span(recording.about.beam_angles_rad)
     # Pictures of real cameras jump when one is dropped, so a jump is no kidnap: only a gap in the recording is.
-    values |= {"local_view.composite_surprise": 255.0, "local_view.range_surprise": 0.0, "experience_map.join_views": JOIN_VIEWS}
+    values |= {
+        "local_view.composite_surprise": 255.0,
+        "local_view.range_surprise": 0.0,
+        "experience_map.join_views": JOIN_VIEWS,
+    }
     if len(seen.unlike) == 0:
         return values
     threshold = float(np.quantile(seen.unlike, UNRELATED))

@@ -101,7 +101,10 @@ def test_beams_may_be_told_from_either_side() -> None:
     about = About("room", "test", 40, 40.0, has, beam_angles_rad=tuple(angles.tolist()), range_limit_m=20.0)
     turned = dataclasses.replace(about, beam_angles_rad=about.beam_angles_rad[::-1])
     mirrored = [dataclasses.replace(m, ranges_m=None if m.ranges_m is None else m.ranges_m[::-1]) for m in moments]
-    ways = [[s.estimate.pose_map_robot for s in Player(Held(*one)).steps()] for one in ((about, moments), (turned, mirrored))]
+    ways = [
+        [s.estimate.pose_map_robot for s in Player(Held(*one)).steps()]
+        for one in ((about, moments), (turned, mirrored))
+    ]
     for a, b in zip(*ways, strict=True):
         assert (a.x, a.y, a.heading_rad) == pytest.approx((b.x, b.y, b.heading_rad), abs=1e-6)
 
@@ -113,4 +116,11 @@ def _scan(k: int, angles: np.ndarray) -> Moment:
     with np.errstate(divide="ignore"):
         ahead = np.where(c > 0, (4.5 - x) / c, (-3.5 - x) / c)
         aside = np.where(s > 0, (3.0 - y) / s, (-2.0 - y) / s)
-    return Moment(k, float(k), 1.0, speed=0.05 * (k > 0), yaw_rate=0.1 * (k > 0), ranges_m=np.minimum(np.abs(ahead), np.abs(aside)))
+    return Moment(
+        k,
+        float(k),
+        1.0,
+        speed=0.05 * (k > 0),
+        yaw_rate=0.1 * (k > 0),
+        ranges_m=np.minimum(np.abs(ahead), np.abs(aside)),
+    )
