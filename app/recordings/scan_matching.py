@@ -1,17 +1,18 @@
 """[ours] How a laser moved between two scans: the second is laid over the first. What wheels say is where to begin.
 
 Wheels that slip turn a robot by degrees between two scans; a scan tells the turn to a fraction of one. Point to line, as
-Censi 2008. test_scan_matching.py::test_a_movement_in_a_room_is_found.
+Censi 2008. test_recorded_motion.py::test_a_movement_in_a_room_is_found.
 """
 
 from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
+from scipy.spatial import cKDTree  # pyright: ignore  # SciPy has no stubs
 
 from ratslam_core import Pose2, wrap_angle
 
@@ -50,11 +51,16 @@ class Walls:
 
     def __init__(self, points: Points) -> None:
         self.points, self.normals = normals_of(points)
-        self.tree = cKDTree(self.points) if len(self.points) >= LEAST_POINTS else None
+        self._tree: Any = cKDTree(self.points) if len(self.points) >= LEAST_POINTS else None
+
+    def nearest(self, points: Points) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """How far each point is from the nearest one of the walls, and which that is; (n,) each."""
+        away, which = self._tree.query(points)
+        return np.asarray(away, np.float64), np.asarray(which, np.int64)
 
     def match(self, now: Points, told: Pose2, least: float = LEAST) -> Pose2 | None:
         """The pose of the scan `now` in the frame of this one; None when no start near `told` fits well."""
-        if self.tree is None or len(now) < LEAST_POINTS:
+        if self._tree is None or len(now) < LEAST_POINTS:
             return None
         fits, best = 0.0, told
         for turn in STARTS_RAD:
@@ -77,7 +83,7 @@ def _settle(walls: Walls, now: Points, told: Pose2, turn: float) -> tuple[float,
         near = NEAR * (1 - 0.75 * k / (ROUNDS - 1))
         c, s = math.cos(heading), math.sin(heading)
         at = now @ np.array([[c, s], [-s, c]]) + (x, y)
-        away, which = walls.tree.query(at)
+        away, which = walls.nearest(at)
         on = away < near
         if on.sum() < LEAST_POINTS // 2:
             return 0.0, told
@@ -87,7 +93,7 @@ def _settle(walls: Walls, now: Points, told: Pose2, turn: float) -> tuple[float,
         doubt = np.diag([1e-2, 1e-2, 1e-3]) * len(
             rows
         )  # where all walls are parallel, it stays where the wheels put it
-        step = np.linalg.solve(rows.T @ rows + doubt, -rows.T @ off)
+        step: NDArray[np.float64] = np.linalg.solve(rows.T @ rows + doubt, -rows.T @ off)
         x, y, heading = x + float(step[0]), y + float(step[1]), heading + float(step[2])
         fits = float(on.mean()) - float(np.abs(off).mean()) / near / 4
     return fits, Pose2(x, y, wrap_angle(heading))

@@ -1,4 +1,7 @@
-"""[ours] Odometry of wheels, made better by a laser: each scan is laid over the one before. test_scan_odometry.py."""
+"""[ours] Odometry of wheels, made better by a laser: each scan is laid over the one before.
+
+test_recorded_motion.py::test_a_laser_makes_wheels_better.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """[ours] A laser measures where a new experience lies to old ones near it in the map, by laying its scan over theirs.
 
 A view says that a place is known; only the pose cells say where in it the robot is, to a cell. A scan says it to centimetres.
-What a scan says wrongly, the exact correction gives up like any other closure. test_scan_ties.py.
+What a scan says wrongly, the exact correction gives up like any other closure.
+test_recorded_motion.py::test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ def _sensed(session: Session, frame: int) -> Moment:
     f, pose = session.frame, session.simulator.truth
     return Moment(
         frame, session.time_s, session.odometry.dt, f.image, session.odometry.speed, session.odometry.yaw_rate, None,
-        f.ranges_m, (pose.x, pose.y, pose.heading_rad), session.pilot.behaviour.number,
+        np.asarray(f.ranges_m, np.float64), (pose.x, pose.y, pose.heading_rad), session.pilot.behaviour.number,
     )  # fmt: skip
 
 
