@@ -93,7 +93,7 @@ def _settle(walls: Walls, now: Points, told: Pose2, turn: float) -> tuple[float,
         doubt = np.diag([1e-2, 1e-2, 1e-3]) * len(
             rows
         )  # where all walls are parallel, it stays where the wheels put it
-        step: NDArray[np.float64] = np.linalg.solve(rows.T @ rows + doubt, -rows.T @ off)
+        step = np.asarray(np.linalg.solve(rows.T @ rows + doubt, -rows.T @ off), np.float64)
         x, y, heading = x + float(step[0]), y + float(step[1]), heading + float(step[2])
         fits = float(on.mean()) - float(np.abs(off).mean()) / near / 4
     return fits, Pose2(x, y, wrap_angle(heading))
