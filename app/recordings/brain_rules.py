@@ -18,7 +18,7 @@ from app.recordings.survey import Survey, survey
 from ratslam_core.local_view.front_ends import named_front_end
 
 LEAST_SCALE, MOST_SCALE = 0.02, 50.0
-UNRELATED = 0.0025  # share of unrelated views that may be taken for one another
+UNRELATED, UNRELATED_SCANS = 0.0025, 0.002  # share of unrelated views that may be taken for one another
 LOOK_SIGMA_M = 0.35  # of a look that is only just believed, in the office
 JOIN_VIEWS = (
     4  # that must agree after a gap: in an office of ours half of the rooms may be twins, elsewhere they are rare
@@ -83,7 +83,8 @@ def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]
     }
     if len(seen.unlike) == 0:
         return values
-    threshold = float(np.quantile(seen.unlike, UNRELATED))
+    share = UNRELATED if "camera" in recording.about.has else UNRELATED_SCANS
+    threshold = float(np.quantile(seen.unlike, share))
     values["local_view.composite_threshold"] = threshold
     values["experience_map.anchor_sigma"] = min(LOOK_SIGMA_M * scale / threshold, 1.0)
     return values
