@@ -18,8 +18,11 @@ from app.recordings.survey import Survey, survey
 from ratslam_core.local_view.front_ends import named_front_end
 
 LEAST_SCALE, MOST_SCALE = 0.02, 50.0
-UNRELATED = 0.002  # share of unrelated views that may be taken for one another
+UNRELATED, UNRELATED_SCANS = 0.0025, 0.002  # share of unrelated views that may be taken for one another
 LOOK_SIGMA_M = 0.35  # of a look that is only just believed, in the office
+JOIN_VIEWS = (
+    4  # that must agree after a gap: in an office of ours half of the rooms may be twins, elsewhere they are rare
+)
 LASER_SHIFT = 5  # columns of 3 degrees: a laser sees so well that a turn need not spoil a view
 LOUD = ("local_view.", "kidnap.", "occupancy.")  # their lengths are those of echoes, which do not grow with the speed
 
@@ -45,7 +48,11 @@ def _front_end(recording: Recording) -> str:
     """What it sees with: a camera, beside sonars or not, or a laser."""
     about = recording.about
     if "camera" not in about.has:
-        return "laser" if is_laser(about) else "image and sonars"
+        if not is_laser(about):
+            raise ValueError(
+                f"{about.name}: neither a camera nor a laser, so there is nothing that could be recognised"
+            )
+        return "laser"
     return "image and sonars" if about.beam_angles_rad and not is_laser(about) else "limited levels"
 
 
@@ -68,13 +75,18 @@ def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]
     values: dict[str, Value] = {"local_view.field_of_view": seen.field_of_view, "local_view.deaf_doubt": 0.0}
     if "camera" not in recording.about.has and is_laser(recording.about):
         values["local_view.field_of_view"] = _span(recording.about.beam_angles_rad)
-    values |= {"local_view.composite_surprise": 255.0, "local_view.range_surprise": 0.0}
+    # Pictures of real cameras jump when one is dropped, so a jump is no kidnap: only a gap in the recording is.
+    values |= {
+        "local_view.composite_surprise": 255.0,
+        "local_view.range_surprise": 0.0,
+        "experience_map.join_views": JOIN_VIEWS,
+    }
     if len(seen.unlike) == 0:
         return values
-    threshold = float(np.quantile(seen.unlike, UNRELATED))
+    share = UNRELATED if "camera" in recording.about.has else UNRELATED_SCANS
+    threshold = float(np.quantile(seen.unlike, share))
     values["local_view.composite_threshold"] = threshold
     values["experience_map.anchor_sigma"] = min(LOOK_SIGMA_M * scale / threshold, 1.0)
-    return values
     return values
 
 

@@ -20,7 +20,10 @@ class Motion:
     def __init__(
         self, about: About, dt: float, field_of_view: float, levels_per_m: float = 1.0, *, scans: bool = True
     ) -> None:
-        """scans: whether a laser, if there is one, makes the wheels better; dt: of a typical moment, s; levels_per_m: how much a picture changes while the robot drives a metre."""
+        """scans: whether a laser, if there is one, makes the wheels better; dt: of a typical moment, s.
+
+        levels_per_m: how much a picture changes while the robot drives a metre.
+        """
         self._about, self._dt, self._field_of_view, self._levels_per_m = about, dt, field_of_view, levels_per_m
         wheels = "speed" in about.has
         self._sees = VisualOdometry(field_of_view) if "camera" in about.has and not wheels else None

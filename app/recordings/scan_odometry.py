@@ -1,4 +1,7 @@
-"""[ours] Odometry of wheels, made better by a laser: each scan is laid over the one before. test_scan_odometry.py."""
+"""[ours] Odometry of wheels, made better by a laser: each scan is laid over the one before.
+
+test_recorded_motion.py::test_a_laser_makes_wheels_better.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.recordings.recording import About
-from app.recordings.scan_matching import Points, match, points_of
+from app.recordings.scan_matching import Points, Walls, points_of
 from ratslam_core import Odometry, Pose2
 
 LEAST_BEAMS = 60  # fewer are sonars
@@ -35,7 +38,7 @@ class ScanOdometry:
         way, turn = told.speed * told.dt, told.yaw_rate * told.dt
         if before is None or (way == 0 and turn == 0):
             return told
-        found = match(before, now, Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn))
+        found = Walls(before).match(now, Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn))
         if found is None:
             return told
         turn = found.heading_rad

@@ -116,6 +116,19 @@ class ExperienceMap(Looks):
         deleted = [self._judge(row, reached) for row in rows if row >= 0]
         return any(deleted)
 
+    def tie(self, i: int, j: int, moved: Pose2, sigma_m: float) -> None:
+        """[ours] Something besides views measured where j lies in the frame of i, give or take `sigma_m`: a closure, no way.
+
+        A laser does that (`app/recordings/scan_ties.py`); nobody else does.
+        test_recorded_motion.py::test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs.
+        """
+        t = self.transitions
+        row = t.add(i, j, travelled=False)
+        t.chain[row] = False
+        t.measure(row, moved, self._weight_of(sigma_m), t.move[row], 0.0)
+        t.take_time(row, 0.0, 0.0)
+        self.closures += 1
+
     def declare_kidnapped(self, *, sure: bool = True) -> None:
         """[ours] The robot was carried, not driven: the way here is no transition, and odometry starts afresh.
 

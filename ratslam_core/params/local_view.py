@@ -16,7 +16,15 @@ class LocalViewParams:
 
     front_end: str = param(
         "image and sonars",
-        choices=("template", "complex cells", "hue and saturation", "scene numbers", "image and sonars", "limited levels", "laser"),
+        choices=(
+            "template",
+            "complex cells",
+            "hue and saturation",
+            "scene numbers",
+            "image and sonars",
+            "limited levels",
+            "laser",
+        ),
         meaning="what the features of a view are",
         source="D 7; A 3.3; B 7; B 5; ours",
         live=False,

@@ -1,6 +1,6 @@
 """[ours] A laser's scan as a view: one row of ranges from left to right, which a turn shifts as it shifts a picture.
 
-The papers' robots see with cameras; many recordings have a laser only. test_laser.py::test_a_turn_shifts_the_view.
+The papers' robots see with cameras; many recordings have a laser only. test_recorded_front_ends.py::test_a_turn_shifts_the_view.
 """
 
 from __future__ import annotations

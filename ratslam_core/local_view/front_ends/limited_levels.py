@@ -2,7 +2,7 @@
 
 As `image_and_sonars`, without echoes. Lamps, windows and black chairs are some hundred times as bright as one another: a pixel
 of theirs that moves to the next would weigh more than the whole of the rest. So no pixel differs from the mean of its column
-by more than so many levels. test_limited_levels.py::test_a_lamp_counts_no_more_than_a_wall.
+by more than so many levels. test_recorded_front_ends.py::test_a_lamp_counts_no_more_than_a_wall.
 """
 
 from __future__ import annotations

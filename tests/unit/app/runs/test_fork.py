@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from app.commands import carry_out
+from app.config import Config
 from app.engine.engine import Engine
 from app.engine.pace import Pace
 from app.engine.watchdog import Watchdog
-from app.commands import carry_out
-from app.config import Config
 from app.runs.folder import all_runs
 from app.runs.keeper import RunKeeper
 from app.runs.replay import replay
@@ -22,7 +22,12 @@ def test_each_branch_is_kept_and_runs_again(tmp_path: Path) -> None:
     keeper = RunKeeper(complaints.append)
     keeper.start()
     engine = Engine(
-        load_world("office"), Pace(0.0), Watchdog(60.0, lambda: None), running=True, answer=lambda *_: None, keeper=keeper
+        load_world("office"),
+        Pace(0.0),
+        Watchdog(60.0, lambda: None),
+        running=True,
+        answer=lambda *_: None,
+        keeper=keeper,
     )
     engine.begin(load_world("office"), 3, Config())
 

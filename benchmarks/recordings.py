@@ -1,0 +1,140 @@
+"""The bars for recordings of real robots: `python -m benchmarks.recordings --data ../shared/data [office airsim intel]`."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.evaluation.alignment import rmse
+from app.recordings.made_odometry import OdometryErrors, WithMadeOdometry
+from app.recordings.opening import open_recording
+from app.recordings.playing import Player
+from app.recordings.recording import Recording
+
+NEAR_S, FAR_S = 1.0, 3.0  # a look is right within, and false beyond
+SEEDS = 20
+SPEED_NOISE, YAW_NOISE, MOST_BIAS = 0.1, 0.02, 0.01
+INTEL_BEGAN_S = 976052890.244111  # by the clock of the relations, when the first scan was taken
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """One recording, frame by frame."""
+
+    frames: list[int]
+    times: NDArray[np.float64]  # (n,) s
+    made: NDArray[np.float64]  # (n,) when the active experience was made, s
+    path: NDArray[np.float64]  # (n, 3) by the final map
+    odometry: NDArray[np.float64]  # (n, 3)
+
+
+def play(recording: Recording, seed: int = 0) -> Played:
+    """Play it to the end; each frame is where its active experience lies in the final map."""
+    frames: list[int] = []
+    times: list[float] = []
+    active: list[int] = []
+    local: list[tuple[float, float, float]] = []
+    driven = [(0.0, 0.0, 0.0)]
+    born: dict[int, float] = {}
+    brain = None
+    for step in Player(recording, seed).steps():
+        brain, at = step.brain, step.brain.experience_map.local_pose
+        if step.estimate.created:
+            born[step.estimate.experience] = step.moment.time_s
+        frames.append(step.moment.frame)
+        times.append(step.moment.time_s)
+        active.append(step.estimate.experience)
+        local.append((at.x, at.y, at.heading_rad))
+        x, y, heading = driven[-1]
+        way, turn = step.motion.speed * step.motion.dt, step.motion.yaw_rate * step.motion.dt
+        driven.append((x + way * math.cos(heading + turn / 2), y + way * math.sin(heading + turn / 2), heading + turn))
+    if brain is None:
+        raise ValueError(f"{recording.about.name}: has no moments")
+    pose, beside = brain.experience_map.poses[active], np.array(local)
+    c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+    x = pose[:, 0] + c * beside[:, 0] - s * beside[:, 1]
+    y = pose[:, 1] + s * beside[:, 0] + c * beside[:, 1]
+    path = np.stack([x, y, pose[:, 2] + beside[:, 2]], axis=1)
+    return Played(frames, np.array(times), np.array([born[i] for i in active]), path, np.array(driven[1:]))
+
+
+def laps(played: Played, file: Path) -> tuple[float, float]:
+    """(recall, precision) over the pairs of laps.csv."""
+    paired: dict[int, list[int]] = {}
+    with file.open(encoding="utf-8", newline="") as text:
+        for row in csv.DictReader(text):
+            paired.setdefault(int(row["frame_later"]), []).append(int(row["frame_earlier"]))
+    at = {frame: k for k, frame in enumerate(played.frames)}
+    right = false = 0
+    for later, earlier in paired.items():
+        k = at[later]
+        off = min(abs(played.made[k] - played.times[at[e]]) for e in earlier)
+        right += len(earlier) * (off <= NEAR_S)
+        false += len(earlier) * (off > FAR_S and played.times[k] - played.made[k] > FAR_S)
+    return right / sum(map(len, paired.values())), right / max(right + false, 1)
+
+
+def relations(path: NDArray[np.float64], times: NDArray[np.float64], file: Path) -> tuple[float, float]:
+    """Mean error (m, degrees) against the relations, each between two times; poses between two scans are interpolated."""
+    raw = np.loadtxt(file)
+    heading = np.unwrap(path[:, 2])
+
+    def at(time: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.stack([np.interp(time, times, column) for column in (path[:, 0], path[:, 1], heading)], axis=1)
+
+    a, b = at(raw[:, 0]), at(raw[:, 1])
+    c, s, d = np.cos(a[:, 2]), np.sin(a[:, 2]), b - a
+    off = np.hypot(c * d[:, 0] + s * d[:, 1] - raw[:, 2], -s * d[:, 0] + c * d[:, 1] - raw[:, 3])
+    turn = np.remainder(d[:, 2] - raw[:, 7] + math.pi, math.tau) - math.pi
+    return float(off.mean()), math.degrees(float(np.abs(turn).mean()))
+
+
+def office(data: Path) -> None:
+    folder = data / "recordings" / "office-car"
+    recall, precision = laps(play(open_recording(folder)), folder / "laps.csv")
+    print(f"office-car: recall {recall:.3f} (bar 0.7), precision {precision:.3f} (bar 0.95)")
+
+
+def airsim(data: Path) -> None:
+    recording = open_recording(data / "recordings" / "airsim-track")
+    truth = np.array([m.truth for m in recording.moments()])[:, :2]
+    errors: list[tuple[float, float]] = []
+    for seed in range(SEEDS):
+        bias = float(np.random.default_rng(seed).uniform(-MOST_BIAS, MOST_BIAS))
+        played = play(WithMadeOdometry(recording, OdometryErrors(SPEED_NOISE, YAW_NOISE, bias), seed), seed)
+        errors.append((rmse(played.path[:, :2], truth), rmse(played.odometry[:, :2], truth)))
+        print(f"  seed {seed}: map {errors[-1][0]:.1f} m, odometry {errors[-1][1]:.1f} m", flush=True)
+    of_map, alone = np.array(errors).T
+    print(
+        f"airsim-track: map {np.median(of_map):.1f} m median (bar 10), {of_map.max():.1f} m at worst; odometry "
+        f"{np.median(alone):.1f} m; worse than odometry in {int((of_map > alone).sum())} of {SEEDS}"
+    )
+
+
+def intel(data: Path) -> None:
+    folder = data / "logs" / "intel"
+    recording = open_recording(folder / "intel_gfs.gz")
+    played = play(recording)
+    for name, path in (("map", played.path), ("odometry", played.odometry)):
+        metres, degrees = relations(path, played.times + INTEL_BEGAN_S, folder / "intel.relations")
+        print(f"intel: {name} {metres:.3f} m, {degrees:.1f} degrees (bar 0.5 m)")
+
+
+def main(words: Iterable[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("which", nargs="*", default=["office", "airsim", "intel"])
+    args = parser.parse_args(None if words is None else list(words))
+    for name in args.which:
+        {"office": office, "airsim": airsim, "intel": intel}[name](args.data)
+
+
+if __name__ == "__main__":
+    main()
