@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from app.commands import carry_out
 from app.config import Config
 from app.engine.engine import Engine
@@ -17,7 +15,7 @@ from sim2d import load_world
 from web import messages as m
 
 
-def test_each_branch_is_kept_and_runs_again(tmp_path: Path) -> None:
+def test_each_branch_is_kept_and_runs_again() -> None:
     complaints: list[str] = []
     keeper = RunKeeper(complaints.append)
     keeper.start()
