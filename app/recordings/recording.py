@@ -25,6 +25,7 @@ class Moment:
     throttle: float | None = None  # -1 to 1, of a car without wheel encoders
     ranges_m: NDArray[np.float64] | None = None  # (beams,), of the laser or the sonars; inf: nothing in range
     truth: Pose | None = None  # for judging and drawing, never for the robot
+    behaviour: int = 0  # the local movement that led here, 0 to 15; only runs of ours have it
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +40,7 @@ class About:
     image_shape: tuple[int, int] | None = None  # (h, w)
     beam_angles_rad: tuple[float, ...] = ()  # of each range from straight ahead, left is positive
     range_limit_m: float | None = None
+    uses: tuple[str, ...] = ()  # sentences: what is used for what
     problems: tuple[str, ...] = ()  # sentences with the message or line where something is wrong
 
 

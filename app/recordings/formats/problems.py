@@ -1,0 +1,41 @@
+"""What is wrong with a recording, in sentences: the first ones of each kind, and how many more there are."""
+
+from __future__ import annotations
+
+TOLD = 10  # sentences of one kind
+
+
+class Problems:
+    """Collects sentences. The same one counts once, so that a recording may be read more than once."""
+
+    def __init__(self) -> None:
+        self._told: dict[str, dict[str, None]] = {}
+        self._more: dict[str, int] = {}
+
+    def add(self, kind: str, where: str, what: str) -> None:
+        """kind: of which the first few are told; where: the message, line or file; what: is wrong with it."""
+        sentence = f"{where}: {plain(what)}"
+        told = self._told.setdefault(kind, {})
+        if len(told) < TOLD:
+            told[sentence] = None
+        elif sentence not in told:
+            self._more[kind] = self._more.get(kind, 0) + 1
+
+    def begin(self) -> None:
+        """The recording is read from its beginning again: what was only counted is counted anew."""
+        self._more.clear()
+
+    def __bool__(self) -> bool:
+        return bool(self._told)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        lines = [sentence for told in self._told.values() for sentence in told]
+        return (*lines, *(f"and {count} more: {kind}" for kind, count in self._more.items()))
+
+
+def plain(text: str, most: int = 300) -> str:
+    """On one line, short, and without anything that would change a terminal."""
+    line = " ".join(str(text).split())
+    shown = "".join(c if c.isprintable() else "?" for c in line[: most + 1])
+    return shown if len(shown) <= most else shown[:most] + "..."
