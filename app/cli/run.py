@@ -9,9 +9,10 @@ import webbrowser
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.options import Verbs, add_session_options, session_of
+from app.cli.options import Verbs, add_session_options, checked_seed, config_of, session_of
 from app.config import Config
 from app.startup.compiling import Compiling
 from app.startup.waking import Waking
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from app.trials.trial import Trial
 
 ENGINE_PATIENCE_S = 2.0  # how long leaving waits for a tick that hangs
+_NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
 _NOT_WITH_EXPERIMENT = ("scale", "brain", "preset", "config", "set", "resume_brain")
 
 
@@ -61,6 +63,9 @@ def add_run(commands: Verbs) -> None:
     run.add_argument(
         "--resume-brain", action="store_true", help="go on with the brain kept last, in its world and with its seed"
     )
+    run.add_argument(
+        "--recording", type=Path, metavar="PATH", help="play a recording of a robot: MCAP, bag, video, pictures, ..."
+    )
     run.add_argument("--experiment", metavar="NAME|FILE", help="watch a trial of this experiment (--seed: this one)")
     run.add_argument("--engine", choices=("ours", "paper"), help="with --experiment: our rules or the paper's")
     run.add_argument("--levels", nargs="+", metavar="LEVEL", help="with --experiment: one level of each of its axes")
@@ -80,6 +85,8 @@ def _run(args: argparse.Namespace) -> int:
     if not is_speed(args.speed):
         raise ValueError(f"--speed must be {SPEEDS}, got {args.speed:g}")
     serving = Serving(args.port, not args.no_browser, args.speed, not args.paused)
+    if args.recording is not None:
+        return _run_recording(args, serving)
     if args.experiment is not None:
         return _run_experiment(args, serving)
     for name in ("engine", "levels"):
@@ -90,6 +97,27 @@ def _run(args: argparse.Namespace) -> int:
     kept = _resume(args)
     world, config, brain = session_of(args)
     return _compiling(lambda compiling: _serve(serving, First(world, args.seed, config, brain), compiling, kept))
+
+
+def _run_recording(args: argparse.Namespace, serving: Serving) -> int:
+    from app.recordings.opening import open_recording
+    from app.recordings.playing import Player
+
+    for name in _NOT_WITH_RECORDING:
+        if getattr(args, name):
+            raise ValueError(f"--{name.replace('_', '-')} does not go with --recording, which is no simulated world")
+    if args.world != DEFAULT_WORLD:
+        raise ValueError(f"--world {args.world} does not go with --recording, which is no simulated world")
+    seed = checked_seed(1 if args.seed is None else args.seed)
+    player = Player(open_recording(args.recording), seed)
+    player.config = config_of(args, player.config)
+
+    def begin(engine: Engine) -> None:
+        engine.begin_recording(player)
+
+    own_worlds.tidy()
+    first = First(open_world(DEFAULT_WORLD), seed, player.config, begin=begin)
+    return _compiling(lambda compiling: _serve(serving, first, compiling, None))
 
 
 def _run_experiment(args: argparse.Namespace, serving: Serving) -> int:
@@ -159,8 +187,9 @@ def _serve(serving: Serving, first: First, compiling: Compiling, kept: KeptBrain
     viewers = Viewers(engine.latest, engine.submit)
     offered = kept and Offered(**asdict(kept.about), read=partial(load_brain, kept.path))
     dashboard = Dashboard(
-        engine.latest, engine.submit, viewers, port=serving.port, offered=offered, experiments=StoredGallery()
-    )
+        engine.latest, engine.submit, viewers, port=serving.port, offered=offered, experiments=StoredGallery(),
+        opener=_opened,
+    )  # fmt: skip
     try:
         dashboard.bind()
     except CannotListen as error:
@@ -178,6 +207,14 @@ def _serve(serving: Serving, first: First, compiling: Compiling, kept: KeptBrain
     if engine.stillborn is not None:
         raise ValueError(f"the engine could not begin: {engine.stillborn}")
     return 0
+
+
+def _opened(path: Path) -> object:
+    """What plays the recording in a file. ValueError says what is wrong with it."""
+    from app.recordings.opening import open_recording
+    from app.recordings.playing import Player
+
+    return Player(open_recording(path), 1)
 
 
 def _tell(serving: Serving, url: str) -> None:

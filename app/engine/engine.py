@@ -16,6 +16,8 @@ from app.engine.run import Run
 from app.engine.steps import Steps
 from app.engine.watchdog import Watchdog
 from app.engine.watched_trial import WatchedTrial
+from app.played_session import PlayedSession
+from app.recordings.playing import Player
 from app.session import Session
 from app.trials.trial import Trial
 from app.views.tick_stages import TickRecorder
@@ -54,6 +56,7 @@ class Engine:
         """Begin another run. If that fails, the old run is left as it is. ValueError says why."""
         old = self._run
         before = None if old is None or self.fault is not None else old.session  # after a fault it may be half changed
+        before = None if before is None or before.recording is not None else before
         run = self._make_run(Session(world, seed, config, brain, before))
         if brain is not None:  # a foreign brain must be one that can be shown: try it before it is accepted
             run.require_showable()
@@ -76,6 +79,20 @@ class Engine:
         self.running = True
         return run
 
+    def begin_recording(self, player: Player, seed: int | None = None) -> Run:
+        """Begin a run that plays a recording from its beginning. If that fails, the old run is left as it is. ValueError
+        says why."""
+        run = self._make_run(PlayedSession(player, seed))
+        run.config_before = Config() if self._run is None else self.next_config
+        run.require_showable()
+        return self._change_to(run, self.editor.world)
+
+    @property
+    def world(self) -> World:
+        """The office of the session; while a recording plays, the one that was open before."""
+        session = self.run.session
+        return session.world if session.recording is None else self.editor.world
+
     def _make_run(self, session: Session) -> Run:
         return Run(self._run.number + 1 if self._run else 1, session, self.library.titles)
 
@@ -96,6 +113,8 @@ class Engine:
 
         An exception pauses the session and is shown as a fault. A tick that hung but ended is noted in the event log.
         """
+        if self.run.session.over:
+            return self._pause_at_end()
         playing = self.trial_plays
         self._watchdog.begin()
         try:
@@ -105,15 +124,16 @@ class Engine:
             self.fail(error)
             return True
         self._pause_after_trial(playing)
+        over = self.run.session.over and self._pause_at_end()
         hung = self._watchdog.end()
         if hung:
             self.run.event_log.note("fault", f"a tick took more than {self._watchdog.limit_s:g} s")
-        return hung or self.trial_plays != playing
+        return hung or over or self.trial_plays != playing
 
     def step(self) -> bool:
         """Run one of the ticks that were asked for. Returns the same as `tick`."""
         to_show = self.tick()
-        if self.fault is None:
+        if self.fault is None and self.steps:
             self._accept(self.steps.ticked())
         return to_show
 
@@ -168,10 +188,19 @@ class Engine:
 
     # ------------------------------------------------------------ stopping
 
+    def _pause_at_end(self) -> bool:
+        """The recording has ended. True, since that has to be shown."""
+        self.running = False
+        self.run.event_log.note("recording", "the recording has ended")
+        self.break_off()
+        return True
+
     def pause_for(self, kind: str) -> m.Refused | None:
         """Pause, to carry out a command of this kind. Refused after a fault."""
         if self.fault is not None:
             return m.Refused("type", kind, f"the session stopped at a fault ({self.fault}); reset it")
+        if self.run.session.over:
+            return m.Refused("type", kind, "the recording has ended; restart it to see it from its beginning")
         self.running = False
         if self.run.trial is not None:
             self.run.trial.stop_running_ahead()
@@ -193,8 +222,9 @@ class Engine:
     def snapshot(self) -> m.Snapshot:
         """The session as it is now."""
         run, speed = self.run, self.pace.speed if self.pace.speed > 0 else math.inf
-        self.editor.follow(run.session.simulator.world)
-        run.snapshots.office = self.editor.edition
+        if run.session.recording is None:
+            self.editor.follow(run.session.simulator.world)
+            run.snapshots.office = self.editor.edition
         run.snapshots.trial = None if run.trial is None else run.trial.view()
         return run.snapshots.build(
             running=self.running, speed=speed, real_time_factor=self.pace.factor, fault=self.fault

@@ -23,7 +23,7 @@ class Run:
         self.config_before: Config | None = None  # a trial's settings go with it
         self.history = History(self.session)
         self.snapshots = Snapshots(self.session, self.history, number, titles)
-        for words in session.config.warnings:
+        for words in session.warnings:
             self.event_log.note("warning", words)
 
     @property

@@ -57,6 +57,7 @@ from web.messages.engine_requests import (
     Accepted,
     EngineRequest,
     OpenWorld,
+    PlayRecording,
     ReadBrain,
     ReadExperience,
     ReadFiled,
@@ -70,6 +71,7 @@ from web.messages.engine_requests import (
     WorldSaved,
 )
 from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
+from web.messages.recording import RecordingView
 from web.messages.reports import (
     CellReport,
     ExperienceReport,
@@ -122,6 +124,7 @@ __all__ = [
     "Packet",
     "Parameter",
     "Pause",
+    "PlayRecording",
     "Pose",
     "PoseCellLayer",
     "PutBox",
@@ -129,6 +132,7 @@ __all__ = [
     "ReadExperience",
     "ReadFiled",
     "ReadWorld",
+    "RecordingView",
     "RedoEdit",
     "Refused",
     "RemoveBox",

@@ -40,6 +40,13 @@ class UseBrain:
     seed: int | None = None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PlayRecording:
+    """Begin a run that plays a recording. player: of the engine's own class. One that cannot be played is refused."""
+
+    player: object
+
+
 class ReadWorld:
     """The answer's `result` is the World as it is now and its OfficeEdition."""
 
@@ -93,6 +100,7 @@ EngineRequest = (
     | WorldSaved
     | WorldDeleted
     | WorldRestored
+    | PlayRecording
 )  # what no command can hold; it takes the same way
 
 

@@ -49,9 +49,15 @@ _TALL = {
 }
 
 
-def camera_for(view: View, aspect: float) -> Camera:
-    """aspect: width over height of the visible canvas."""
-    framing = (_TALL if aspect < PHONE_ASPECT else _WIDE)[view]
+_TWO = {"wide": Framing((3.35, 2.1, 0.0), 9.9, 10.2, 48, 0, 29), "tall": Framing((3.5, 2.1, 0.6), 8.6, 10.2, 52, 0, 29)}
+
+
+def camera_for(view: View, aspect: float, office: bool = True) -> Camera:
+    """aspect: width over height of the visible canvas. Without an office, the two other plates have its room."""
+    tall = aspect < PHONE_ASPECT
+    framing = (_TALL if tall else _WIDE)[view]
+    if not office and view in ("all", "office"):
+        framing = _TWO["tall" if tall else "wide"]
     fov, up, turn = (math.radians(d) for d in (framing.fov_deg, framing.elevation_deg, framing.azimuth_deg))
     half = math.tan(fov / 2)
     distance = max(framing.half_width / (half * max(aspect, 0.1)), framing.half_height / half)

@@ -124,6 +124,7 @@ class Viewer:
         with self.server.atomic():
             if offer["world"].offer(now_s, snapshot.world):
                 self._forget("robot", "trail", "living", "movements")
+                self._cameras.give_room(office=snapshot.world is not None)
             offer["living"].offer(now_s, snapshot.living)
             if self._pointer.dragging:
                 self._forget("robot")  # when it is let go, it goes back to its true place
@@ -251,8 +252,12 @@ class Viewer:
             self._pointer.click(click, self._scenery.map, self._now_s, self._scenery.office)
 
     def _drag(self, drag: Drag) -> None:
-        if self._snapshot is not None:
+        if self._snapshot is None:
+            return
+        if self._snapshot.recording is None:
             self._pointer.drag(drag, self._scenery.office, self._snapshot)
+        elif drag.phase == "end":
+            self._complain(drag.client_id, "The robot stays where it is", "a recording plays: it goes where it went")
 
     def _send(self, command: Command, answered: Callable[[Answer], None]) -> None:
         ask(self._submit, command, lambda answer: self._inbox.put(lambda: answered(answer)))
