@@ -23,6 +23,7 @@ from web.themes import Theme
 from web.throttle import Throttle
 from web.viewer.camera_views import VIEWS, Camera
 from web.viewer.cameras import Cameras
+from web.viewer.plates.map_plate import ORIGIN as MAP_AT
 from web.viewer.plates.map_plate import MapPlate
 from web.viewer.pointer import Answer, Click, Drag, Pointer, ask
 from web.viewer.primitives.palette import Palette, palette_of
@@ -124,7 +125,7 @@ class Viewer:
         with self.server.atomic():
             if offer["world"].offer(now_s, snapshot.world):
                 self._forget("robot", "trail", "living", "movements")
-                self._cameras.give_room(office=snapshot.world is not None)
+                self._give_room(office=snapshot.world is not None)
             offer["living"].offer(now_s, snapshot.living)
             if self._pointer.dragging:
                 self._forget("robot")  # when it is let go, it goes back to its true place
@@ -144,6 +145,11 @@ class Viewer:
             offer["goal"].offer(now_s, snapshot.goal)
             offer["tags"].offer(now_s, snapshot.tags)
             self._pointer.settle(snapshot, self._scenery.map, now_s)
+
+    def _give_room(self, *, office: bool) -> None:
+        """Without an office the map stands in the middle."""
+        self._scenery.map.stand_at(MAP_AT[0] if office else 0.0)
+        self._cameras.give_room(office=office)
 
     def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
         if self._scenery.map.set_map(layer, turn_rad):
