@@ -23,11 +23,11 @@ const KINDS = {
   warning: { name: "note", weight: 2, d: "M0-8l8 14h-16z", open: true },
   fault: { name: "fault", weight: 6, d: "M0-8l8 14h-16z" },
   trial: { name: "experiment", weight: 4, d: "M-5 7V-7M-5-6h10l-3 3 3 3h-10", open: true },
-  recording: { name: "recording", weight: 5, d: "M-6-6v12M0-6v12M6-6v12M-6 0h12", open: true },
   tagged: { name: "place tagged", weight: 3, d: "M0 7l-5-8a5 5 0 1 1 10 0z", open: true },
-  closure: { name: "loop closed", weight: 2, d: "M5-3a6 6 0 1 0 0 6M5-3v-4M5-3h-4", open: true },
   reached: { name: "reached", weight: 5, d: "M-6-6h12v12h-12zM-3 0l2 3 4-6", open: true },
   failed: { name: "failed", weight: 5, d: "M-6-6h12v12h-12zM-3-3l6 6M3-3l-6 6", open: true },
+  closure: { name: "loop closed", weight: 2, d: "M5-3a6 6 0 1 0 0 6M5-3v-4M5-3h-4", open: true },
+  recording: { name: "recording", weight: 5, d: "M-6-6v12M0-6v12M6-6v12M-6 0h12", open: true },
 };
 const UNKNOWN = { weight: 1, d: "M0-5l5 5-5 5-5-5z", open: true };
 
