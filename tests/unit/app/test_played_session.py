@@ -14,6 +14,7 @@ from app.engine.pace import Pace
 from app.engine.watchdog import Watchdog
 from app.played_session import PlayedSession
 from app.recordings.playing import Player
+from app.recordings.recording import Moment
 from sim2d import load_world
 from tests.unit.app.engines import an_engine, tell
 from tests.unit.app.made_recordings import MadeRecording, recorded
@@ -214,7 +215,7 @@ def test_back_to_the_office_that_was_open_with_its_parameters(player: Player) ->
 
 def test_a_recording_without_a_moment_or_of_another_kind_leaves_the_run_as_it_is(moments: MadeRecording) -> None:
     class Empty(MadeRecording):
-        def moments(self) -> Iterator[object]:  # type: ignore[override]
+        def moments(self) -> Iterator[Moment]:
             return iter(())
 
     engine = an_engine(OFFICE)
@@ -230,7 +231,7 @@ def test_a_recording_without_a_moment_or_of_another_kind_leaves_the_run_as_it_is
 
 def test_a_recording_that_breaks_off_is_a_fault_and_can_be_begun_again(moments: MadeRecording) -> None:
     class Broken(MadeRecording):
-        def moments(self) -> Iterator[object]:  # type: ignore[override]
+        def moments(self) -> Iterator[Moment]:
             yield from list(super().moments())[:10]
             raise ValueError("made: picture 10 cannot be read")
 
