@@ -97,6 +97,8 @@ class OfficePlate(Plate):
         if heading != self._heading:
             self._heading = heading
             self.set_heading(*heading)
+            for part in (self._fan, self._fan_edges, self._sonar, self._echoes):
+                part.visible = world.is_office
         self.world, self.fit = world, OfficeFit(world.bounds)
         opaque = [kind != "glass" for kind in world.wall_kind]
         self._walls = np.asarray(world.walls, np.float64)[opaque]
@@ -120,7 +122,6 @@ class OfficePlate(Plate):
         if self.world is None or truth is None:
             return
         self.robot.place(self.fit.to_plate(np.array([[truth.x, truth.y]]))[0], truth.heading_rad)
-        self._fan.visible = self._fan_edges.visible = self._sonar.visible = self._echoes.visible = self.world.is_office
         if not self.world.is_office:
             return
         self._draw_view(truth, self.world.camera_fov_rad)
