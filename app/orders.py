@@ -183,11 +183,11 @@ def _tagged(session: Orders, name: str) -> str:
 
 def _take(session: Orders, section: str, change: dict[str, Value]) -> None:
     """Hand the changed live parameters of a section to the part that uses them."""
-    brain, simulator = session.brain, session.simulator
+    brain = session.brain
     if section == "robot":
-        simulator.set_params(replace(simulator.params, **change))  # type: ignore[arg-type]
+        session.simulator.set_params(replace(session.simulator.params, **change))  # type: ignore[arg-type]
     elif section == "office":
-        simulator.office = replace(simulator.office, **change)  # type: ignore[arg-type]
+        session.simulator.office = replace(session.simulator.office, **change)  # type: ignore[arg-type]
     elif section == "pilot":
         session.pilot.params = replace(session.pilot.params, **change)  # type: ignore[arg-type]
     else:

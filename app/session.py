@@ -15,11 +15,12 @@ from app.evaluation import Evaluation
 from app.order_book import Order
 from app.orders import Orders
 from app.pilot import Pilot
+from app.recordings.recording import About
 from app.stopwatch import Stopwatch
 from disk import encode, kind
 from ratslam_core import Estimate, Odometry, RatSlam
 from ratslam_core.slam import STAGES
-from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, World, WorldText
+from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, Truth, World, WorldText
 
 PARTS = ("pilot", "office and senses", *STAGES, "judging")  # of a tick; "judging" compares the estimate with the truth
 
@@ -29,6 +30,7 @@ class Session(Orders):
     """One robot in one world with one brain."""
 
     CACHES = ("world", "stopwatch", "frame", "_text", "_text_now", "on_order", "under_orders")
+    recording: About | None = None  # what is played, in a session that plays one
 
     def __init__(
         self, world: World, seed: int = 0, config: Config | None = None, brain: RatSlam | None = None,
@@ -106,6 +108,21 @@ class Session(Orders):
         boxes were put down or taken away."""
         text, now = self.world_text, self.simulator.world
         return text, text if now is self.world else self._text_now.of(now)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is doubtful about its parameters, in sentences."""
+        return tuple(self.config.warnings)
+
+    @property
+    def over(self) -> bool:
+        """Whether its source has nothing more to tell. An office always has."""
+        return False
+
+    @property
+    def truth(self) -> Truth | None:
+        """Where the robot really is, as far as the source knows it. Never for the robot."""
+        return self.simulator.truth
 
     @property
     def world_text(self) -> str:

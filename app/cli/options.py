@@ -54,9 +54,15 @@ def config_of(args: argparse.Namespace, config: Config) -> Config:
     return config.with_values(values)
 
 
+def checked_seed(seed: int) -> int:
+    """The seed. ValueError says which are possible."""
+    if not 0 <= seed < 2**32:
+        raise ValueError(f"--seed must be from 0 to {2**32 - 1}, got {seed}")
+    return seed
+
+
 def session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None]:
-    if not 0 <= args.seed < 2**32:
-        raise ValueError(f"--seed must be from 0 to {2**32 - 1}, got {args.seed}")
+    checked_seed(args.seed)
     brain = None if args.brain is None else load_brain(args.brain)
     config = config_of(args, Config() if brain is None else Config().with_engine(brain.params))
     for words in config.warnings:

@@ -9,9 +9,10 @@ import webbrowser
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.options import Verbs, add_session_options, session_of
+from app.cli.options import Verbs, add_session_options, checked_seed, config_of, session_of
 from app.config import Config
 from app.runs.folder import BUDGET_MB
 from app.startup.compiling import Compiling
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from web import messages as m
 
 ENGINE_PATIENCE_S = 2.0  # how long leaving waits for a tick that hangs
+_NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
 _NOT_WITH_EXPERIMENT = ("scale", "brain", "preset", "config", "set", "resume_brain")
 
 
@@ -72,6 +74,9 @@ def add_run(commands: Verbs) -> None:
         "--keep-runs", type=float, default=BUDGET_MB, metavar="MB",
         help=f"room for the runs that are kept; the oldest are deleted first (default {BUDGET_MB:g}, 0 = keep none)",
     )  # fmt: skip
+    run.add_argument(
+        "--recording", type=Path, metavar="PATH", help="play a recording of a robot: MCAP, bag, video, pictures, ..."
+    )
     run.add_argument("--experiment", metavar="NAME|FILE", help="watch a trial of this experiment (--seed: this one)")
     run.add_argument("--engine", choices=("ours", "paper"), help="with --experiment: our rules or the paper's")
     run.add_argument("--levels", nargs="+", metavar="LEVEL", help="with --experiment: one level of each of its axes")
@@ -90,11 +95,13 @@ def _run(args: argparse.Namespace) -> int:
 
     if not is_speed(args.speed):
         raise ValueError(f"--speed must be {SPEEDS}, got {args.speed:g}")
-    serving = Serving(args.port, not args.no_browser, args.speed, not args.paused, args.keep_runs)
     if not args.keep_runs >= 0:
         raise ValueError(f"--keep-runs must be megabytes from 0 on, got {args.keep_runs:g}")
+    serving = Serving(args.port, not args.no_browser, args.speed, not args.paused, args.keep_runs)
     if args.resume is not None:
         return _resume_run(args, serving)
+    if args.recording is not None:
+        return _run_recording(args, serving)
     if args.experiment is not None:
         return _run_experiment(args, serving)
     for name in ("engine", "levels"):
@@ -117,7 +124,7 @@ def _resume_run(args: argparse.Namespace, serving: Serving) -> int:
     from app.runs.replay import resumed
     from app.runs.run_file import open_run
 
-    for name in ("scale", "seed", "brain", "preset", "config", "set", "resume_brain", "experiment", "engine", "levels"):
+    for name in ("seed", "recording", *_NOT_WITH_EXPERIMENT, "experiment", "engine", "levels"):
         if getattr(args, name):
             raise ValueError(f"--{name.replace('_', '-')} does not go with --resume: the run has its own")
     if args.world != DEFAULT_WORLD:
@@ -132,6 +139,27 @@ def _resume_run(args: argparse.Namespace, serving: Serving) -> int:
     print(f"The run {kept.name} goes on at tick {session.tick_count}", flush=True)
     own_worlds.tidy()
     first = First(session.world, session.seed, session.config, begin=lambda engine: engine.go_on(kept, session))
+    return _compiling(lambda compiling: _serve(serving, first, compiling, None))
+
+
+def _run_recording(args: argparse.Namespace, serving: Serving) -> int:
+    from app.recordings.opening import open_recording
+    from app.recordings.playing import Player
+
+    for name in _NOT_WITH_RECORDING:
+        if getattr(args, name):
+            raise ValueError(f"--{name.replace('_', '-')} does not go with --recording, which is no simulated world")
+    if args.world != DEFAULT_WORLD:
+        raise ValueError(f"--world {args.world} does not go with --recording, which is no simulated world")
+    seed = checked_seed(1 if args.seed is None else args.seed)
+    player = Player(open_recording(args.recording), seed)
+    player.config = config_of(args, player.config)
+
+    def begin(engine: Engine) -> None:
+        engine.begin_recording(player)
+
+    own_worlds.tidy()
+    first = First(open_world(DEFAULT_WORLD), seed, player.config, begin=begin)
     return _compiling(lambda compiling: _serve(serving, first, compiling, None))
 
 
@@ -219,6 +247,7 @@ def _serve(
     dashboard = Dashboard(
         engine.latest, engine.submit, viewers, port=serving.port, offered=offered, experiments=StoredGallery(),
         exports=PageExports(lambda: runs and runs.folder),
+        opener=_opened,
     )  # fmt: skip
     try:
         dashboard.bind()
@@ -264,6 +293,14 @@ def _cut_off() -> KeptRun | None:
             print(f"The run {run.name} was cut off: go on with it by `ratslam run --resume {run.name}`", flush=True)
             return run
     return None
+
+
+def _opened(path: Path) -> object:
+    """What plays the recording in a file. ValueError says what is wrong with it."""
+    from app.recordings.opening import open_recording
+    from app.recordings.playing import Player
+
+    return Player(open_recording(path), 1)
 
 
 def _tell(serving: Serving, url: str) -> None:

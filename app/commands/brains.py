@@ -20,7 +20,7 @@ def use_brain(engine: Engine, request: m.UseBrain) -> Outcome:
     """Begin a new run with a foreign brain. If that fails, the old run goes on."""
     session, brain = engine.run.session, request.brain
     seed = session.seed if request.seed is None else request.seed
-    world = session.world
+    world = engine.world
     try:
         if request.world is not None and request.world.name != world.name:
             world = engine.library.read(request.world)

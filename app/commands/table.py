@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from app.commands import brains, editing, looking, office, parameters, robot, time, transport, worlds
+from app.commands import brains, editing, looking, office, parameters, recordings, robot, time, transport, worlds
 from app.commands.experiments import after_order, watch_experiment
 from app.commands.inject_packet import inject_packet
+from app.commands.needs import lacking
 from app.commands.outcome import Later, Outcome
 from app.engine.engine import Engine
 from web import messages as m
@@ -61,12 +62,16 @@ REQUESTS: dict[type, Handler] = {
     m.WorldSaved: worlds.world_saved,
     m.WorldDeleted: worlds.world_deleted,
     m.WorldRestored: worlds.world_restored,
+    m.PlayRecording: recordings.play_recording,
 }
 
 
 def carry_out(engine: Engine, command: m.Command | m.EngineRequest) -> m.Accepted | m.Refused | Later:
     """Carry out a command between two ticks. A refusal names the field, its value and the reason."""
     kind = type(command)
+    refused = lacking(engine.run.session, command)
+    if refused is not None:
+        return refused
     if kind in REQUESTS:
         outcome = REQUESTS[kind](engine, command)
     elif engine.time.past is not None and kind not in time.IN_THE_PAST:
@@ -80,12 +85,12 @@ def carry_out(engine: Engine, command: m.Command | m.EngineRequest) -> m.Accepte
 
 def _commanded(engine: Engine, handler: Handler, command: object) -> Outcome:
     """Call the handler, then rebuild what the snapshot shows and log every new warning of the config."""
-    run, before = engine.run, engine.run.session.config.warnings
+    run, before = engine.run, engine.run.session.warnings
     outcome = handler(engine, command)
     if outcome is None:
         engine.shown.snapshots.refresh()
         after_order(engine, command)
-    for words in run.session.config.warnings:
+    for words in run.session.warnings:
         if words not in before:
             run.event_log.note("warning", words)
     return outcome

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.commands.outcome import Later, Outcome
 from app.engine.engine import Engine
+from app.played_session import PlayedSession
 from web import messages as m
 
 
@@ -49,8 +50,11 @@ def step_stage(engine: Engine, command: m.StepStage) -> Outcome:
 
 def reset(engine: Engine, command: m.Reset) -> Outcome:
     session = engine.run.session
-    world, name = session.world, command.world
+    world, name = engine.world, command.world
     try:
+        if name is None and isinstance(session, PlayedSession):
+            engine.begin_recording(session.player, command.seed)
+            return None
         if name is not None and name != world.name:
             world = engine.library.world(name)
         engine.begin(world, session.seed if command.seed is None else command.seed, engine.next_config)

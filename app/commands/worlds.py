@@ -43,7 +43,7 @@ def world_saved(engine: Engine, request: m.WorldSaved) -> Outcome:
 
 def world_deleted(engine: Engine, request: m.WorldDeleted) -> Outcome:
     engine.editor.unfiled(request.name)
-    engine.library.deleted(request.name, engine.run.session.world.name)
+    engine.library.deleted(request.name, engine.world.name)
     _list_anew(engine)
 
 

@@ -14,9 +14,11 @@ from app.engine.library import Library
 from app.engine.pace import Pace
 from app.engine.run import Run
 from app.engine.steps import Steps
-from app.engine.time_travel import TimeTravel
+from app.engine.time_travel import NoTravel, TimeTravel
 from app.engine.watchdog import Watchdog
 from app.engine.watched_trial import WatchedTrial
+from app.played_session import PlayedSession
+from app.recordings.playing import Player
 from app.runs.book import Book, Fork
 from app.runs.header import Beginning, beginning_of
 from app.runs.keeper import RunKeeper
@@ -73,6 +75,7 @@ class Engine:
         """Begin another run. If that fails, the old run is left as it is. ValueError says why."""
         old = self._run
         before = None if old is None or self.fault is not None else old.session  # after a fault it may be half changed
+        before = None if before is None or before.recording is not None else before
         kept = None if brain is None else copy_state(brain)  # the session will go on with the brain itself
         session = Session(world, seed, config, brain, before)
         run = self._make_run(session, beginning_of(session, brain=brain is not None), kept)
@@ -110,6 +113,20 @@ class Engine:
             self.library.add(session.world)
         return self._change_to(run, session.world)
 
+    def begin_recording(self, player: Player, seed: int | None = None) -> Run:
+        """Begin a run that plays a recording from its beginning. If that fails, the old run is left as it is. ValueError
+        says why."""
+        run = Run(self._next_number, PlayedSession(player, seed), self.library.titles)
+        run.config_before = Config() if self._run is None else self.next_config
+        run.require_showable()
+        return self._change_to(run, self.editor.world)
+
+    @property
+    def world(self) -> World:
+        """The office of the session; while a recording plays, the one that was open before."""
+        session = self.run.session
+        return session.world if session.recording is None else self.editor.world
+
     def _make_run(self, session: Session, beginning: Beginning | KeptRun, brain: RatSlam | None = None) -> Run:
         run = Run(self._next_number, session, self.library.titles)
         run.book = self._book(session, beginning, brain)
@@ -125,7 +142,7 @@ class Engine:
         return self._time.last_number + 1 if self._time else 1
 
     def _change_to(self, run: Run, world: World) -> Run:
-        self._time = TimeTravel(run)
+        self._time = TimeTravel(run) if run.session.recording is None else NoTravel(run)
         return self._go_on_with(run, world)
 
     def _go_on_with(self, run: Run, world: World) -> Run:
@@ -147,6 +164,8 @@ class Engine:
 
         An exception pauses the session and is shown as a fault. A tick that hung but ended is noted in the event log.
         """
+        if self.run.session.over and self.time.past is None:
+            return self._pause_at_end()
         playing = self.trial_plays
         self._watchdog.begin()
         try:
@@ -160,15 +179,16 @@ class Engine:
             self.fail(error)
             return True
         self._pause_after_trial(playing)
+        over = self.run.session.over and self._pause_at_end()
         hung = self._watchdog.end()
         if hung:
             self.run.event_log.note("fault", f"a tick took more than {self._watchdog.limit_s:g} s")
-        return hung or self.trial_plays != playing
+        return hung or over or self.trial_plays != playing
 
     def step(self) -> bool:
         """Run one of the ticks that were asked for. Returns the same as `tick`."""
         to_show = self.tick()
-        if self.fault is None:
+        if self.fault is None and self.steps:
             self._accept(self.steps.ticked())
         return to_show
 
@@ -239,16 +259,25 @@ class Engine:
         return self._go_on_paused(run)
 
     def _go_on_paused(self, run: Run) -> Run:
-        self._go_on_with(run, run.session.world)
+        self._go_on_with(run, self.world)
         self.running = False
         return run
 
     # ------------------------------------------------------------ stopping
 
+    def _pause_at_end(self) -> bool:
+        """The recording has ended. True, since that has to be shown."""
+        self.running = False
+        self.run.event_log.note("recording", "the recording has ended")
+        self.break_off()
+        return True
+
     def pause_for(self, kind: str) -> m.Refused | None:
         """Pause, to carry out a command of this kind. Refused after a fault."""
         if self.fault is not None and self.time.past is None:
             return m.Refused("type", kind, f"the session stopped at a fault ({self.fault}); reset it")
+        if self.run.session.over:
+            return m.Refused("type", kind, "the recording has ended; restart it to see it from its beginning")
         self.running = False
         if self.run.trial is not None:
             self.run.trial.stop_running_ahead()
@@ -272,9 +301,10 @@ class Engine:
     def snapshot(self) -> m.Snapshot:
         """The session as it is now."""
         run, speed = self.run, self.pace.speed if self.pace.speed > 0 else math.inf
-        self.editor.follow(run.session.simulator.world)
+        if run.session.recording is None:
+            self.editor.follow(run.session.simulator.world)
         snapshots = self.shown.snapshots
-        snapshots.office = self.editor.edition
+        snapshots.office = None if run.session.recording is not None else self.editor.edition
         snapshots.trial = None if run.trial is None else run.trial.view()
         snapshots.time = self.time.view()
         return snapshots.build(running=self.running, speed=speed, real_time_factor=self.pace.factor, fault=self.fault)

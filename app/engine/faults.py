@@ -16,9 +16,9 @@ def words_of(error: BaseException) -> str:
 
 def require_finite(session: Session) -> None:
     """FloatingPointError names what is not finite after this tick. Summing all poses costs microseconds."""
-    truth, robot, packet = session.simulator.truth, session.estimate.pose_map_robot, session.estimate.packet
+    truth, robot, packet = session.truth, session.estimate.pose_map_robot, session.estimate.packet
     numbers = {
-        "the robot's true pose": (truth.x, truth.y, truth.heading_rad),
+        "the robot's true pose": () if truth is None else (truth.x, truth.y, truth.heading_rad),
         "the robot's pose in the map": (robot.x, robot.y, robot.heading_rad),
         "the winning packet": (packet.x, packet.y, packet.heading_rad, packet.mass),
         "the activity of the pose cells": (float(session.brain.pose_cells.active[1].sum(dtype=np.float64)),),

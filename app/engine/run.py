@@ -31,7 +31,7 @@ class Run:
         self.history = history or History(self.session)
         self.snapshots = Snapshots(self.session, self.history, number, titles)
         if history is None:
-            for words in session.config.warnings:
+            for words in session.warnings:
                 self.event_log.note("warning", words)
         session.on_order = self._told
 

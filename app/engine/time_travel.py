@@ -117,7 +117,7 @@ class TimeTravel:
 
     # ------------------------------------------------------------ for the page
 
-    def view(self) -> TimeView:
+    def view(self) -> TimeView | None:
         machine = self._machine
         live = machine.live
         return TimeView(
@@ -142,6 +142,21 @@ class TimeTravel:
         self._other = machine.moment(beside, tick, self._other) if tick < beside.end_tick else None
         history = beside.history if self._other is None else self._other.history
         return side_of(machine.live, self._moment, shown.history), side_of(beside, self._other, history)
+
+
+class NoTravel(TimeTravel):
+    """Of a run that cannot be gone back in: a recording is played from its beginning instead."""
+
+    def __init__(self, run: Run) -> None:
+        self.past = self.loop = None
+        self._number = run.number
+
+    @property
+    def last_number(self) -> int:
+        return self._number
+
+    def view(self) -> None:
+        return None
 
 
 def _view(branch: Branch) -> BranchView:

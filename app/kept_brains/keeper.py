@@ -53,6 +53,8 @@ class BrainKeeper:
         _, now = self._latest.get()
         if now is None or now.fault is not None or now.time_s < LEAST_S or (now.run, now.tick) == self._kept:
             return
+        if now.world is None or now.recording is not None:
+            return  # a recorded place cannot be opened at the next start
         try:
             answer = self._submit(m.ReadBrain()).result(PATIENCE_S)
         except Exception as error:  # the engine has reported it already, or has ended

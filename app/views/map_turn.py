@@ -17,8 +17,11 @@ CALM_RAD = math.radians(
 )  # smaller changes are ignored, so that a map under correction does not make the plate swing
 
 
-def map_turn(shown_rad: float | None, evaluation: Evaluation, experiences: ExperienceMap, truth: Truth) -> float:
-    """The angle (rad) of the map's frame in the office's frame; still `shown_rad` while that is near enough."""
+def map_turn(shown_rad: float | None, evaluation: Evaluation, experiences: ExperienceMap, truth: Truth | None) -> float:
+    """The angle (rad) of the map's frame in the office's frame; still `shown_rad` while that is near enough. 0 without
+    truth."""
+    if truth is None:
+        return shown_rad or 0.0
     true, mapped, _ = evaluation.trajectories(experiences)
     if min(_spread(true), _spread(mapped)) >= SPREAD_M:
         return calm(shown_rad, alignment(mapped, true).heading_rad)

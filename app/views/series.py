@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,7 +28,9 @@ class RunSeries:
         self._session = session
         self._samples: NDArray[np.float64] = np.zeros((0, 7))
         self._sample_every_s = 1.0
-        self.error_map_m = self.error_odometry_m = self.coverage = 0.0
+        self.error_map_m: float | None = None  # None without truth
+        self.error_odometry_m: float | None = None
+        self.coverage: float | None = None  # None without an office
         self._covered = Coverage()
         self.map_turn_rad = self._turn(None)
         self.series = self._shown()
@@ -44,19 +48,22 @@ class RunSeries:
 
     def _turn(self, shown_rad: float | None) -> float:
         session = self._session
-        return map_turn(shown_rad, session.evaluation, session.brain.experience_map, session.simulator.truth)
+        return map_turn(shown_rad, session.evaluation, session.brain.experience_map, session.truth)
 
     def _sample(self) -> None:
         """Add one point to the series. If there are too many, every other point is dropped."""
         session, brain = self._session, self._session.brain
         every = max(1, session.tick_count // ERROR_POINTS)
-        self.error_map_m, self.error_odometry_m = session.evaluation.errors(brain.experience_map, every)
-        self.coverage = self._covered.follow(session.simulator.free_space, session.evaluation.path)
+        errors = math.nan, math.nan
+        if session.truth is not None:
+            errors = self.error_map_m, self.error_odometry_m = session.evaluation.errors(brain.experience_map, every)
+        if session.recording is None:
+            self.coverage = self._covered.follow(session.simulator.free_space, session.evaluation.path)
         self.map_turn_rad = self._turn(self.map_turn_rad)
         views, experiences = len(brain.local_view), len(brain.experience_map)
         metres, radians = brain.experience_map.residual
         residual = 1000 * metres, 1000 * radians
-        sample = session.time_s, self.error_map_m, self.error_odometry_m, views, experiences, *residual
+        sample = session.time_s, *errors, views, experiences, *residual
         self._samples = np.vstack([self._samples, sample])
         if len(self._samples) > SERIES_POINTS:
             self._samples = self._samples[::2]

@@ -17,6 +17,7 @@ from app.views.movements import movements_of
 from app.views.occupancy_layer import occupancy_layer
 from app.views.parameter_rows import ParameterRows
 from app.views.pose_cell_layer import pose_cell_layer
+from app.views.recorded import TruthFloor, no_room, recording_view
 from app.views.senses import senses_of
 from app.views.throttle import Slow
 from app.views.tick_stages import Walk
@@ -40,6 +41,7 @@ class Snapshots:
         self.inspected = Inspect(type="inspect")  # at first nothing
         self.walk: Walk | None = None  # through the stages of the last tick
         self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), ParameterRows()
+        self._floor = TruthFloor()
         self._map = MapLayers(session)
         self._occupancy = Slow(OCCUPANCY_EVERY_S, lambda: occupancy_layer(session))
         self._inspection = Slow(
@@ -59,24 +61,26 @@ class Snapshots:
 
     def build(self, *, running: bool, speed: float, real_time_factor: float, fault: str | None) -> Snapshot:
         session, history = self._session, self._history
-        brain, truth = session.brain, session.simulator.truth
+        brain, truth, recorded = session.brain, session.truth, session.recording
         parts = self.parts() | (self.walk.parts if self.walk is not None else {})
-        parameters, preset = self._parameters.of(session.config)
+        parameters, preset = self._parameters.of(session.config, recorded is not None)
         return Snapshot(
             run=self._run,
             tick=session.tick_count,
             time_s=session.time_s,
-            mode=session.pilot.mode,
-            doing=session.pilot.doing,
+            mode=session.pilot.mode if recorded is None else "recorded",
+            doing=session.pilot.doing if recorded is None else "as recorded",
             running=running,
             speed=speed,
             real_time_factor=real_time_factor,
             seed=session.seed,
             fault=fault,
             lost=history.events.lost,
-            world=self._drawn.look(session.simulator),
+            world=self._drawn.look(session.simulator)
+            if recorded is None
+            else self._floor.look(session, history.trails),
             worlds=self.worlds,
-            truth=Pose(truth.x, truth.y, truth.heading_rad),
+            truth=None if truth is None else Pose(truth.x, truth.y, truth.heading_rad),
             trail=history.trails.robot,
             estimate=parts["estimate"],
             senses=senses_of(session),
@@ -102,17 +106,18 @@ class Snapshots:
             occupancy=self._occupancy.part(session.tick_count),
             goal_memory=self._goal_memory.part(session.tick_count),
             movements=movements_of(session),
-            living=self._actors.look(session.simulator),
-            switches=self._actors.switches(session.simulator.world),
+            living=None if recorded else self._actors.look(session.simulator),
+            switches=() if recorded else self._actors.switches(session.simulator.world),
             inspected=self._inspection.part(session.tick_count),
             active_experience=brain.experience_map.active,
             walk=None if self.walk is None else self.walk.told,
-            presets=_PRESETS,
+            presets=() if recorded else _PRESETS,
             preset=preset,
             office=self.office,
             trial=self.trial,
             time=self.time,
-            no_room=session.simulator.fit.refusal,
+            no_room=session.simulator.fit.refusal if recorded is None else no_room,
+            recording=recorded and recording_view(recorded, session.over),
         )
 
     def parts(self) -> dict[str, Any]:

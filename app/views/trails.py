@@ -12,6 +12,7 @@ from app.views.arrays import frozen
 from disk import kind
 
 TRAIL_S = 120.0  # of driving
+RECORDED_S = 1800.0  # of a recording with truth, which has no office beside its true path
 STILL_M, STILL_CELLS = 0.005, 0.02  # smaller movements add no point
 
 
@@ -23,7 +24,7 @@ class Trails:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._most = int(TRAIL_S / session.frame.dt) // 2
+        self._most = int((TRAIL_S if session.recording is None else RECORDED_S) / session.frame.dt) // 2
         self.robot = _no_points(2)  # true path, (t, 2), office frame
         self.packet = _no_points(3)  # of the winning packet, (p, 3): x', y' (cells), heading (rad)
 
@@ -35,8 +36,9 @@ class Trails:
     def watch(self) -> None:
         session = self._session
         if session.tick_count % 2 == 0:
-            truth, packet = session.simulator.truth, session.estimate.packet
-            self.robot = _grown(self.robot, (truth.x, truth.y), self._most, STILL_M)
+            truth, packet = session.truth, session.estimate.packet
+            if truth is not None:
+                self.robot = _grown(self.robot, (truth.x, truth.y), self._most, STILL_M)
             self.packet = _grown(self.packet, (packet.x, packet.y, packet.heading_rad), self._most, STILL_CELLS)
 
 

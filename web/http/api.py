@@ -25,8 +25,9 @@ from web.http.experiments import Gallery, add_experiments
 from web.http.export import Exports, add_exports
 from web.http.kept_offer import Offered, add_kept_offer
 from web.http.proxy import PAGE_ID, Cameras, ViewersLike, ViserProxy, spoken
+from web.http.recordings import Opener, add_recordings
 from web.http.security import MAX_BRAIN_BYTES, Guard, Limits
-from web.http.state import experience_fields, to_json
+from web.http.state import experience_fields, title, to_json
 from web.http.stream import Stream
 from web.http.worlds import add_worlds
 from web.latest import Latest
@@ -47,12 +48,12 @@ _ERRORS: dict[int | str, dict[str, Any]] = {
 
 def create_app(
     latest: Latest[Snapshot], submit: Submit, viewers: ViewersLike, port: int, offered: Offered | None = None,
-    experiments: Gallery | None = None, exports: Exports | None = None,
+    experiments: Gallery | None = None, exports: Exports | None = None, opener: Opener | None = None,
 ) -> ASGIApp:  # fmt: skip
     """The whole application behind its guard.
 
     port: the one that Host and Origin must name. offered: a kept brain. experiments: those of the page's gallery.
-    exports: the formats in which the run can be had.
+    exports: the formats in which the run can be had. opener: opens recordings that are sent.
     """
     cameras, themes = Cameras(), Themes()
     stream = Stream(latest, submit, cameras, themes, viewers.switches)
@@ -62,6 +63,8 @@ def create_app(
         publishing = asyncio.create_task(stream.publish())
         yield
         publishing.cancel()
+        if sent is not None:
+            sent.forget()
 
     app = FastAPI(
         title="RatSLAM",
@@ -80,6 +83,7 @@ def create_app(
     add_worlds(app, latest, submit)
     add_experiments(app, experiments)
     add_exports(app, exports, latest, submit)
+    sent = add_recordings(app, opener, submit)
     _add_stream(app, stream)
     _add_viser(app, ViserProxy(viewers, cameras, themes))
     _add_pages(app)
@@ -137,7 +141,7 @@ def _add_brain(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
         """The whole brain as one file, as `--save-brain` writes it. Requests while it is made or sent get the same file."""
         limits.pass_on("brain")
         _, snapshot = latest.get()
-        world = "" if snapshot is None else f"-{re.sub(r'[^A-Za-z0-9]+', '-', snapshot.world.name)}-seed{snapshot.seed}"
+        world = "" if snapshot is None else f"-{re.sub(r'[^A-Za-z0-9]+', '-', _name(snapshot))}-seed{snapshot.seed}"
         headers = {"Cache-Control": "no-store", "Content-Disposition": f'attachment; filename="brain{world}.npz"'}
         return await download.answer(headers)
 
@@ -154,6 +158,11 @@ def _add_brain(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
             raise Malformed([wrong("brain", None, f"this file is {error}")]) from None
         answer = await told(submit, UseBrain(brain))
         return json_response(to_json({"accepted": True, "tick": answer.tick}))
+
+
+def _name(snapshot: Snapshot) -> str:
+    """Of the world or the recording."""
+    return title(snapshot) if snapshot.recording is not None or snapshot.world is None else snapshot.world.name
 
 
 def _add_commands(app: FastAPI, submit: Submit) -> None:

@@ -9,6 +9,7 @@ therefore pure ASGI: it runs before a websocket is accepted, which ordinary HTTP
 - What is costly to make (a brain, a whole map, a world) is not read for another site (Sec-Fetch-Site).
 - A request that is neither GET nor HEAD must not be cross-site (Sec-Fetch-Site) and must carry JSON of at most 64 KiB,
   24 MiB with plans; a brain that is uploaded is application/octet-stream (no form can send that either) of at most 256 MiB.
+  So is a recording, of at most 900 MB, which goes to a file part by part.
 """
 
 from __future__ import annotations
@@ -25,8 +26,10 @@ from web.http.commands import Declined, problem, wrong
 
 MAX_BODY_BYTES = 64 * 1024
 BRAIN_PATH, MAX_BRAIN_BYTES = "/api/brain", 256 * 1024 * 1024
+RECORDING_PATH, MAX_RECORDING_BYTES = "/api/recordings", 900_000_000
 PLAN_PATH, MAX_PLAN_BYTES = "/api/worlds/open", 24 * 1024 * 1024  # a picture of 16 MB in base64
 COSTLY_PATHS = (BRAIN_PATH, "/api/state", "/api/experience/", "/api/experiments", "/api/export", "/api/world")
+_MOST = {BRAIN_PATH: MAX_BRAIN_BYTES, PLAN_PATH: MAX_PLAN_BYTES, RECORDING_PATH: MAX_RECORDING_BYTES}
 HOST_NAMES = ("127.0.0.1", "localhost", "[::1]")
 
 PAGE_POLICY = (
@@ -110,11 +113,10 @@ def _from_elsewhere(headers: Mapping[str, str]) -> bool:
 def _refusal_of_change(headers: Mapping[str, str], path: str) -> Refusal | None:
     if _from_elsewhere(headers):
         return Refusal(403, "changes from another site are refused")
-    brain = path == BRAIN_PATH
-    kind, most = ("application/octet-stream", MAX_BRAIN_BYTES) if brain else ("application/json", MAX_BODY_BYTES)
-    most = MAX_PLAN_BYTES if path == PLAN_PATH else most
+    what = {BRAIN_PATH: "a brain", RECORDING_PATH: "a recording"}.get(path, "a JSON body")
+    kind = "application/json" if what == "a JSON body" else "application/octet-stream"
+    most = _MOST.get(path, MAX_BODY_BYTES)
     if headers.get("content-type", "").partition(";")[0].strip().lower() != kind:
-        what = "a brain" if brain else "a JSON body"
         return Refusal(415, f"a change needs {what} with the header Content-Type: {kind}")
     length = headers.get("content-length", "0")
     if not (length.isascii() and length.isdigit()):

@@ -20,6 +20,7 @@ from web.http.export import Exports
 from web.http.handshake import MAX_HEADER_BYTES, WebSocketProtocol
 from web.http.kept_offer import Offered
 from web.http.proxy import ViewersLike
+from web.http.recordings import Opener
 from web.http.stream import Submit
 from web.latest import Latest
 from web.messages import Snapshot
@@ -46,16 +47,17 @@ class Dashboard:
         offered: Offered | None = None,
         experiments: Gallery | None = None,
         exports: Exports | None = None,
+        opener: Opener | None = None,
     ) -> None:
         """offered: the brain of an earlier program, for whoever opens the page. experiments: for the page's gallery.
-        exports: the formats in which the run can be had."""
+        exports: the formats in which the run can be had. opener: for recordings that are dropped on the page."""
         self._latest = latest
         self._submit = submit
         self._viewers = viewers
         self._host = host
         self._port = port
         self.on_ready = on_ready
-        self._offered, self._experiments, self._exports = offered, experiments, exports
+        self._offered, self._experiments, self._exports, self._opener = offered, experiments, exports, opener
         self._socket: socket.socket | None = None
         self._server: _Server | None = None
         self._ended = False
@@ -102,7 +104,14 @@ class Dashboard:
     def _config(self) -> uvicorn.Config:
         return uvicorn.Config(
             create_app(
-                self._latest, self._submit, self._viewers, self._port, self._offered, self._experiments, self._exports
+                self._latest,
+                self._submit,
+                self._viewers,
+                self._port,
+                self._offered,
+                self._experiments,
+                self._exports,
+                self._opener,
             ),
             ws=WebSocketProtocol,
             h11_max_incomplete_event_size=MAX_HEADER_BYTES,

@@ -20,6 +20,7 @@ from web.messages import (
     MapLayer,
     OfficeEdition,
     Pose,
+    RecordingView,
     Report,
     Side,
     Snapshot,
@@ -41,9 +42,9 @@ def state(snapshot: Snapshot) -> dict[str, Any]:
         "mode": snapshot.mode,
         "running": snapshot.running,
         "speed": snapshot.speed if math.isfinite(snapshot.speed) else 0,
-        "world": snapshot.world.name,
+        "world": None if snapshot.world is None or snapshot.recording is not None else snapshot.world.name,
         "seed": snapshot.seed,
-        "robot": _pose(snapshot.truth),
+        "robot": None if snapshot.truth is None else _pose(snapshot.truth),
         "estimate": _pose(snapshot.estimate),
         "pose_cells": {
             "shape": snapshot.pose_cells.shape,
@@ -76,14 +77,33 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
         "lost": snapshot.lost,
         "fault": snapshot.fault,
         "real_time_factor": snapshot.real_time_factor,
-        "title": snapshot.world.title,
+        "title": title(snapshot),
         "worlds": snapshot.worlds,
-        "places": snapshot.world.places,
+        "places": () if snapshot.world is None else snapshot.world.places,
+        "recording": None if snapshot.recording is None else recording_fields(snapshot.recording),
         "office": None if snapshot.office is None else office_fields(snapshot.office),
         "inspected": None if snapshot.inspected is None else _inspected(snapshot.inspected),
         "walk": None if snapshot.walk is None else _walk(snapshot.walk),
         "moving": None if snapshot.living is None else _moving(snapshot.living),
         "time": None if snapshot.time is None else time_fields(snapshot.time),
+    }
+
+
+def title(snapshot: Snapshot) -> str:
+    """Of the office, or of the recording."""
+    if snapshot.recording is not None:
+        return snapshot.recording.name
+    return "" if snapshot.world is None else snapshot.world.title
+
+
+def recording_fields(recording: RecordingView) -> dict[str, Any]:
+    return {
+        "name": recording.name,
+        "format": recording.format,
+        "moments": recording.moments,
+        "seconds": recording.seconds,
+        "has": recording.has,
+        "over": recording.over,
     }
 
 

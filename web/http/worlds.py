@@ -107,7 +107,8 @@ async def _open(request: Request, latest: Latest[Snapshot], submit: Submit, limi
     wish = await checked_body(request, OpenFiles, limits, MAX_PLAN_BYTES)
     files = {_plain(file.name): _bytes(file) for file in wish.files}
     _, snapshot = latest.get()
-    radius = None if snapshot is None else snapshot.world.robot_radius_m
+    office = None if snapshot is None or snapshot.recording is not None else snapshot.world
+    radius = None if office is None else office.robot_radius_m
     try:
         world = await asyncio.to_thread(import_world, _main(files), files, wish.scale_m, wish.seed, radius)
     except WorldError as error:

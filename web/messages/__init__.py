@@ -65,6 +65,7 @@ from web.messages.engine_requests import (
     EngineRequest,
     GoOn,
     OpenWorld,
+    PlayRecording,
     ReadBrain,
     ReadExperience,
     ReadFiled,
@@ -79,6 +80,7 @@ from web.messages.engine_requests import (
     WorldSaved,
 )
 from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
+from web.messages.recording import RecordingView
 from web.messages.reports import (
     CellReport,
     ExperienceReport,
@@ -139,6 +141,7 @@ __all__ = [
     "Packet",
     "Parameter",
     "Pause",
+    "PlayRecording",
     "Pose",
     "PoseCellLayer",
     "PutBox",
@@ -147,6 +150,7 @@ __all__ = [
     "ReadFiled",
     "ReadSession",
     "ReadWorld",
+    "RecordingView",
     "RedoEdit",
     "Refused",
     "RemoveBox",

@@ -27,7 +27,7 @@ class Pose:
 class Senses:
     """What the robot sees now, and the stored view that is most like it."""
 
-    camera: NDArray[np.uint8]  # (h, w, 3) RGB
+    camera: NDArray[np.uint8]  # (h, w, 3) RGB; without pixels: the source has no camera
     front_end: str  # the name of the front end
     seen: NDArray[np.uint8]  # (h, w) grey or (h, w, 3) RGB: what the front end makes of the image
     seen_words: str

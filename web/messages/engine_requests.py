@@ -53,6 +53,13 @@ class GoOn:
     session: object
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PlayRecording:
+    """Begin a run that plays a recording. player: of the engine's own class. One that cannot be played is refused."""
+
+    player: object
+
+
 class ReadWorld:
     """The answer's `result` is the World as it is now and its OfficeEdition."""
 
@@ -108,6 +115,7 @@ EngineRequest = (
     | WorldSaved
     | WorldDeleted
     | WorldRestored
+    | PlayRecording
 )  # what no command can hold; it takes the same way
 
 

@@ -28,6 +28,7 @@ class WorldDrawing:
     camera_fov_rad: float
     sonar_angles_rad: NDArray[np.float32]  # (8,), from the robot's heading
     slow_zones: tuple[NDArray[np.float32], ...] = ()  # (k, 2) corners of each
+    is_office: bool = True  # False: the bare ground of a recording's true path
 
 
 @dataclass(frozen=True, slots=True, eq=False)

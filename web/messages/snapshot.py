@@ -28,6 +28,7 @@ from web.messages.brain import (
     TimesLayer,
 )
 from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
+from web.messages.recording import RecordingView
 from web.messages.reports import Report
 from web.messages.tick import TickWalk, Timing
 from web.messages.time import TimeView
@@ -35,8 +36,8 @@ from web.messages.trial import TrialView
 
 EventKind = Literal[
     "kidnap", "lost", "recovered", "snap", "goal", "arrived", "unreachable", "packet", "brain", "office", "parameter",
-    "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed", "closure",
-    "branch",
+    "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed", "closure", "branch",
+    "recording",
 ]  # fmt: skip
 
 
@@ -85,7 +86,7 @@ class Snapshot:
     run: int  # grows with each reset
     tick: int
     time_s: float
-    mode: Literal["explore", "manual", "goal"]
+    mode: Literal["explore", "manual", "goal", "recorded"]
     doing: str  # what the pilot does now, for people: "following the wall", "looking back", ...
     running: bool
     speed: float  # asked-for multiple of real time; inf = as fast as possible
@@ -93,9 +94,9 @@ class Snapshot:
     seed: int
     fault: str | None  # why the session stopped by itself
     lost: bool  # packets compete
-    world: WorldDrawing
+    world: WorldDrawing | None  # None: a recording plays that has no truth
     worlds: tuple[tuple[str, str], ...]  # (name, title) of all that reset can load
-    truth: Pose  # office frame
+    truth: Pose | None  # office frame; None: the source does not know it
     trail: NDArray[np.float32]  # (t, 2) true path of the last two minutes of driving, office frame
     estimate: Pose  # map frame
     senses: Senses
@@ -107,9 +108,9 @@ class Snapshot:
     experiences: int
     links: int
     relocalisations: int
-    coverage: float  # share of the floor from which the robot can drive to its path within a metre
-    error_map_m: float
-    error_odometry_m: float
+    coverage: float | None  # share of the floor from which the robot can drive to its path within a metre
+    error_map_m: float | None  # None without truth
+    error_odometry_m: float | None
     revisit_consistency: float | None  # share of revisits within half a metre
     series: Series
     timings: tuple[Timing, ...]  # the parts of a tick, in their order
@@ -128,6 +129,7 @@ class Snapshot:
     preset: str = ""  # the preset whose values are all set; empty: none
     office: OfficeEdition | None = None
     belief: Belief | None = None  # None: there is no experience map
+    recording: RecordingView | None = None  # None: the simulator runs
     trial: TrialView | None = None  # None: no trial of an experiment was begun in this run
     tags: tuple[TaggedPlace, ...] = ()  # in the order in which they were given
     time: TimeView | None = None  # None: nothing of this run can be gone back to

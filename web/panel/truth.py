@@ -18,9 +18,10 @@ def numbers(snapshot: Snapshot) -> Content:
     rows = [
         ("map error, after alignment", number(snapshot.error_map_m, "m", 2)),
         ("odometry alone", number(snapshot.error_odometry_m, "m", 2)),
-        ("floor covered, to within a metre", f"{100 * snapshot.coverage:.0f} %"),
-        ("revisits within half a metre", "no revisits yet" if again is None else f"{100 * again:.0f} %"),
     ]
+    if snapshot.coverage is not None:
+        rows.append(("floor covered, to within a metre", f"{100 * snapshot.coverage:.0f} %"))
+    rows.append(("revisits within half a metre", "no revisits yet" if again is None else f"{100 * again:.0f} %"))
     return Content({"table": table("Error against the true world", rows)})
 
 

@@ -17,6 +17,7 @@ import { NewWorld } from "./worlds/new_world.js";
 import { OwnWorlds } from "./worlds/own_worlds.js";
 import { THEMES, VIEWS } from "./shared.js";
 import { Panel } from "./panel/panel.js";
+import { Source } from "./recordings/source.js";
 import { Viewer } from "./viewer/viewer.js";
 import { Timeline } from "./timeline/timeline.js";
 import { dismissToast, toast } from "./elements/toasts.js";
@@ -26,17 +27,18 @@ const page = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.
 const link = new Connection(page);
 const header = new Header();
 const timeline = new Timeline(link);
-const drive = new HandDrive((command) => link.tell(command));
+const drive = new HandDrive((command) => source.lacks === null && link.tell(command));
 const keys = new Keys({ drive: (name, down) => drive.key(name, down), act, allUp: () => drive.allUp() });
 const viewer = new Viewer(link, keys);
 const panel = new Panel($("panel"), link, (text) => toast(text, { bad: true }));
+const source = new Source(panel);
 /** @type {State | null} */
 let state = null;
 /** @type {OfficeFields | null} */
 let office = null;
 const isSaved = () => office?.saved ?? true;
 const own = new OwnWorlds(
-  () => state?.world,
+  () => state?.world ?? undefined,
   async (name, title) => {
     if (await command({ type: "reset", world: name }, `Started anew in ${title}.`)) $("open-dialog").close();
   },
@@ -59,11 +61,13 @@ viewer.addEventListener("inside", () => viewer.frame.contentWindow && files.catc
 link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   state = detail.state;
   if (gallery.doing) gallery.waking("");
+  source.show(detail.page.recording);
   header.show(state, detail.page);
   watched.show(state, detail.page);
   panel.inspected(detail.page.inspected);
   timeline.at(state, detail.page.time);
   office = detail.page.office;
+  if (source.lacks && editor.open) editor.toggle(false);
   editor.at(state, detail.page);
   kept.ask();
   document.body.dataset.alive = "true";
@@ -184,6 +188,7 @@ $("speed").addEventListener("change", () => {
 $("world").addEventListener("change", async () => {
   const target = $("world");
   const [world, title] = [target.value, target.selectedOptions[0].text];
+  if (!world) return;
   target.blur(); // the list shows the current world again until there is another
   if (await mayLeave()) command({ type: "reset", world }, `Started anew in ${title}.`);
 });
@@ -216,7 +221,7 @@ const KEYS = {
   k: kidnap,
   t: toggleTheme,
   p: () => panel.show(!panel.shown),
-  o: () => editor.toggle(),
+  o: () => (source.lacks ? toast(source.lacks, { bad: true }) : editor.toggle()),
   g: () => gallery.open(),
   "?": toggleHelp,
 };

@@ -51,12 +51,12 @@ type Living = { doors: Record<string, number>; lamps: Record<string, boolean>; p
 type State = {
   tick: number;
   time_s: number;
-  mode: SetMode["mode"];
+  mode: SetMode["mode"] | "recorded";
   running: boolean;
   speed: number;
-  world: string;
+  world: string | null; // null: a recording plays
   seed: number;
-  robot: Pose;
+  robot: Pose | null; // null: its true place is unknown
   estimate: Pose;
   pose_cells: { shape: number[]; packets: (Pose & { mass: number })[] };
   goal: Goal | null;
@@ -81,6 +81,7 @@ type Trial = {
 type Moving = { walkers: Record<string, [number, number, number]>; boxes: string[] };
 type Walk = { at: number; of: number; title: string; words: string };
 type OfficeFields = { edition: number; undo: string | null; redo: string | null; saved: boolean };
+type RecordingFields = { name: string; format: string; moments: number; seconds: number; has: string[]; over: boolean };
 type PageFields = {
   run: number;
   doing: string;
@@ -89,6 +90,7 @@ type PageFields = {
   real_time_factor: number;
   title: string;
   worlds: [string, string][];
+  recording: RecordingFields | null;
   office: OfficeFields | null;
   inspected: string | null;
   walk: Walk | null;

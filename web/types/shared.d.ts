@@ -202,6 +202,7 @@ type IndexIds = {
   "restart": HTMLElementTagNameMap["details"];
   "restart-new": HTMLElementTagNameMap["button"];
   "restart-same": HTMLElementTagNameMap["button"];
+  "restart-words": HTMLElementTagNameMap["span"];
   "save-close": HTMLElementTagNameMap["button"];
   "save-dialog": HTMLElementTagNameMap["dialog"];
   "save-form": HTMLElementTagNameMap["form"];

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -49,9 +49,19 @@ _TALL = {
 }
 
 
-def camera_for(view: View, aspect: float) -> Camera:
-    """aspect: width over height of the visible canvas."""
-    framing = (_TALL if aspect < PHONE_ASPECT else _WIDE)[view]
+ALONE_HALF_WIDTH = (
+    6.9  # of all plates when there is no office: the map then stands in the middle, before the pose cells
+)
+
+
+def camera_for(view: View, aspect: float, office: bool = True) -> Camera:
+    """aspect: width over height of the visible canvas. office: whether there is one, else the others have its room."""
+    framings = _TALL if aspect < PHONE_ASPECT else _WIDE
+    framing = framings[view]
+    if not office and view in ("all", "office"):
+        framing = replace(framings["all"], half_width=ALONE_HALF_WIDTH)
+    elif not office and view == "map":
+        framing = replace(framing, look_at=(0.0, *framing.look_at[1:]))
     fov, up, turn = (math.radians(d) for d in (framing.fov_deg, framing.elevation_deg, framing.azimuth_deg))
     half = math.tan(fov / 2)
     distance = max(framing.half_width / (half * max(aspect, 0.1)), framing.half_height / half)

@@ -31,6 +31,7 @@ class Cameras:
         self._views: dict[int, View] = {}
         self._ends: dict[int, Camera] = {}  # where the last flight of each camera ended or will end
         self._flights: dict[int, Flight] = {}
+        self._office = True  # whether there is one to be seen
         camera, initial = camera_for("all", SCREEN_ASPECT), server.initial_camera
         initial.position, initial.look_at, initial.fov = camera.position, camera.look_at, camera.fov_rad
         initial.near, initial.far = NEAR, FAR
@@ -67,12 +68,19 @@ class Cameras:
         if client_id in self._views:
             self.take_off(client_id, self._views[client_id])
 
+    def give_room(self, *, office: bool) -> None:
+        """Frames every view anew when an office has come or gone."""
+        if office != self._office:
+            self._office = office
+            for client_id in list(self._views):
+                self.reframe(client_id)
+
     def turned(self, client_id: int) -> Camera | None:
         """Where somebody has turned a camera by hand; None when it is at its view or in flight. From any thread."""
         client, view = self._server.get_clients().get(client_id), self._views.get(client_id)
         if client is None or view is None or client_id in self._flights:
             return None
-        camera, end = _standing(client.camera), camera_for(view, aspect_of(client.camera))
+        camera, end = _standing(client.camera), camera_for(view, aspect_of(client.camera), self._office)
         return None if _near(camera, end.position, end.look_at) else camera
 
     def take_off(
@@ -83,7 +91,7 @@ class Cameras:
             if client_id in (None, client.client_id):
                 camera, wanted = client.camera, cast(View, view)
                 self._views[client.client_id] = wanted
-                end = turned or camera_for(wanted, aspect_of(camera))
+                end = turned or camera_for(wanted, aspect_of(camera), self._office)
                 self._ends[client.client_id] = end
                 start = end if now_s is None else _standing(camera)
                 self._flights[client.client_id] = Flight(start, end, -math.inf if now_s is None else now_s)

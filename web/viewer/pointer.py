@@ -125,7 +125,10 @@ class Pointer:
         if on_plate is None:
             return self._drop_beside(drag, plate) if drag.phase == "end" else None
         x, y = (float(v) for v in plate.fit.to_office(np.array([on_plate]))[0])
-        truth, heading = snapshot.truth, snapshot.truth.heading_rad
+        truth = snapshot.truth
+        if truth is None:
+            return None
+        heading = truth.heading_rad
         if drag.turning:
             heading = math.atan2(y - truth.y, x - truth.x)
             x, y = truth.x, truth.y

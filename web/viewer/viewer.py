@@ -23,6 +23,7 @@ from web.themes import Theme
 from web.throttle import Throttle
 from web.viewer.camera_views import VIEWS, Camera
 from web.viewer.cameras import Cameras
+from web.viewer.plates.map_plate import ORIGIN as MAP_AT
 from web.viewer.plates.map_plate import MapPlate
 from web.viewer.pointer import Answer, Click, Drag, Pointer, ask
 from web.viewer.primitives.palette import Palette, palette_of
@@ -124,6 +125,7 @@ class Viewer:
         with self.server.atomic():
             if offer["world"].offer(now_s, snapshot.world):
                 self._forget("robot", "trail", "living", "movements")
+                self._give_room(office=snapshot.world is not None)
             offer["living"].offer(now_s, snapshot.living)
             if self._pointer.dragging:
                 self._forget("robot")  # when it is let go, it goes back to its true place
@@ -143,6 +145,11 @@ class Viewer:
             offer["goal"].offer(now_s, snapshot.goal)
             offer["tags"].offer(now_s, snapshot.tags)
             self._pointer.settle(snapshot, self._scenery.map, now_s)
+
+    def _give_room(self, *, office: bool) -> None:
+        """Without an office the map stands in the middle."""
+        self._scenery.map.stand_at(MAP_AT[0] if office else 0.0)
+        self._cameras.give_room(office=office)
 
     def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
         if self._scenery.map.set_map(layer, turn_rad):
@@ -251,8 +258,12 @@ class Viewer:
             self._pointer.click(click, self._scenery.map, self._now_s, self._scenery.office)
 
     def _drag(self, drag: Drag) -> None:
-        if self._snapshot is not None:
+        if self._snapshot is None:
+            return
+        if self._snapshot.recording is None:
             self._pointer.drag(drag, self._scenery.office, self._snapshot)
+        elif drag.phase == "end":
+            self._complain(drag.client_id, "The robot stays where it is", "a recording plays: it goes where it went")
 
     def _send(self, command: Command, answered: Callable[[Answer], None]) -> None:
         ask(self._submit, command, lambda answer: self._inbox.put(lambda: answered(answer)))

@@ -26,6 +26,15 @@ test("what counts most is said: a fault, then a pause, being lost, the hand, the
   assert.equal(words({ goal }), "exploring");
 });
 
+test("a recording plays until it has ended", () => {
+  const recording = { name: "walk", format: "MCAP", moments: 3, seconds: 0.2, has: ["camera"], over: false };
+  const words = (/** @type {boolean} */ running, /** @type {boolean} */ over) =>
+    statusOf({ ...state, running, mode: "recorded" }, { ...page, recording: { ...recording, over } })[2];
+  assert.equal(words(true, false), "playing a recording");
+  assert.equal(words(false, false), "paused");
+  assert.equal(words(false, true), "the recording has ended");
+});
+
 test("each state of a goal has words of its own", () => {
   const titles = GOAL_STATES.map((name) => goalWords({ ...goal, state: name }).title);
   assert.equal(new Set(titles).size, GOAL_STATES.length);

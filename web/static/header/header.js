@@ -25,7 +25,7 @@ export class Header {
     $("play").title = playing ? "Pause (space)" : "Play (space)";
     if (document.activeElement !== $("speed")) choose($("speed"), String(state.speed));
     $("seed").textContent = String(state.seed);
-    this.showWorlds(state.world, page.worlds);
+    this.showWorlds(state.world, page);
     this.showStatus(state, page);
     this.showGoal(state.goal);
     this.showWalk(page.walk);
@@ -38,14 +38,17 @@ export class Header {
     find($("status"), "span").textContent = doing;
   }
 
-  /** @param {string} world @param {[string, string][]} worlds */
-  showWorlds(world, worlds) {
-    const text = JSON.stringify(worlds);
+  // A recording stands before the worlds, under no name that could be chosen.
+  /** @param {string | null} world @param {PageFields} page */
+  showWorlds(world, { worlds, recording }) {
+    const text = JSON.stringify([worlds, recording?.name]);
     if (text !== this.worlds) {
       this.worlds = text;
-      $("world").replaceChildren(...worlds.map(([name, title]) => new Option(title, name)));
+      const played = recording ? [new Option(recording.name, "")] : [];
+      $("world").replaceChildren(...played, ...worlds.map(([name, title]) => new Option(title, name)));
+      $("world").title = recording ? `Recording: ${recording.format}, with ${recording.has.join(", ")}` : "World";
     }
-    if (document.activeElement !== $("world")) $("world").value = world;
+    if (document.activeElement !== $("world")) $("world").value = world ?? "";
   }
 
   /** @param {State} state @param {PageFields} page */

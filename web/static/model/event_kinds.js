@@ -28,6 +28,7 @@ const KINDS = {
   failed: { name: "failed", weight: 5, d: "M-6-6h12v12h-12zM-3-3l6 6M3-3l-6 6", open: true },
   closure: { name: "loop closed", weight: 2, d: "M5-3a6 6 0 1 0 0 6M5-3v-4M5-3h-4", open: true },
   branch: { name: "branch", weight: 4, d: "M-4 7V-7M-4 3c0-6 8-3 8-10", open: true },
+  recording: { name: "recording", weight: 5, d: "M-6-6v12M0-6v12M6-6v12M-6 0h12", open: true },
 };
 const UNKNOWN = { weight: 1, d: "M0-5l5 5-5 5-5-5z", open: true };
 

@@ -32,6 +32,8 @@ export class Picture {
   /** @param {import("../model/frames.js").Parcel | undefined} parcel */
   async show(parcel) {
     if (!parcel) return;
+    this.canvas.hidden = parcel.kind !== "jpeg" && parcel.values.length === 0; // the source has no such picture
+    if (this.canvas.hidden) return;
     if (parcel.kind !== "jpeg") return this.draw(picture(parcel.values, parcel.shape));
     const turn = ++this.turn;
     const image = await createImageBitmap(new Blob([parcel.values], { type: "image/jpeg" }));

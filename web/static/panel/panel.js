@@ -90,6 +90,12 @@ export class Panel {
     this.tell();
   }
 
+  /** Hides the tabs that have nothing to show, and shows the others. @param {string[]} names */
+  hide(names) {
+    this.tabs.hide(names);
+    if (names.includes(this.opened)) this.open("Senses");
+  }
+
   /** @param {boolean} on */
   show(on) {
     this.shown = on;

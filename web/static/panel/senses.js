@@ -29,13 +29,14 @@ export class SensesTab {
     this.match = make("button", { type: "button", className: "picture", hidden: true }, this.best.canvas);
     this.match.addEventListener("click", () => inspect({ view: this.view }));
     this.none = make("p", { className: "blank", textContent: "none yet: every view is new" });
+    this.noCamera = make("p", { className: "blank", textContent: "none in this recording", hidden: true });
     this.bar = new Bar(0.5);
     this.strip = new ViewStrip(inspect);
     this.turns = new Histogram("activity by heading");
     this.box = make(
       "div",
       {},
-      row([caption("camera"), this.camera.canvas], [caption("active view"), this.number, this.verdict]),
+      row([caption("camera"), this.camera.canvas, this.noCamera], [caption("active view"), this.number, this.verdict]),
       row([this.seenTitle, this.seen.canvas], [this.bestTitle, this.match, this.none]),
       this.difference,
       this.bar.box,
@@ -48,6 +49,7 @@ export class SensesTab {
   /** @param {any} data @param {Arrays} arrays */
   views(data, arrays) {
     this.camera.show(arrays.camera);
+    this.noCamera.hidden = !this.camera.canvas.hidden;
     say(this.number, data.active >= 0 ? `#${data.active}` : "none");
     say(this.words, data.verdict.words);
     this.verdict.dataset.tone = data.verdict.tone;

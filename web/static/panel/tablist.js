@@ -31,9 +31,14 @@ export class TabList {
     this.tabs.get(name)?.scrollIntoView({ block: "nearest", inline: "nearest" });
   }
 
+  /** @param {string[]} names */
+  hide(names) {
+    for (const [name, tab] of this.tabs) tab.hidden = names.includes(name);
+  }
+
   /** @param {KeyboardEvent} event */
   pressed(event) {
-    const names = [...this.tabs.keys()];
+    const names = [...this.tabs.keys()].filter((name) => !this.tabs.get(name)?.hidden);
     const now = names.findIndex((name) => this.tabs.get(name) === event.target);
     /** @type {Record<string, number>} */
     const places = { ArrowRight: now + 1, ArrowLeft: now - 1, Home: 0, End: names.length - 1 };

@@ -1,6 +1,7 @@
 // Files dropped on the page or chosen: worlds and floor plans. The server says what is wrong with one.
 
 import { $ } from "../elements/dom.js";
+import { isRecording, play } from "../recordings/upload.js";
 import { ended, megabytes } from "../model/sentences.js";
 import { toast } from "../elements/toasts.js";
 
@@ -81,8 +82,9 @@ export class Files {
     if (files.length > MOST_FILES)
       return this.fail(`${files.length} files at once; at most ${MOST_FILES} that belong together.`);
     for (const file of files)
-      if (file.size > MOST_BYTES)
+      if (file.size > MOST_BYTES && !isRecording(file))
         return this.fail(`${file.name}: ${megabytes(file.size)}; at most ${megabytes(MOST_BYTES)}.`);
+    if (files.length === 1 && isRecording(files[0])) return this.play(files[0]);
     if (files.length > 1 || !PICTURE.test(files[0].name)) return this.send(files, null);
     this.size = null;
     $("open-picture").textContent = files[0].name;
@@ -105,6 +107,18 @@ export class Files {
       this.size && scale > 0
         ? `${this.size[0]} × ${this.size[1]} pixels: ${metres(this.size[0] * scale)} × ${metres(this.size[1] * scale)} m`
         : "One pixel of most robot maps is 0.05 m.";
+  }
+
+  /** @param {File} file */
+  async play(file) {
+    this.busy = true;
+    this.say("busy");
+    $("open-doing").textContent = `Looking over ${file.name} …`;
+    const wrong = await play(file);
+    this.busy = false;
+    if (wrong) return this.fail(wrong);
+    this.dialog.close();
+    return toast(`${file.name} plays.`);
   }
 
   /** @param {File[]} files @param {number | null} scale */

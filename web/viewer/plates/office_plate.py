@@ -24,6 +24,8 @@ from web.viewer.primitives.tone_mapping import vertex_paint
 ORIGIN = (-5.85, -2.2, 0.0)
 SHEET = (11.0, 10.0, -0.5, 0.45)
 TRAIL_SEGMENTS, TRAIL_STEP = 240, 0.16
+OFFICE = "Office", "the true world - the robot cannot know this"
+TRUE_PATH = "True path", "as the recording tells it - the robot cannot know this"
 LATE = (
     0.0,
     -20.0,
@@ -34,7 +36,8 @@ LATE = (
 class OfficePlate(Plate):
     def __init__(self, scene: viser.SceneApi, palette: Palette) -> None:
         super().__init__(scene, palette, "office", ORIGIN, SHEET)
-        self.set_heading("Office", "the true world - the robot cannot know this")
+        self._heading = OFFICE
+        self.set_heading(*OFFICE)
         self.world: WorldDrawing | None = None
         self.fit = OfficeFit((0.0, 0.0, 10.0, 8.0))
         self._walls = np.zeros((0, 4))
@@ -83,8 +86,19 @@ class OfficePlate(Plate):
             visible=False,
         )
 
-    def set_world(self, world: WorldDrawing) -> None:
-        """Draws another office: floor with shadows, walls, furniture, posters."""
+    def set_world(self, world: WorldDrawing | None) -> None:
+        """Draws another office: floor with shadows, walls, furniture, posters. None: there is none, and no plate."""
+        if (world is not None) != self.frame.visible:
+            self.frame.visible = world is not None
+        if world is None:
+            self.world = None
+            return
+        heading = OFFICE if world.is_office else TRUE_PATH
+        if heading != self._heading:
+            self._heading = heading
+            self.set_heading(*heading)
+            for part in (self._fan, self._fan_edges, self._sonar, self._echoes):
+                part.visible = world.is_office
         self.world, self.fit = world, OfficeFit(world.bounds)
         opaque = [kind != "glass" for kind in world.wall_kind]
         self._walls = np.asarray(world.walls, np.float64)[opaque]
@@ -103,11 +117,13 @@ class OfficePlate(Plate):
         else:
             self._arcs.show(draw(), self.fit, self.robot.radius)
 
-    def set_robot(self, truth: Pose, senses: Senses) -> None:
-        """Shows the robot at its true pose, with its field of view and the sonars' echoes."""
-        if self.world is None:
+    def set_robot(self, truth: Pose | None, senses: Senses) -> None:
+        """Shows the robot at its true pose, with its field of view and the sonars' echoes; without walls the robot alone."""
+        if self.world is None or truth is None:
             return
         self.robot.place(self.fit.to_plate(np.array([[truth.x, truth.y]]))[0], truth.heading_rad)
+        if not self.world.is_office:
+            return
         self._draw_view(truth, self.world.camera_fov_rad)
         self._draw_sonar(truth, self.world.sonar_angles_rad, senses.ranges_m)
 
@@ -140,7 +156,9 @@ class OfficePlate(Plate):
             return
         path = meshes.thinned(self.fit.to_plate(np.asarray(trail, np.float64)), TRAIL_STEP)[-TRAIL_SEGMENTS - 1 :]
         path = meshes.lifted(path, 0.02)
-        jumps = np.hypot(*np.diff(path[:, :2], axis=0).T) > 1.2 * self.fit.scale  # a kidnap leaves no line
+        steps = np.hypot(*np.diff(path[:, :2], axis=0).T)
+        office = self.world is None or self.world.is_office
+        jumps = steps > (1.2 * self.fit.scale if office else np.inf)  # a kidnap leaves no line
         path[:, 2] += np.linspace(0.0, 0.015, len(path))  # where the path crosses itself, the newer part is on top
         points = meshes.open_line(path)
         points[jumps] = -50.0

@@ -44,6 +44,11 @@ class Plate:
         self._title = Sign(scene, f"{self.root}/title", TITLE_M)
         self._subtitle = Sign(scene, f"{self.root}/subtitle", SUBTITLE_M)
 
+    def stand_at(self, x: float) -> None:
+        """Moves the plate sideways, with all that stands on it."""
+        self.origin = (x, *self.origin[1:])
+        self.frame.position = self.origin
+
     def set_heading(self, title: str, subtitle: str) -> None:
         """Shows title and subtitle, flat in front of the content."""
         self._title.show(images.text(title, self.palette.text, 96, True), (self.left, self.front + 1.08, TEXT_Z))
