@@ -17,7 +17,7 @@ from tests.fake_snapshots import fake_snapshot
 from tests.patience import until
 from tests.unit.web.bench import Bench, Engine
 from web.latest import Latest
-from web.messages import Snapshot
+from web.messages import RecordingView, Snapshot
 from web.switches import Switches
 from web.throttle import Throttle
 from web.viewer import Viewer
@@ -124,6 +124,23 @@ def test_only_what_has_changed_is_drawn(bench: Bench) -> None:
     bench.settle()
     moved = replace(snapshot.estimate, x=snapshot.estimate.x + 0.5)
     assert set(bench.show(replace(snapshot, estimate=moved))) == {"/map/arrow"}
+
+
+def test_without_an_office_its_plate_goes_and_the_map_stands_in_the_middle(bench: Bench) -> None:
+    snapshot, scenery = fake_snapshot(600), bench.viewer._scenery
+    played = RecordingView("walk", "MCAP", 3, 0.2, ("camera",), over=False)
+    bench.show(replace(snapshot, world=None, truth=None, living=None, movements=None, recording=played))
+    assert not scenery.office.frame.visible
+    assert scenery.map.frame.position[0] == scenery.map.origin[0] == 0.0
+    assert snapshot.world is not None
+    none = np.zeros(0, np.float32)
+    bare = replace(snapshot.world, walls=none.reshape(0, 4), wall_kind=(), wall_height_m=none, is_office=False)
+    bench.show(replace(snapshot, world=bare, living=None, recording=played))
+    assert scenery.office.frame.visible
+    assert not scenery.office._fan.visible
+    bench.show(fake_snapshot(601))
+    assert scenery.office._fan.visible
+    assert scenery.map.origin[0] > 0
 
 
 def test_the_newest_wins_and_rates_are_kept(bench: Bench) -> None:
