@@ -47,4 +47,4 @@ def main(world: str = "office", ticks: int = 12_000) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:2], *map(int, sys.argv[2:3]))
+    main(sys.argv[1] if len(sys.argv) > 1 else "office", int(sys.argv[2]) if len(sys.argv) > 2 else 6000)

@@ -259,7 +259,7 @@ class Engine:
         return self._go_on_paused(run)
 
     def _go_on_paused(self, run: Run) -> Run:
-        self._go_on_with(run, self.world)
+        self._go_on_with(run, run.session.world)
         self.running = False
         return run
 

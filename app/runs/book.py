@@ -94,6 +94,9 @@ class Book:
             self._tell()
 
     def _is_due(self, session: Session) -> bool:
-        """[ours] Wall time decides only how often the state is kept, never what it is. test_keeping.py."""
+        """[ours] Wall time decides only how often the state is kept, never what it is.
+
+        test_kept_runs.py::test_it_comes_out_the_same.
+        """
         spent_s = time.thread_time() - self._at_s
         return session.time_s - self._copied_s >= COPY_EVERY_S - 1e-9 and self._cost_s <= COPY_SHARE * spent_s

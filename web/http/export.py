@@ -112,4 +112,5 @@ def _name(latest: Latest[Snapshot]) -> str:
     _, snapshot = latest.get()
     if snapshot is None:
         return "run"
-    return f"run-{re.sub(r'[^A-Za-z0-9]+', '-', snapshot.world.name)}-seed{snapshot.seed}"
+    played = "recording" if snapshot.world is None else snapshot.world.name
+    return f"run-{re.sub(r'[^A-Za-z0-9]+', '-', played)}-seed{snapshot.seed}"

@@ -26,8 +26,8 @@ class Side:
 
     number: int
     time_s: float
-    error_map_m: float
-    error_odometry_m: float
+    error_map_m: float | None
+    error_odometry_m: float | None
     views: int
     experiences: int
     links: int
