@@ -13,7 +13,9 @@ NEEDS: dict[type, str] = {
     **dict.fromkeys((m.SetGoal, m.GoToTag, m.CancelGoal, m.SetMode, m.Drive, m.Kidnap), DRIVEN),
     **dict.fromkeys((m.SetDoor, m.SetLamp, m.PutBox, m.RemoveBox, m.EditWorld, m.UndoEdit, m.RedoEdit), OFFICE),
     **dict.fromkeys((m.ReadWorld, m.WorldSaved), OFFICE),
-    **dict.fromkeys((m.Seek, m.BackToNow, m.GoOnFromHere, m.ChangeBranch, m.CompareBranch, m.Loop), AGAIN),
+    **dict.fromkeys(
+        (m.Seek, m.BackToNow, m.GoOnFromHere, m.GoOnWithout, m.ChangeBranch, m.CompareBranch, m.Loop), AGAIN
+    ),
     **dict.fromkeys((m.ReadSession,), OFFICE),
     m.StepStage: WHOLE,
 }

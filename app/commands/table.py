@@ -45,6 +45,7 @@ COMMANDS: dict[type, Handler] = {
     m.Seek: time.seek,
     m.BackToNow: time.back_to_now,
     m.GoOnFromHere: time.go_on_from_here,
+    m.GoOnWithout: time.go_on_without,
     m.ChangeBranch: time.change_branch,
     m.CompareBranch: time.compare_branch,
     m.Loop: time.loop,

@@ -9,7 +9,7 @@ from web import messages as m
 PAST = "this is the past: go on from here, or come back to now"
 IN_THE_PAST = {  # the commands that change nothing, or begin another run
     m.Pause, m.Resume, m.Step, m.StepStage, m.SetSpeed, m.Inspect, m.Reset, m.WatchExperiment,
-    m.Seek, m.BackToNow, m.GoOnFromHere, m.ChangeBranch, m.CompareBranch, m.Loop,
+    m.Seek, m.BackToNow, m.GoOnFromHere, m.GoOnWithout, m.ChangeBranch, m.CompareBranch, m.Loop,
 }  # fmt: skip
 
 
@@ -38,6 +38,26 @@ def back_to_now(engine: Engine, _: m.BackToNow) -> Outcome:
 
 def go_on_from_here(engine: Engine, _: m.GoOnFromHere) -> Outcome:
     return attempt("type", "go_on_from_here", engine.go_on_from_here)
+
+
+def go_on_without(engine: Engine, command: m.GoOnWithout) -> Outcome:
+    """[ours] What would have come of it without the views that led to an event. test_go_on_without.py."""
+
+    def go() -> None:
+        report = engine.run.history.events.reasons.of(command.event)
+        if not report.without:
+            raise ValueError(f"no view led to event {command.event}: there is nothing to go on without")
+        engine.time.seek(max(0, engine.time.tick_at(report.since_s) - 1))
+        run = engine.go_on_from_here()
+        known = [view for view in report.without if view < len(run.session.brain.local_view)]
+        for view in known:
+            run.session.forget_view(view)
+        names = ", ".join(map(str, known))
+        run.event_log.note("branch", f"the brain has forgotten where it saw view {names}")
+
+    engine.running = False
+    engine.break_off()
+    return attempt("event", command.event, go)
 
 
 def change_branch(engine: Engine, command: m.ChangeBranch) -> Outcome:

@@ -78,7 +78,9 @@ class TimeTravel:
     def _show_events(self) -> None:
         """The timeline shows what is still to come, too."""
         assert self.past is not None
-        self.past.event_log.events = self._live.event_log.events
+        live = self._live.event_log
+        self.past.event_log.events = live.events
+        self.past.event_log.why.update(live.why)
 
     # ------------------------------------------------------------ branches
 

@@ -22,7 +22,7 @@ from app.views.senses import senses_of
 from app.views.throttle import Slow
 from app.views.tick_stages import Walk
 from app.views.world_drawing import DrawnWorld
-from web.messages import Inspect, OfficeEdition, Pose, Snapshot, TimeView, Timing, TrialView
+from web.messages import Inspect, OfficeEdition, Pose, Report, Snapshot, TimeView, Timing, TrialView
 
 OCCUPANCY_EVERY_S = 2.0  # of wall time
 GOAL_MEMORY_EVERY_S = 0.5
@@ -44,15 +44,20 @@ class Snapshots:
         self._floor = TruthFloor()
         self._map = MapLayers(session)
         self._occupancy = Slow(OCCUPANCY_EVERY_S, lambda: occupancy_layer(session))
-        self._inspection = Slow(
-            INSPECT_EVERY_S, lambda: inspect(session, history.visits, history.events.reasons, self.inspected)
-        )
+        self._inspection = Slow(INSPECT_EVERY_S, self._inspect)
         self._goal_memory = Slow(GOAL_MEMORY_EVERY_S, lambda: goal_memory_layer(session))
 
     def continue_from(self, other: Snapshots) -> None:
         """Show the same run at another moment: what is drawn and inspected stays, and is not drawn anew."""
         self.inspected, self.worlds = other.inspected, other.worlds
         self._drawn, self._actors, self._parameters = other._drawn, other._actors, other._parameters
+
+    def _inspect(self) -> Report | None:
+        history = self._history
+        try:
+            return inspect(self._session, history.visits, history.events.reasons, self.inspected)
+        except ValueError:  # at this moment of the past it is not there yet
+            return None
 
     def refresh(self) -> None:
         """Rebuild everything for the next snapshot, since a command has changed something."""

@@ -279,6 +279,14 @@ class GoOnFromHere(_Command):
     type: Literal["go_on_from_here"]
 
 
+class GoOnWithout(_Command):
+    """Go back to before what led to this event, and go on in another branch in which the brain has forgotten the views that
+    led to it."""
+
+    type: Literal["go_on_without"]
+    event: Annotated[int, Field(ge=1)]
+
+
 class ChangeBranch(_Command):
     """Go on with another branch, from its end."""
 
@@ -302,7 +310,7 @@ class Loop(_Command):
 
 
 EditOrder = EditWorld | UndoEdit | RedoEdit
-TimeOrder = Seek | BackToNow | GoOnFromHere | ChangeBranch | CompareBranch | Loop
+TimeOrder = Seek | BackToNow | GoOnFromHere | GoOnWithout | ChangeBranch | CompareBranch | Loop
 TagOrder = Tag | Untag | GoToTag
 OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
 LookOrder = Inspect | StepStage | InjectPacket

@@ -26,4 +26,5 @@ def tell(engine: Engine, /, **fields: object) -> str:
     outcome = carry_out(engine, READER.validate_python(fields))
     if isinstance(outcome, m.Refused):
         raise ValueError(outcome.reason)
-    return engine.run.event_log.events[-1].text
+    events = engine.run.event_log.events
+    return events[-1].text if events else ""

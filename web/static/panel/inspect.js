@@ -21,7 +21,7 @@ export class InspectTab {
     this.experience = this.number("experience");
     this.view = this.number("view");
     this.nothing = note(NOTHING);
-    this.report = new Report((wish) => this.look(wish));
+    this.report = new Report((wish) => this.look(wish), ask);
     this.inject = new InjectForm(ask);
     const now = make(
       "div",

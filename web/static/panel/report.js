@@ -16,8 +16,8 @@ const TITLES = { experience: "experience", view: "local view cell", cell: "pose 
  */
 
 export class Report {
-  /** @param {(wish: Record<string, number>) => void} inspect */
-  constructor(inspect) {
+  /** @param {(wish: Record<string, number>) => void} inspect @param {import("./panel.js").Ask} ask */
+  constructor(inspect, ask) {
     this.inspect = inspect;
     this.title = caption("");
     this.name = make("p", { className: "number" });
@@ -29,7 +29,7 @@ export class Report {
     this.aside = make("div");
     this.pair = make("div", { className: "pair" });
     this.sections = make("div");
-    this.why = new Why(inspect);
+    this.why = new Why(inspect, ask);
     const head = make("div", { className: "pair" }, make("div", {}, this.title, this.name, this.words), this.aside);
     this.box = make("div", { hidden: true }, head, this.pair, this.sections, this.why.box);
     this.kind = null;

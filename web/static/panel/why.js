@@ -3,21 +3,23 @@
 import { make } from "../elements/elements.js";
 import { svg } from "../elements/icons.js";
 import { Picture } from "./canvases.js";
-import { caption, choice, heading, renew } from "./parts.js";
+import { caption, choice, heading, note, renew } from "./parts.js";
 
 const MOST_VIEWS = 4;
 
 /** @typedef {[number, number, number, number]} Packet number, x, y (cells), share of the activity */
-/** @typedef {{ event: string, number: string, cells: [number, number], packets: [Packet[], Packet[]], seen: [number, string][] }} Told */
+/** @typedef {{ id: number, without: number[], event: string, number: string, cells: [number, number], packets: [Packet[], Packet[]], seen: [number, string][] }} Told */
 
 export class Why {
-  /** @param {(wish: Record<string, number>) => void} inspect */
-  constructor(inspect) {
+  /** @param {(wish: Record<string, number>) => void} inspect @param {import("./panel.js").Ask} ask */
+  constructor(inspect, ask) {
     this.inspect = inspect;
+    this.ask = ask;
+    this.without = make("div", { className: "without" });
     this.packets = make("div", { className: "pair" });
     this.views = make("div", { className: "seen" });
     this.pictures = Array.from({ length: MOST_VIEWS }, () => new Picture("a view"));
-    this.box = make("div", { hidden: true }, heading("Packets, from above"), this.packets, this.views);
+    this.box = make("div", { hidden: true }, heading("Packets, from above"), this.packets, this.views, this.without);
   }
 
   /** @param {Told} told @param {import("./senses.js").Arrays} arrays */
@@ -29,8 +31,19 @@ export class Why {
       }),
     );
     renew(this.views, [told.number, told.seen], () => (told.seen.length ? this.seen(told.seen) : []));
+    renew(this.without, [told.id, told.without], () => (told.without.length ? this.goOn(told) : []));
     for (const [k, [view]] of told.seen.entries())
       this.pictures[k].says(`the stored view ${view}`).show(arrays[`seen${k}`]);
+  }
+
+  /** @param {Told} told */
+  goOn({ id, without }) {
+    const words = without.length === 1 ? "this view" : "these views";
+    const button = make("button", { type: "button", textContent: `Go on without ${words}` });
+    button.dataset.key = "without";
+    button.addEventListener("click", () => this.ask({ type: "go_on_without", event: id }));
+    const told = `Back to before it, in a branch whose brain has forgotten ${words}. The run as it was stays.`;
+    return [heading("What if not?"), note(told), button];
   }
 
   /** @param {[number, string][]} seen */
