@@ -18,12 +18,13 @@ from app.recordings.formats.donkey import MANIFEST, open_old_tub, open_tub
 from app.recordings.formats.image_folder import open_image_folder, pictures_in
 from app.recordings.formats.lines import open_whole
 from app.recordings.formats.mcap_file import MAGIC as MCAP
-from app.recordings.formats.mcap_file import mcap_packets
+from app.recordings.formats.mcap_file import mcap_packets, said_of_run
 from app.recordings.formats.ros_recording import open_ros
 from app.recordings.formats.ros_topics import Choice
 from app.recordings.formats.scan_json import open_scans
 from app.recordings.formats.video import VIDEOS, open_video
 from app.recordings.made_odometry import OdometryErrors, WithMadeOdometry
+from app.recordings.own_run import OwnRun
 from app.recordings.recording import Recording
 
 READ = "MCAP, a bag of ROS 1 or 2, a video, a folder of pictures, a Donkey tub, AirSim's folder, a CARMEN log"
@@ -80,7 +81,8 @@ def _file(path: Path, opening: Opening) -> Recording:
         except (OSError, EOFError, zlib.error) as error:
             raise ValueError(f"{path.name}: cannot be unpacked: {error}") from None
     if start.startswith(MCAP):
-        return open_ros(path, "MCAP", partial(mcap_packets, path), opening.topics)
+        recording, said = open_ros(path, "MCAP", partial(mcap_packets, path), opening.topics), said_of_run(path)
+        return OwnRun(recording, said) if said else recording
     if start.startswith(BAG):
         return open_ros(path, "bag of ROS 1", partial(bag_packets, path), opening.topics)
     if start.startswith(b"SQLite format 3\0"):

@@ -29,10 +29,12 @@ class Player:
     """Plays a recording; each time from the beginning, with a new brain, and with the same result."""
 
     def __init__(self, recording: Recording, seed: int = 0, config: Config | None = None) -> None:
-        """config: wins over the rules that look at the recording."""
-        self.recording, self.seed = recording, seed
+        """config: wins over that of the recording, if it is a run of ours, and over the rules that look at it. seed: that of a
+        run of ours wins."""
+        about = recording.about
+        self.recording, self.seed = recording, seed if about.seed is None else about.seed
         ruled, self._motion = rules(recording)
-        self.config = ruled if config is None else config
+        self.config = config or about.config or ruled
         angles = recording.about.beam_angles_rad
         # The front end for lasers takes beams from right to left; the order of sonars is that in which they were told.
         self._order = np.argsort(angles, kind="stable") if is_laser(recording.about) else np.arange(len(angles))

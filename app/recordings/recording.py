@@ -9,6 +9,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from app.config import Config
+
 Pose = tuple[float, float, float]  # x, y (m), heading (rad, counter-clockwise)
 
 
@@ -41,6 +43,8 @@ class About:
     beam_angles_rad: tuple[float, ...] = ()  # of each range from straight ahead, left is positive
     range_limit_m: float | None = None
     uses: tuple[str, ...] = ()  # sentences: what is used for what
+    config: Config | None = None  # of a run of ours: its parameters ...
+    seed: int | None = None  # ... and its seed
     problems: tuple[str, ...] = ()  # sentences with the message or line where something is wrong
 
 

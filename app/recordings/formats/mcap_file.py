@@ -45,6 +45,16 @@ def mcap_packets(path: Path, problems: Problems) -> Iterator[Packet]:
             number += 1
 
 
+def said_of_run(path: Path) -> dict[str, str]:
+    """What a run of ours says of itself before its first message; empty in other recordings."""
+    for record in _records(path, Problems()):
+        if isinstance(record, Metadata) and record.name == "ratslam":
+            return dict(record.metadata)
+        if isinstance(record, Message):
+            break
+    return {}
+
+
 def _records(path: Path, problems: Problems) -> Iterator[McapRecord]:
     with open_whole(path) as file:
         if file.read(len(MAGIC)) != MAGIC:
