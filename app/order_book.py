@@ -64,7 +64,7 @@ def carry_out(session: Ordered, order: Order) -> None:
     values = dict(order.values)
     try:
         if "world" in values:
-            values["world"] = world_from_json(values["world"], "the edited world", SMALLEST_M)
+            values["world"] = world_from_json(values["world"], "the edited world", SMALLEST_M, begins=False)
         if "box" in values:
             box = values["box"]
             values["box"] = replace(Box(**box), colour=tuple(box["colour"]))

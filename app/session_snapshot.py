@@ -71,7 +71,8 @@ def _settled(state: State) -> Session:
     first_text, text, session = cast("tuple[object, object, object]", parts)
     if not isinstance(session, Session):
         raise ValueError(f"it must hold a session, got a {type(session).__name__}")
-    first, now = _world_of(first_text, "the text of its first world"), _world_of(text, "the text of its world")
+    first = _world_of(first_text, "the text of its first world")
+    now = _world_of(text, "the text of its world", begins=False)
     if first == now:
         first = now
     session_laws.check(session, now)
@@ -79,6 +80,6 @@ def _settled(state: State) -> Session:
     return session
 
 
-def _world_of(text: object, name: str) -> World:
+def _world_of(text: object, name: str, *, begins: bool = True) -> World:
     text = array(name, text, np.uint8, (None,))
-    return world_from_json(text.tobytes().decode(), "its world", SMALLEST.robot_radius_m)
+    return world_from_json(text.tobytes().decode(), "its world", SMALLEST.robot_radius_m, begins=begins)

@@ -45,9 +45,13 @@ def check_world(
 
 
 def world_faults(
-    world: World, radius: float, before: World | None = None, free_in: Callable[[World], FreeSpace] | None = None
-) -> Iterator[Fault]:
-    """Everything that is wrong. Checks that need a valid outline are made only if nothing else is wrong."""
+    world: World, radius: float, before: World | None = None, free_in: Callable[[World], FreeSpace] | None = None,
+    *, begins: bool = True,
+) -> Iterator[Fault]:  # fmt: skip
+    """Everything that is wrong. Checks that need a valid outline are made only if nothing else is wrong.
+
+    begins: whether a robot is to begin in it; else something may have been put down where it once began.
+    """
     sound = True
     known = set[int]() if before is None else set(map(id, before.walls))
     new = ((i, wall) for i, wall in enumerate(world.walls) if id(wall) not in known)
@@ -61,13 +65,13 @@ def world_faults(
         sound = False
         yield fault
     if sound:
-        yield from _place_faults(world, FreeSpace(world, radius) if free_in is None else free_in(world))
+        yield from _place_faults(world, FreeSpace(world, radius) if free_in is None else free_in(world), begins)
 
 
-def _place_faults(world: World, free: FreeSpace) -> Iterator[Fault]:
+def _place_faults(world: World, free: FreeSpace, begins: bool) -> Iterator[Fault]:
     """The robot must fit at every start as the world begins, and at every place between the walls."""
     for kind, points, fit in (
-        ("starts", world.starts, RobotFit(free, Standing.at_first(world))),
+        ("starts", world.starts if begins else (), RobotFit(free, Standing.at_first(world))),
         ("places", world.places, RobotFit(free)),
     ):
         for i, point in enumerate(points):

@@ -66,14 +66,17 @@ def holds(path: Path, world: World) -> bool:
         return False
 
 
-def world_from_json(text: str, file_name: str, robot_radius_m: float | None = None) -> World:
-    """The world in the text of a file. file_name: for error messages only. Raises WorldError."""
+def world_from_json(text: str, file_name: str, robot_radius_m: float | None = None, *, begins: bool = True) -> World:
+    """The world in the text of a file. file_name: for error messages only. Raises WorldError.
+
+    begins: whether a robot is to begin in it, or is in it already.
+    """
     raw = parse_json(text, file_name)
     try:
         world = WorldFile.model_validate(raw).world()
     except ValidationError as error:
         raise WorldError(next(_schema_complaints(error, file_name, text))) from None
-    for complaint in _complaints(world, text, file_name, robot_radius_m):
+    for complaint in _complaints(world, text, file_name, robot_radius_m, begins):
         raise WorldError(complaint)
     return world
 
@@ -132,9 +135,9 @@ def _schema_complaints(error: ValidationError, name: str, text: str | None = Non
         yield f"{name}: {_path(item['loc']) or 'file'}:{got} {message}{line}"
 
 
-def _complaints(world: World, text: str, name: str, radius_m: float | None) -> Iterator[str]:
+def _complaints(world: World, text: str, name: str, radius_m: float | None, begins: bool = True) -> Iterator[str]:
     radius = SimParams().robot_radius_m if radius_m is None else radius_m
-    for fault in world_faults(world, radius):
+    for fault in world_faults(world, radius, begins=begins):
         yield f"{name}: {fault_words(fault)}{_line(text, fault.where)}"
 
 

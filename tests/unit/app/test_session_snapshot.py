@@ -254,3 +254,13 @@ def test_a_world_that_is_none_is_refused() -> None:
     text = taken.arrays[0].tobytes().replace(b'"to"', b'"to": [1, 1], "tO"', 1)
     with pytest.raises(ValueError, match=r"its world: walls\[0\]\.tO: got .*; unknown key"):
         restore_session(State(taken.tree, [np.frombuffer(text, np.uint8), *taken.arrays[1:]]))
+
+
+def test_a_box_where_the_robot_began_is_no_reason_not_to_go_on() -> None:
+    session = Session(load_world("office"), 3)
+    for _ in range(30):
+        session.tick()
+    start = session.world.starts[0]
+    session.kidnap()
+    session.put_box(Box("parcel", start.x, start.y, 0.3, 0.3, 0.4, 0.0))
+    assert restore_session(take_session(session)).state_hash() == session.state_hash()

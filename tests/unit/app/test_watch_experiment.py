@@ -76,7 +76,7 @@ def test_a_trial_of_another_version_is_told() -> None:
 def test_of_every_command_it_is_known_what_it_does_to_a_trial() -> None:
     leaves = {
         m.Tag, m.Untag, m.Pause, m.Resume, m.Step, m.StepStage, m.SetSpeed, m.Reset, m.Inspect, m.WatchExperiment,
-        m.Seek, m.BackToNow, m.GoOnFromHere, m.ChangeBranch, m.CompareBranch, m.Loop,
+        m.Seek, m.BackToNow, m.GoOnFromHere, m.GoOnWithout, m.ChangeBranch, m.CompareBranch, m.Loop,
     }  # fmt: skip
     groups = [set(ENDS), set(ALTERS), leaves]
     assert set.union(*groups) == set(COMMANDS)
