@@ -152,3 +152,8 @@ def test_why_a_loop_closed_or_the_packet_snapped_is_told(walked, browser):
         expect(page.locator("#panel .seen canvas")).to_have_count(2)
         page.locator("#panel .seen").get_by_role("button").first.click()
         says(page, "local view cell")
+        page.get_by_role("tabpanel").get_by_role("button", name=re.compile(r"^false positive \d")).first.click()
+        before = walked.state()["tick"]
+        page.get_by_role("button", name="Go on without this view").click()
+        walked.wait(lambda state: state["tick"] < before)
+        says(page, "Why did it happen?")
