@@ -50,6 +50,11 @@ def drag(page: Page, *times_s: float) -> None:
     page.mouse.up()
 
 
+def shows(page: Page, tick: int) -> None:
+    """The page has this moment: a step is counted from what it shows."""
+    until(page, f"() => document.querySelector('#timeline').ariaValueText.startsWith('0:{tick / 10:04.1f} ')")
+
+
 def test_drag_step_and_come_back(driven: Program, browser) -> None:
     before = driven.state()
     with open_page(browser, driven.url, 1280, 800, stage=False) as page:
@@ -58,13 +63,19 @@ def test_drag_step_and_come_back(driven: Program, browser) -> None:
         past = driven.wait(lambda state: 190 <= state["tick"] <= 210)
         assert not past["running"]
         expect(page.locator("#status")).to_contain_text("the past")
+        page.wait_for_timeout(1000)  # the last wish of the drag has come true
+        past = driven.state()
+        shows(page, past["tick"])
         page.click("#tick-back")
         driven.wait(lambda state: state["tick"] == past["tick"] - 1)
+        shows(page, past["tick"] - 1)
         page.keyboard.press("l")
         driven.wait(lambda state: state["tick"] == past["tick"] + 9)
+        shows(page, past["tick"] + 9)
         page.keyboard.press("]")
         at_kidnap = driven.wait(lambda state: state["tick"] == 300)
         assert at_kidnap["time_s"] == 30.0
+        shows(page, 300)
         page.focus("#timeline")
         page.keyboard.press("ArrowLeft")
         driven.wait(lambda state: state["tick"] == 299)
