@@ -66,7 +66,9 @@ def test_drag_step_and_come_back(driven: Program, browser) -> None:
         page.wait_for_timeout(1000)  # the last wish of the drag has come true
         past = driven.state()
         shows(page, past["tick"])
-        page.click("#tick-back")
+        page.evaluate("() => { for (let k = 0; k < 5; k++) document.querySelector('#tick-back').click(); }")
+        driven.wait(lambda state: state["tick"] == past["tick"] - 5)
+        page.evaluate("() => { for (let k = 0; k < 4; k++) document.querySelector('#tick-on').click(); }")
         driven.wait(lambda state: state["tick"] == past["tick"] - 1)
         shows(page, past["tick"] - 1)
         page.keyboard.press("l")

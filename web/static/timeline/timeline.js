@@ -94,6 +94,7 @@ export class Timeline {
     const looped = JSON.stringify(time?.loop) !== JSON.stringify(this.time?.loop);
     const follows = this.part && !time?.past && this.time_s <= this.part.to;
     [this.tick, this.time_s, this.time] = [tick, time_s, time];
+    this.seeker.told();
     if (this.part && follows && time_s > this.part.to) this.pan(0.5);
     if (time) {
       this.tools.show(time, time_s);

@@ -32,10 +32,11 @@ export class Tools {
 
   /** Goes on or back by ticks. Beyond the present, it is made. @param {number} ticks */
   tick(ticks) {
-    const { tick, time } = this.timeline;
+    const { time, seeker } = this.timeline;
     if (!time) return;
-    if (ticks > 0 && !time.past) this.link.ask({ type: "step", ticks });
-    else this.timeline.seeker.seek({ tick: Math.min(time.end_tick, Math.max(0, tick + ticks)) });
+    const tick = seeker.aim ?? this.timeline.tick;
+    if (ticks > 0 && !time.past && seeker.aim === null) this.link.ask({ type: "step", ticks });
+    else seeker.seek({ tick: Math.min(time.end_tick, Math.max(0, tick + ticks)) });
   }
 
   /** @param {1 | -1} way */
