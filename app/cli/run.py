@@ -12,6 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.earlier import cut_off_run, going_on, kept_brain
 from app.cli.options import Verbs, add_session_options, checked_seed, config_of, session_of
 from app.config import Config
 from app.runs.folder import BUDGET_MB
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from app.kept_brains.files import KeptBrain
     from app.runs.run_file import KeptRun
     from app.trials.trial import Trial
-    from web import messages as m
 
 ENGINE_PATIENCE_S = 2.0  # how long leaving waits for a tick that hangs
 _NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
@@ -109,8 +109,8 @@ def _run(args: argparse.Namespace) -> int:
             raise ValueError(f"--{name} is for a trial; give --experiment NAME with it")
     args.seed = 1 if args.seed is None else args.seed
     own_worlds.tidy()
-    kept = _resume(args)
-    cut_off = None if args.resume_brain or args.brain is not None else _cut_off()
+    kept = kept_brain(args)
+    cut_off = None if args.resume_brain or args.brain is not None else cut_off_run()
     world, config, brain = session_of(args)
     return _compiling(
         lambda compiling: _serve(serving, First(world, args.seed, config, brain), compiling, kept, cut_off)
@@ -215,6 +215,14 @@ def _compiling(serve: Callable[[Compiling], int]) -> int:
         compiling.stop()
 
 
+def _opened(path: Path) -> object:
+    """What plays the recording in a file. ValueError says what is wrong with it."""
+    from app.recordings.opening import open_recording
+    from app.recordings.playing import Player
+
+    return Player(open_recording(path), 1)
+
+
 def _serve(
     serving: Serving, first: First, compiling: Compiling, kept: KeptBrain | None, cut_off: KeptRun | None = None
 ) -> int:
@@ -242,7 +250,7 @@ def _serve(
     if cut_off is not None:
         offered = Offered(
             cut_off.header.world_name, cut_off.header.seed, cut_off.length_s, cut_off.experiences or 0, cut_off.left_at,
-            partial(_going_on, cut_off), run=cut_off.name,
+            partial(going_on, cut_off), run=cut_off.name,
         )  # fmt: skip
     dashboard = Dashboard(
         engine.latest, engine.submit, viewers, port=serving.port, offered=offered, experiments=StoredGallery(),
@@ -272,59 +280,10 @@ def _serve(
     return 0
 
 
-def _going_on(kept: KeptRun) -> m.GoOn:
-    from app.runs.replay import resumed
-    from web import messages as m
-
-    return m.GoOn(kept, resumed(kept))
-
-
-def _cut_off() -> KeptRun | None:
-    """The newest run, if it was cut off in the middle, by a crash or a kill."""
-    from app.runs.folder import all_runs, is_open
-    from app.runs.run_file import open_run
-
-    for folder in all_runs()[:1]:
-        try:
-            run = open_run(folder)
-        except ValueError:
-            return None
-        if run.last_tick > 0 and not run.end and not is_open(folder):
-            print(f"The run {run.name} was cut off: go on with it by `ratslam run --resume {run.name}`", flush=True)
-            return run
-    return None
-
-
-def _opened(path: Path) -> object:
-    """What plays the recording in a file. ValueError says what is wrong with it."""
-    from app.recordings.opening import open_recording
-    from app.recordings.playing import Player
-
-    return Player(open_recording(path), 1)
-
-
 def _tell(serving: Serving, url: str) -> None:
     print(f"RatSLAM is alive at {url}  (Ctrl+C ends it)", flush=True)
     if serving.browser and _has_screen():
         webbrowser.open(url)
-
-
-def _resume(args: argparse.Namespace) -> KeptBrain | None:
-    """The brain kept last: with --resume-brain set up to be run, without it returned, to be offered on the page."""
-    from app.kept_brains.files import folder, newest
-
-    kept = newest()
-    if not args.resume_brain:
-        if kept is None or args.brain is not None:
-            return None
-        print(f"There is {kept.words}: go on with it by `ratslam run --resume-brain`", flush=True)
-        return kept
-    if args.brain is not None:
-        raise ValueError(f"--resume-brain takes the brain that was kept last; do not give --brain {args.brain} with it")
-    if kept is None:
-        raise ValueError(f"--resume-brain: no brain is kept in {folder()}")
-    args.brain, args.world, args.seed = kept.path, kept.about.world, kept.about.seed
-    return None
 
 
 def _has_screen() -> bool:
