@@ -13,15 +13,14 @@ from typing import IO, cast
 import numpy as np
 
 from app import session_laws
+from app.order_book import SMALLEST_M
 from app.session import Session
 from disk import State, copy_state, decode, encode
 from disk.archive import BROKEN
 from disk.state_file import load_as, read_as, save_state
 from disk.state_reading import words_of
 from ratslam_core.laws.measures import array
-from sim2d import SimParams, World, world_from_json
-
-SMALLEST = SimParams(robot_radius_m=0.05)  # the world is checked for the smallest robot: its radius can be changed
+from sim2d import World, world_from_json
 
 
 def take_session(session: Session) -> State:
@@ -82,4 +81,4 @@ def _settled(state: State) -> Session:
 
 def _world_of(text: object, name: str, *, begins: bool = True) -> World:
     text = array(name, text, np.uint8, (None,))
-    return world_from_json(text.tobytes().decode(), "its world", SMALLEST.robot_radius_m, begins=begins)
+    return world_from_json(text.tobytes().decode(), "its world", SMALLEST_M, begins=begins)

@@ -176,7 +176,10 @@ class Engine:
                 self.break_off()
         except BaseException as error:
             self._watchdog.end()
-            self.fail(error)
+            if self.time.past is None:
+                self.fail(error)
+            else:
+                self._leave_past(error)
             return True
         self._pause_after_trial(playing)
         over = self.run.session.over and self._pause_at_end()
@@ -257,6 +260,14 @@ class Engine:
         if run.book is not None:
             run.book = self._book(run.session, Fork(run.book))
         return self._go_on_paused(run)
+
+    def _leave_past(self, error: BaseException) -> None:
+        """A moment could not be played again. The present is not touched by that."""
+        traceback.print_exception(error)
+        self.running = False
+        self.break_off()
+        self.time.back_to_now()
+        self.run.event_log.note("fault", f"the past could not be played again: {words_of(error)}")
 
     def _go_on_paused(self, run: Run) -> Run:
         self._go_on_with(run, run.session.world)

@@ -203,3 +203,24 @@ def test_a_branch_without_the_kidnap_is_the_run_that_was_never_kidnapped() -> No
     view = shown(engine).time
     assert view is not None
     assert len(view.branches) == 1
+
+
+def test_a_moment_that_cannot_be_played_again_leaves_the_present_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    engine = an_engine(OFFICE)
+    run_for(engine, 40)
+    before = engine.run.session.state_hash()
+    tell(engine, type="seek", tick=10)
+    tell(engine, type="resume")
+
+    def spoilt(*_: object) -> bool:
+        raise RuntimeError("spoilt")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(engine.time, "play", spoilt)
+        assert engine.tick()
+    assert (engine.time.past, engine.fault, engine.running) == (None, None, False)
+    assert engine.run.event_log.events[-1].text == "the past could not be played again: RuntimeError: spoilt"
+    assert engine.run.session.state_hash() == before
+    tell(engine, type="resume")
+    engine.tick()
+    assert engine.run.session.tick_count == 41
