@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+from app.comparing import Comparing
 from app.config import Config, Value
 from app.evaluation import Evaluation
 from app.hand_packet import put_packet
@@ -18,7 +19,7 @@ from sim2d import Box, SensorFrame, Simulator, World
 MOST_TAGS = 24
 
 
-class Orders:
+class Orders(Comparing):
     """The orders of a session, which inherits them. Those marked are kept with a run and can be given again."""
 
     world: World
@@ -106,6 +107,8 @@ class Orders:
         self.simulator.teleport(x, y, heading)
         self.frame = self.simulator.observe()
         self.evaluation.kidnapped(self.time_s, self.brain.experience_map)
+        if self.companion is not None:
+            self.companion.evaluation.kidnapped(self.time_s, self.companion.brain.experience_map)
 
     @order
     def random_free_pose(self) -> tuple[float, float, float]:
@@ -133,6 +136,7 @@ class Orders:
     def set_parameters(self, values: Mapping[str, Value]) -> list[str]:
         """Change several parameters, all or none. Returns the names of those that wait for the next reset."""
         config = self.config.with_values(values)
+        beside = None if self.companion is None else config.with_values(self.companion.values)
         changes: dict[str, dict[str, Value]] = {"robot": {}}  # robot first: only it can refuse (no room)
         waiting: list[str] = []
         for (dotted, item, old), (_, _, new) in zip(self.config.items(), config.items(), strict=True):
@@ -145,6 +149,8 @@ class Orders:
             if change:
                 _take(self, section, change)
         self.config = config
+        if self.companion is not None and beside is not None:
+            self.companion.change(self.companion.config, beside)
         return waiting
 
     # ------------------------------------------------------------ to the office

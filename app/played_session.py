@@ -1,6 +1,7 @@
 """A session that plays a recording: the same brain, looked at and changed in the same way, and no office or pilot.
 
-What a recording does not have is absent: an order that needs it is refused (app/commands/needs.py).
+What a recording does not have is absent: an order that needs it is refused (app/commands/needs.py). The recording itself
+is no part of the state: copies of a session share it (app/recordings/reel.py).
 """
 
 from __future__ import annotations
@@ -8,59 +9,89 @@ from __future__ import annotations
 import copy
 import hashlib
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.config import Value
+from app.companion import Heard
+from app.config import Config, Value
 from app.evaluation import Evaluation
-from app.order_book import Order
+from app.order_book import Order, order
 from app.pilot import Pilot
 from app.recordings.playing import Player, Step
-from app.recordings.recording import About, Moment, Pose, Recording
-from app.session import Session
+from app.recordings.recording import About, Moment, Pose
+from app.recordings.reel import Reel
+from app.recordings.scan_ties import ScanTies
+from app.session import SECOND, Session
 from app.stopwatch import Stopwatch
-from disk import encode
-from ratslam_core import Odometry
-from sim2d import SONAR_ANGLES_RAD, SensorFrame, Truth
+from disk import encode, kind
+from ratslam_core import Odometry, RatSlam
+from ratslam_core.slam import STAGES
+from sim2d import SONAR_ANGLES_RAD, SensorFrame, Truth, World
 
-PARTS = ("recording and RatSLAM", "judging")  # of a tick
+PARTS = ("recording", *STAGES, "judging", SECOND)  # of a tick
 NOT_RECORDED = ("robot", "office", "pilot")  # sections of the parameters that no recording has
 SHOWN_PX = 320  # the widest picture that people are shown; the brain is given the whole one
 
 
+@kind("played session/1")
 class PlayedSession(Session):
     """One recording and one brain. A tick is a moment, however long that takes: the pace changes nothing."""
+
+    CACHES = (*Session.CACHES, "recording", "_player", "_reel", "_ends")
 
     def __init__(self, player: Player, seed: int | None = None) -> None:
         """ValueError: there is nothing to be played."""
         self._player = copy.copy(player)
         self.seed = self._player.seed = player.seed if seed is None else seed
         self.config = player.config
-        self._moments = _Watched(player.recording)
-        self.recording = player.recording.about
         self.pilot = Pilot(self.config.pilot, np.array(SONAR_ANGLES_RAD), np.random.default_rng(0))  # never asked
         self.evaluation = Evaluation()
         self.tags = {}
+        self._true: tuple[float, float, float, float, float] | None = None  # as in `Truth`
+        self._reel = Reel(player.recording)
+        if not self._reel.has(0):
+            raise ValueError(f"{player.recording.about.name} has no moment that can be played")
+        self._playing = self._player.begin()
+        self.brain = self._playing.brain
+        self._tick = -1
+        self._begin()
+        self._play(_unwatched)
+
+    def settle(self, worlds: tuple[World, ...], before: Session | None = None) -> None:  # noqa: ARG002
+        """As in every session. There are no worlds; `before`, which plays the same recording, is needed."""
+        if not isinstance(before, PlayedSession):
+            raise ValueError("a session of a recording goes on beside another that plays it")
+        self._player, self._reel = before._player, before._reel
+        self._begin()
+        self.frame = _frame(self._tick, self._reel.at(self._tick), self.odometry)
+        self._ends = not self._reel.has(self._tick + 1)
+        now = self._reel.at(self._tick)  # before the first tick, a second brain may begin with it
+        self.heard = Heard(now.image, self.odometry, self._playing.ranges_of(now), now.behaviour, scan_m=now.ranges_m)
+
+    def _begin(self) -> None:
+        self.recording = self.about
         self.stopwatch = Stopwatch(PARTS)
-        self.on_order = _nobody
+        self.on_order: Callable[[Order], object] = _nobody
         self.under_orders = False
-        self._truth: Truth | None = None
-        watched = copy.copy(self._player)
-        watched.recording = self._moments
-        self._steps: Iterator[Step] = watched.steps()
-        first = next(self._steps, None)
-        if first is None:
-            raise ValueError(f"{self.recording.name} has no moment that can be played")
-        self.brain = first.brain
-        self._tick = 0
-        self._take(first)
+
+    @property
+    def tick_count(self) -> int:
+        return self._tick
 
     @property
     def over(self) -> bool:
         """Whether the last moment has been played."""
-        return self._moments.ended
+        return self._ends
+
+    @property
+    def worlds(self) -> tuple[World, ...]:
+        return ()
+
+    @property
+    def world_texts(self) -> tuple[str, str]:
+        return "", ""
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -69,24 +100,38 @@ class PlayedSession(Session):
         return tuple(words for words in self.config.warnings if not any(name in words for name in foreign))
 
     @property
+    def about(self) -> About:
+        """What the recording says of itself."""
+        return self._player.recording.about
+
+    @property
     def player(self) -> Player:
         """Plays the same recording from its beginning, with the parameters as they are now."""
         player = copy.copy(self._player)
         player.config = self.config
         return player
 
-    def tick(self, watch: Callable[[str], None] | None = None) -> None:  # noqa: ARG002  # a moment is played as a whole
+    def tick(self, watch: Callable[[str], None] | None = None) -> None:
         """Play one moment. After the last one nothing happens."""
-        self.stopwatch.start()
-        step = next(self._steps, None)
-        if step is None:
+        clock = self.stopwatch
+        clock.start()
+        if self._ends:
             return
-        self.stopwatch.lap(PARTS[0])
-        self._tick += 1
-        self._take(step)
-        self.stopwatch.lap(PARTS[1])
-        self.stopwatch.finish()
 
+        def staged(stage: str) -> None:
+            clock.lap(stage)
+            if watch is not None:
+                watch(stage)
+                clock.start()  # the time of watching does not count
+
+        self._play(staged)
+        clock.lap("judging")
+        if self.companion is not None:
+            self.companion.follow(self.heard, self.time_s, self.tick_count, self.truth, self.brain, self.estimate)
+            clock.lap(SECOND)
+        clock.finish()
+
+    @order
     def set_parameters(self, values: Mapping[str, Value]) -> list[str]:
         """As in every session; those of robot, office and pilot are refused."""
         for name in values:
@@ -98,46 +143,57 @@ class PlayedSession(Session):
 
     @property
     def truth(self) -> Truth | None:
-        return self._truth
+        return None if self._true is None else Truth(*self._true)
 
-    def state_hash(self) -> str:
-        """A digest of everything that decides the future, beside the recording itself, and of the evaluation."""
-        parts = (self._tick, self.seed, self.config, self.brain, self.evaluation, self.tags)
+    @property
+    def dt_ahead(self) -> float:
+        return self._reel.at(self._tick + 1).dt if self._reel.has(self._tick + 1) else self.frame.dt
+
+    def tick_at(self, time_s: float) -> int:
+        """The last moment at or before a time, among those that were played once."""
+        return self._reel.number_at(time_s)
+
+    def digest(self, world_texts: tuple[str, str]) -> str:  # noqa: ARG002  # it has none
+        """Of everything that decides the future, beside the recording itself, and of the evaluation."""
+        parts = (self._tick, self.seed, self.config, self._playing, self._true, self.evaluation, self.tags)
         return hashlib.sha256("".join(encode(part).digest() for part in parts).encode()).hexdigest()
+
+    # ------------------------------------------------------------ a second brain
+
+    def new_brain(self, config: Config) -> RatSlam:
+        player = self.player
+        player.config = config
+        return player.brain()
+
+    def new_ties(self) -> ScanTies | None:
+        return self._player.begin().ties
+
+    @property
+    def ties(self) -> ScanTies | None:
+        return self._playing.ties
 
     # ------------------------------------------------------------ inside
 
-    def _take(self, step: Step) -> None:
-        """Keep what a step tells, and compare it with the truth if the recording has it."""
+    def _play(self, watch: Callable[[str], None]) -> None:
+        """Play the next moment, keep what it tells, and compare it with the truth if the recording has it."""
+        moment = self._reel.at(self._tick + 1)
+        ends = not self._reel.has(self._tick + 2)  # where it breaks off, this is said before the brain has changed
+        self.stopwatch.lap("recording")
+        step = self._playing.step(moment, watch)
+        self._tick, self._ends = self._tick + 1, ends
         self.estimate, self.odometry = step.estimate, step.motion
-        self.frame = _frame(self._tick, step.moment, step.motion)
-        before, true = self._truth, step.moment.truth
-        self._truth = None if true is None else _truth(true, before, step.moment.dt)
-        if self._truth is not None:
-            self.evaluation.record(
-                self.time_s, self._truth, self.brain.experience_map, step.estimate.created, step.motion
-            )
+        self.frame = _frame(self._tick, moment, step.motion)
+        self.heard = Heard(
+            moment.image, step.motion, step.ranges_m, moment.behaviour, gap=step.gap, scan_m=moment.ranges_m
+        )
+        self._judge(step)
 
-
-class _Watched:
-    """A recording that knows when its last moment has been given: it reads one ahead."""
-
-    def __init__(self, recording: Recording) -> None:
-        self._recording = recording
-        self.ended = False
-
-    @property
-    def about(self) -> About:
-        return self._recording.about
-
-    def moments(self) -> Iterator[Moment]:
-        moments = self._recording.moments()
-        now = next(moments, None)
-        while now is not None:
-            following = next(moments, None)
-            self.ended = following is None
-            yield now
-            now = following
+    def _judge(self, step: Step) -> None:
+        before, true = self.truth, step.moment.truth
+        self._true = None if true is None else _with_speeds(true, before, step.moment.dt)
+        truth = self.truth
+        if truth is not None:
+            self.evaluation.record(self.time_s, truth, self.brain.experience_map, step.estimate.created, step.motion)
 
 
 def _frame(tick: int, moment: Moment, motion: Odometry) -> SensorFrame:
@@ -164,15 +220,19 @@ def _shown(image: NDArray[np.uint8] | None) -> NDArray[np.uint8]:
     return image[::every, ::every].copy()
 
 
-def _truth(now: Pose, before: Truth | None, dt: float) -> Truth:
-    """A true pose with the speeds that led to it from the one before."""
+def _with_speeds(now: Pose, before: Truth | None, dt: float) -> tuple[float, float, float, float, float]:
+    """A true pose with the speeds that led to it from the one before, as in `Truth`."""
     x, y, heading = now
     if before is None:
-        return Truth(x, y, heading, 0.0, 0.0)
+        return x, y, heading, 0.0, 0.0
     dt = max(dt, 1e-6)
     way, turn = math.hypot(x - before.x, y - before.y), math.remainder(heading - before.heading_rad, math.tau)
-    return Truth(x, y, heading, way / dt, turn / dt)
+    return x, y, heading, way / dt, turn / dt
 
 
 def _nobody(_order: Order) -> None:
     """The default for `on_order`: does nothing."""
+
+
+def _unwatched(_stage: str) -> None:
+    """The first moment is played before anybody can watch."""

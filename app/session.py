@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from app.companion import Heard
 from app.config import Config
 from app.evaluation import Evaluation
 from app.order_book import Order
@@ -22,14 +23,15 @@ from ratslam_core import Estimate, Odometry, RatSlam
 from ratslam_core.slam import STAGES
 from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, Truth, World, WorldText
 
-PARTS = ("pilot", "office and senses", *STAGES, "judging")  # of a tick; "judging" compares the estimate with the truth
+SECOND = "second brain"  # the part of a tick that there is while two brains are compared
+PARTS = ("pilot", "office and senses", *STAGES, "judging", SECOND)  # "judging" compares the estimate with the truth
 
 
 @kind("session/2")
 class Session(Orders):
     """One robot in one world with one brain."""
 
-    CACHES = ("world", "stopwatch", "frame", "_text", "_text_now", "on_order", "under_orders")
+    CACHES = ("world", "stopwatch", "frame", "_text", "_text_now", "on_order", "under_orders", "heard")
     recording: About | None = None  # what is played, in a session that plays one
 
     def __init__(
@@ -42,11 +44,11 @@ class Session(Orders):
         before: another session; what was computed from the same walls is taken over. It does not change the result.
         """
         self.world, self.seed, self.config = world, seed, config or Config()
-        brain_seed, pilot_seed = np.random.SeedSequence([seed, 1]).spawn(2)
+        _, pilot_seed = np.random.SeedSequence([seed, 1]).spawn(2)
         same = None if before is None else before.simulator
         self.simulator = Simulator(world, self.config.robot, seed, self.config.office, same)
         if brain is None:
-            brain = RatSlam(self.config.engine, np.random.default_rng(brain_seed), sonar_angles_rad=SONAR_ANGLES_RAD)
+            brain = self.new_brain(self.config)
         else:
             brain.set_params(self.config.engine)
             if len(brain.experience_map) > 0:  # an empty map holds no place to be found again
@@ -56,21 +58,25 @@ class Session(Orders):
         self.evaluation = Evaluation(len(brain.experience_map))
         self.tags = {}
         self._look()
-        self.odometry = self._odometry()  # what the brain was told in its last step
         self.estimate: Estimate = self._think(self.stopwatch.lap)
 
-    def settle(self, first: World, world: World, before: Session | None = None) -> None:
+    def settle(self, worlds: tuple[World, ...], before: Session | None = None) -> None:
         """Compute the caches anew in a session that was restored from a state (session_snapshot.py).
 
-        first: the world that a reset begins in; world: the one that the robot is in; before: as above.
+        worlds: as `worlds`; before: as above.
         """
-        self.world = first
+        self.world, world = worlds
         self.simulator.settle(world, None if before is None else before.simulator)
         self._look()
+
+    def new_brain(self, config: Config) -> RatSlam:
+        brain_seed, _ = np.random.SeedSequence([self.seed, 1]).spawn(2)
+        return RatSlam(config.engine, np.random.default_rng(brain_seed), sonar_angles_rad=SONAR_ANGLES_RAD)
 
     def _look(self) -> None:
         self.stopwatch = Stopwatch(PARTS)
         self.frame = self.simulator.observe()
+        self.heard = self._hear()
         self._text, self._text_now = WorldText(), WorldText()
         self.on_order: Callable[[Order], object] = _nobody
         self.under_orders = False
@@ -94,13 +100,35 @@ class Session(Orders):
         clock.lap("office and senses")
         self.estimate = self._think(staged)
         clock.lap("judging")
+        if self.companion is not None:
+            self.companion.follow(self.heard, self.time_s, self.tick_count, self.truth, self.brain, self.estimate)
+            clock.lap(SECOND)
         clock.finish()
 
     # ------------------------------------------------------------ looking
 
     def state_hash(self) -> str:
         """A digest of everything that decides the future, and of the evaluation. Equal runs have equal hashes."""
-        return digest_of(self.world_texts, self)
+        return self.digest(self.world_texts)
+
+    def digest(self, world_texts: tuple[str, str]) -> str:
+        """`state_hash` of a session or of a copy of one, which has no worlds."""
+        parts = (
+            *world_texts,
+            self.seed,
+            self.config,
+            self.simulator,
+            self.pilot,
+            self.brain,
+            self.evaluation,
+            self.tags,
+        )
+        return hashlib.sha256("".join(encode(part).digest() for part in parts).encode()).hexdigest()
+
+    @property
+    def worlds(self) -> tuple[World, ...]:
+        """The world that a reset begins in, and the one that the robot is in."""
+        return self.world, self.simulator.world
 
     @property
     def world_texts(self) -> tuple[str, str]:
@@ -120,6 +148,15 @@ class Session(Orders):
         return False
 
     @property
+    def dt_ahead(self) -> float:
+        """Seconds that the next tick will take."""
+        return self.frame.dt
+
+    def tick_at(self, time_s: float) -> int | None:  # noqa: ARG002
+        """The tick of a simulated time, if the source knows it. The ticks of an office are even, so it need not."""
+        return None
+
+    @property
     def truth(self) -> Truth | None:
         """Where the robot really is, as far as the source knows it. Never for the robot."""
         return self.simulator.truth
@@ -134,36 +171,19 @@ class Session(Orders):
     def _odometry(self) -> Odometry:
         return Odometry(self.frame.odometry_speed, self.frame.odometry_yaw_rate, self.frame.dt)
 
+    def _hear(self) -> Heard:
+        frame = self.frame
+        return Heard(frame.image, self._odometry(), frame.ranges_m, self.pilot.behaviour.number, frame.scene)
+
     def _think(self, watch: Callable[[str], None]) -> Estimate:
-        """One step of the brain. The scene number is made from the true pose, so the brain gets it only if its front
-        end is "scene numbers", as in the papers' own simulator."""
-        self.odometry = odometry = self._odometry()
-        numbers = self.brain.params.local_view.front_end == "scene numbers"
-        estimate = self.brain.step(
-            self.frame.image,
-            odometry,
-            scene=self.frame.scene if numbers else None,
-            behaviour=self.pilot.behaviour.number,
-            ranges_m=self.frame.ranges_m,
-            watch=watch,
+        """One step of the brain, on what it hears in this tick."""
+        self.heard = heard = self._hear()
+        self.odometry = heard.odometry  # what the brain was told in its last step
+        estimate = heard.tell(self.brain, watch)
+        self.evaluation.record(
+            self.time_s, self.simulator.truth, self.brain.experience_map, estimate.created, heard.odometry
         )
-        self.evaluation.record(self.time_s, self.simulator.truth, self.brain.experience_map, estimate.created, odometry)
         return estimate
-
-
-def digest_of(world_texts: tuple[str, str], session: Session) -> str:
-    """`state_hash` of a session or of a copy of one, which has no worlds."""
-    parts = (
-        *world_texts,
-        session.seed,
-        session.config,
-        session.simulator,
-        session.pilot,
-        session.brain,
-        session.evaluation,
-        session.tags,
-    )
-    return hashlib.sha256("".join(encode(part).digest() for part in parts).encode()).hexdigest()
 
 
 def spread_goals(session: Session, count: int) -> list[int]:

@@ -75,7 +75,7 @@ def _settled(state: State) -> Session:
     if first == now:
         first = now
     session_laws.check(session, now)
-    session.settle(first, now)
+    session.settle((first, now))
     return session
 
 

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,6 +21,7 @@ from app.recordings.recording import Recording
 
 NEAR_S, FAR_S = 1.0, 3.0  # a look is right within, and false beyond
 SEEDS = 20
+PICTURE = 480  # pixels along each of its two halves
 SPEED_NOISE, YAW_NOISE, MOST_BIAS = 0.1, 0.02, 0.01
 INTEL_BEGAN_S = 976052890.244111  # by the clock of the relations, when the first scan was taken
 
@@ -81,6 +83,33 @@ def laps(played: Played, file: Path) -> tuple[float, float]:
     return right / sum(map(len, paired.values())), right / max(right + false, 1)
 
 
+def together(played: Played, path: NDArray[np.float64], file: Path) -> tuple[float, float]:
+    """How far (m) the two frames of a pair of laps.csv lie apart on a path, in the mean, and how long the path's box is."""
+    at = {frame: k for k, frame in enumerate(played.frames)}
+    with file.open(encoding="utf-8", newline="") as text:
+        pairs = [(at[int(row["frame_earlier"])], at[int(row["frame_later"])]) for row in csv.DictReader(text)]
+    i, j = np.array(pairs).T
+    return float(np.hypot(*(path[i, :2] - path[j, :2]).T).mean()), float(np.ptp(path[:, :2], axis=0).max())
+
+
+def draw_laps(played: Played, file: Path) -> None:
+    """Map and odometry alone side by side; the way up to where the car turns round in blue, after it in orange.
+
+    It turns round where its heading by the gyro, counted on beyond a whole turn, is largest.
+    """
+    turns = int(np.argmax(played.odometry[:, 2]))
+    picture = np.full((PICTURE, 2 * PICTURE, 3), 255, np.uint8)
+    for left, path in ((0, played.path), (PICTURE, played.odometry)):
+        low, high = path[:, :2].min(axis=0), path[:, :2].max(axis=0)
+        scale = 0.9 * PICTURE / float((high - low).max())
+        middle = np.array([left + PICTURE / 2, PICTURE / 2])
+        at = np.rint((path[:, :2] - (low + high) / 2) * (scale, -scale) + middle).astype(np.int32)
+        cv2.polylines(picture, [at[: turns + 1]], False, (180, 90, 0), 1, cv2.LINE_AA)
+        cv2.polylines(picture, [at[turns:]], False, (0, 120, 240), 1, cv2.LINE_AA)
+    if not cv2.imwrite(str(file), picture):
+        raise OSError(f"{file}: cannot be written")
+
+
 def relations(path: NDArray[np.float64], times: NDArray[np.float64], file: Path) -> tuple[float, float]:
     """Mean error (m, degrees) against the relations, each between two times; poses between two scans are interpolated."""
     raw = np.loadtxt(file)
@@ -96,13 +125,19 @@ def relations(path: NDArray[np.float64], times: NDArray[np.float64], file: Path)
     return float(off.mean()), math.degrees(float(np.abs(turn).mean()))
 
 
-def office(data: Path) -> None:
+def office(data: Path, picture: Path | None) -> None:
     folder = data / "recordings" / "office-car"
-    recall, precision = laps(play(open_recording(folder)), folder / "laps.csv")
+    played, file = play(open_recording(folder)), folder / "laps.csv"
+    recall, precision = laps(played, file)
     print(f"office-car: recall {recall:.3f} (bar 0.7), precision {precision:.3f} (bar 0.95)")
+    for name, path in (("map", played.path), ("odometry", played.odometry)):
+        apart, size = together(played, path, file)
+        print(f"  {name}: paired frames {apart:.2f} m apart, {apart / size:.1%} of its length of {size:.2f} m")
+    if picture is not None:
+        draw_laps(played, picture)
 
 
-def airsim(data: Path) -> None:
+def airsim(data: Path, _picture: Path | None) -> None:
     recording = open_recording(data / "recordings" / "airsim-track")
     truth = np.array([m.truth for m in recording.moments()])[:, :2]
     errors: list[tuple[float, float]] = []
@@ -118,7 +153,7 @@ def airsim(data: Path) -> None:
     )
 
 
-def intel(data: Path) -> None:
+def intel(data: Path, _picture: Path | None) -> None:
     folder = data / "logs" / "intel"
     recording = open_recording(folder / "intel_gfs.gz")
     played = play(recording)
@@ -130,10 +165,11 @@ def intel(data: Path) -> None:
 def main(words: Iterable[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--picture", type=Path, help="a PNG of the car's laps in the map and by odometry alone")
     parser.add_argument("which", nargs="*", default=["office", "airsim", "intel"])
     args = parser.parse_args(None if words is None else list(words))
     for name in args.which:
-        {"office": office, "airsim": airsim, "intel": intel}[name](args.data)
+        {"office": office, "airsim": airsim, "intel": intel}[name](args.data, args.picture)
 
 
 if __name__ == "__main__":

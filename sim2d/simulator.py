@@ -16,7 +16,7 @@ from sim2d.physics.robot import Robot
 from sim2d.physics.surroundings import Surroundings
 from sim2d.sensors.odometer import true_motion, wrap_angle
 from sim2d.sensors.sensors import SensorFrame, Sensors, seeds
-from sim2d.world.elements import Box
+from sim2d.world.elements import BOX_M, Box
 from sim2d.world.free_space import FreeSpace
 from sim2d.world.robot_fit import RobotFit
 from sim2d.world.world import World
@@ -203,6 +203,11 @@ class Simulator:
         """Put a new box down. ValueError if it would cover the robot or is outside."""
         if any(other.name == box.name for other in self.world.boxes):
             raise ValueError(f"there is a box named {box.name!r} already; remove it first or use another name")
+        for name, edge_m in (("width", box.width), ("depth", box.depth), ("height", box.height)):
+            if not BOX_M[0] <= edge_m <= BOX_M[1]:
+                raise ValueError(f"the {name} of a box must be {BOX_M[0]:g} to {BOX_M[1]:g} m, got {edge_m:g}")
+        if not math.isfinite(box.angle_rad):
+            raise ValueError(f"the angle of a box must be finite, got {box.angle_rad:g}")
         if not inside_ring(self.world.outline, box.x, box.y):
             x0, y0, x1, y1 = self.world.bounds
             raise ValueError(

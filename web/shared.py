@@ -16,13 +16,14 @@ from pydantic import BaseModel
 
 from sim2d.world.world_schema import LISTS, WorldFile
 from web.http.commands import MODELS
+from web.http.watching import LOOKS
 from web.messages import EditStep, EventKind, GoalState, OfficeList
 from web.panel.panel import TABS
 from web.themes import THEMES
 from web.viewer.camera_views import VIEWS
 
 HERE = Path(__file__).parent
-PAGES = {"Index": "index.html", "Docs": "docs/docs.html"}
+PAGES = {"Index": "index.html", "Docs": "docs/docs.html", "Vote": "lessons/vote.html"}
 FILES = {"static/shared.js": lambda: names_text(), "types/shared.d.ts": lambda: types_text()}
 _HEAD = "// Written by `python -m web.shared` from the models in Python: change those and run it again.\n"
 
@@ -34,6 +35,7 @@ def names_text() -> str:
         "VIEWS": VIEWS,
         "TABS": TABS,
         "THEMES": THEMES,
+        "LOOKS": LOOKS,
         "EVENT_KINDS": get_args(EventKind),
         "GOAL_STATES": get_args(GoalState),
         "OFFICE_LISTS": get_args(OfficeList),

@@ -7,7 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-Name = Literal["occupancy", "cell_occupancy", "goal_memory", "movements", "click_inspects"]
+Name = Literal[
+    "occupancy", "cell_occupancy", "goal_memory", "movements", "click_inspects", "ghost", "outline", "doubt"
+]  # fmt: skip
 NAMES: tuple[Name, ...] = get_args(Name)
 
 
@@ -57,6 +59,27 @@ SWITCHES = (
         "Click inspects",
         "A click on the map, instead of sending the robot there. With shift it always does.",
         False,
+    ),
+    Switch(
+        "ghost",
+        "Truth",
+        "The wheels alone, as a ghost",
+        "Where the robot would be, in office and map, if it believed its wheels alone from the start.",
+        True,
+    ),
+    Switch(
+        "outline",
+        "Truth",
+        "True walls under the map",
+        "Laid under the map by the fit after which the map error is measured.",
+        True,
+    ),
+    Switch(
+        "doubt",
+        "Truth",
+        "Error and doubt on the map",
+        "A line to where the robot truly is. The ellipse [ours]: two standard deviations of its own estimate.",
+        True,
     ),
 )
 

@@ -27,6 +27,10 @@ class Throttle:
         self._show(*content)
         return True
 
+    def hurry(self) -> None:
+        """The next offer is due, if it is new."""
+        self._next_s = 0.0
+
     def forget(self) -> None:
         """The next offer is shown, whatever it is."""
         self._shown, self._next_s = None, 0.0

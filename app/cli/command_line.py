@@ -11,6 +11,7 @@ from app.cli.deliver import add_deliver
 from app.cli.experiment import add_experiment
 from app.cli.export import add_export
 from app.cli.headless import add_headless
+from app.cli.lessons import add_lessons
 from app.cli.recording import add_recording
 from app.cli.run import add_run
 from app.cli.runs import add_replay, add_runs
@@ -33,7 +34,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="ratslam", description="RatSLAM, alive in a browser.")
     commands = parser.add_subparsers(title="commands", required=True)
     for add in (
-        *(add_run, add_runs, add_replay, add_headless, add_deliver, add_trial, add_experiment),
+        *(add_run, add_runs, add_replay, add_headless, add_deliver, add_trial, add_experiment, add_lessons),
         *(add_export, add_recording, add_worlds, add_config, add_bench),
     ):
         add(commands)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -11,11 +12,19 @@ if TYPE_CHECKING:
     from web import messages as m
 
 
-def going_on(kept: KeptRun) -> m.GoOn:
+def going_on(kept: KeptRun, tell: Callable[[float], object]) -> m.GoOn:
+    """The run in the session where it was left. tell: is told the share that is done, and may raise to give it up."""
     from app.runs.replay import resumed
     from web import messages as m
 
-    return m.GoOn(kept, resumed(kept))
+    done_s = 0.0
+
+    def told(seconds: float) -> None:
+        nonlocal done_s
+        done_s += seconds
+        tell(min(1.0, done_s / max(kept.length_s, 1e-9)))
+
+    return m.GoOn(kept, resumed(kept, told))
 
 
 def cut_off_run() -> KeptRun | None:

@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 
 from app.cli.options import Verbs
-from app.cli.progress import compile_first, with_progress
+from app.cli.progress import compile_first, share_said, with_progress
 
 _FORMATS = ("mcap", "tum", "g2o", "graphml", "csv", "png", "mp4")  # app.export.FORMATS, which takes long to import
 
@@ -38,6 +38,9 @@ def add_export(commands: Verbs) -> None:
     parser.add_argument(
         "--speed", type=float, default=10.0, metavar="X", help="of an mp4, times the run's (default 10)"
     )
+    parser.add_argument(
+        "--say-share", action="store_true", help="say on lines of their own which share is done, for programs"
+    )
     parser.set_defaults(do=_export)
 
 
@@ -52,7 +55,8 @@ def _export(args: argparse.Namespace) -> int:
     compile_first()
     length_s = min(window.until_s, run.length_s)
     choices = Choices(args.pictures, args.speed)
-    files = with_progress(length_s, lambda progress: export_run(run, args.to, out, window, progress, choices))
+    show = share_said if args.say_share else with_progress
+    files = show(length_s, lambda progress: export_run(run, args.to, out, window, progress, choices))
     for file in files:
         print(f"{file}  {file.stat().st_size / 1e6:.1f} MB")
     return 0

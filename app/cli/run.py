@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import sys
 import webbrowser
@@ -13,13 +14,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.earlier import cut_off_run, going_on, kept_brain
+from app.cli.for_class import add_class_options, class_words, for_class
 from app.cli.options import Verbs, add_session_options, checked_seed, config_of, session_of
 from app.config import Config
+from app.order_book import SMALLEST_M
 from app.runs.folder import BUDGET_MB
 from app.startup.compiling import Compiling
 from app.startup.waking import Waking
 from ratslam_core import RatSlam, load_brain
-from sim2d import DEFAULT_WORLD, World, own_worlds
+from sim2d import DEFAULT_WORLD, World, own_worlds, world_from_json
 from sim2d.importers import open_world
 
 if TYPE_CHECKING:
@@ -27,7 +30,9 @@ if TYPE_CHECKING:
     from app.kept_brains.files import KeptBrain
     from app.runs.run_file import KeptRun
     from app.trials.trial import Trial
+    from web.http.server import Dashboard, ForClass
 
+PAST_MB, LEAST_PAST_MB = 200.0, 20.0  # the copy of the last moment alone takes some
 ENGINE_PATIENCE_S = 2.0  # how long leaving waits for a tick that hangs
 _NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
 _NOT_WITH_EXPERIMENT = ("scale", "brain", "preset", "config", "set", "resume_brain")
@@ -42,6 +47,8 @@ class Serving:
     speed: float = 1.0
     running: bool = True
     keep_mb: float = BUDGET_MB  # room for runs that are kept
+    past_mb: float = PAST_MB  # memory for looking back
+    for_class: ForClass | None = None  # where a class votes and looks on
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +66,7 @@ def add_run(commands: Verbs) -> None:
     run = commands.add_parser("run", help="open the dashboard (this is what `ratslam` alone does)")
     add_session_options(run)
     run.add_argument("--port", type=_port, default=8000, help="port on 127.0.0.1; 0 = any free one (default 8000)")
+    add_class_options(run)
     run.add_argument("--no-browser", action="store_true", help="only print the address")
     run.add_argument("--paused", action="store_true", help="start paused")
     run.add_argument(
@@ -71,8 +79,16 @@ def add_run(commands: Verbs) -> None:
         "--resume", metavar="ID", help="go on with a run that was kept, as `ratslam runs` lists it, or `last`"
     )
     run.add_argument(
+        "--situation", metavar="FILE|LINK", help="play up to the moment of a situation: its file, or its link in quotes"
+    )
+    run.add_argument(
         "--keep-runs", type=float, default=BUDGET_MB, metavar="MB",
         help=f"room for the runs that are kept; the oldest are deleted first (default {BUDGET_MB:g}, 0 = keep none)",
+    )  # fmt: skip
+    run.add_argument(
+        "--keep-past", type=float, default=PAST_MB, metavar="MB",
+        help=f"memory for going back in time; when it is full, what is older is kept at fewer moments, and going there "
+        f"takes longer (default {PAST_MB:g}, at least {LEAST_PAST_MB:g})",
     )  # fmt: skip
     run.add_argument(
         "--recording", type=Path, metavar="PATH", help="play a recording of a robot: MCAP, bag, video, pictures, ..."
@@ -97,9 +113,15 @@ def _run(args: argparse.Namespace) -> int:
         raise ValueError(f"--speed must be {SPEEDS}, got {args.speed:g}")
     if not args.keep_runs >= 0:
         raise ValueError(f"--keep-runs must be megabytes from 0 on, got {args.keep_runs:g}")
-    serving = Serving(args.port, not args.no_browser, args.speed, not args.paused, args.keep_runs)
+    if not LEAST_PAST_MB <= args.keep_past < math.inf:
+        raise ValueError(f"--keep-past must be megabytes from {LEAST_PAST_MB:g} on, got {args.keep_past:g}")
+    serving = Serving(
+        args.port, not args.no_browser, args.speed, not args.paused, args.keep_runs, args.keep_past, for_class(args)
+    )
     if args.resume is not None:
         return _resume_run(args, serving)
+    if args.situation is not None:
+        return _run_situation(args, serving)
     if args.recording is not None:
         return _run_recording(args, serving)
     if args.experiment is not None:
@@ -138,7 +160,25 @@ def _resume_run(args: argparse.Namespace, serving: Serving) -> int:
     )
     print(f"The run {kept.name} goes on at tick {session.tick_count}", flush=True)
     own_worlds.tidy()
-    first = First(session.world, session.seed, session.config, begin=lambda engine: engine.go_on(kept, session))
+    world = open_world(DEFAULT_WORLD) if session.recording is not None else session.world
+    first = First(world, session.seed, session.config, begin=lambda engine: engine.go_on(kept, session))
+    return _compiling(lambda compiling: _serve(serving, first, compiling, None))
+
+
+def _run_situation(args: argparse.Namespace, serving: Serving) -> int:
+    """Play up to the moment of a situation; the page shows how far it is."""
+    from app.cli.situation import situation_in
+
+    for name in ("seed", "recording", *_NOT_WITH_EXPERIMENT, "experiment", "engine", "levels"):
+        if getattr(args, name):
+            raise ValueError(f"--{name.replace('_', '-')} does not go with --situation, which has its own")
+    if args.world != DEFAULT_WORLD:
+        raise ValueError(f"--world {args.world} does not go with --situation, which has its own world")
+    situation = situation_in(args.situation)
+    header = situation.header
+    own_worlds.tidy()
+    world = world_from_json(header.world, f"the world {header.world_name}", SMALLEST_M)
+    first = First(world, header.seed, header.config, begin=lambda engine: engine.open_situation(situation))
     return _compiling(lambda compiling: _serve(serving, first, compiling, None))
 
 
@@ -152,7 +192,7 @@ def _run_recording(args: argparse.Namespace, serving: Serving) -> int:
     if args.world != DEFAULT_WORLD:
         raise ValueError(f"--world {args.world} does not go with --recording, which is no simulated world")
     seed = checked_seed(1 if args.seed is None else args.seed)
-    player = Player(open_recording(args.recording), seed)
+    player = Player(open_recording(args.recording), seed, path=args.recording)
     player.config = config_of(args, player.config)
 
     def begin(engine: Engine) -> None:
@@ -220,7 +260,7 @@ def _opened(path: Path) -> object:
     from app.recordings.opening import open_recording
     from app.recordings.playing import Player
 
-    return Player(open_recording(path), 1)
+    return Player(open_recording(path), 1, path=path)
 
 
 def _serve(
@@ -229,8 +269,10 @@ def _serve(
     from app.engine_thread import EngineThread
     from app.export.page import PageExports
     from app.gallery.gallery import StoredGallery
+    from app.gallery.lessons import StoredLessons
     from app.kept_brains.keeper import BrainKeeper
     from app.runs.keeper import RunKeeper
+    from app.situations.page import PageSituations
     from web import messages as m
     from web.http.kept_offer import Offered
     from web.http.server import CannotListen, Dashboard
@@ -243,19 +285,19 @@ def _serve(
     runs = RunKeeper(warn, serving.keep_mb) if serving.keep_mb > 0 else None
     engine = EngineThread(
         first.world, first.seed, first.config, speed=serving.speed, running=serving.running, brain=first.brain,
-        first=first.begin, keeper=runs,
+        first=first.begin, keeper=runs, keyframe_bytes=round(1e6 * serving.past_mb),
     )  # fmt: skip
     viewers = Viewers(engine.latest, engine.submit)
     offered = kept and Offered(**asdict(kept.about), read=partial(load_brain, kept.path))
     if cut_off is not None:
         offered = Offered(
             cut_off.header.world_name, cut_off.header.seed, cut_off.length_s, cut_off.experiences or 0, cut_off.left_at,
-            partial(going_on, cut_off), run=cut_off.name,
+            run=cut_off.name, go_on=partial(going_on, cut_off),
         )  # fmt: skip
     dashboard = Dashboard(
         engine.latest, engine.submit, viewers, port=serving.port, offered=offered, experiments=StoredGallery(),
         exports=PageExports(lambda: runs and runs.folder),
-        opener=_opened,
+        opener=_opened, situations=PageSituations(), lessons=StoredLessons(), for_class=serving.for_class,
     )  # fmt: skip
     try:
         dashboard.bind()
@@ -263,7 +305,7 @@ def _serve(
         raise ValueError(str(error)) from None
 
     waking, keeper = Waking(engine, compiling), BrainKeeper(engine.latest, engine.submit)
-    dashboard.on_ready, engine.on_stillborn = partial(_tell, serving), dashboard.stop
+    dashboard.on_ready, engine.on_stillborn = partial(_tell, serving, dashboard), dashboard.stop
     waking.start()
     keeper.start()
     if runs is not None:
@@ -280,7 +322,9 @@ def _serve(
     return 0
 
 
-def _tell(serving: Serving, url: str) -> None:
+def _tell(serving: Serving, dashboard: Dashboard, url: str) -> None:
+    if dashboard.classroom is not None:
+        print(class_words(dashboard.classroom), flush=True)
     print(f"RatSLAM is alive at {url}  (Ctrl+C ends it)", flush=True)
     if serving.browser and _has_screen():
         webbrowser.open(url)

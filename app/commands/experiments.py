@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from app.commands.outcome import Outcome
+from app.config.presets import values_of
 from app.engine.engine import Engine
 from app.engine.watched_trial import CHANGED
 from app.trials.chosen import check_levels, chosen_trial
@@ -49,11 +50,20 @@ def watch_experiment(engine: Engine, command: m.WatchExperiment) -> Outcome:
 
 def after_order(engine: Engine, command: object) -> None:
     """An order has been carried out: a trial that is being watched may end by it, or become another run."""
-    trial = engine.run.trial
+    before = engine.run.config_before
+    if before is not None and isinstance(command, (m.SetParameter, m.UsePreset)):
+        # What somebody sets is wanted in the next run, too; what the trial or lesson had set goes with it.
+        one = isinstance(command, m.SetParameter)
+        engine.run.config_before = before.with_values({command.name: command.value} if one else values_of(command.name))
+    trial, lesson = engine.run.trial, engine.run.lesson
+    if trial is None and lesson is None:
+        return
+    if lesson is not None and type(command) in ENDS:
+        lesson.ordered(ENDS[type(command)])
+    elif lesson is not None and isinstance(command, ALTERS):
+        lesson.alter()
     if trial is None:
         return
-    if isinstance(command, (m.SetParameter, m.UsePreset)):
-        engine.run.config_before = None  # somebody wants them like this
     if type(command) in ENDS:
         trial.end(ENDS[type(command)])
     elif isinstance(command, ALTERS):

@@ -7,17 +7,13 @@ from web import messages as m
 
 DRIVEN = "a recording plays: its robot goes where it went, and cannot be sent, driven or carried"
 OFFICE = "a recording plays: it has no office"
-AGAIN = "a recording plays: it cannot be gone back in; restart it to see it from its beginning"
-WHOLE = "a recording plays: its moments are played as a whole; one tick goes to the next moment"
+LINK = "a recording plays: a link or a file of it would have to hold the recording; share that instead"
 NEEDS: dict[type, str] = {
     **dict.fromkeys((m.SetGoal, m.GoToTag, m.CancelGoal, m.SetMode, m.Drive, m.Kidnap), DRIVEN),
     **dict.fromkeys((m.SetDoor, m.SetLamp, m.PutBox, m.RemoveBox, m.EditWorld, m.UndoEdit, m.RedoEdit), OFFICE),
     **dict.fromkeys((m.ReadWorld, m.WorldSaved), OFFICE),
-    **dict.fromkeys(
-        (m.Seek, m.BackToNow, m.GoOnFromHere, m.GoOnWithout, m.ChangeBranch, m.CompareBranch, m.Loop), AGAIN
-    ),
-    **dict.fromkeys((m.ReadSession,), OFFICE),
-    m.StepStage: WHOLE,
+    m.ReadSituation: LINK,
+    m.RunUntil: DRIVEN,
 }
 
 

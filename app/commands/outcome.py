@@ -15,7 +15,12 @@ class Later:
     ticks: int
 
 
-Outcome = Accepted | Refused | Later | None  # None: accepted, with no result to return
+@dataclass(frozen=True, slots=True)
+class Working:
+    """The command is answered when the work that it has begun is done."""
+
+
+Outcome = Accepted | Refused | Later | Working | None  # None: accepted, with no result to return
 
 
 def attempt(field: str, value: object, order: Callable[[], object]) -> Refused | None:

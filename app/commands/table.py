@@ -5,11 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from app.commands import brains, editing, looking, office, parameters, recordings, robot, time, transport, worlds
+from app.commands import (
+    bookmarks,
+    brains,
+    comparing,
+    editing,
+    lessons,
+    looking,
+    office,
+    parameters,
+    recordings,
+    robot,
+    situations,
+    time,
+    transport,
+    worlds,
+)
 from app.commands.experiments import after_order, watch_experiment
 from app.commands.inject_packet import inject_packet
 from app.commands.needs import lacking
-from app.commands.outcome import Later, Outcome
+from app.commands.outcome import Later, Outcome, Working
 from app.engine.engine import Engine
 from web import messages as m
 
@@ -42,6 +57,13 @@ COMMANDS: dict[type, Handler] = {
     m.Inspect: looking.inspect,
     m.InjectPacket: inject_packet,
     m.WatchExperiment: watch_experiment,
+    m.BeginLesson: lessons.begin_lesson,
+    m.Predict: lessons.predict,
+    m.Vote: lessons.vote,
+    m.ShowLesson: lessons.show_lesson,
+    m.LessonAgain: lessons.lesson_again,
+    m.EndLesson: lessons.end_lesson,
+    m.RunUntil: lessons.run_until,
     m.Seek: time.seek,
     m.BackToNow: time.back_to_now,
     m.GoOnFromHere: time.go_on_from_here,
@@ -49,6 +71,11 @@ COMMANDS: dict[type, Handler] = {
     m.ChangeBranch: time.change_branch,
     m.CompareBranch: time.compare_branch,
     m.Loop: time.loop,
+    m.LeaveSituation: situations.leave_situation,
+    m.PutBookmark: bookmarks.put_bookmark,
+    m.RemoveBookmark: bookmarks.remove_bookmark,
+    m.CompareBrains: comparing.compare_brains,
+    m.EndComparison: comparing.end_comparison,
 }
 REQUESTS: dict[type, Handler] = {
     m.ReadExperience: looking.read_experience,
@@ -64,10 +91,12 @@ REQUESTS: dict[type, Handler] = {
     m.WorldDeleted: worlds.world_deleted,
     m.WorldRestored: worlds.world_restored,
     m.PlayRecording: recordings.play_recording,
+    m.ReadSituation: situations.read_situation,
+    m.OpenSituation: situations.open_situation,
 }
 
 
-def carry_out(engine: Engine, command: m.Command | m.EngineRequest) -> m.Accepted | m.Refused | Later:
+def carry_out(engine: Engine, command: m.Command | m.EngineRequest) -> m.Accepted | m.Refused | Later | Working:
     """Carry out a command between two ticks. A refusal names the field, its value and the reason."""
     kind = type(command)
     refused = lacking(engine.run.session, command)
@@ -78,7 +107,7 @@ def carry_out(engine: Engine, command: m.Command | m.EngineRequest) -> m.Accepte
     elif engine.time.past is not None and kind not in time.IN_THE_PAST:
         outcome = m.Refused("type", getattr(command, "type", ""), time.PAST)
     elif kind in COMMANDS:
-        outcome = _commanded(engine, COMMANDS[kind], command)
+        outcome = situations.waits(engine, command) or _commanded(engine, COMMANDS[kind], command)
     else:
         raise TypeError(f"nobody carries out {getattr(command, 'type', kind.__name__)}")
     return m.Accepted(engine.shown.session.tick_count) if outcome is None else outcome

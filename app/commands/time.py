@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from app.commands.outcome import Outcome, attempt
+from collections.abc import Generator
+
+from app.commands.outcome import Outcome, Working, attempt
 from app.engine.engine import Engine
+from app.engine.work import Work
 from web import messages as m
 
 PAST = "this is the past: go on from here, or come back to now"
 IN_THE_PAST = {  # the commands that change nothing, or begin another run
     m.Pause, m.Resume, m.Step, m.StepStage, m.SetSpeed, m.Inspect, m.Reset, m.WatchExperiment,
-    m.Seek, m.BackToNow, m.GoOnFromHere, m.GoOnWithout, m.ChangeBranch, m.CompareBranch, m.Loop,
+    m.Seek, m.BackToNow, m.GoOnFromHere, m.GoOnWithout, m.ChangeBranch, m.CompareBranch, m.Loop, m.LeaveSituation,
+    m.PutBookmark, m.RemoveBookmark,
+    m.BeginLesson, m.Predict, m.Vote, m.ShowLesson, m.LessonAgain, m.EndLesson, m.RunUntil,
 }  # fmt: skip
 
 
@@ -17,16 +22,29 @@ def seek(engine: Engine, command: m.Seek) -> Outcome:
     """Looking at the past pauses the present; while the past plays, it plays on from the new moment."""
     if (command.time_s is None) == (command.tick is None):
         return m.Refused("time_s", command.time_s, "seek takes either time_s or tick")
-    time, playing = engine.time, engine.running and engine.time.past is not None
+    time, before = engine.time, engine.slices.work
+    playing = time.past is not None and (engine.running or (before is not None and before.plays))
     engine.break_off()
     engine.running = False
+    tick = time.tick_at(command.time_s) if command.time_s is not None else command.tick or 0
 
-    def go() -> None:
-        time.seek(time.tick_at(command.time_s) if command.time_s is not None else command.tick or 0)
+    def steps() -> Generator[float]:
+        yield from time.seeking(tick)
+        engine.running = playing and time.past is not None
 
-    refused = attempt("tick", command.tick, go)
-    engine.running = playing and time.past is not None
-    return refused
+    work = Work("going there", steps(), moves=True)
+    work.plays = playing
+    return _worked(engine, "tick", command.tick, work)
+
+
+def _worked(engine: Engine, field: str, value: object, work: Work) -> Outcome:
+    done = False
+
+    def begin() -> None:
+        nonlocal done
+        done = engine.work(work)
+
+    return attempt(field, value, begin) or (None if done else Working())
 
 
 def back_to_now(engine: Engine, _: m.BackToNow) -> Outcome:
@@ -34,6 +52,8 @@ def back_to_now(engine: Engine, _: m.BackToNow) -> Outcome:
         engine.running = False
         engine.break_off()
         engine.time.back_to_now()
+    else:
+        engine.break_off()
 
 
 def go_on_from_here(engine: Engine, _: m.GoOnFromHere) -> Outcome:
@@ -65,7 +85,12 @@ def change_branch(engine: Engine, command: m.ChangeBranch) -> Outcome:
 
 
 def compare_branch(engine: Engine, command: m.CompareBranch) -> Outcome:
-    return attempt("number", command.number, lambda: engine.time.compare(command.number))
+    if command.number is None:
+        engine.slices.drop(engine.shown.session.tick_count)
+        engine.time.stop_comparing()
+        return None
+    work = Work("comparing the branches", engine.time.comparing(command.number), moves=False)
+    return _worked(engine, "number", command.number, work)
 
 
 def loop(engine: Engine, command: m.Loop) -> Outcome:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from app.commands.comparing import begin_again
 from app.commands.outcome import Later, Outcome
 from app.engine.engine import Engine
 from app.played_session import PlayedSession
@@ -50,14 +51,17 @@ def step_stage(engine: Engine, command: m.StepStage) -> Outcome:
 
 def reset(engine: Engine, command: m.Reset) -> Outcome:
     session = engine.run.session
+    beside = session.companion
     world, name = engine.world, command.world
     try:
         if name is None and isinstance(session, PlayedSession):
             engine.begin_recording(session.player, command.seed)
+            begin_again(engine, beside)
             return None
         if name is not None and name != world.name:
             world = engine.library.world(name)
         engine.begin(world, session.seed if command.seed is None else command.seed, engine.next_config)
+        begin_again(engine, beside)
     except ValueError as error:
         return m.Refused("world", name or world.name, str(error))
     return None

@@ -10,21 +10,30 @@ from collections.abc import Callable
 
 from app.config import Config
 from app.engine.faults import words_of
+from app.engine.lesson_run import LessonRun
 from app.engine.library import Library
 from app.engine.pace import Pace
+from app.engine.played_ahead import PlayedAhead
 from app.engine.run import Run
 from app.engine.steps import Steps
-from app.engine.time_travel import NoTravel, TimeTravel
+from app.engine.teaching import Teaching
+from app.engine.time_travel import TimeTravel
 from app.engine.watchdog import Watchdog
 from app.engine.watched_trial import WatchedTrial
+from app.engine.work import Slices, Work
+from app.lessons.performance import session_of
 from app.played_session import PlayedSession
 from app.recordings.playing import Player
 from app.runs.book import Book, Fork
-from app.runs.header import Beginning, beginning_of
+from app.runs.bookmarks import read_bookmarks
+from app.runs.header import Beginning, beginning_of, recorded_beginning
 from app.runs.keeper import RunKeeper
 from app.runs.run_file import KeptRun
 from app.session import Session
+from app.situations import Situation
+from app.time_machine import BUDGET_BYTES
 from app.trials.trial import Trial
+from app.views.pair_choices import PairChoices
 from app.views.tick_stages import TickRecorder
 from app.world_editor import WorldEditor
 from disk import copy_state
@@ -43,17 +52,23 @@ class Engine:
         watchdog: Watchdog,
         *,
         running: bool,
-        answer: Callable[[m.Request, m.Accepted], None],
+        answer: Callable[[m.Request, m.Accepted | m.Refused], None],
         keeper: RunKeeper | None = None,
+        keyframe_bytes: int = BUDGET_BYTES,
     ) -> None:
-        """answer: is called for each request whose ticks are done or were broken off. keeper: keeps each run on disk."""
+        """answer: is called for each request whose ticks are done or were broken off. keeper: keeps each run on disk.
+
+        keyframe_bytes: room for what looking back takes.
+        """
         self.library, self.editor = Library(world), WorldEditor(world)
-        self.pace, self.steps = pace, Steps()
+        self.pace, self.steps, self._pairs = pace, Steps(), PairChoices()
+        self.slices = Slices(answer, self._leave_past)
         self.running = running
         self.fault: str | None = None
         self._run: Run | None = None
         self._time: TimeTravel | None = None
         self._watchdog, self._answer, self._keeper = watchdog, answer, keeper
+        self._keyframe_bytes = keyframe_bytes
 
     @property
     def run(self) -> Run:
@@ -100,26 +115,79 @@ class Engine:
         self.running = True
         return run
 
+    def begin_lesson(self, teaching: Teaching, at_once: bool = False) -> Run:
+        """Begin the run of the lesson's round: its scene is run ahead. at_once: it then happens without waiting.
+
+        If that fails, the old run is left as it is. ValueError says why.
+        """
+        session = session_of(teaching.lesson, teaching.number, teaching.seed)
+        run = self._make_run(session, beginning_of(session, trial=f"the lesson {teaching.lesson.title}"))
+        run.lesson = LessonRun(teaching, session, run.history, at_once=at_once)
+        run.config_before = teaching.config_before
+        if session.world.name not in dict(self.library.titles):
+            self.library.add(session.world)
+        self._change_to(run, session.world)
+        self.pace.speed, self.running = run.lesson.speed, True
+        return run
+
     def go_on(self, kept: KeptRun, session: Session) -> Run:
         """Go on with a run that was kept, in this session: the one where it was left. ValueError says why that fails."""
         run = self._make_run(session, kept)
+        run.bookmarks = read_bookmarks(kept.folder)
+        recorded = session.recording is not None
+        if recorded:
+            run.config_before = Config() if self._run is None else self.next_config
         run.require_showable()
         run.event_log.note("brain", f"the run goes on where it was left, {session.time_s:.1f} s after its beginning")
         if kept.header.trial:
             run.event_log.note(
                 "warning", f"{kept.header.trial} does not go on with the run: the robot has no orders of it"
             )
-        if session.world.name not in dict(self.library.titles):
+        if not recorded and session.world.name not in dict(self.library.titles):
             self.library.add(session.world)
-        return self._change_to(run, session.world)
+        return self._change_to(run, self.editor.world if recorded else session.world)
 
     def begin_recording(self, player: Player, seed: int | None = None) -> Run:
         """Begin a run that plays a recording from its beginning. If that fails, the old run is left as it is. ValueError
         says why."""
-        run = Run(self._next_number, PlayedSession(player, seed), self.library.titles)
+        session = PlayedSession(player, seed)
+        run = self._make_run(session, recorded_beginning(session))
         run.config_before = Config() if self._run is None else self.next_config
         run.require_showable()
         return self._change_to(run, self.editor.world)
+
+    def open_situation(self, situation: Situation) -> Run:
+        """Begin a run that plays a situation up to its moment, as fast as possible. The run before waits: if that is
+        stopped, it goes on. ValueError says why it cannot begin; then the old run is left as it is."""
+        brain = situation.first_brain()
+        kept = None if brain is None else copy_state(brain)
+        session = situation.begin(brain)
+        run = self._make_run(
+            session, beginning_of(session, brain=brain is not None, trial=situation.header.trial), kept
+        )
+        run.require_showable()
+        before = None if self._run is None or self.fault is not None else (self._run, self.time, self.editor.world)
+        if session.world.name not in dict(self.library.titles):
+            self.library.add(session.world)
+        self._change_to(run, session.world)
+        self.running = False
+        run.ahead = PlayedAhead(situation, session, run.event_log, before)
+        run.ahead.advance()
+        return run
+
+    def leave_situation(self) -> None:
+        """Stop playing what was opened; the run before goes on from where it was, paused."""
+        before = self.run.ahead and self.run.ahead.before
+        if before is None:
+            self.run.stop_running_ahead()
+            return
+        run, time, world = before
+        if run.book is not None:
+            run.book = self._book(run.session, Fork(run.book))
+        run.snapshots.refresh()
+        self._time = time
+        self._go_on_with(run, world)
+        self.running = False
 
     @property
     def world(self) -> World:
@@ -127,25 +195,28 @@ class Engine:
         session = self.run.session
         return session.world if session.recording is None else self.editor.world
 
-    def _make_run(self, session: Session, beginning: Beginning | KeptRun, brain: RatSlam | None = None) -> Run:
+    def _make_run(self, session: Session, beginning: Beginning | KeptRun | None, brain: RatSlam | None = None) -> Run:
         run = Run(self._next_number, session, self.library.titles)
         run.book = self._book(session, beginning, brain)
+        run.beginning, run.first_brain = beginning, brain
         return run
 
     def _book(
-        self, session: Session, beginning: Beginning | KeptRun | Fork, brain: RatSlam | None = None
+        self, session: Session, beginning: Beginning | KeptRun | Fork | None, brain: RatSlam | None = None
     ) -> Book | None:
-        return None if self._keeper is None else self._keeper.book(session, beginning, brain)
+        return None if self._keeper is None or beginning is None else self._keeper.book(session, beginning, brain)
 
     @property
     def _next_number(self) -> int:
         return self._time.last_number + 1 if self._time else 1
 
     def _change_to(self, run: Run, world: World) -> Run:
-        self._time = TimeTravel(run) if run.session.recording is None else NoTravel(run)
+        self._time = TimeTravel(run, self._keyframe_bytes)
         return self._go_on_with(run, world)
 
     def _go_on_with(self, run: Run, world: World) -> Run:
+        if self._run is not None:
+            self.slices.drop(self.run.session.tick_count)
         self.break_off()
         self.library.close(world.name)
         run.snapshots.worlds = self.library.titles
@@ -166,7 +237,11 @@ class Engine:
         """
         if self.run.session.over and self.time.past is None:
             return self._pause_at_end()
-        playing = self.trial_plays
+        lesson = self.run.lesson
+        if lesson is not None and lesson.round_over and self.time.past is None:
+            self.begin_lesson(lesson.next_round(), at_once=True)
+            return True
+        playing, live = self.trial_plays, self.time.past is None
         self._watchdog.begin()
         try:
             if self.time.past is None:
@@ -182,11 +257,15 @@ class Engine:
                 self._leave_past(error)
             return True
         self._pause_after_trial(playing)
-        over = self.run.session.over and self._pause_at_end()
+        pauses = live and self.run.takes_pause()
+        if pauses:
+            self.running = False
+            self.break_off()
+        over = live and self.run.session.over and self._pause_at_end()
         hung = self._watchdog.end()
         if hung:
             self.run.event_log.note("fault", f"a tick took more than {self._watchdog.limit_s:g} s")
-        return hung or over or self.trial_plays != playing
+        return hung or over or pauses or self.trial_plays != playing
 
     def step(self) -> bool:
         """Run one of the ticks that were asked for. Returns the same as `tick`."""
@@ -197,9 +276,11 @@ class Engine:
 
     def break_off(self) -> None:
         """Drop the remaining ticks. Whoever waits for them is answered with the tick that was reached."""
+        if self._run is not None:
+            self.slices.drop(self.shown.session.tick_count, unless_still=True)
         self._accept(self.steps.end())
-        if self._run is not None and self._run.trial is not None:
-            self._run.trial.stop_running_ahead()
+        if self._run is not None:
+            self._run.stop_running_ahead()
 
     def _accept(self, requests: list[m.Request]) -> None:
         for request in requests:
@@ -213,17 +294,23 @@ class Engine:
         return self.run.config_before or self.run.session.config
 
     @property
+    def config_to_begin(self) -> Config:
+        """That of a run that begins again as this one: a trial or a recording keeps its own."""
+        run = self.run
+        return run.session.config if self.trial_plays or run.session.recording is not None else self.next_config
+
+    @property
     def trial_plays(self) -> bool:
         """Whether the run carries out a trial that is not over."""
         return self.run.trial is not None and self.run.trial.state == "running"
 
     @property
     def runs_ahead(self) -> bool:
-        """Whether a trial is to be run, as fast as possible, to shortly before its moment."""
-        return self.run.trial is not None and self.run.trial.runs_ahead and self.time.past is None
+        """Whether the run is to go on, as fast as possible, to some moment."""
+        return self.run.runs_ahead and self.time.past is None
 
     def run_ahead(self, for_s: float) -> bool:
-        """Run ticks for so long (wall time), or until the trial is where it is to be seen; from there it plays in real time.
+        """Run ticks for so long (wall time), or until the moment has come; from there a trial plays in real time.
 
         True if something has to be shown at once.
         """
@@ -232,7 +319,8 @@ class Engine:
             to_show = self.tick()
         if self.runs_ahead:
             return to_show
-        self.pace.speed = 1.0
+        if self.run.trial is not None and self.run.until is None:
+            self.pace.speed = 1.0
         self.pace.hurry()
         self.run.snapshots.refresh()
         return True
@@ -248,10 +336,15 @@ class Engine:
 
     def go_on_from_here(self) -> Run:
         """Make the moment that is shown the present of a new branch, paused. ValueError says why that cannot be."""
-        before = self.run.book
+        before, marks, lesson = self.run.book, self.run.bookmarks, self.run.lesson
         run = self.time.go_on_from_here(self._next_number)
+        if run.session.recording is not None:
+            run.config_before = self.next_config
         if before is not None:
             run.book = self._book(run.session, Fork(before, run.session.tick_count))
+        run.bookmarks = marks.until(run.session.tick_count)
+        run.keep_bookmarks()
+        run.lesson = None if lesson is None else LessonRun(lesson.teaching, run.session, run.history, branch=True)
         return self._go_on_paused(run)
 
     def change_branch(self, number: int) -> Run:
@@ -260,6 +353,13 @@ class Engine:
         if run.book is not None:
             run.book = self._book(run.session, Fork(run.book))
         return self._go_on_paused(run)
+
+    def work(self, work: Work) -> bool:
+        """Do this in slices, instead of any other work. True when all is done already."""
+        return self.slices.begin(work, self.shown.session.tick_count)
+
+    def work_on(self) -> None:
+        self.slices.go_on(lambda: self.shown.session.tick_count)
 
     def _leave_past(self, error: BaseException) -> None:
         """A moment could not be played again. The present is not touched by that."""
@@ -270,7 +370,7 @@ class Engine:
         self.run.event_log.note("fault", f"the past could not be played again: {words_of(error)}")
 
     def _go_on_paused(self, run: Run) -> Run:
-        self._go_on_with(run, run.session.world)
+        self._go_on_with(run, self.world if run.session.recording else run.session.world)
         self.running = False
         return run
 
@@ -287,11 +387,11 @@ class Engine:
         """Pause, to carry out a command of this kind. Refused after a fault."""
         if self.fault is not None and self.time.past is None:
             return m.Refused("type", kind, f"the session stopped at a fault ({self.fault}); reset it")
-        if self.run.session.over:
+        if self.run.session.over and self.time.past is None:
             return m.Refused("type", kind, "the recording has ended; restart it to see it from its beginning")
         self.running = False
-        if self.run.trial is not None:
-            self.run.trial.stop_running_ahead()
+        self.slices.drop(self.shown.session.tick_count, unless_still=True)
+        self.run.stop_running_ahead()
         return None
 
     def fail(self, error: BaseException) -> None:
@@ -317,5 +417,9 @@ class Engine:
         snapshots = self.shown.snapshots
         snapshots.office = None if run.session.recording is not None else self.editor.edition
         snapshots.trial = None if run.trial is None else run.trial.view()
-        snapshots.time = self.time.view()
+        snapshots.situation = None if run.ahead is None else run.ahead.view()
+        snapshots.lesson = None if run.lesson is None else run.lesson.view()
+        snapshots.until = None if run.until is None else run.until.view()
+        snapshots.time = self.time.view(self.slices.work)
+        snapshots.pairs = self._pairs.of(self.config_to_begin, run.session.config)
         return snapshots.build(running=self.running, speed=speed, real_time_factor=self.pace.factor, fault=self.fault)

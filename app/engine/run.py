@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from app.config import Config
 from app.engine.faults import require_finite
+from app.engine.lesson_run import LessonRun
+from app.engine.played_ahead import PlayedAhead
+from app.engine.until import RunUntil
 from app.engine.watched_trial import WatchedTrial
 from app.order_book import Order
 from app.runs.book import Book
+from app.runs.bookmarks import Bookmarks
+from app.runs.header import Beginning
+from app.runs.run_file import KeptRun
 from app.session import Session
 from app.time_machine import TimeMachine
 from app.views.event_log import EventLog
@@ -14,6 +20,7 @@ from app.views.history import History
 from app.views.snapshots import Snapshots
 from app.views.tick_stages import TickRecorder
 from app.views.visits import VisitLog
+from ratslam_core import RatSlam
 
 
 class Run:
@@ -26,8 +33,16 @@ class Run:
         self.number, self.session = number, session
         self.machine: TimeMachine | None = None  # keeps, from some tick on, what is needed to go back to any other
         self.trial: WatchedTrial | None = None
+        self.ahead: PlayedAhead | None = None  # a situation that was opened
+        self.beginning: Beginning | KeptRun | None = (
+            None  # None: of a recording, and of a branch, which has its parent's
+        )
+        self.first_brain: RatSlam | None = None  # a copy of the one that it began with
+        self.lesson: LessonRun | None = None
+        self.until: RunUntil | None = None  # what `run_until` waits for
         self.config_before: Config | None = None  # a trial's settings go with it
         self.book: Book | None = None  # in which the run is kept
+        self.bookmarks = Bookmarks()
         self.history = history or History(self.session)
         self.snapshots = Snapshots(self.session, self.history, number, titles)
         if history is None:
@@ -41,6 +56,10 @@ class Run:
         if self.machine is not None:
             self.machine.told(order)
 
+    def keep_bookmarks(self) -> None:
+        if self.book is not None:
+            self.book.mark(self.bookmarks.rows)
+
     @property
     def event_log(self) -> EventLog:
         return self.history.log
@@ -52,6 +71,10 @@ class Run:
     def tick(self, recorder: TickRecorder | None = None) -> None:
         """Run one tick and record it in the history. FloatingPointError if anything is no longer finite."""
         self.snapshots.walk = None
+        if self.until is not None and not self.until.runs_ahead:
+            self.until = None
+        if self.lesson is not None:
+            self.lesson.before_tick()
         self.session.tick(recorder)
         require_finite(self.session)
         if self.book is not None:
@@ -61,6 +84,35 @@ class Run:
             self.machine.ticked()
         if self.trial is not None:
             self.trial.advance()
+        if self.lesson is not None:
+            self.lesson.advance()
+        if self.until is not None:
+            self.until.ticked()
+        if self.ahead is not None:
+            self.ahead.advance()
+
+    @property
+    def runs_ahead(self) -> bool:
+        """Whether trial, lesson, situation or `run_until` want it to run as fast as possible."""
+        return any(part.runs_ahead for part in self._ahead)
+
+    def stop_running_ahead(self) -> None:
+        for part in self._ahead:
+            part.stop_running_ahead()
+
+    def takes_pause(self) -> bool:
+        """Whether lesson or `run_until` have come to something that is to be looked at in peace. Asked once, it is over."""
+        pausing = [part for part in (self.lesson, self.until) if part is not None and part.pauses]
+        for part in pausing:
+            part.pauses = False
+        if self.lesson is not None and self.lesson.inspects is not None:
+            self.snapshots.inspected, self.lesson.inspects = self.lesson.inspects, None
+            self.snapshots.refresh()  # that of this tick may have been built already
+        return bool(pausing)
+
+    @property
+    def _ahead(self) -> list[WatchedTrial | LessonRun | RunUntil | PlayedAhead]:
+        return [part for part in (self.trial, self.lesson, self.until, self.ahead) if part is not None]
 
     def require_showable(self) -> None:
         """Build a snapshot, to raise what would be raised later."""

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
+
 from app.engine.run import Run
-from app.time_machine import Branch, Moment, TimeMachine, first_difference, side_of
+from app.engine.work import Work
+from app.order_book import Order
+from app.time_machine import BUDGET_BYTES, Branch, Moment, TimeMachine, first_difference, side_of
 from app.views.tick_stages import TickRecorder
 from web.messages import BranchView, Side, TimeView
 
@@ -11,8 +15,9 @@ from web.messages import BranchView, Side, TimeView
 class TimeTravel:
     """One for each run from reset to reset, with all its branches. The live session is never touched by looking back."""
 
-    def __init__(self, run: Run) -> None:
-        self._machine = TimeMachine(run.session, run.history)
+    def __init__(self, run: Run, budget_bytes: int = BUDGET_BYTES) -> None:
+        """budget_bytes: for all keyframes."""
+        self._machine = TimeMachine(run.session, run.history, budget_bytes)
         self._runs = {self._machine.live.number: run}
         self._moment: Moment | None = None
         self.past: Run | None = None  # the moment of the past that is shown; None: the present
@@ -31,23 +36,45 @@ class TimeTravel:
     def _live(self) -> Run:
         return self._runs[self._machine.live.number]
 
+    def led_here(self) -> tuple[Run, list[Order]]:
+        """The run that all branches began as, and every order from there to what is shown: to the present, with those
+        given just now, or to a moment of the past, before those that were given then."""
+        branch, moment = self._machine.live, self._moment
+        end = branch.end_tick + 1 if moment is None else moment.tick_count
+        orders: list[Order] = []
+        following: Branch | None = branch
+        while following is not None:
+            orders = [order for order in following.orders if order.tick < end] + orders
+            end, following = min(end, following.from_tick), following.parent
+        return self._runs[self._machine.branches[0].number], orders
+
     # ------------------------------------------------------------ looking back
 
     def seek(self, tick: int) -> None:
         """Show the end of this tick. The last one is the present. ValueError names those that can be shown."""
+        for _ in self.seeking(tick):
+            pass
+
+    def seeking(self, tick: int) -> Generator[float]:
+        """The same in steps. Yields the share of the way that is done; until all is, what was shown before stays."""
         live = self._machine.live
         if tick == live.end_tick:
             self.back_to_now()
             return
-        moment = self._machine.moment(live, tick, self._moment)
-        if moment is not self._moment or self.past is None:
-            run, shown = self._live, self.past or self._live
-            self.past = Run(run.number, moment.session, shown.snapshots.worlds, moment.history)
-            self.past.snapshots.continue_from(shown.snapshots)
-            self._moment = moment
-        self.past.snapshots.walk = None
-        self.past.snapshots.refresh()
-        self._show_events()
+        moment = self._machine.before(live, tick, self._moment)
+        try:
+            yield from moment.going(tick)
+            if moment is not self._moment or self.past is None:
+                run, shown = self._live, self.past or self._live
+                self.past = Run(run.number, moment.session, shown.snapshots.worlds, moment.history)
+                self.past.snapshots.continue_from(shown.snapshots)
+                self._moment = moment
+            yield from self._beside_at(tick)
+        finally:  # the moment that was shown may have gone on, if only a part of the way
+            if self.past is not None:
+                self.past.snapshots.walk = None
+                self.past.snapshots.refresh()
+                self._show_events()
 
     def tick_at(self, time_s: float) -> int:
         """The tick of a simulated time, at most that of the present."""
@@ -95,7 +122,7 @@ class TimeTravel:
         run.machine = self._machine
         run.event_log.note("branch", f"{branch.number} leaves branch {moment.branch.number} here")
         self._runs[branch.number] = run
-        self.compare(None)
+        self.stop_comparing()
         self.past = self._moment = self.loop = None
         return run
 
@@ -103,23 +130,36 @@ class TimeTravel:
         """The run of this branch, which is then the live one."""
         shown = self.past or self._live
         self._machine.change_to(number)
-        self.compare(None)
+        self.stop_comparing()
         self.past = self._moment = self.loop = None
         self._live.snapshots.continue_from(shown.snapshots)
         self._live.snapshots.refresh()
         return self._live
 
-    def compare(self, number: int | None) -> None:
-        """Show this branch beside the live one; None: none. ValueError names those that there are."""
-        beside = None if number is None else self._machine.branch(number)
+    def stop_comparing(self) -> None:
+        self._beside, self._other, self._differs = None, None, ""
+
+    def comparing(self, number: int) -> Generator[float]:
+        """Show this branch beside the live one. Yields the share of the work that is done. ValueError names those that
+        there are."""
+        beside = self._machine.branch(number)
         if beside is self._machine.live:
             raise ValueError(f"branch {number} is the live one: it is compared with another")
-        self._beside, self._other = beside, None
-        self._differs = "" if beside is None else first_difference(self._machine.live, beside)
+        differs = yield from first_difference(self._machine.live, beside)
+        self._beside, self._other, self._differs = beside, None, differs
+        yield from self._beside_at((self.past or self._live).session.tick_count)
+
+    def _beside_at(self, tick: int) -> Generator[float]:
+        """Take the branch beside to this tick; None at its end."""
+        beside = self._beside
+        if beside is not None and tick < beside.end_tick:
+            self._other = self._machine.before(beside, tick, self._other)
+            yield from self._other.going(tick)
 
     # ------------------------------------------------------------ for the page
 
-    def view(self) -> TimeView | None:
+    def view(self, work: Work | None = None) -> TimeView | None:
+        """work: that is being done."""
         machine = self._machine
         live = machine.live
         return TimeView(
@@ -131,7 +171,10 @@ class TimeTravel:
             branches=tuple(map(_view, machine.branches)),
             loop=self.loop,
             sides=self._sides(),
+            bookmarks=self._live.bookmarks.rows,
             differs=self._differs,
+            doing="" if work is None else work.words,
+            done=0.0 if work is None else work.share,
         )
 
     def _sides(self) -> tuple[Side, ...]:
@@ -144,21 +187,6 @@ class TimeTravel:
         self._other = machine.moment(beside, tick, self._other) if tick < beside.end_tick else None
         history = beside.history if self._other is None else self._other.history
         return side_of(machine.live, self._moment, shown.history), side_of(beside, self._other, history)
-
-
-class NoTravel(TimeTravel):
-    """Of a run that cannot be gone back in: a recording is played from its beginning instead."""
-
-    def __init__(self, run: Run) -> None:
-        self.past = self.loop = None
-        self._number = run.number
-
-    @property
-    def last_number(self) -> int:
-        return self._number
-
-    def view(self) -> None:
-        return None
 
 
 def _view(branch: Branch) -> BranchView:

@@ -13,7 +13,7 @@ from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
 
-from app.commands import Later, carry_out
+from app.commands import Later, Working, carry_out
 from app.config import Config
 from app.engine.engine import Engine
 from app.engine.faults import words_of
@@ -22,12 +22,14 @@ from app.engine.watchdog import Watchdog
 from app.engine_thread.inbox import Inbox
 from app.runs.keeper import RunKeeper
 from app.session import Session
+from app.time_machine import BUDGET_BYTES
 from ratslam_core import RatSlam
 from sim2d import World
 from web import messages as m
 from web.latest import Latest
 
 STALL_S = 2.0
+FIRST_SLICE_S = 0.15  # most moments are gone to within it
 
 
 class EngineThread:
@@ -36,11 +38,12 @@ class EngineThread:
     def __init__(
         self, world: World, seed: int, config: Config, *, speed: float = 1.0, running: bool = True,
         brain: RatSlam | None = None, first: Callable[[Engine], object] | None = None, stall_s: float = STALL_S,
-        keeper: RunKeeper | None = None,
+        keeper: RunKeeper | None = None, keyframe_bytes: int = BUDGET_BYTES,
     ) -> None:  # fmt: skip
         """brain: one that already knows places. first: begins the first run, instead of one in this world with this seed.
 
         stall_s: a tick that takes longer than this is shown as a fault. keeper: keeps each run on disk.
+        keyframe_bytes: room for what looking back takes.
         """
         self.latest: Latest[m.Snapshot] = Latest()
         self.stillborn: str | None = None  # why the engine could not begin; then the thread has ended ...
@@ -52,8 +55,10 @@ class EngineThread:
         self._inbox = Inbox()
         self._watchdog = Watchdog(stall_s, self._tell_stall)
         self._engine = Engine(
-            world, self.pace, self._watchdog, running=running, answer=self._inbox.answer, keeper=keeper
-        )
+            world, self.pace, self._watchdog, running=running, answer=self._inbox.answer, keeper=keeper,
+            keyframe_bytes=keyframe_bytes,
+        )  # fmt: skip
+        self._engine.slices.first_s = FIRST_SLICE_S
         self._stopping = False
         self._thread = threading.Thread(target=self._loop, name="engine", daemon=True)
 
@@ -116,6 +121,8 @@ class EngineThread:
         engine, pace, session = self._engine, self.pace, self._engine.shown.session
         if pace.let_go() and self.session.pilot.mode == "manual":
             self.session.drive(0.0, 0.0)
+        if engine.slices.work is not None:
+            self._work()
         if engine.steps:
             self._step()
         elif engine.runs_ahead:
@@ -126,6 +133,12 @@ class EngineThread:
         pace.measure(session.time_s)
         if (engine.running or engine.steps) and not engine.runs_ahead and pace.publishing_due:
             self._publish()
+
+    def _work(self) -> None:
+        self._engine.work_on()
+        if self._engine.slices.work is None or self.pace.progress_due:
+            self._publish()
+            self._inbox.give()
 
     def _step(self) -> None:
         if self._engine.step() or self._inbox.has_answers:
@@ -138,7 +151,8 @@ class EngineThread:
         """Carry out all commands that wait. If there are none, sleep until the next tick is due or a command comes."""
         wait = self.pace.wait_s() if self._engine.running else LONGEST_WAIT_S
         while True:
-            idle = not (self._inbox.has_answers or self._engine.steps or self._engine.runs_ahead)
+            engine = self._engine
+            idle = not (self._inbox.has_answers or engine.steps or engine.runs_ahead or engine.slices.work)
             request = self._inbox.take(min(wait, LONGEST_WAIT_S) if idle else 0.0)
             if request is None:
                 return
@@ -156,6 +170,10 @@ class EngineThread:
             return
         if isinstance(answer, Later):
             self._engine.steps.add(request, answer.ticks)
+        elif isinstance(answer, Working):
+            work = self._engine.slices.work
+            assert work is not None
+            work.request = request
         else:
             self._inbox.answer(request, answer)
 

@@ -64,7 +64,7 @@ class Evaluation:
         self._judge(time_s, truth, experiences, abs(truth.speed) * odometry.dt)
 
     def kidnapped(self, time_s: float, experiences: ExperienceMap) -> None:
-        self.kidnaps.append(Kidnapping(time_s, self._map_in_office(experiences), len(experiences.poses)))
+        self.kidnaps.append(Kidnapping(time_s, self.map_in_office(experiences), len(experiences.poses)))
 
     def made_at(self, experience: int, experiences: ExperienceMap) -> tuple[float, float]:
         """Where the robot truly was when it made this experience (m, office frame). For an experience that the brain
@@ -132,6 +132,30 @@ class Evaluation:
         y = pose[:, 1] + s * rows[:, 3] + c * rows[:, 4]
         return rows[:, :2], np.stack([x, y], axis=1), rows[:, 6:8]
 
+    def map_in_office(self, experiences: ExperienceMap, every: int = 1) -> Pose2:
+        """The pose of the map's frame in the office: the very fit after which `errors` measures the map. While the path is
+        too short to be aligned, by its end."""
+        truth, mapped, _ = self.trajectories(experiences, every)
+        if math.sqrt(np.var(truth, axis=0).sum()) >= LEAST_WAY_M:
+            return alignment(mapped, truth)
+        row, pose = self._rows[self._count - 1], experiences.pose(int(self._experience[self._count - 1]))
+        return Pose2(*row[:3].tolist()).compose(pose.compose(Pose2(*row[3:6].tolist())).inverse())
+
+    @property
+    def odometry(self) -> Pose2:
+        """Where the wheels alone put the robot, in the frame of where the record began."""
+        return self._odometry
+
+    def odometry_path(self, ticks: int, every: int = 1) -> Points:
+        """(n, 2) the same in the last so many ticks, thinned; the newest is the last."""
+        last = self._rows[max(0, self._count - ticks) : self._count, 6:8]
+        return last[::-1][::every][::-1]
+
+    def began(self, experiences: ExperienceMap) -> tuple[Pose2, Pose2]:
+        """Where the record began: the robot's true pose, and its place in the map as the map is now."""
+        row, pose = self._rows[0], experiences.pose(int(self._experience[0]))
+        return Pose2(*row[:3].tolist()), pose.compose(Pose2(*row[3:6].tolist()))
+
     def errors(self, experiences: ExperienceMap, every: int = 1) -> tuple[float, float]:
         """RMSE (m) after SE(2) alignment: of the path through the map, and of odometry alone."""
         truth, mapped, odometry = self.trajectories(experiences, every)
@@ -171,11 +195,3 @@ class Evaluation:
             turn = abs(math.remainder(robot.heading_rad - truth.heading_rad, math.tau))
             return math.hypot(robot.x - truth.x, robot.y - truth.y) <= NEAR_M and turn <= NEAR_RAD
         return False
-
-    def _map_in_office(self, experiences: ExperienceMap) -> Pose2:
-        """The pose of the map's frame in the office, by aligning the path; while that is too short, by its end."""
-        truth, mapped, _ = self.trajectories(experiences)
-        if math.sqrt(np.var(truth, axis=0).sum()) >= LEAST_WAY_M:
-            return alignment(mapped, truth)
-        row, pose = self._rows[self._count - 1], experiences.pose(int(self._experience[self._count - 1]))
-        return Pose2(*row[:3].tolist()).compose(pose.compose(Pose2(*row[3:6].tolist())).inverse())

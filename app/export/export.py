@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Literal, TypeAlias, get_args
@@ -11,7 +11,7 @@ from app.export.film import write_mp4
 from app.export.graph_file import graphml_text
 from app.export.map_pictures import map_pictures
 from app.export.mcap_file import Pictures, write_mcap
-from app.export.played import Played, Progress, Window, end_of, ticks_in
+from app.export.played import Played, Progress, Window, last_of, ticks_in
 from app.export.pose_graph import g2o_text
 from app.export.table import write_csv
 from app.export.trajectories import tum_files
@@ -21,6 +21,7 @@ from disk import require_writable, whole_file
 Format: TypeAlias = Literal["mcap", "tum", "g2o", "graphml", "csv", "png", "mp4"]
 FORMATS: tuple[Format, ...] = get_args(Format)
 SEVERAL: dict[Format, tuple[str, ...]] = {"tum": ("truth", "estimate", "believed"), "png": ("map", "times", "paths")}
+OF_OFFICES: tuple[Format, ...] = ("mcap", "png", "mp4")  # a recording has its own pictures, and no floor plan
 AT_A_MOMENT: tuple[Format, ...] = ("g2o", "graphml", "png")  # need a session as it is and nothing of what was before
 
 
@@ -33,7 +34,7 @@ class Choices:
 
 
 def files_of(to: Format, out: Path) -> list[Path]:
-    """The files that an export writes: `out`, or beside it one for each part, as run-truth.tum."""
+    """The files that an export writes at most: `out`, or beside it one for each part, as run-truth.tum."""
     return [_part(out, part) for part in SEVERAL[to]] if to in SEVERAL else [out]
 
 
@@ -55,25 +56,37 @@ def export_run(
 ) -> list[Path]:
     """Play a run and write it. Returns the files. OSError names the file; what was there before is then still there."""
     chosen, said = choices or Choices(), f"to {to}"
+    ticks = _suitable(to, ticks_in(run, window, progress, said))
     if to in AT_A_MOMENT:
-        write_parts(out, at_a_moment(to, end_of(run, window, progress, said)))
-    elif to == "tum":
-        write_parts(out, tum_files(ticks_in(run, window, progress, said)))
-    else:
-        write: dict[Format, Callable[[IO[bytes]], int]] = {
-            "mcap": lambda file: write_mcap(ticks_in(run, window, progress, said), file, chosen.pictures),
-            "csv": lambda file: write_csv(ticks_in(run, window, progress, said), file),
-            "mp4": lambda file: write_mp4(ticks_in(run, window, progress, said), file, chosen.speed),
-        }
-        with whole_file(out) as file:
-            write[to](file)
-    return files_of(to, out)
+        return write_parts(out, at_a_moment(to, last_of(ticks)))
+    if to == "tum":
+        return write_parts(out, tum_files(ticks))
+    write: dict[Format, Callable[[IO[bytes]], int]] = {
+        "mcap": lambda file: write_mcap(ticks, file, chosen.pictures),
+        "csv": lambda file: write_csv(ticks, file),
+        "mp4": lambda file: write_mp4(ticks, file, chosen.speed),
+    }
+    with whole_file(out) as file:
+        write[to](file)
+    return [out]
 
 
-def write_parts(out: Path, parts: dict[str, bytes]) -> None:
-    for part, data in parts.items():
-        with whole_file(_part(out, part)) as file:
+def _suitable(to: Format, ticks: Iterator[Session]) -> Iterator[Session]:
+    """ValueError at the first tick: the format shows an office, and the run is that of a recording."""
+    for session in ticks:
+        if session.recording is not None and to in OF_OFFICES:
+            others = ", ".join(other for other in FORMATS if other not in OF_OFFICES)
+            raise ValueError(f"{to} is for runs in an office; the run of a recording can be had as {others}")
+        yield session
+
+
+def write_parts(out: Path, parts: dict[str, bytes]) -> list[Path]:
+    """Returns the files."""
+    files = {_part(out, part): data for part, data in parts.items()}
+    for path, data in files.items():
+        with whole_file(path) as file:
             file.write(data)
+    return [*files]
 
 
 def _part(out: Path, part: str) -> Path:

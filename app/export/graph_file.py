@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from xml.etree import ElementTree as Tree
 
+from app.export.played import name_of
 from app.session import Session
 
 _NODE = {"x": "double", "y": "double", "heading_rad": "double", "view": "long", "island": "long"}
@@ -19,7 +20,7 @@ def graphml_text(session: Session) -> bytes:
         for name, value in columns.items():
             key = {"id": f"{kind}-{name}", "for": kind, "attr.name": name, "attr.type": value}
             Tree.SubElement(root, "key", key)
-    graph = Tree.SubElement(root, "graph", id=session.world.name, edgedefault="directed")
+    graph = Tree.SubElement(root, "graph", id=name_of(session), edgedefault="directed")
     columns = zip(map_.poses.tolist(), map_.views.tolist(), map_.island_of.tolist(), strict=True)
     for i, (pose, view, island) in enumerate(columns):
         _add(Tree.SubElement(graph, "node", id=str(i)), "node", dict(zip(_NODE, (*pose, view, island), strict=True)))

@@ -13,7 +13,7 @@ from app.session_snapshot import restore_session
 from disk import State
 from web.http.asking import Submit, told
 from web.http.commands import Malformed
-from web.http.export import Offer
+from web.http.export import Offer, Wish
 from web.messages import ReadSession
 
 COPY_TIMEOUT_S = 10.0  # the engine copies between two ticks
@@ -26,7 +26,7 @@ WORDS: dict[Format, str] = {
     "png": "PNG: pictures of map, temporal map and paths",
     "mp4": "MP4: a film of camera, map and pose cells",
 }
-NOT_KEPT = "this run does not keep itself, so it cannot be played again"
+NOT_KEPT = "this run does not keep itself, so it cannot be played again; start the program with room for it, as --keep-runs 200"
 
 
 class PageExports:
@@ -34,6 +34,7 @@ class PageExports:
 
     def __init__(self, kept: Callable[[], Path | None] = lambda: None) -> None:
         self._kept = kept
+        self.done = 0.0  # the share of the file that is being written
 
     def offers(self) -> list[Offer]:
         kept = self._kept() is not None
@@ -41,40 +42,61 @@ class PageExports:
             Offer(format=to, words=WORDS[to], refusal=None if kept or to in AT_A_MOMENT else NOT_KEPT) for to in FORMATS
         ]
 
-    async def write(self, to: str, submit: Submit, out: Path) -> list[Path]:
-        """Write the run on the page as it is now. ValueError says why it cannot be."""
+    async def write(self, to: str, submit: Submit, out: Path, wish: Wish) -> list[Path]:
+        """Write the run on the page, or a stretch of it. ValueError says why it cannot be."""
+        self.done = 0.0
         if to not in FORMATS:
             raise ValueError(f"a run can be had as {', '.join(FORMATS)}, got {to!r}")
-        if to in AT_A_MOMENT:
-            try:
-                state = (await told(submit, ReadSession(), COPY_TIMEOUT_S)).result
-            except Malformed as error:
-                raise ValueError(str(error)) from None
-            assert isinstance(state, State)
+        state = await _state(submit) if to in AT_A_MOMENT and wish.whole else None
+        if state is not None:
             await asyncio.to_thread(_write_now, to, state, out)
-        else:
-            await _play_again(self._kept(), to, out)
-        return files_of(to, out)
+        else:  # also of a recording, which is no part of a state
+            await self._play_again(to, out, wish)
+        return [file for file in files_of(to, out) if file.exists()]
+
+    async def _play_again(self, to: Format, out: Path, wish: Wish) -> None:
+        """In a process of its own: it takes as long as minutes, and the engine must not wait for it."""
+        kept = self._kept()
+        if kept is None:
+            raise ValueError(NOT_KEPT)
+        command = [sys.executable, "-m", "app", "export", str(kept), "--to", to, "--out", str(out), "--say-share"]
+        command += ["--pictures", wish.pictures]
+        for name, time_s in (("--from", wish.from_s), ("--until", wish.until_s)):
+            command += [] if time_s is None else [name, repr(time_s)]
+        nothing, pipe = asyncio.subprocess.DEVNULL, asyncio.subprocess.PIPE
+        process = await asyncio.create_subprocess_exec(*command, stdin=nothing, stdout=pipe, stderr=pipe)
+        assert process.stdout is not None
+        assert process.stderr is not None
+        try:
+            _, said = await asyncio.gather(self._hear(process.stdout), process.stderr.read())
+            await process.wait()
+        finally:
+            if process.returncode is None:
+                with contextlib.suppress(ProcessLookupError):
+                    process.kill()
+                await process.wait()
+        if process.returncode != 0:
+            lines = said.decode(errors="replace").strip().splitlines()
+            raise ValueError(
+                lines[-1].removeprefix("ratslam: ") if lines else f"it ended with code {process.returncode}"
+            )
+
+    async def _hear(self, lines: asyncio.StreamReader) -> None:
+        async for line in lines:
+            word, _, share = line.decode(errors="replace").partition(" ")
+            if word == "done":
+                self.done = float(share)
+
+
+async def _state(submit: Submit) -> State | None:
+    """None: the session is that of a recording."""
+    try:
+        state = (await told(submit, ReadSession(), COPY_TIMEOUT_S)).result
+    except Malformed as error:
+        raise ValueError(str(error)) from None
+    assert state is None or isinstance(state, State)
+    return state
 
 
 def _write_now(to: Format, state: State, out: Path) -> None:
     write_parts(out, at_a_moment(to, restore_session(state)))
-
-
-async def _play_again(kept: Path | None, to: Format, out: Path) -> None:
-    """In a process of its own: it takes as long as minutes, and the engine must not wait for it."""
-    if kept is None:
-        raise ValueError(NOT_KEPT)
-    command = (sys.executable, "-m", "app", "export", str(kept), "--to", to, "--out", str(out))
-    nothing, pipe = asyncio.subprocess.DEVNULL, asyncio.subprocess.PIPE
-    process = await asyncio.create_subprocess_exec(*command, stdin=nothing, stdout=nothing, stderr=pipe)
-    try:
-        _, said = await process.communicate()
-    finally:
-        if process.returncode is None:
-            with contextlib.suppress(ProcessLookupError):
-                process.kill()
-            await process.wait()
-    if process.returncode != 0:
-        lines = said.decode(errors="replace").strip().splitlines()
-        raise ValueError(lines[-1].removeprefix("ratslam: ") if lines else f"it ended with code {process.returncode}")

@@ -57,10 +57,15 @@ def ticks_in(run: Played, window: Window, progress: Progress, what: str) -> Iter
         raise ValueError(f"the run is {end_s:g} s long, so there is nothing in it from {window.from_s:g} s on")
 
 
-def end_of(run: Played, window: Window, progress: Progress, what: str) -> Session:
-    """The session as it is after the last tick of the window."""
+def name_of(session: Session) -> str:
+    """Of its world or of its recording."""
+    return session.world.name if session.recording is None else session.recording.name
+
+
+def last_of(ticks: Iterator[Session]) -> Session:
+    """The session as it is after the last tick."""
     session = None
-    for session in ticks_in(run, window, progress, what):  # noqa: B007
+    for session in ticks:  # noqa: B007
         pass
     assert session is not None
     return session

@@ -22,7 +22,8 @@ def write_csv(ticks: Iterator[Session], file: IO[bytes]) -> int:
     """Write the table with a line of headings; returns the number of rows.
 
     speed (m/s) and yaw_rate (rad/s) are what the robot was told, with errors; x, y, heading_rad what it believed, in the map's
-    frame; off_m and off_rad how far it was from there, as app/evaluation judges it, empty where that has no meaning.
+    frame; off_m and off_rad how far it was from there, as app/evaluation judges it, empty where that has no meaning. What a
+    recording does not have is empty.
     """
     text = io.TextIOWrapper(file, encoding="utf-8", newline="", write_through=True)
     table = csv.writer(text, lineterminator="\n")
@@ -40,14 +41,17 @@ def write_csv(ticks: Iterator[Session], file: IO[bytes]) -> int:
 
 
 def _row(session: Session, odometry: Pose2) -> tuple[object, ...]:
-    truth, told, estimate = session.simulator.truth, session.odometry, session.estimate
+    truth, told, estimate = session.truth, session.odometry, session.estimate
     robot, seen, packet = estimate.pose_map_robot, estimate.recognition, estimate.packet
-    off = session.evaluation.belief_off(truth, session.brain.experience_map)
+    off = (math.nan, math.nan) if truth is None else session.evaluation.belief_off(truth, session.brain.experience_map)
+    true = ("", "", "") if truth is None else (truth.x, truth.y, truth.heading_rad)
+    recorded = session.recording is not None
     return (
-        session.tick_count, round(session.time_s, 9), told.dt, truth.x, truth.y, truth.heading_rad, told.speed,
+        session.tick_count, round(session.time_s, 9), told.dt, *true, told.speed,
         told.yaw_rate, odometry.x, odometry.y, odometry.heading_rad, robot.x, robot.y, robot.heading_rad,
         estimate.experience, int(estimate.created), seen.view, int(seen.recruited), packet.x, packet.y,
         packet.heading_rad, packet.mass, int(estimate.relocalised), int(session.brain.lost),
-        *("" if math.isnan(value) else value for value in off), session.pilot.mode, session.pilot.behaviour.number,
+        *("" if math.isnan(value) else value for value in off), "recorded" if recorded else session.pilot.mode,
+        "" if recorded else session.pilot.behaviour.number,
         int(session.frame.bumped),
     )  # fmt: skip

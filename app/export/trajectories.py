@@ -16,27 +16,33 @@ _Array = NDArray[np.float64]
 def tum_files(ticks: Iterator[Session]) -> dict[str, bytes]:
     """Three paths: the truth (office frame), the estimate as the map tells it at the end, and what was believed at the time.
 
-    The second is the path that SLAM programs are compared by: corrections of the map have moved what came before.
+    The second is the path that SLAM programs are compared by: corrections of the map have moved what came before. The first is
+    absent where a recording has no truth.
     """
     time_s: list[float] = []
+    true_s: list[float] = []
     truth: list[tuple[float, float, float]] = []
     believed: list[tuple[float, float, float]] = []
     local: list[tuple[float, float, float]] = []
     at: list[int] = []
     session = None
     for session in ticks:
-        true, map_ = session.simulator.truth, session.brain.experience_map
+        true, map_ = session.truth, session.brain.experience_map
         robot, inside = session.estimate.pose_map_robot, map_.local_pose
         time_s.append(session.time_s)
-        truth.append((true.x, true.y, true.heading_rad))
+        if true is not None:
+            true_s.append(session.time_s)
+            truth.append((true.x, true.y, true.heading_rad))
         believed.append((robot.x, robot.y, robot.heading_rad))
         local.append((inside.x, inside.y, inside.heading_rad))
         at.append(map_.active)
     if session is None:
         return {}
     mapped = _through(session.brain.experience_map.poses[at], np.array(local))
-    paths = {"truth": np.array(truth), "estimate": mapped, "believed": np.array(believed)}
-    return {name: _tum(time_s, path) for name, path in paths.items()}
+    paths = {"estimate": (time_s, mapped), "believed": (time_s, np.array(believed))}
+    if truth:
+        paths = {"truth": (true_s, np.array(truth)), **paths}
+    return {name: _tum(*path) for name, path in paths.items()}
 
 
 def _through(poses: _Array, local: _Array) -> _Array:

@@ -23,7 +23,7 @@ from ratslam_core import ExperienceMap, Odometry
 Mode = Literal["explore", "manual", "goal"]
 
 
-@kind("pilot/2")
+@kind("pilot/3")
 class Pilot:
     """`step` gives the drive for the next tick: speed (m/s) and yaw rate (rad/s)."""
 
@@ -38,6 +38,7 @@ class Pilot:
         self._hand = (0.0, 0.0)  # speed, yaw rate
         self._asked = (0.0, 0.0)  # speed, yaw rate of the last tick
         self._astray = False  # has a goal, but explores since no route to it is known
+        self._carried = False  # away from the goal, to an island: it looks for the rest of its map
         self._freeing = Freeing(rng)
         self._bars = Bars()
         self._seeker = Seeker(sonar_angles_rad, self._bars)
@@ -84,6 +85,12 @@ class Pilot:
 
     def progress(self, experiences: ExperienceMap) -> Progress | None:
         return self._follower.progress(experiences) if self._follower else None
+
+    def way_through(self, experiences: ExperienceMap, goals: Sequence[int]) -> Progress:
+        """The way to a place that it would choose now if it went by this map: experiences that all stand for the place."""
+        follower = RouteFollower(goals[0], others=goals[1:])
+        follower.plan(experiences, self._local, self.params)
+        return follower.progress(experiences)
 
     def set_goal(self, experience: int, others: Sequence[int] = ()) -> None:
         """others: experiences that stand for the same place; to come to one of them is to arrive."""
@@ -135,6 +142,11 @@ class Pilot:
         if self.mode == "manual":
             return self._by_hand()
         to_goal = self.mode == "goal" and self._follower is not None
+        if to_goal and self._follower is not None:
+            searched, self._carried = self._carried, self._follower.carried_away(experiences, odometry.dt, self.params)
+            to_goal = not self._carried  # first it has to find its map again
+            if searched and to_goal:
+                self._seeker.stop()
         follower = self._follower if to_goal else self._seeker.follower
         if follower is not None:
             follower.move(odometry, self.behaviour is not Behaviour.FREEING_ITSELF, self.params)

@@ -66,6 +66,18 @@ class RouteFollower:
         elif self.state != "arrived":
             self._headway.move(odometry, trying, p)
 
+    def carried_away(self, experiences: ExperienceMap, dt: float, p: RouteParams) -> bool:
+        """[ours] Whether the robot was carried to an island that no experience of the goal lies on. Where it is to the goal
+        is unknown, and there is no way before the two are one map again.
+        test_routes.py::test_carried_away_from_the_goal_it_looks_for_the_way_back."""
+        islands = experiences.island_of
+        if (islands[self.goals] == islands[experiences.active]).any():
+            return False
+        self.failed, self._route, self._age_s, self._plan_in_s = False, None, math.inf, 0.0
+        self._nearest_m, self._since_nearer_s = math.inf, 0.0
+        self.state = self._state_on_the_way(dt, p)
+        return True
+
     def step(
         self, experiences: ExperienceMap, local: LocalMovement, dt: float, p: PilotParams
     ) -> tuple[float, float] | None:
@@ -85,7 +97,7 @@ class RouteFollower:
             self._fail(experiences, p)
         if self._plan_in_s <= 0:
             self._plan_in_s = p.replan_s
-            self._plan(experiences, local, p)
+            self.plan(experiences, local, p)
         self.state = self._state_on_the_way(dt, p)
         aim = self._aim(experiences, p) if self.state in ("tracking", "coasting") else None
         if aim is not None and self._free_to(goal, local, p):
@@ -174,7 +186,7 @@ class RouteFollower:
 
     # ------------------------------------------------------------ planning
 
-    def _plan(self, experiences: ExperienceMap, local: LocalMovement, p: PilotParams) -> None:
+    def plan(self, experiences: ExperienceMap, local: LocalMovement, p: PilotParams) -> None:
         """Plan the quickest route, from the active experience or, over an imagined link, from another one nearby."""
         self._succeed(experiences, p)
         t = experiences.transitions

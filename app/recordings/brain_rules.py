@@ -1,12 +1,14 @@
 """The parameters with which a recording is played: those of the office, scaled by rules that look at the recording.
 
 What a robot sees changes with the way it drives, and who drives in the open drives faster. So all lengths grow with the
-typical speed; how alike views must be follows from how unlike they are.
+typical speed; how alike views must be follows from how unlike they are. And who sees wide must not take a view for one that
+is turned far: views are shifted by as large an angle as in the office, in columns of the camera that was used.
 """
 
 from __future__ import annotations
 
 from dataclasses import fields
+from functools import partial
 
 import numpy as np
 
@@ -24,15 +26,23 @@ JOIN_VIEWS = (
     4  # that must agree after a gap: in an office of ours half of the rooms may be twins, elsewhere they are rare
 )
 LASER_SHIFT = 5  # columns of 3 degrees: a laser sees so well that a turn need not spoil a view
+LASER_GATE_RAD = (
+    0.8  # scans laid on scans keep the heading: a look that turns the robot farther at once is a look-alike
+)
+WIDTH_ERROR = 1.1  # the camera's width is measured to a tenth
 LOUD = ("local_view.", "kidnap.", "occupancy.")  # their lengths are those of echoes, which do not grow with the speed
 
 
 def rules(recording: Recording) -> tuple[Config, Motion]:
     """The parameters for this recording, and how its motion is read."""
     base = Config().with_value("local_view.front_end", _front_end(recording))
-    if base.local_view.front_end == "laser":
+    laser = base.local_view.front_end == "laser"
+    if laser:
         base = base.with_values({"local_view.shift": LASER_SHIFT, "occupancy.enabled": False})
-    seen = survey(recording, named_front_end(base.local_view), base.local_view.shift)
+    end, told = named_front_end(base.local_view), base.local_view
+    turned_rad = told.shift * told.field_of_view / end.columns
+    shift_at = _laser_shift if laser else partial(columns_of, turned_rad, end.columns)
+    seen = survey(recording, end, shift_at)
     usual = base.pilot.cruise_speed
     levels_per_m = 1.0
     scale = seen.speed / usual if seen.speed > 0 else 1.0
@@ -42,6 +52,19 @@ def rules(recording: Recording) -> tuple[Config, Motion]:
     values: dict[str, Value] = {**_lengths(base, scale), **_views(recording, seen, scale), "memory.familiar": False}
     motion = Motion(recording.about, seen.dt, seen.field_of_view, levels_per_m)
     return base.with_values(values), motion
+
+
+def columns_of(turned_rad: float, columns: int, field_of_view: float) -> int:
+    """[ours] How many whole columns of such a camera are no more than this angle, or a tenth above it at most.
+
+    A column of a wide camera is many degrees: views under such turns are other views, and shifting them makes look-alikes.
+    test_playing.py::test_views_are_shifted_by_the_same_angle_whatever_the_camera. `local_view.shift` of a config wins.
+    """
+    return int(WIDTH_ERROR * turned_rad * columns / field_of_view)
+
+
+def _laser_shift(_field_of_view: float) -> int:
+    return LASER_SHIFT
 
 
 def _front_end(recording: Recording) -> str:
@@ -72,9 +95,14 @@ def _lengths(base: Config, scale: float) -> dict[str, Value]:
 
 def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]:
     """How alike views must be."""
-    values: dict[str, Value] = {"local_view.field_of_view": seen.field_of_view, "local_view.deaf_doubt": 0.0}
+    values: dict[str, Value] = {
+        "local_view.field_of_view": seen.field_of_view,
+        "local_view.shift": seen.shift,
+        "local_view.deaf_doubt": 0.0,
+    }
     if "camera" not in recording.about.has and is_laser(recording.about):
         values["local_view.field_of_view"] = _span(recording.about.beam_angles_rad)
+        values["pose_filter.gate_rad"] = LASER_GATE_RAD
     # Pictures of real cameras jump when one is dropped, so a jump is no kidnap: only a gap in the recording is.
     values |= {
         "local_view.composite_surprise": 255.0,
@@ -86,7 +114,8 @@ def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]
     share = UNRELATED if "camera" in recording.about.has else UNRELATED_SCANS
     threshold = float(np.quantile(seen.unlike, share))
     values["local_view.composite_threshold"] = threshold
-    values["experience_map.anchor_sigma"] = min(LOOK_SIGMA_M * scale / threshold, 1.0)
+    # Where most views are the same, as of a camera that stood still, the threshold is 0.
+    values["experience_map.anchor_sigma"] = min(LOOK_SIGMA_M * scale / threshold, 1.0) if threshold > 0 else 1.0
     return values
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from app.recordings.motion import lengths
 from app.recordings.recording import About, Recording
 
 
@@ -30,6 +31,7 @@ class Checked:
             "has": sorted(about.has),
             "uses": list(about.uses),
             "problems": list(about.problems),
+            "lengths": lengths(about) or "metres",
         }
         if about.image_shape is not None:
             report["image_shape"] = list(about.image_shape)
@@ -49,6 +51,8 @@ class Checked:
             limit = "" if about.range_limit_m is None else f" up to {about.range_limit_m:g} m"
             lines.append(f"  scans of {len(about.beam_angles_rad)} beams{limit}")
         lines += [f"  {sentence}" for sentence in about.uses]
+        if (told := lengths(about)) is not None:
+            lines.append(f"  {told}")
         if missing := [kind for kind in ("camera", "speed", "yaw rate", "ranges", "truth") if kind not in about.has]:
             lines.append(f"  not in it: {', '.join(missing)}")
         return lines

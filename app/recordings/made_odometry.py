@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.recordings.formats.sensed import Rates
-from app.recordings.recording import About, Moment, Recording
+from app.recordings.recording import About, Moment, Recording, Wanted, every
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +62,9 @@ class WithMadeOdometry:
             uses=(*(use for use in about.uses if not use.startswith("no odometry")), made),
         )
 
-    def moments(self) -> Iterator[Moment]:
+    def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
         rng, rates = np.random.default_rng(self._seed), Rates()
-        for moment in self._recording.moments():
+        for moment in self._recording.moments(wanted):
             speed = turn = 0.0
             if moment.truth is not None:
                 speed, turn = rates.since(round(moment.time_s * 1e9), moment.truth) or (0.0, 0.0)

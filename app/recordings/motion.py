@@ -7,6 +7,7 @@ import math
 from app.recordings.recording import About, Moment
 from app.recordings.scan_odometry import ScanOdometry, is_laser
 from app.recordings.visual_odometry import VisualOdometry
+from disk import copy_state, kind
 from ratslam_core import Odometry
 
 THROTTLE_SPEED = 2.0  # m/s at full throttle, of a toy car; the rules measure all lengths by the typical speed anyway
@@ -14,6 +15,7 @@ LATE_TIMES = 3.0  # a moment that comes so many typical times later is late: wha
 GAP_TIMES, GAP_S = 10.0, 3.0  # and so many times, and seconds, later, nobody knows what the robot did
 
 
+@kind("motion/1")
 class Motion:
     """One odometry for each moment. Who needs the turn from pictures has to know the camera's field of view."""
 
@@ -24,7 +26,7 @@ class Motion:
 
         levels_per_m: how much a picture changes while the robot drives a metre.
         """
-        self._about, self._dt, self._field_of_view, self._levels_per_m = about, dt, field_of_view, levels_per_m
+        self._dt, self._levels_per_m = dt, levels_per_m
         wheels = "speed" in about.has
         self._sees = VisualOdometry(field_of_view) if "camera" in about.has and not wheels else None
         self._scans = ScanOdometry(about) if scans and wheels and is_laser(about) else None
@@ -32,8 +34,8 @@ class Motion:
         self.gap = False  # whether the newest moment comes after a gap
 
     def anew(self) -> Motion:
-        """The same for another time through the recording."""
-        return Motion(self._about, self._dt, self._field_of_view, self._levels_per_m)
+        """The same for another time through the recording. This one must not have been used."""
+        return copy_state(self)
 
     def of(self, moment: Moment) -> Odometry:
         """The movement that led to this moment.
@@ -65,6 +67,15 @@ class Motion:
         if self._sees is None or moment.image is None:
             return 0.0, 0.0, False
         return self._sees.see(moment.image)
+
+
+def lengths(about: About) -> str | None:
+    """What a length in the map is where no wheels tell of metres; None where they do."""
+    if "speed" in about.has:
+        return None
+    if "throttle" in about.has:
+        return f"lengths are no metres: full throttle is taken for {THROTTLE_SPEED:g} m/s"
+    return "lengths are no metres: by pictures alone nobody knows how fast the robot is, and its typical speed is the office's"
 
 
 def _driven(throttle: float) -> float:

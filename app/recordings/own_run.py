@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from app.config.toml_file import from_toml
-from app.recordings.recording import About, Moment, Recording
+from app.recordings.recording import About, Moment, Recording, Wanted, every
 
 
 class OwnRun:
@@ -30,5 +30,5 @@ class OwnRun:
             about, uses=uses, problems=(*about.problems, *self._problems), config=self._config, seed=self._seed
         )
 
-    def moments(self) -> Iterator[Moment]:
-        return self._recording.moments()
+    def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
+        return self._recording.moments(wanted)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -12,6 +12,12 @@ from numpy.typing import NDArray
 from app.config import Config
 
 Pose = tuple[float, float, float]  # x, y (m), heading (rad, counter-clockwise)
+Wanted = Callable[[int], bool]  # whether the picture of the moment of this number, from 0, is wanted
+
+
+def every(_number: int) -> bool:
+    """All pictures are wanted."""
+    return True
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +60,9 @@ class Recording(Protocol):
     @property
     def about(self) -> About: ...
 
-    def moments(self) -> Iterator[Moment]:
-        """In order of time. Pictures are read one by one, so that a long recording needs no more memory than a short one."""
+    def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
+        """In order of time. Pictures are read one by one, so that a long recording needs no more memory than a short one.
+
+        wanted: the others may come without their pictures, which is much quicker. There are the same moments then.
+        """
         ...

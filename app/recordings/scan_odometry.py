@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from app.recordings.recording import About
 from app.recordings.scan_matching import Points, Walls, points_of
+from disk import kind
 from ratslam_core import Odometry, Pose2
 
 LEAST_BEAMS = 60  # fewer are sonars
@@ -23,6 +24,7 @@ def is_laser(about: About) -> bool:
     return len(about.beam_angles_rad) >= LEAST_BEAMS
 
 
+@kind("scan odometry/1")
 class ScanOdometry:
     """Remembers the scan before."""
 

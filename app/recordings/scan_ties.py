@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from app.recordings.recording import About
 from app.recordings.scan_matching import Points, Walls, points_of
 from app.recordings.scan_odometry import FARTHEST_M
+from disk import kind
 from ratslam_core import ExperienceMap
 
 RECENT = 15  # experiences: those made just before are tied by odometry already
@@ -26,6 +27,7 @@ FITS = 0.6  # share of the points that must lie on walls
 SIGMA_M = 0.05  # of what a scan says
 
 
+@kind("scan ties/1")
 class ScanTies:
     """Keeps the scan of each experience."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import islice
 
@@ -33,12 +34,16 @@ class Survey:
     dt: float  # s between two moments, typically
     speed: float  # m/s while it drives, typically; 0 when it never drives; by pictures alone, grey levels per second
     field_of_view: float  # of the camera, rad
+    shift: int  # columns that are tried to either side
     alike: NDArray[np.float64]  # differences of views that are half a second of driving apart, levels
     unlike: NDArray[np.float64]  # differences of views that have nothing to do with each other, levels
 
 
-def survey(recording: Recording, front_end: FrontEnd, shift: int) -> Survey:
-    """Look over a recording once, with the front end that is to be used and the shifts that are to be tried."""
+def survey(recording: Recording, front_end: FrontEnd, shift_at: Callable[[float], int]) -> Survey:
+    """Look over a recording once, with the front end that is to be used.
+
+    shift_at: how many columns are to be tried to either side, when the camera sees so wide (rad).
+    """
     motion = Motion(recording.about, 1.0, 1.0, scans=False)
     dts: list[float] = []
     speeds: list[float] = []
@@ -56,8 +61,10 @@ def survey(recording: Recording, front_end: FrontEnd, shift: int) -> Survey:
     speed = typical(speeds)
     way = np.cumsum(np.multiply(speeds, np.minimum(dts, 1.0)))
     complete = len(views) == len(dts)
+    field_of_view = _field_of_view(profiles, turns)
+    shift = shift_at(field_of_view)
     alike, unlike = _differences(views, way, ALIKE_S * speed, np.cumsum(dts), front_end, shift) if complete else _NONE
-    return Survey(typical(dts) or 0.1, speed, _field_of_view(profiles, turns), alike, unlike)
+    return Survey(typical(dts) or 0.1, speed, field_of_view, shift, alike, unlike)
 
 
 _NONE = np.zeros(0), np.zeros(0)

@@ -10,6 +10,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from disk import kind
+
 Profile = NDArray[np.float64]  # (COLUMNS,) mean grey level of each column, mean 0
 
 COLUMNS = 64
@@ -52,6 +54,7 @@ def _apart(new: Profile, old: Profile, shift: int) -> float:
     return float(np.abs(off - off.mean()).mean())
 
 
+@kind("visual odometry/1")
 class VisualOdometry:
     """Turn and change of the picture, from one picture to the next."""
 

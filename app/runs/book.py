@@ -17,9 +17,10 @@ from app.runs.run_file import KeptRun
 from app.session import Session
 from disk import copy_state
 from ratslam_core import RatSlam
+from web.messages import Bookmark
 
 COPY_EVERY_S = 10.0  # simulated time between two copies of the state, at least
-COPY_SHARE = 0.004  # of the engine's computing time may go into copies; they grow dearer as the map grows
+COPY_SHARE = 0.005  # of the time may go into copies and their hashes; both grow dearer as the map grows
 LOOK_AFTER = 10  # ticks between two looks whether a copy is due
 
 
@@ -27,6 +28,8 @@ LOOK_AFTER = 10  # ticks between two looks whether a copy is due
 class Copy:
     """The state after a tick. texts: `Session.world_texts`."""
 
+    tick: int
+    time_s: float
     texts: tuple[str, str]
     session: Session
 
@@ -38,6 +41,13 @@ class Hashed:
     tick: int
     state_hash: str
     experiences: int
+
+
+@dataclass(frozen=True, slots=True)
+class Marked:
+    """All bookmarks of the run, as they are now."""
+
+    rows: tuple[Bookmark, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +63,7 @@ class Fork:
     tick: int | None = None
 
 
-Told: TypeAlias = "tuple[int, bytes] | Order | Copy | Hashed | Ended"  # a tick and its pulse
+Told: TypeAlias = "tuple[int, bytes] | Order | Copy | Hashed | Marked | Ended"  # a tick and its pulse
 
 
 class Book:
@@ -68,8 +78,9 @@ class Book:
         self.beginning, self.brain = beginning, brain
         self.folder: Path | None = None  # once something of it is on the disk
         self.told: deque[Told] = deque()
+        self.hash_cost_s = 0.0  # of the last copy, as the thread that made it tells
         self._tell, self._open = tell, True
-        self._copied_s, self._cost_s, self._at_s = session.time_s, 0.0, time.thread_time()
+        self._copied_s, self._cost_s, self._at = session.time_s, 0.0, time.monotonic()
 
     def tick(self, session: Session) -> None:
         """The session has run a tick. Its orders for the next one have not been given yet."""
@@ -78,13 +89,18 @@ class Book:
         self.told.append((session.tick_count, pulse_of(session)))
         if session.tick_count % LOOK_AFTER == 0 and self._is_due(session):
             began = time.thread_time()
-            self.told.append(Copy(session.world_texts, copy_state(session)))
-            self._copied_s, self._at_s = session.time_s, time.thread_time()
-            self._cost_s = self._at_s - began
+            self.told.append(Copy(session.tick_count, session.time_s, session.world_texts, copy_state(session)))
+            self._cost_s = time.thread_time() - began
+            self._copied_s, self._at = session.time_s, time.monotonic()
 
     def order(self, order: Order) -> None:
         if self._open:
             self.told.append(order)
+            self._tell()
+
+    def mark(self, rows: tuple[Bookmark, ...]) -> None:
+        if self._open:
+            self.told.append(Marked(rows))
             self._tell()
 
     def end(self, why: str) -> None:
@@ -98,5 +114,6 @@ class Book:
 
         test_kept_runs.py::test_it_comes_out_the_same.
         """
-        spent_s = time.thread_time() - self._at_s
-        return session.time_s - self._copied_s >= COPY_EVERY_S - 1e-9 and self._cost_s <= COPY_SHARE * spent_s
+        if session.time_s - self._copied_s < COPY_EVERY_S - 1e-9:
+            return False
+        return self._cost_s + self.hash_cost_s <= COPY_SHARE * (time.monotonic() - self._at)

@@ -6,17 +6,25 @@ import json
 import platform
 import time
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as checked
 
 from app.config import Config, Value
+from app.played_session import PlayedSession
+from app.recordings.fingerprint import fingerprint
+from app.recordings.formats.problems import plain
 from app.session import Session
 from app.trials.code_version import code_version
+from disk.state_reading import words_of
 
 FORMAT = "ratslam run/1"
+_Words = Annotated[str, Field(max_length=200)]
+_Moment = Annotated[float, Field(ge=0, le=1e11)]  # up to the year 5138
+_RATE = "robot.sensor_rate_hz"
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +37,8 @@ class Beginning:
     config: Config
     brain: bool = False
     trial: str = ""
+    recording: Path | None = None  # that is played; there is no world then
+    dt: float | None = None  # s between two of its moments, in the mean
 
 
 def beginning_of(session: Session, *, brain: bool = False, trial: str = "") -> Beginning:
@@ -36,27 +46,48 @@ def beginning_of(session: Session, *, brain: bool = False, trial: str = "") -> B
     return Beginning(session.world_text, session.world.name, session.seed, session.config, brain, trial)
 
 
+def recorded_beginning(session: PlayedSession) -> Beginning | None:
+    """The same where a recording plays; None: it could not be opened again."""
+    about, path = session.about, session.player.path
+    dt = about.seconds / max(about.moments - 1, 1)
+    name = plain(about.name, 100)
+    return path and Beginning("", name, session.seed, session.config, recording=path.absolute(), dt=min(dt, 1e6))
+
+
+@checked(frozen=True, slots=True, config=ConfigDict(extra="forbid", strict=True))
+class KeptRecording:
+    """path: where it lay; digest: its fingerprint; dt: s between two of its moments, in the mean."""
+
+    path: Annotated[str, Field(max_length=4096)]
+    digest: Annotated[str, Field(max_length=64)]
+    dt: Annotated[float, Field(ge=0, le=1e6, allow_inf_nan=False)]
+
+
 @checked(frozen=True, slots=True, config=ConfigDict(extra="forbid", strict=True))
 class Header:
     """As in the file. values: all parameters, by dotted name."""
 
-    format: str
-    version: str  # code_version.py
-    python: str
-    numpy: str
-    platform: str
-    made_at: float  # seconds since 1970
-    world_name: str
+    format: _Words
+    version: _Words  # code_version.py
+    python: _Words
+    numpy: _Words
+    platform: _Words
+    made_at: _Moment  # seconds since 1970
+    world_name: _Words
     world: str
-    seed: int
+    seed: Annotated[int, Field(ge=0)]
     values: dict[str, Value]
     brain: bool
-    trial: str
+    trial: _Words
+    recording: KeptRecording | None = None
 
     @property
     def config(self) -> Config:
         """ValueError: this version of the program has other parameters."""
-        return Config().with_values(self.values)
+        try:
+            return Config().with_values(self.values)
+        except ValueError as error:
+            raise ValueError(words_of(error)) from None
 
     @property
     def same_program(self) -> bool:
@@ -68,11 +99,14 @@ _HEADER = TypeAdapter(Header)
 
 
 def header_of(beginning: Beginning) -> Header:
+    """OSError: its recording cannot be read."""
+    path = beginning.recording
+    recording = path and KeptRecording(str(path), fingerprint(path), beginning.dt or 0.0)
     return Header(
         FORMAT, code_version(), platform.python_version(), np.__version__, f"{platform.system()} {platform.machine()}",
         time.time(), beginning.world_name, beginning.world, beginning.seed,
         {name: value for name, _, value in beginning.config.items()},
-        beginning.brain, beginning.trial,
+        beginning.brain, beginning.trial, recording,
     )  # fmt: skip
 
 
@@ -87,8 +121,14 @@ def read_header(line: dict[str, Any]) -> Header:
     except ValidationError as error:
         first = error.errors()[0]
         raise ValueError(
-            f"its header is wrong at {'.'.join(map(str, first['loc'])) or 'run'}: {first['msg']}"
+            f"its header is wrong at {'.'.join(map(str, first['loc']))[:80] or 'run'}: {first['msg']}"
         ) from None
     if header.format != FORMAT:
         raise ValueError(f"its format is {header.format!r}; this program reads {FORMAT!r}")
+    shown = (header.version, header.python, header.numpy, header.platform, header.world_name, header.trial)
+    if odd := next((words for words in shown if not words.isprintable()), None):
+        raise ValueError(f"its header holds {odd[:40]!r}, which is no line of text")
+    rate = header.values.get(_RATE, 10.0)
+    if isinstance(rate, str) or not 0 < rate <= 1e4:
+        raise ValueError(f"{_RATE} must be above 0 and at most 10000, got {str(rate)[:40]!r}")
     return header

@@ -9,7 +9,7 @@ from app.order_book import Order
 from app.runs.journal import Journal
 from app.runs.world_edits import edit_of
 
-TICKS_A_LINE = 10
+TICKS_A_LINE = 500  # at most: what was told since the keeper looked last is one line
 
 
 class LineBook:

@@ -10,6 +10,7 @@ from typing import Any, cast
 
 MOST_BYTES = 64 << 20  # of a file; an hour has less than one MB
 LONGEST = 16 << 20  # bytes of a line; the longest holds the text of a world
+MOST_COMMAS = 500_000  # of a line; of more, the values would take up to a hundred times the room of their text
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +55,7 @@ def _value_of(line: bytes, check: int) -> tuple[dict[str, Any] | None, int]:
     """The value in a line; None when the line is not as it was written."""
     text = line[9:-1]
     after = zlib.crc32(text, check)
-    if line[-1:] != b"\n" or line[:9] != b"%08x " % after:
+    if line[-1:] != b"\n" or line[:9] != b"%08x " % after or text.count(b",") > MOST_COMMAS:
         return None, check
     try:
         value: object = json.loads(text)

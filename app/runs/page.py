@@ -10,7 +10,8 @@ from itertools import count
 from pathlib import Path
 
 from app.order_book import Order
-from app.runs.book import Book, Copy, Ended, Fork, Hashed, Told
+from app.runs.book import Book, Copy, Ended, Fork, Hashed, Marked, Told
+from app.runs.bookmarks import write_bookmarks
 from app.runs.folder import BRAIN, runs_folder
 from app.runs.fork import copy_until
 from app.runs.header import header_of, written
@@ -65,9 +66,9 @@ class Page:
         beginning = book.beginning
         if isinstance(beginning, Fork):
             beginning = _forked(beginning)
-        version = (
-            code_version()
-        )  # takes a second: a program that is killed before leaves nothing, not a file of nothing
+        # Both take their time: a program that is killed before leaves nothing, not a file of nothing.
+        version = code_version()
+        header = None if isinstance(beginning, KeptRun) else header_of(beginning)
         if isinstance(beginning, KeptRun):
             self._folder = beginning.folder
             self._journal = Journal(self._folder, beginning.size, beginning.check)
@@ -80,24 +81,30 @@ class Page:
                 with whole_file(self._folder / BRAIN) as file:
                     write_state(encode(book.brain), file)
         book.folder = self._folder
-        self._states = States(self._folder, lambda tick, hash_, known: book.told.append(Hashed(tick, hash_, known)))
+        self._states = States(self._folder, self._hashed)
         if isinstance(beginning, KeptRun):
             self._try(self._lines.again, version)
-        else:
-            self._try(self._journal.add, written(header_of(beginning)))
+        if header is not None:
+            self._try(self._journal.add, written(header))
+
+    def _hashed(self, tick: int, state_hash: str, experiences: int, cost_s: float) -> None:
+        self._book.hash_cost_s = cost_s
+        self._book.told.append(Hashed(tick, state_hash, experiences))
 
     def _take(self, told: Told) -> None:
         match told:
+            case (tick, pulse):
+                self._lines.tick(tick, pulse)
             case Order():
                 self._lines.order(told)
             case Copy():
                 self._states.take(told)
             case Hashed():
                 self._lines.hash(told.tick, told.state_hash, told.experiences)
+            case Marked():
+                self._try(write_bookmarks, told.rows, self._folder)
             case Ended():
                 self._end = told.why
-            case (tick, pulse):
-                self._lines.tick(tick, pulse)
 
     def _try(self, write: Callable[..., object], *values: object) -> None:
         try:

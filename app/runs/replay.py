@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 
 from app.runs.folder import STATE
 from app.runs.pulse import pulse_of
+from app.runs.recorded import recorded, state_of
 from app.runs.run_file import KeptRun
 from app.session import Session
 from app.session_snapshot import load_session
@@ -45,6 +46,8 @@ def resumed(run: KeptRun, tell: Tell = lambda _s: None) -> Session:
 
 def newest_state(run: KeptRun) -> Session | None:
     """The session in the state that was kept last; None when there is none, or one that the run's hashes do not know."""
+    if run.header.recording is not None:
+        return state_of(run.folder / STATE, recorded(run.name, run.header), run.hashes)
     try:
         session = load_session(run.folder / STATE)
     except ValueError:
@@ -55,6 +58,8 @@ def newest_state(run: KeptRun) -> Session | None:
 def _to_the_end(run: KeptRun, sessions: Iterator[Session], tell: Tell) -> Session:
     first = session = next(sessions)
     began = first.tick_count
+    if began:
+        tell(first.time_s)  # what need not be run again is done
     for session in sessions:
         tick = session.tick_count
         if pulse_of(session) != run.pulse(tick):

@@ -7,17 +7,22 @@ import base64
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from app.order_book import SMALLEST_M, Order, carry_out
 from app.runs.folder import BRAIN, LINES, all_runs, runs_folder
 from app.runs.header import Header, read_header
 from app.runs.lines import read_lines
+from app.runs.order_values import check_order
 from app.runs.pulse import SIZE
+from app.runs.recorded import recorded
 from app.runs.world_edits import edited
 from app.session import Session
+from disk.state_reading import words_of
 from ratslam_core import load_brain
 from sim2d import world_from_json
+
+MOST_WORDS, MOST_EXPERIENCES = 200, 10**9
 
 
 @dataclass(slots=True)
@@ -50,6 +55,8 @@ class KeptRun:
     @property
     def length_s(self) -> float:
         """Simulated seconds, if the rate of ticks was never changed."""
+        if self.header.recording is not None:
+            return self.last_tick * self.header.recording.dt
         return self.last_tick / float(self.header.values.get("robot.sensor_rate_hz", 10.0))
 
     @property
@@ -60,6 +67,8 @@ class KeptRun:
     def begin(self) -> Session:
         """The session before its first tick. ValueError says why it cannot begin."""
         header = self.header
+        if header.recording is not None:
+            return recorded(self.name, header)
         world = world_from_json(header.world, f"the world of {self.name}", SMALLEST_M)
         brain = load_brain(self.folder / BRAIN) if header.brain else None
         return Session(world, header.seed, header.config, brain)
@@ -80,7 +89,7 @@ class KeptRun:
             while following is not None and following.tick == session.tick_count:
                 _again(session, following)
                 following = next(orders, None)
-            if session.tick_count >= until:
+            if session.tick_count >= until or session.over:
                 return
             session.tick()
 
@@ -106,7 +115,7 @@ def open_run(name: str | Path) -> KeptRun:
         try:
             _take(run, line)
         except (ValueError, TypeError, KeyError, AttributeError) as error:
-            raise ValueError(f"{folder / LINES}, line {number}: {error}") from None
+            raise ValueError(f"{folder / LINES}, line {number}: {words_of(error)}") from None
     return run
 
 
@@ -127,7 +136,7 @@ def _take(run: KeptRun, line: dict[str, Any]) -> None:
     """Take in one line. ValueError, TypeError, KeyError: it is not one that a run writes."""
     tick = line["tick"]
     if type(tick) is not int:
-        raise ValueError(f"a tick must be a whole number, got {str(tick)[:40]}")
+        raise ValueError(f"a tick must be a whole number, got {str(tick)[:40]!r}")
     if "pulses" in line:
         pulses = base64.b64decode(line["pulses"], validate=True)
         if not pulses or len(pulses) % SIZE or tick != run.last_tick + len(pulses) // SIZE:
@@ -136,24 +145,36 @@ def _take(run: KeptRun, line: dict[str, Any]) -> None:
         run.last_tick = tick
         return
     if "hash" in line and 0 <= tick <= run.last_tick:
-        run.hashes[tick], run.experiences = str(line["hash"]), line["experiences"]
+        known = line["experiences"]
+        if type(known) is not int or not 0 <= known <= MOST_EXPERIENCES:
+            raise ValueError(f"experiences must be a whole number from 0 on, got {str(known)[:40]!r}")
+        run.hashes[tick], run.experiences = _words(line["hash"]), known
         return
     if tick != run.last_tick:
         raise ValueError(f"it is of tick {tick}, after tick {run.last_tick}")
     if "order" in line:
-        values = dict(line["values"])
+        values = line["values"]
+        if not isinstance(values, dict):
+            raise ValueError(f"the values of an order must be an object, got {str(values)[:40]!r}")
         if "edit" in line:
             run.world_text = values["world"] = edited(run.world_text, line["edit"])
-        run.orders.append(Order(tick, str(line["order"]), values))
+        run.orders.append(Order(tick, _words(line["order"]), cast("dict[str, Any]", values)))
     elif "again" in line:
-        run.again.append((tick, str(line["again"])))
+        run.again.append((tick, _words(line["again"])))
         run.end = ""
     else:
-        run.end = str(line["end"])
+        run.end = _words(line["end"])
+
+
+def _words(value: object) -> str:
+    if not isinstance(value, str) or len(value) > MOST_WORDS or not value.isprintable():
+        raise ValueError(f"it must hold a line of at most {MOST_WORDS} characters, got {str(value)[:40]!r}")
+    return value
 
 
 def _again(session: Session, order: Order) -> None:
     try:
+        check_order(order)
         carry_out(session, order)
     except ValueError as error:
         raise ValueError(f"tick {order.tick}: the order {order.name} cannot be carried out again: {error}") from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 import time
 from collections.abc import Callable
@@ -9,20 +10,21 @@ from pathlib import Path
 
 from app.runs.book import Copy
 from app.runs.folder import STATE
-from app.session import digest_of
 from app.session_snapshot import save_copy
 
 SAVE_EVERY_S = 60.0  # simulated time ...
-SAVE_PAUSE_S = 10.0  # ... and wall time between two files of states
+SAVE_PAUSE_S = 10.0  # ... and wall time between two files of states, at least
+SAVE_SHARE = 0.005  # of the time may go into such files
 
 
 class States:
     """Takes one copy at a time; those that come meanwhile are dropped, and only the hash of a moment is missing."""
 
-    def __init__(self, folder: Path, hashed: Callable[[int, str, int], object]) -> None:
-        """hashed: is given tick, hash and number of experiences, from the thread. The newest state lies in the folder."""
+    def __init__(self, folder: Path, hashed: Callable[[int, str, int, float], object]) -> None:
+        """hashed: is given tick, hash, number of experiences, and the computing time of the hash in seconds, from the thread.
+        The newest state lies in the folder."""
         self._folder, self._hashed = folder, hashed
-        self._saved_s, self._saved_at = 0.0, -SAVE_PAUSE_S
+        self._saved_s, self._saved_at, self._pause_s = 0.0, -SAVE_PAUSE_S, SAVE_PAUSE_S
         self._thread: threading.Thread | None = None
 
     def take(self, copy: Copy) -> None:
@@ -35,14 +37,15 @@ class States:
             self._thread.join(patience_s)
 
     def _work(self, copy: Copy) -> None:
-        session = copy.session
-        time_s = session.simulator.observe().time_s
-        tick, experiences = session.simulator.observe().tick, len(session.brain.experience_map)
-        self._hashed(tick, digest_of(copy.texts, session), experiences)
-        if time_s - self._saved_s < SAVE_EVERY_S or time.monotonic() - self._saved_at < SAVE_PAUSE_S:
+        began, session = time.thread_time(), copy.session
+        tick, time_s = copy.tick, copy.time_s
+        hash_ = session.digest(copy.texts)
+        hashed_at = time.thread_time()
+        self._hashed(tick, hash_, len(session.brain.experience_map), hashed_at - began)
+        if time_s - self._saved_s < SAVE_EVERY_S or time.monotonic() - self._saved_at < self._pause_s:
             return
         self._saved_s, self._saved_at = time_s, time.monotonic()
-        try:
+        with contextlib.suppress(OSError, ValueError):
             save_copy(copy.texts, session, self._folder / STATE)
-        except (OSError, ValueError):
-            return  # the older state stays, and the orders are enough: the run's file complains of a full disk
+        # When that failed, the older state stays, and the orders are enough: the run's file complains of a full disk.
+        self._pause_s = max(SAVE_PAUSE_S, (time.thread_time() - hashed_at) / SAVE_SHARE)

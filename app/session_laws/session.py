@@ -10,6 +10,7 @@ import numpy as np
 from app.config import Config
 from app.orders import MOST_TAGS
 from app.session import Session
+from app.session_laws.companion import companion
 from app.session_laws.evaluation import evaluation
 from app.session_laws.pilot import pilot
 from app.session_laws.simulator import simulator
@@ -24,7 +25,7 @@ _PARTS = {"seed", "config", "simulator", "brain", "pilot", "evaluation", "odomet
 
 def check(session: Session, world: World) -> None:
     """ValueError names the first law that does not hold of a session in this world."""
-    odd = vars(session).keys() ^ (_PARTS | set(Session.CACHES))
+    odd = (vars(session).keys() - {"companion"}) ^ (_PARTS | set(Session.CACHES))
     true(not odd, f"a session differs in {', '.join(sorted(odd))}: it was made by another version")
     whole("seed", session.seed, 0, 2**64)
     same_kind("config", session.config, Config())
@@ -43,6 +44,8 @@ def check(session: Session, world: World) -> None:
         true(isinstance(name, str) and 0 < len(name) <= LONGEST_NAME, f"a tag must have a name, got {name!r}")
         whole(f"the experience tagged {name!r}", experience, 0, n - 1)
     _last_step(session, n, len(session.brain.local_view))
+    if session.companion is not None:
+        companion(session.companion, n)
 
 
 def _last_step(session: Session, experiences: int, views: int) -> None:

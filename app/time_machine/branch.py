@@ -21,7 +21,7 @@ class Keyframe:
     time_s: float
     dt: float
     state: KeptState
-    worlds: tuple[World, World]  # the one that a reset begins in, and the one that the robot is in
+    worlds: tuple[World, ...]  # as `Session.worlds`
     last_snap: Snap | None
 
 

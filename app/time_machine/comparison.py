@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from itertools import zip_longest
 
 import numpy as np
@@ -21,18 +22,37 @@ def parted_at(a: Branch, b: Branch) -> int:
     return min([line[0].from_tick for line in parted if line] or [a.end_tick])
 
 
-def first_difference(a: Branch, b: Branch) -> str:
-    """Where two branches differ first, in words: the tick, found by their hashes, the order, the view and the link."""
+def first_difference(a: Branch, b: Branch) -> Generator[float, None, str]:
+    """Where two branches differ first, in words: the tick, found by their hashes, the order, the view and the link.
+
+    Yields the share of the search that is done, about; it may take seconds.
+    """
     shared, last = parted_at(a, b), min(a.end_tick, b.end_tick)
     shared = _same_orders(a, b, shared, last)
-    if shared >= last or _same(a, b, last):
+    looks, most = 0.0, 2.0 * max(1, last - shared).bit_length() + 2
+
+    def same(tick: int) -> Generator[float, None, bool]:
+        nonlocal looks
+        hashes: list[str] = []
+        for branch in (a, b):
+            moment = Moment(branch, tick)
+            for share in moment.going(tick):
+                yield min(1.0, (looks + share / 2) / most)
+            looks += 0.5
+            hashes.append(moment.session.state_hash())
+            yield min(1.0, looks / most)
+        return hashes[0] == hashes[1]
+
+    if shared >= last or (yield from same(last)):
         return f"branches {a.number} and {b.number} are the same up to tick {last}, where one of them ends"
     low, high = shared, shared + 1
-    while not high >= last and _same(a, b, high):  # so that the search stays near its begin, where it mostly ends
+    while high < last:  # so that the search stays near its begin, where it mostly ends
+        if not (yield from same(high)):
+            break
         low, high = high, min(last, high + 2 * (high - shared))
     while high - low > 1:
         middle = (low + high) // 2
-        low, high = (middle, high) if _same(a, b, middle) else (low, middle)
+        low, high = (middle, high) if (yield from same(middle)) else (low, middle)
     words = [f"first difference at tick {high}", _orders(a, b, high - 1), _view(a.history, b.history), _link(a, b)]
     return "; ".join(filter(None, words))
 
@@ -71,17 +91,12 @@ def _shared(a: list[Branch], b: list[Branch]) -> list[Branch]:
 
 def _same_orders(a: Branch, b: Branch, tick: int, last: int) -> int:
     """The first tick from this one on after which the orders differ; at most `last`."""
-    while tick < last and _given(a, tick) == _given(b, tick):
-        tick += 1
-    return tick
+    ticks = {order.tick for branch in (*_line(a), *_line(b)) for order in branch.orders if tick <= order.tick < last}
+    return next((told for told in sorted(ticks) if _given(a, told) != _given(b, told)), max(tick, last))
 
 
 def _given(branch: Branch, tick: int) -> list[tuple[str, object]]:
     return [(order.name, order.values) for order in branch.at(tick + 1).orders_after(tick)]
-
-
-def _same(a: Branch, b: Branch, tick: int) -> bool:
-    return Moment(a, tick).session.state_hash() == Moment(b, tick).session.state_hash()
 
 
 def _orders(a: Branch, b: Branch, tick: int) -> str:

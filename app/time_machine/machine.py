@@ -17,6 +17,7 @@ from app.views.history import History
 from disk import encode
 
 EVERY_TICKS = 150  # between two keyframes, until there are too many
+AGAIN_MS, LOOK_AFTER = 200.0, 10  # the moments of some recordings take long: so much is run again at most
 BUDGET_BYTES = 200_000_000
 MOST_BRANCHES = 12
 
@@ -40,11 +41,14 @@ class TimeMachine:
         self.live.orders.append(order)
 
     def ticked(self) -> None:
-        if self.live.end_tick >= self.live.keyframes[-1].tick + EVERY_TICKS:
+        if self._is_due():
             self._keep()
 
     def tick_at(self, time_s: float) -> int:
         """The tick of the live branch that ends at this simulated time, or the nearest."""
+        known = self.live.session.tick_at(time_s)
+        if known is not None:
+            return max(self.branches[0].from_tick, known)
         owner = self.live
         while owner.parent is not None and time_s < owner.keyframes[0].time_s:
             owner = owner.parent
@@ -55,6 +59,12 @@ class TimeMachine:
     def moment(self, branch: Branch, tick: int, near: Moment | None = None) -> Moment:
         """A moment of a branch. near: another one; if it is on the way to this, it goes on to it. ValueError names what
         can be gone to."""
+        moment = self.before(branch, tick, near)
+        moment.go_to(tick)
+        return moment
+
+    def before(self, branch: Branch, tick: int, near: Moment | None = None) -> Moment:
+        """The moment to go on to this one from: `near` or that of a keyframe. ValueError names what can be gone to."""
         root = self.branches[0].from_tick
         if not root <= tick <= branch.end_tick:
             raise ValueError(f"tick must be from {root} to {branch.end_tick}, got {tick}")
@@ -63,7 +73,6 @@ class TimeMachine:
             and near.branch is branch
             and branch.at(tick).keyframe(tick).tick <= near.tick_count <= tick
         ):
-            near.go_to(tick)
             return near
         return Moment(branch, tick)
 
@@ -95,12 +104,19 @@ class TimeMachine:
                 return branch
         raise ValueError(f"there is no branch {number}; there are 1 to {len(self.branches)}")
 
+    def _is_due(self) -> bool:
+        """[ours] Wall time decides only how often a recording's state is kept, never what it is. test_going_back.py."""
+        session, since = self.live.session, self.live.end_tick - self.live.keyframes[-1].tick
+        if since >= EVERY_TICKS or session.recording is None:
+            return since >= EVERY_TICKS
+        mean_ms = sum(mean for mean, _ in session.stopwatch.mean_and_worst_ms.values())
+        return since > 0 and since % LOOK_AFTER == 0 and since * mean_ms >= AGAIN_MS
+
     def _keep(self) -> None:
         live = self.live
         kept = self._chunks.keep(encode((live.session, live.history)))
         session, frame, snap = live.session, live.session.frame, live.history.events.last_snap
-        worlds = session.world, session.simulator.world
-        live.keyframes.append(Keyframe(frame.tick, frame.time_s, frame.dt, kept, worlds, snap))
+        live.keyframes.append(Keyframe(frame.tick, frame.time_s, frame.dt, kept, session.worlds, snap))
         while self.nbytes > self._budget_bytes and self._thin():
             pass
 

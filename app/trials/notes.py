@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-MomentKind = Literal["tagged", "kidnap", "recovered", "reached", "failed", "step", "end"]
+MomentKind = Literal["tagged", "kidnap", "packet", "recovered", "reached", "failed", "step", "end"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.session import Session
-from web.messages import Event, EventKind, WhyReport
+from web.messages import Closure, Event, EventKind, WhyReport
 
 MOST_EVENTS = 2000
 
@@ -16,6 +16,7 @@ class EventLog:
         self.events: tuple[Event, ...] = ()
         self.of_tick = False  # whether what is noted belongs to the tick, and not to an order after it
         self.why: dict[int, WhyReport] = {}  # by the numbers of events
+        self.closures: tuple[Closure, ...] = ()  # of late, with the map before and after each
         self._number = 0
         self._of_ticks: set[int] = set()
 
@@ -33,6 +34,8 @@ class EventLog:
         cut = EventLog(session)
         cut.events = tuple(event for event in self.events if self._is_before(event, time_s))
         cut.why = {event.number: self.why[event.number] for event in cut.events if event.number in self.why}
+        kept = {event.number for event in cut.events}
+        cut.closures = tuple(closure for closure in self.closures if closure.event in kept)
         cut._number, cut._of_ticks = self._number, set(self._of_ticks)  # no number is given twice
         return cut
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from app.session import Session, is_lost
+from app.views.closures import Closures
 from app.views.event_log import EventLog
 from app.views.reasons import Reasons
 from app.views.snap_causes import words_of
@@ -20,11 +21,11 @@ DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more
 class EventWatch:
     """Call `watch` after each tick."""
 
-    CACHES = ("_session", "_log", "reasons", "last_snap")
+    CACHES = ("_session", "_log", "reasons", "closures", "last_snap")
 
     def __init__(self, session: Session, log: EventLog) -> None:
         self._session, self._log = session, log
-        self.reasons = Reasons(session, log)
+        self.reasons, self.closures = Reasons(session, log), Closures(session, log)
         self._active = session.brain.experience_map.active
         self._new = 0  # experiences since the robot was last at one that it made long before
         self.last_snap: Snap | None = None
@@ -40,10 +41,11 @@ class EventWatch:
     def settle(self, session: Session, log: EventLog, last_snap: Snap | None) -> None:
         """Go on in a history that was restored. What made a snap is known from here on."""
         self._session, self._log, self.last_snap = session, log, last_snap
-        self.reasons = Reasons(session, log)
+        self.reasons, self.closures = Reasons(session, log), Closures(session, log)
 
     def watch(self) -> None:
         self.reasons.watch()
+        self.closures.watch()
         self._watch_snaps()
         self._watch_closures()
         self._watch_packets()
@@ -79,6 +81,7 @@ class EventWatch:
         if new >= NEW_GROUND and (before, now) in map_.transitions.row_of and not session.brain.lost:
             event = self._log.note("closure", f"after {new} new experiences at #{now} again")
             self.reasons.closure(event, before, now, new)
+            self.closures.closed(event, before, now)
 
     def _watch_packets(self) -> None:
         session, lost = self._session, is_lost(self._session)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 
 import numpy as np
 
-from app.session import Session
 from app.views.arrays import frozen
 from ratslam_core import ExperienceMap
 from web.messages import MapLayer, TimesLayer
@@ -19,8 +19,9 @@ TIMES_EVERY_S = 0.25
 class MapLayers:
     """The map and the times over it. Row i of both belongs to the same experience."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, experiences: Callable[[], ExperienceMap], goals: Callable[[], tuple[int, ...]]) -> None:
+        """experiences: the map as it is now; goals: those to which times are wanted, none: those from the robot."""
+        self._experiences, self._goals = experiences, goals
         self._map: MapLayer | None = None
         self._times: TimesLayer | None = None
         self._goals_timed: tuple[int, ...] = ()
@@ -32,16 +33,16 @@ class MapLayers:
     def layers(self) -> tuple[MapLayer, TimesLayer]:
         now = time.perf_counter()
         if self._map is None or now >= self._map_due:
-            self._map = map_layer(self._session.brain.experience_map)
+            self._map = map_layer(self._experiences())
             self._map_due, self._times_due = now + MAP_EVERY_S, -math.inf
-        goals = self._session.pilot.goals
+        goals = self._goals()
         if self._times is None or now >= self._times_due or goals != self._goals_timed:
             self._times = self._times_to(goals, len(self._map.ids))
             self._times_due, self._goals_timed = now + TIMES_EVERY_S, goals
         return self._map, self._times
 
     def _times_to(self, goals: tuple[int, ...], shown: int) -> TimesLayer:
-        experiences = self._session.brain.experience_map
+        experiences = self._experiences()
         seconds = experiences.temporal_map.times_to(goals or experiences.active)[:shown].astype(np.float32)
         return TimesLayer(bool(goals), frozen(seconds))
 

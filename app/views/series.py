@@ -12,6 +12,7 @@ from app.session import Session
 from app.views.arrays import frozen
 from app.views.map_turn import map_turn
 from disk import kind
+from ratslam_core import Pose2
 from web.messages import Series
 
 SERIES_POINTS = 600
@@ -30,6 +31,7 @@ class RunSeries:
         self._sample_every_s = 1.0
         self.error_map_m: float | None = None  # None without truth
         self.error_odometry_m: float | None = None
+        self.map_in_office: Pose2 | None = None  # None without truth
         self.coverage: float | None = None  # None without an office
         self._covered = Coverage()
         self.map_turn_rad = self._turn(None)
@@ -39,7 +41,8 @@ class RunSeries:
     def settle(self, session: Session) -> None:
         """Go on in a history that was restored."""
         self._session = session
-        self._covered.settle(session.simulator.free_space)
+        if session.recording is None:
+            self._covered.settle(session.simulator.free_space)
         self.series = self._shown()
 
     def watch(self) -> None:
@@ -57,6 +60,7 @@ class RunSeries:
         errors = math.nan, math.nan
         if session.truth is not None:
             errors = self.error_map_m, self.error_odometry_m = session.evaluation.errors(brain.experience_map, every)
+            self.map_in_office = session.evaluation.map_in_office(brain.experience_map, every)
         if session.recording is None:
             self.coverage = self._covered.follow(session.simulator.free_space, session.evaluation.path)
         self.map_turn_rad = self._turn(self.map_turn_rad)

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from app.config.presets import PRESETS
-from app.session import Session
+from app.session import SECOND, Session
 from app.views.actors import ActorsView
 from app.views.belief import belief_of
+from app.views.beside import BesideDrawn
+from app.views.ghost import ghost_of, shown
 from app.views.goal_memory_layer import goal_memory_layer
 from app.views.goal_view import goal_view, tags_view
 from app.views.history import History
@@ -16,16 +18,34 @@ from app.views.map_layers import MapLayers
 from app.views.movements import movements_of
 from app.views.occupancy_layer import occupancy_layer
 from app.views.parameter_rows import ParameterRows
+from app.views.places import known_places
 from app.views.pose_cell_layer import pose_cell_layer
 from app.views.recorded import TruthFloor, no_room, recording_view
 from app.views.senses import senses_of
+from app.views.spread import spread_of
 from app.views.throttle import Slow
 from app.views.tick_stages import Walk
 from app.views.world_drawing import DrawnWorld
-from web.messages import Inspect, OfficeEdition, Pose, Report, Snapshot, TimeView, Timing, TrialView
+from ratslam_core import Pose2
+from web.messages import (
+    BesideView,
+    Inspect,
+    LessonView,
+    OfficeEdition,
+    PairChoice,
+    Pose,
+    Report,
+    SituationView,
+    Snapshot,
+    TimeView,
+    Timing,
+    TrialView,
+    UntilView,
+)
 
 OCCUPANCY_EVERY_S = 2.0  # of wall time
 GOAL_MEMORY_EVERY_S = 0.5
+PLACES_EVERY_S = 1.0
 INSPECT_EVERY_S = 0.25
 _PRESETS = tuple(PRESETS)
 
@@ -37,14 +57,21 @@ class Snapshots:
         self._session, self._history, self._run, self.worlds = session, history, run, worlds
         self.office: OfficeEdition | None = None
         self.trial: TrialView | None = None
+        self.lesson: LessonView | None = None
+        self.until: UntilView | None = None
         self.time: TimeView | None = None
+        self.situation: SituationView | None = None
+        self.pairs: tuple[PairChoice, ...] = ()
         self.inspected = Inspect(type="inspect")  # at first nothing
         self.walk: Walk | None = None  # through the stages of the last tick
         self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), ParameterRows()
         self._floor = TruthFloor()
-        self._map = MapLayers(session)
+        self._fitted: tuple[Pose2 | None, Pose | None] = None, None
+        self._map = MapLayers(lambda: session.brain.experience_map, lambda: session.pilot.goals)
+        self._beside = BesideDrawn(session, history)
         self._occupancy = Slow(OCCUPANCY_EVERY_S, lambda: occupancy_layer(session))
         self._inspection = Slow(INSPECT_EVERY_S, self._inspect)
+        self._places = Slow(PLACES_EVERY_S, lambda: known_places(session))
         self._goal_memory = Slow(GOAL_MEMORY_EVERY_S, lambda: goal_memory_layer(session))
 
     def continue_from(self, other: Snapshots) -> None:
@@ -61,7 +88,7 @@ class Snapshots:
 
     def refresh(self) -> None:
         """Rebuild everything for the next snapshot, since a command has changed something."""
-        for part in (self._map, self._goal_memory, self._inspection):
+        for part in (self._map, self._beside, self._goal_memory, self._inspection):
             part.refresh()
 
     def build(self, *, running: bool, speed: float, real_time_factor: float, fault: str | None) -> Snapshot:
@@ -105,7 +132,11 @@ class Snapshots:
             error_odometry_m=history.series.error_odometry_m,
             revisit_consistency=session.evaluation.revisit_consistency,
             series=history.series.series,
-            timings=tuple(Timing(part, *ms) for part, ms in session.stopwatch.mean_and_worst_ms.items()),
+            timings=tuple(
+                Timing(part, *ms)
+                for part, ms in session.stopwatch.mean_and_worst_ms.items()
+                if part != SECOND or session.companion is not None
+            ),
             events=history.log.events,
             parameters=parameters,
             occupancy=self._occupancy.part(session.tick_count),
@@ -120,10 +151,31 @@ class Snapshots:
             preset=preset,
             office=self.office,
             trial=self.trial,
+            lesson=self.lesson,
+            until=self.until,
             time=self.time,
+            situation=self.situation,
+            beside=self.beside(),
+            pairs=self.pairs,
             no_room=session.simulator.fit.refusal if recorded is None else no_room,
             recording=recorded and recording_view(recorded, session.over),
+            map_in_office=self._fit(),
+            ghost=ghost_of(session),
+            spread=spread_of(session),
+            closures=history.log.closures,
+            places=self._places.part(session.tick_count),
         )
+
+    def beside(self) -> BesideView | None:
+        """The second brain, and how the two differ; None: there is one brain only."""
+        return self._beside.look()
+
+    def _fit(self) -> Pose | None:
+        """The same object as long as it is the same fit."""
+        fit = self._history.series.map_in_office
+        if fit is not self._fitted[0]:
+            self._fitted = fit, None if fit is None else shown(fit)
+        return self._fitted[1]
 
     def parts(self) -> dict[str, Any]:
         """The fields of the snapshot that differ between the stages of a tick, as they are now."""

@@ -64,7 +64,7 @@ class TickRecorder:
         self._known = len(session.brain.experience_map)
         self._cells: dict[str, Activity] = {"view match": self._activity()}
         self._iterations = 1
-        self._between = session.brain.beats.due(session.frame.dt) == 0
+        self._between = session.brain.beats.due(session.dt_ahead) == 0
         self._poses = np.zeros((0, 3))
         self._map: dict[str, Any] = {}
         self._residual = (0.0, 0.0)
@@ -119,7 +119,8 @@ class TickRecorder:
     def _image(self) -> str:
         odometry = self._odometry()
         way, turn = 100 * odometry.speed * odometry.dt, math.degrees(odometry.yaw_rate * odometry.dt)
-        return f"The wheels report {_plain(way, 1)} cm ahead and a turn of {_plain(turn, 1)}°; then the camera takes a picture."
+        who = "The wheels report" if self._session.recording is None else "The recording tells of"
+        return f"{who} {_plain(way, 1)} cm ahead and a turn of {_plain(turn, 1)}°; then the camera takes a picture."
 
     def _view_match(self) -> str:
         seen = self._session.estimate.recognition

@@ -38,15 +38,15 @@ class Trails:
         if session.tick_count % 2 == 0:
             truth, packet = session.truth, session.estimate.packet
             if truth is not None:
-                self.robot = _grown(self.robot, (truth.x, truth.y), self._most, STILL_M)
-            self.packet = _grown(self.packet, (packet.x, packet.y, packet.heading_rad), self._most, STILL_CELLS)
+                self.robot = grown(self.robot, (truth.x, truth.y), self._most, STILL_M)
+            self.packet = grown(self.packet, (packet.x, packet.y, packet.heading_rad), self._most, STILL_CELLS)
 
 
 def _no_points(columns: int) -> NDArray[np.float32]:
     return frozen(np.zeros((0, columns), np.float32))
 
 
-def _grown(path: NDArray[np.float32], point: tuple[float, ...], most: int, still: float) -> NDArray[np.float32]:
+def grown(path: NDArray[np.float32], point: tuple[float, ...], most: int, still: float) -> NDArray[np.float32]:
     """`path` with `point` added, the last `most` points; `path` itself if the point is within `still` of its end."""
     if len(path) and math.dist(path[-1].tolist(), point) < still:
         return path

@@ -62,11 +62,23 @@ class Looks(MapReading):
                 return (foreign, look) if self._crosses(foreign, packet, look) else (best, seen)
         if math.isinf(reach):
             return best, seen
+        if best >= 0 and not self.lost and self._turns(best, packet, seen):
+            return (best if self._jumps(best, packet, seen) else -1), seen
         if (best >= 0 and not self._experiences.doubtful[best]) or self._sees_where_it_is(seen.view, reach):
             self.gate.doubt()
             return best, seen
         far = self._most_energetic(packet, seen.view, reach, beyond=True)
         return (far if far >= 0 and self._jumps(far, packet, seen) else best), seen
+
+    def _turns(self, experience: int, packet: Packet, seen: Recognition) -> bool:
+        """[ours] Whether a look would turn the robot farther than its heading can be off, wherever it puts it.
+
+        test_gate.py::test_a_look_that_turns_the_robot_is_held_back.
+        """
+        most = self.gate.params.gate_rad
+        if most >= math.pi:
+            return False
+        return abs(wrap_angle(self._claimed(experience, packet, seen).heading_rad - self.robot.heading_rad)) > most
 
     def _foreign(self, packet: Packet, seen: Recognition) -> int:
         """The experience of another island that the robot sees, wherever its packet is; -1 for none.

@@ -51,6 +51,14 @@ class PoseFilterParams:
         meaning="a look may move the robot by this many times its uncertainty, and by `snap_m` in any case",
         source="ours",
     )
+    gate_rad: float = param(
+        3.2,
+        unit="rad",
+        low=0.05,
+        high=3.2,
+        meaning="a look that would turn the robot farther than this is held back, too; 3.2 = none is, however far it turns",
+        source="ours",
+    )
     gate_sights: int = param(
         900,
         unit="sights",

@@ -75,6 +75,9 @@ class Daylight:
         return float(np.interp(time_s, self.at_s, self.level))
 
 
+BOX_M = (0.05, 20.0)  # how long an edge of a box may be
+
+
 @dataclass(frozen=True, slots=True)
 class Box:
     """An obstacle on the floor: a rectangle with its middle at (x, y)."""

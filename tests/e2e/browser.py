@@ -46,24 +46,31 @@ def open_page(
     light: bool = False,
     gone: bool = False,
     refused: bool = False,
+    forbidden: bool = False,
     stage: bool = True,
+    first: bool = False,
 ) -> Iterator[Page]:
     """The page, awake and alive. Afterwards its console must have no error, and no request may have left its origin.
 
     gone: the server goes away meanwhile, so connections may be refused. refused: the server has a reason to refuse an
-    upload, which Chromium logs. stage: without the viewer the page is there in a tenth of the time, to test what is
-    around it.
+    upload, which Chromium logs. forbidden: the same of what only the main page may do. stage: without the viewer the page
+    is there in a tenth of the time, to test what is around it. first: as on a first visit, which is welcomed.
     """
     context = browser.new_context(
         viewport={"width": width, "height": height}, color_scheme="light" if light else "dark", has_touch=width < 500
     )
     context.set_default_timeout(PATIENCE_MS)
     context.add_init_script(KEEP_TOASTS)
+    if not first:
+        context.add_init_script(
+            "if (origin !== 'null') localStorage.setItem('first minute', 'seen')"
+        )  # Chromium's own page of errors has none
     page = context.new_page()
     faults: list[str] = []
     page.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
     page.on("pageerror", lambda error: faults.append(str(error)))
-    own = (url, url.replace("http://", "ws://"), "data:", "blob:")
+    base = url.partition("?")[0]
+    own = (base, base.replace("http://", "ws://"), "data:", "blob:")
     page.on("request", lambda request: None if request.url.startswith(own) else faults.append(request.url))
     page.on("websocket", lambda socket: None if socket.url.startswith(own) else faults.append(socket.url))
     page.on("websocket", lambda socket: _hear_camera(page, socket))
@@ -76,6 +83,7 @@ def open_page(
         page.wait_for_selector("body[data-alive]")
         yield page
         expected = ("ERR_CONNECTION_REFUSED",) * gone + ("status of 422",) * refused
+        expected += ("status of 403",) * forbidden
         left = [text for text in faults if not any(words in text for words in expected)]
         assert not left, "\n".join(left)
     finally:

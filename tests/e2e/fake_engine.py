@@ -43,6 +43,7 @@ class FakeEngine(threading.Thread):
         self.drive = (0.0, 0.0)
         self.events: list[Event] = []
         self.shown: dict[str, Any] = {}  # fields of the snapshot that a test has chosen
+        self.viewer = FakeViewer()
         self.over = threading.Event()
 
     def submit(self, command: Command) -> Future[Accepted | Refused]:
@@ -108,6 +109,8 @@ class FakeViewer:
         self.on_connect: Callable[[int], None] | None = None
         self.on_complaint: Callable[[int, str], None] | None = None
         self.flights: list[tuple[int, str]] = []
+        self.followed: list[tuple[int, bool]] = []
+        self.replayed: list[int] = []
         self.port, self.secret, self.switches = 0, "", Switches()
 
     def start(self) -> None:
@@ -124,6 +127,12 @@ class FakeViewer:
     def fly(self, client_id: int, view: str, at_once: bool = False, turned: Camera | None = None) -> None:  # noqa: ARG002
         self.flights.append((client_id, view))
 
+    def follow(self, client_id: int, on: bool) -> None:
+        self.followed.append((client_id, on))
+
+    def replay(self, event: int) -> None:
+        self.replayed.append(event)
+
     def turned(self, _client_id: int) -> Camera | None:
         return None
 
@@ -136,7 +145,7 @@ def fake_program() -> Iterator[tuple[FakeEngine, str]]:
     """The engine and the address of its page, for as long as a test wants it."""
     engine, ready, urls = FakeEngine(), threading.Event(), []
     dashboard = Dashboard(
-        engine.latest, engine.submit, FakeViewer(), port=0, on_ready=lambda url: (urls.append(url), ready.set())
+        engine.latest, engine.submit, engine.viewer, port=0, on_ready=lambda url: (urls.append(url), ready.set())
     )
     server = threading.Thread(target=dashboard.run)
     engine.start()

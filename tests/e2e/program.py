@@ -74,6 +74,8 @@ class Program:
             self.process.kill()
             self._listener.join()
             self._brains.cleanup()
+        if self.process.returncode:
+            print("".join(self.said[-40:]))  # pytest shows it beside the code that is not 0
         return self.process.returncode
 
     def state(self, full: bool = False) -> dict[str, Any]:

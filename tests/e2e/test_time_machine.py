@@ -37,8 +37,8 @@ def driven(program: Program) -> Program:
     return program
 
 
-def drag(page: Page, *times_s: float) -> None:
-    """Drag the timeline from one time over the others."""
+def drag(page: Page, *times_s: float) -> int:
+    """Drag the timeline from one time over the others. The tick that the slider says before it is let go."""
     box = box_of(page.locator("#timeline"))
     end_s = max(60.0, 60.0 * 1.03)
     xs = [box["x"] + 6 + (box["width"] - 12) * time_s / end_s for time_s in times_s]
@@ -47,7 +47,10 @@ def drag(page: Page, *times_s: float) -> None:
     page.mouse.down()
     for x in xs[1:]:
         page.mouse.move(x, y, steps=5)
+    aim = page.get_attribute("#timeline", "aria-valuenow")
     page.mouse.up()
+    assert aim is not None
+    return round(10 * float(aim))
 
 
 def shows(page: Page, tick: int) -> None:
@@ -58,14 +61,13 @@ def shows(page: Page, tick: int) -> None:
 def test_drag_step_and_come_back(driven: Program, browser) -> None:
     before = driven.state()
     with open_page(browser, driven.url, 1280, 800, stage=False) as page:
-        drag(page, 50.0, 10.0, 20.0)
+        aim = drag(page, 50.0, 10.0, 20.0)
+        assert 190 <= aim <= 210
         expect(page.locator("#past")).to_be_visible()
-        past = driven.wait(lambda state: 190 <= state["tick"] <= 210)
-        assert not past["running"]
         expect(page.locator("#status")).to_contain_text("the past")
-        page.wait_for_timeout(1000)  # the last wish of the drag has come true
-        past = driven.state()
-        shows(page, past["tick"])
+        past = driven.wait(lambda state: state["tick"] == aim)  # the last wish of the drag has come true
+        assert not past["running"]
+        shows(page, aim)
         page.evaluate("() => { for (let k = 0; k < 5; k++) document.querySelector('#tick-back').click(); }")
         driven.wait(lambda state: state["tick"] == past["tick"] - 5)
         page.evaluate("() => { for (let k = 0; k < 4; k++) document.querySelector('#tick-on').click(); }")

@@ -17,7 +17,7 @@ from app.session import Session
 from sim2d import load_world
 from sim2d.importers import import_world
 from sim2d.world.world_file import WORLDS, complaints
-from tests.fuzz import brains, recordings, sessions
+from tests.fuzz import brains, recordings, runs, sessions
 from tests.fuzz.mutators import bytes_spoilt, text_of, tree_spoilt
 
 YAML = "image: plan.pgm\nresolution: 0.05\norigin: [0.0, -1.0, 0.1]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
@@ -36,6 +36,8 @@ COMMANDS: tuple[dict[str, Any], ...] = (
     {"type": "put_box", "name": "crate", "x": 2.0, "y": 2.0, "width": 0.4, "depth": 0.4, "height": 0.5, "angle_rad": 0.2},
     {"type": "use_preset", "name": "ideal"}, {"type": "step_stage", "back": True},
     {"type": "inject_packet", "x": 3, "y": 4, "heading_rad": 1.0, "share": 0.3}, {"type": "inspect", "experience": 0},
+    {"type": "predict", "choice": 1}, {"type": "vote", "lesson": "loop", "voter": "abcdefgh", "choice": 0},
+    {"type": "run_until", "what": "place", "place": "desk", "within_s": 1.0}, {"type": "begin_lesson", "name": "packet"},
     {"type": "inspect", "x": 3, "y": 5}, {"type": "inspect", "view": 0}, {"type": "undo_edit"}, {"type": "redo_edit"},
     {"type": "edit_world", "edition": None, "steps": [
         {"do": "add", "list": "walls", "number": None, "item": {
@@ -140,6 +142,7 @@ def warm() -> None:
     brains.warm()
     sessions.warm()
     recordings.warm()
+    runs.warm()
     for kind in ("pgm", "png", "jpg", "bmp", "ppm"):
         _drive_in({f"plan.{kind}": _picture(kind)}, 0.05)
     for tree in _worlds():
@@ -182,5 +185,5 @@ KINDS: dict[str, tuple[Callable[[Random], str], int]] = {
     "brain file": (brain_file, 15), "brain state": (brain_state, 30), "session file": (session_file, 5),
     "session state": (session_state, 20), "world": (world, 15), "vector plan": (vector_plan, 8),
     "picture": (picture, 8), "map_server": (map_server, 7), "parameters": (parameters, 8), "setting": (setting, 4),
-    "recording": (recordings.recording, 30),
+    "recording": (recordings.recording, 30), "run": (runs.run_file, 30),
 }  # fmt: skip

@@ -19,6 +19,7 @@ SHARES = {
     "session state": 60,
     "session file": 10,
     "recording": 150,
+    "run": 40,
     "messages": 3,
     "requests": 2,
 }

@@ -11,24 +11,31 @@ from typing import Any
 
 from fastapi import FastAPI, Path, Query, Request, WebSocket
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import FileResponse, RedirectResponse, Response
+from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
-from starlette.types import ASGIApp
 
 from web.http.asking import Submit, told
 from web.http.bodies import body_of, json_response
 from web.http.brain_download import BrainDownload
 from web.http.brain_files import unpacked
+from web.http.class_door import Classroom
+from web.http.classroom import add_classroom
 from web.http.commands import READER, CommandAccepted, Declined, Malformed, Problem, check, problem, read_object, wrong
 from web.http.experiments import Gallery, add_experiments
 from web.http.export import Exports, add_exports
 from web.http.kept_offer import Offered, add_kept_offer
+from web.http.lessons import Lessons, add_lessons
+from web.http.pictures import add_pictures
+from web.http.places import add_places
 from web.http.proxy import PAGE_ID, Cameras, ViewersLike, ViserProxy, spoken
 from web.http.recordings import Opener, add_recordings
 from web.http.security import MAX_BRAIN_BYTES, Guard, Limits
+from web.http.situations import Situations, add_situations
+from web.http.stage_picture import add_stage_picture
 from web.http.state import experience_fields, title, to_json
 from web.http.stream import Stream
+from web.http.watching import NO, comes_from_class, looks_on
 from web.http.worlds import add_worlds
 from web.latest import Latest
 from web.messages import ExperienceReport, ReadExperience, Snapshot, UseBrain
@@ -49,11 +56,13 @@ _ERRORS: dict[int | str, dict[str, Any]] = {
 def create_app(
     latest: Latest[Snapshot], submit: Submit, viewers: ViewersLike, port: int, offered: Offered | None = None,
     experiments: Gallery | None = None, exports: Exports | None = None, opener: Opener | None = None,
-) -> ASGIApp:  # fmt: skip
+    situations: Situations | None = None, lessons: Lessons | None = None, classroom: Classroom | None = None,
+) -> Guard:  # fmt: skip
     """The whole application behind its guard.
 
     port: the one that Host and Origin must name. offered: a kept brain. experiments: those of the page's gallery.
-    exports: the formats in which the run can be had. opener: opens recordings that are sent.
+    exports: the formats in which the run can be had. opener: opens recordings that are sent. situations: links to moments.
+    lessons: those of the page. classroom: where a class finds its door, which has the same application behind it.
     """
     cameras, themes = Cameras(), Themes()
     stream = Stream(latest, submit, cameras, themes, viewers.switches)
@@ -77,15 +86,21 @@ def create_app(
     )
     _add_state(app, latest, stream)
     _add_experience(app, submit)
+    add_places(app, latest)
     _add_brain(app, latest, submit)
     add_kept_offer(app, offered, latest, submit)
     _add_commands(app, submit)
     add_worlds(app, latest, submit)
     add_experiments(app, experiments)
+    add_lessons(app, lessons)
+    add_classroom(app, classroom, submit)
     add_exports(app, exports, latest, submit)
     sent = add_recordings(app, opener, submit)
+    add_situations(app, situations, cameras, submit)
+    add_pictures(app, latest)
     _add_stream(app, stream)
     _add_viser(app, ViserProxy(viewers, cameras, themes))
+    add_stage_picture(app, latest)
     _add_pages(app)
     _add_errors(app)
     return Guard(app, port)
@@ -195,10 +210,12 @@ def _add_stream(app: FastAPI, stream: Stream) -> None:
     async def api_stream(socket: WebSocket, page: str = "", got: bool = False) -> None:
         if page and not PAGE_ID.fullmatch(page):
             await _deny(socket, 422, "page must be 22 to 64 letters, digits, - or _")
+        elif comes_from_class(socket) and not looks_on(page):
+            await _deny(socket, 403, NO)
         elif stream.full:
             await _deny(socket, 503, "32 pages are open already; close one")
         else:
-            await stream.serve(socket, page, got)
+            await stream.serve(socket, page, got, looks_on(page))
 
 
 def _add_viser(app: FastAPI, proxy: ViserProxy) -> None:
@@ -210,6 +227,8 @@ def _add_viser(app: FastAPI, proxy: ViserProxy) -> None:
     async def viser_socket(socket: WebSocket, page: str) -> None:
         if not PAGE_ID.fullmatch(page):
             await _deny(socket, 404, "there is no such page")
+        elif comes_from_class(socket) and not looks_on(page):
+            await _deny(socket, 403, NO)
         elif not spoken(socket):
             await _deny(
                 socket, 400, "this websocket needs viser's subprotocol: viser-v and the version, as viser-v1.1.1"
@@ -217,13 +236,20 @@ def _add_viser(app: FastAPI, proxy: ViserProxy) -> None:
         elif proxy.full:
             await _deny(socket, 503, "32 viewers are open already; close one")
         else:
-            await proxy.relay(socket, page)
+            await proxy.relay(socket, page, looks_on(page))
 
 
 def _add_pages(app: FastAPI) -> None:
     @app.get("/", include_in_schema=False)
-    def index() -> Response:
-        return FileResponse(STATIC / "index.html", headers={"Cache-Control": "no-cache"})
+    def index(request: Request) -> Response:
+        """The page; `/?watch`: the same, only to look at; `/?vote`: only the question of a lesson, for a class."""
+        headers, asked = {"Cache-Control": "no-cache"}, request.query_params
+        if "vote" in asked or (comes_from_class(request) and "watch" not in asked):
+            return FileResponse(STATIC / "lessons" / "vote.html", headers=headers)
+        if "watch" in asked:
+            text = (STATIC / "index.html").read_text(encoding="utf-8")
+            return HTMLResponse(text.replace("<body>", '<body data-watch="true">', 1), headers=headers)
+        return FileResponse(STATIC / "index.html", headers=headers)
 
     @app.get("/docs", include_in_schema=False)
     def docs() -> Response:

@@ -10,11 +10,12 @@ from typing import cast
 
 from sim2d import World
 from web.http.commands import Declined, Malformed, wrong
-from web.messages import Accepted, Command, EngineRequest, OfficeEdition, ReadWorld, Refused, Step
+from web.messages import Accepted, Command, CompareBranch, EngineRequest, OfficeEdition, ReadWorld, Refused, Seek, Step
 
 Submit = Callable[[Command | EngineRequest], "Future[Accepted | Refused]"]
 
 ANSWER_TIMEOUT_S = 3.0
+PAST_TIMEOUT_S = 300.0  # the page is told how far it is, and a newer wish ends it
 TICK_TIMEOUT_S = 0.1  # a step is answered when its ticks are done
 
 
@@ -27,6 +28,7 @@ async def told(submit: Submit, command: Command | EngineRequest, timeout_s: floa
     answer = asyncio.wrap_future(submit(command))
     if timeout_s is None:
         timeout_s = ANSWER_TIMEOUT_S + (TICK_TIMEOUT_S * command.ticks if isinstance(command, Step) else 0.0)
+        timeout_s = PAST_TIMEOUT_S if isinstance(command, Seek | CompareBranch) else timeout_s
     done, _ = await asyncio.wait({answer}, timeout=timeout_s)
     if not done:
         late = f"the engine did not answer within {timeout_s:g} s; the command may still take effect, see /api/state"

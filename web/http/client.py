@@ -16,11 +16,15 @@ SEND_TIMEOUT_S = 5.0
 
 
 class Client:
-    def __init__(self, socket: WebSocket, page: str, confirms: bool, reader: PanelReader) -> None:
+    def __init__(
+        self, socket: WebSocket, page: str, confirms: bool, reader: PanelReader, watches: bool = False
+    ) -> None:
         self.socket = socket
         self.confirms = confirms  # says "got" to each state
         self.got = asyncio.Event()
         self.page = page
+        self.watches = watches  # it only looks on
+        self.presents = False  # in larger type, for a class
         self.reader = reader  # the side panel's, for this page
         self.news = asyncio.Event()
         self.limits = Limits()

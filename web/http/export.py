@@ -9,7 +9,7 @@ import tempfile
 import zipfile
 from collections.abc import Coroutine
 from pathlib import Path
-from typing import Protocol
+from typing import Annotated, Literal, Protocol
 
 from fastapi import FastAPI, Query, Request
 from fastapi.responses import FileResponse, Response
@@ -24,6 +24,7 @@ from web.http.state import to_json
 from web.latest import Latest
 from web.messages import Snapshot
 
+Second = Annotated[float | None, Query(ge=0, le=1e9, allow_inf_nan=False, description="simulated seconds")]
 LOOK_S = 0.5  # between two looks whether anybody still waits for the file
 
 
@@ -35,10 +36,27 @@ class Offer(BaseModel):
     refusal: str | None
 
 
+class Wish(BaseModel):
+    """What is wanted of the run: a stretch in simulated seconds, None: from its beginning, up to now. pictures: in MCAP."""
+
+    from_s: float | None = None
+    until_s: float | None = None
+    pictures: Literal["png", "jpeg", "none"] = "png"
+
+    @property
+    def whole(self) -> bool:
+        return self.from_s is None and self.until_s is None
+
+
 class Exports(Protocol):
+    @property
+    def done(self) -> float:
+        """The share, 0 to 1, of the file that is being written."""
+        ...
+
     def offers(self) -> list[Offer]: ...
 
-    async def write(self, to: str, submit: Submit, out: Path) -> list[Path]:
+    async def write(self, to: str, submit: Submit, out: Path, wish: Wish) -> list[Path]:
         """Write the run as it is now to `out`, or to several files beside it. ValueError says why it cannot be.
 
         When it is cancelled, it ends what it has begun.
@@ -55,12 +73,25 @@ def add_exports(app: FastAPI, exports: Exports | None, latest: Latest[Snapshot],
         there = [] if exports is None else exports.offers()
         return json_response(to_json([offer.model_dump() for offer in there]))
 
+    @app.get("/api/exports/done", tags=["export"], responses={200: {"model": float | None}})
+    async def done() -> Response:
+        """The share, 0 to 1, of the file that is being written; null when none is."""
+        return json_response(to_json(exports.done if exports is not None and one_at_a_time.locked() else None))
+
     @app.get("/api/export", tags=["export"], responses={200: {"content": {"application/octet-stream": {}}}, **ERRORS})
     async def export(
-        request: Request, to: str = Query(max_length=20, description="a format of /api/exports")
+        request: Request,
+        to: str = Query(max_length=20, description="a format of /api/exports"),
+        from_s: Second = None,
+        until_s: Second = None,
+        pictures: Literal["png", "jpeg", "none"] = "png",
     ) -> Response:
-        """The run as it is now in one format; a .zip if that needs several files. One is written at a time."""
+        """The run, or from `from_s` to `until_s` of it, in one format; a .zip if that needs several files. One is written at
+        a time. `pictures`: of the camera in an mcap; png is exact."""
         limits.pass_on("export")
+        wish = Wish(from_s=from_s, until_s=until_s, pictures=pictures)
+        if from_s is not None and until_s is not None and until_s <= from_s:
+            raise Malformed([wrong("until_s", until_s, f"must be after from_s, {from_s:g}")])
         offer = next((offer for offer in exports.offers() if offer.format == to), None) if exports is not None else None
         if exports is None or offer is None or offer.refusal is not None:
             reason = (
@@ -72,8 +103,8 @@ def add_exports(app: FastAPI, exports: Exports | None, latest: Latest[Snapshot],
         async with one_at_a_time:
             folder = tempfile.TemporaryDirectory(prefix="ratslam-export-")
             try:
-                out = Path(folder.name) / f"{_name(latest)}.{to}"
-                file = await _written(exports.write(to, submit, out), request, out)
+                out = Path(folder.name) / f"{_name(latest, wish)}.{to}"
+                file = await _written(exports.write(to, submit, out, wish), request, out)
             except BaseException as error:
                 folder.cleanup()
                 if isinstance(error, ValueError | OSError) and not isinstance(error, Malformed):
@@ -108,9 +139,11 @@ def _zipped(files: list[Path], out: Path) -> Path:
     return out
 
 
-def _name(latest: Latest[Snapshot]) -> str:
+def _name(latest: Latest[Snapshot], wish: Wish) -> str:
     _, snapshot = latest.get()
     if snapshot is None:
         return "run"
     played = "recording" if snapshot.world is None else snapshot.world.name
-    return f"run-{re.sub(r'[^A-Za-z0-9]+', '-', played)}-seed{snapshot.seed}"
+    from_s, until_s = wish.from_s or 0.0, snapshot.time_s if wish.until_s is None else wish.until_s
+    stretch = "" if wish.whole else f"-{from_s:g}s-to-{until_s:g}s"
+    return f"run-{re.sub(r'[^A-Za-z0-9]+', '-', played)}-seed{snapshot.seed}{stretch}"

@@ -4,6 +4,7 @@ is woken up, or it is put aside for good."""
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -13,7 +14,7 @@ from pydantic import BaseModel
 
 from ratslam_core import RatSlam
 from sim2d import World, load_world
-from web.http.asking import Submit, told
+from web.http.asking import NoAnswer, Submit, told
 from web.http.bodies import ERRORS, Body, checked_body, json_response, takes
 from web.http.commands import Malformed, wrong
 from web.http.security import Limits
@@ -21,6 +22,7 @@ from web.http.state import to_json
 from web.latest import Latest
 from web.messages import GoOn, ReadFiled, Snapshot, UseBrain
 
+LOOK_S = 0.3  # between two looks whether anybody still waits
 WAKE_TIMEOUT_S = 60.0  # in a world of 10,000 walls
 
 
@@ -28,7 +30,8 @@ WAKE_TIMEOUT_S = 60.0  # in a world of 10,000 walls
 class Offered:
     """What the kept brain is of. `read` gives the brain; its ValueError names the file. It waits for the disk.
 
-    run: id of a run that was cut off; `read` then runs it again to where it was, which may take a minute.
+    run: id of a run that was cut off; `go_on` runs it again to where it was, which may take a minute. It tells the share
+    that is done, and gives up when it is raised at.
     """
 
     world: str
@@ -36,8 +39,13 @@ class Offered:
     time_s: float  # simulated
     experiences: int
     kept_at: float  # seconds since 1970
-    read: Callable[[], RatSlam | GoOn]
+    read: Callable[[], RatSlam] | None = None
     run: str | None = None
+    go_on: Callable[[Callable[[float], object]], GoOn] | None = None
+
+
+class GivenUpError(Exception):
+    """Nobody waits for the run any more."""
 
 
 class AnswerOffer(Body):
@@ -68,6 +76,7 @@ class KeptOffer:
     def __init__(self, offered: Offered | None, latest: Latest[Snapshot], submit: Submit) -> None:
         self._offered, self._latest, self._submit = offered, latest, submit
         self._limits, self._answering = Limits(), asyncio.Lock()
+        self.done: float | None = None  # the share of a run that has been run again
 
     def told(self) -> bytes:
         """The description of the kept brain as JSON, or null."""
@@ -87,16 +96,17 @@ class KeptOffer:
             if self._offered is None:
                 raise Malformed([wrong("use", use, "no brain is offered, or somebody has answered already")])
             if use:
-                await self._wake(self._offered)
+                await self._wake(self._offered, request)
             self._offered = None
         return to_json({"used": use})
 
-    async def _wake(self, kept: Offered) -> None:
+    async def _wake(self, kept: Offered, request: Request) -> None:
         """Begin a new run with the brain, or go on with the run. Raises Malformed, and leaves everything as it was, when
         that fails."""
-        if kept.run is not None:
-            await self._go_on(kept)
+        if kept.go_on is not None:
+            await self._go_on(kept.go_on, request)
             return
+        assert kept.read is not None
         world = (await told(self._submit, ReadFiled(kept.world))).result
         try:
             if not isinstance(world, World):
@@ -106,13 +116,30 @@ class KeptOffer:
             raise Malformed([wrong("use", True, f"this brain cannot be woken up: {error}")]) from None
         await told(self._submit, UseBrain(brain, world, kept.seed), WAKE_TIMEOUT_S)
 
-    async def _go_on(self, kept: Offered) -> None:
+    async def _go_on(self, go_on: Callable[[Callable[[float], object]], GoOn], request: Request) -> None:
+        """Run it again to where it was, in a thread; give it up when the page that asked has gone or cancelled."""
+        gone = threading.Event()
+
+        def tell(share: float) -> None:
+            self.done = share
+            if gone.is_set():
+                raise GivenUpError
+
+        self.done = 0.0
+        running = asyncio.create_task(asyncio.to_thread(go_on, tell))
         try:
-            request = await asyncio.to_thread(kept.read)
+            while not (await asyncio.wait({running}, timeout=LOOK_S))[0]:
+                if await request.is_disconnected():
+                    gone.set()
+            there = running.result()
+        except GivenUpError:
+            raise NoAnswer.of(503, "nobody waits for this run any more") from None
         except ValueError as error:
             raise Malformed([wrong("use", True, f"this run cannot go on: {error}")]) from None
-        assert isinstance(request, GoOn)
-        await told(self._submit, request, WAKE_TIMEOUT_S)
+        finally:
+            gone.set()
+            self.done = None
+        await told(self._submit, there, WAKE_TIMEOUT_S)
 
 
 def add_kept_offer(app: FastAPI, offered: Offered | None, latest: Latest[Snapshot], submit: Submit) -> None:
@@ -122,6 +149,11 @@ def add_kept_offer(app: FastAPI, offered: Offered | None, latest: Latest[Snapsho
     async def kept() -> Response:
         """The run that was cut off, or the brain that was kept last; null when there is none or somebody has answered."""
         return json_response(offer.told())
+
+    @app.get("/api/brain/kept/done", tags=["brain"], responses={200: {"model": float | None}})
+    async def done() -> Response:
+        """The share, 0 to 1, of the run that has been run again; null when nobody has asked for it."""
+        return json_response(to_json(offer.done))
 
     @app.post("/api/brain/kept", tags=["brain"], openapi_extra=takes(AnswerOffer),
               responses={200: {"model": Answered}, **ERRORS})  # fmt: skip

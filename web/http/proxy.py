@@ -22,6 +22,7 @@ from starlette.responses import Response
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 from websockets.asyncio.client import ClientConnection
 
+from web.http.watching import is_look
 from web.switches import Switches
 from web.themes import Theme, Themes
 from web.viewer.camera_views import Camera
@@ -47,6 +48,8 @@ class ViewerLike(Protocol):
     @property
     def secret(self) -> str: ...  # the secret that viser's port requires
     def fly(self, client_id: int, view: str, at_once: bool = False, turned: Camera | None = None) -> None: ...
+    def follow(self, client_id: int, on: bool) -> None: ...
+    def replay(self, event: int) -> None: ...
     def turned(self, client_id: int) -> Camera | None: ...  # where somebody has turned this camera by hand
 
 
@@ -70,6 +73,7 @@ class Cameras:
         self._client_of: dict[str, tuple[ViewerLike, int]] = {}
         self._wanted: dict[str, str] = {}
         self._turned: dict[str, Camera] = {}
+        self._following: dict[str, bool] = {}  # pages whose camera goes with the robot
         self.on_notice: Callable[[str, str], None] | None = None  # called with a page and what it should be told
 
     def listen(self, viewer: ViewerLike) -> None:
@@ -81,10 +85,37 @@ class Cameras:
     async def show(self, page: str, view: str) -> None:
         """Fly this page's camera to a view; remembered for later when its viewer is not connected yet."""
         self._turned.pop(page, None)
+        self._following.pop(page, None)
         _remember(self._wanted, page, view)
         if page in self._client_of:
             viewer, client_id = self._client_of[page]
             await asyncio.to_thread(viewer.fly, client_id, view)
+
+    def follow(self, page: str, on: bool) -> None:
+        """This page's camera goes with the robot from now on, also in the viewer of another theme, or no longer."""
+        _remember(self._following, page, on)
+        if page in self._client_of:
+            viewer, client_id = self._client_of[page]
+            viewer.follow(client_id, on)
+
+    def replay(self, page: str, event: int) -> None:
+        """Play the correction after this loop closure again, in the viewer that this page looks at."""
+        if page in self._client_of:
+            self._client_of[page][0].replay(event)
+
+    async def turn(self, page: str, view: str, camera: Camera) -> None:
+        """Fly this page's camera to where it had been turned from a view; remembered as in `show`."""
+        _remember(self._wanted, page, view)
+        if page in self._client_of:
+            viewer, client_id = self._client_of[page]
+            await asyncio.to_thread(viewer.fly, client_id, view, turned=camera)
+        else:
+            _remember(self._turned, page, camera)
+
+    def turned(self, page: str) -> Camera | None:
+        """Where somebody has turned this page's camera by hand; None when it stands at its view."""
+        viewer, client_id = self._client_of.get(page, (None, 0))
+        return None if viewer is None else viewer.turned(client_id)
 
     async def pair(self, page: str, viewer: ViewerLike, pass_on: Callable[[], Awaitable[None]]) -> bool:
         """Let one message of this page through (`pass_on`); True when viser numbered its client on it."""
@@ -105,6 +136,8 @@ class Cameras:
         if page in self._wanted:  # the page comes from another viewer or comes back: no flight
             turned = self._turned.pop(page, None)
             await asyncio.to_thread(viewer.fly, client_id, self._wanted[page], at_once=True, turned=turned)
+        if self._following.get(page):
+            viewer.follow(client_id, True)
         return True
 
     def paired(self, page: str) -> bool:
@@ -166,16 +199,17 @@ class ViserProxy:
             return Response(packed, headers={**headers, "Content-Encoding": "gzip"}, media_type="text/html")
         return Response(body, headers=headers, media_type="text/html")
 
-    async def relay(self, browser: WebSocket, page: str) -> None:
+    async def relay(self, browser: WebSocket, page: str, watches: bool = False) -> None:
         """Relay both directions until one side ends or the page chooses the other theme; its browser then reconnects at once.
 
-        The guard has checked Host and Origin before this.
+        watches: it only looks on; viser hears where its camera stands, and no click or drag. The guard has checked Host
+        and Origin before this.
         """
         self._open += 1
         try:
             with self._themes.shown(page) as (theme, turned):
                 viewer = await asyncio.to_thread(self._viewers.of, theme)
-                await self._relay(browser, page, viewer, turned)
+                await self._relay(browser, page, viewer, turned, watches)
         except (
             OSError,
             websockets.InvalidHandshake,
@@ -187,7 +221,9 @@ class ViserProxy:
             self._open -= 1
             await close_quietly(browser)
 
-    async def _relay(self, browser: WebSocket, page: str, viewer: ViewerLike, turned: asyncio.Event) -> None:
+    async def _relay(
+        self, browser: WebSocket, page: str, viewer: ViewerLike, turned: asyncio.Event, watches: bool
+    ) -> None:
         self._cameras.listen(viewer)
         async with websockets.connect(
             f"ws://127.0.0.1:{viewer.port}/",
@@ -202,7 +238,7 @@ class ViserProxy:
         ) as viser:
             await browser.accept(subprotocol=viser.subprotocol)
             tasks = {
-                asyncio.create_task(self._to_viser(browser, viser, page, viewer)),
+                asyncio.create_task(self._to_viser(browser, viser, page, viewer, watches)),
                 asyncio.create_task(_to_browser(viser, browser)),
                 asyncio.create_task(turned.wait()),
             }
@@ -212,12 +248,16 @@ class ViserProxy:
                 await end_all(tasks)
                 self._cameras.unpair(page, viewer)
 
-    async def _to_viser(self, browser: WebSocket, viser: ClientConnection, page: str, viewer: ViewerLike) -> None:
+    async def _to_viser(
+        self, browser: WebSocket, viser: ClientConnection, page: str, viewer: ViewerLike, watches: bool
+    ) -> None:
         while True:
             try:
                 message = await browser.receive_bytes()
             except (WebSocketDisconnect, KeyError):  # KeyError: text, which viser's client never sends
                 return
+            if watches and not is_look(message):
+                continue
             if self._cameras.paired(page):
                 await viser.send(message)
             else:

@@ -19,10 +19,12 @@ from web.http.asking import Submit, told
 from web.http.bodies import ERRORS, json_response
 from web.http.commands import Declined, Malformed, wrong
 from web.http.security import MAX_RECORDING_BYTES, Limits
+from web.http.sent_folder import Room, SentFolder, plain
 from web.http.state import recording_fields, to_json
 from web.messages import PlayRecording, RecordingView
 
 PLAY_TIMEOUT_S = 60.0
+TOKEN = "^[0-9a-f]{8,64}$"  # which page sends what
 Opener = Callable[[Path], object]  # what plays the recording in a file; ValueError says what is wrong with it
 
 
@@ -37,6 +39,12 @@ class Played(BaseModel):
     over: bool
 
 
+class Left(BaseModel):
+    """Bytes that the other files of the folder may have."""
+
+    room: int
+
+
 class SentRecordings:
     """The one that plays. One that is refused is deleted, and what played goes on."""
 
@@ -44,27 +52,70 @@ class SentRecordings:
         self._open, self._submit = opener, submit
         self._limits, self._one = Limits(), asyncio.Lock()
         self._folder: str | None = None
+        self._coming: SentFolder | None = None
 
     async def take(self, request: Request, name: str) -> bytes:
+        """A recording in one file."""
         self._limits.pass_on("recording")
         async with self._one:
             folder = await asyncio.to_thread(tempfile.mkdtemp, prefix="ratslam-recording-")
             try:
-                path = Path(folder) / _plain(name)
-                await _write(request, path)
+                path = Path(folder) / plain(name)
+                whole = Room(MAX_RECORDING_BYTES)
+                await _write(request, path, whole)
+                if whole.left == MAX_RECORDING_BYTES:
+                    raise Malformed([wrong("recording", path.name, f"{path.name} is empty")])
                 view = await self._play(path)
             except BaseException:
                 shutil.rmtree(folder, ignore_errors=True)
                 raise
-            self.forget()
+            self._forget_played()
             self._folder = folder
         return to_json(recording_fields(view))
 
+    async def take_part(self, request: Request, token: str, of: str, name: str) -> bytes:
+        """A file of the folder `of`. The first one with another token begins another folder."""
+        if self._coming is None or self._coming.token != token:
+            self._forget_coming()
+            self._coming = SentFolder(token, of)
+        coming = self._coming
+        path = await asyncio.to_thread(coming.place, name)
+        await _write(request, path, coming.room)
+        return to_json({"room": coming.room.left})
+
+    async def take_folder(self, token: str) -> bytes:
+        """All files of the folder have been sent: play it."""
+        self._limits.pass_on("recording")
+        async with self._one:
+            coming = self._coming
+            if coming is None or coming.token != token:
+                raise Malformed(
+                    [wrong("folder", token, "no file of this folder has been sent, or another came after it")]
+                )
+            self._coming = None
+            try:
+                view = await self._play(coming.path)
+            except BaseException:
+                coming.forget()
+                raise
+            self._forget_played()
+            self._folder = coming.home
+        return to_json(recording_fields(view))
+
     def forget(self) -> None:
-        """Delete the file of the recording before."""
+        """Delete what plays, and what was on its way."""
+        self._forget_played()
+        self._forget_coming()
+
+    def _forget_played(self) -> None:
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)
             self._folder = None
+
+    def _forget_coming(self) -> None:
+        if self._coming is not None:
+            self._coming.forget()
+            self._coming = None
 
     async def _play(self, path: Path) -> RecordingView:
         try:
@@ -88,31 +139,32 @@ def add_recordings(app: FastAPI, opener: Opener | None, submit: Submit) -> SentR
     @app.post("/api/recordings", tags=["recordings"], openapi_extra={"requestBody": body},
               responses={200: {"model": Played}, **ERRORS})  # fmt: skip
     async def play(
-        request: Request, name: str = Query(min_length=1, max_length=200, description="of the file, with its ending")
-    ) -> Response:
-        """Play a recording of a robot, in one file. One that cannot be played is refused, and the session goes on."""
-        return json_response(await sent.take(request, name))
+        request: Request, name: str = Query(min_length=1, max_length=200, description="of the file, with its ending"),
+        folder: str | None = Query(None, pattern=TOKEN, description="play the folder whose files were put with this"),
+    ) -> Response:  # fmt: skip
+        """Play a recording of a robot, in one file or in a folder that was sent before. One that cannot be played is
+        refused, and the session goes on."""
+        return json_response(await (sent.take(request, name) if folder is None else sent.take_folder(folder)))
+
+    @app.put("/api/recordings", tags=["recordings"], openapi_extra={"requestBody": body},
+             responses={200: {"model": Left}, **ERRORS})  # fmt: skip
+    async def put(
+        request: Request, folder: str = Query(pattern=TOKEN, description="the same for all files of a folder"),
+        of: str = Query(min_length=1, max_length=200, description="the folder's name"),
+        name: str = Query(min_length=1, max_length=1000, description="of the file in the folder, with / between"),
+    ) -> Response:  # fmt: skip
+        """Send a file of a folder that is to be played. The folder that was sent before and not played is deleted."""
+        return json_response(await sent.take_part(request, folder, of, name))
 
     return sent
 
 
-async def _write(request: Request, path: Path) -> None:
-    """The body into a file, part by part. Raises Declined when it is too long or the disk is full."""
-    size = 0
+async def _write(request: Request, path: Path, room: Room) -> None:
+    """The body into a file, part by part. Raises Declined when there is no room for it or the disk is full."""
     try:
         with contextlib.closing(await asyncio.to_thread(path.open, "wb")) as file:
             async for part in request.stream():
-                size += len(part)
-                if size > MAX_RECORDING_BYTES:
-                    raise Declined.of(413, f"a recording may have at most {MAX_RECORDING_BYTES} bytes")
+                room.take(len(part))
                 await asyncio.to_thread(file.write, part)
     except OSError as error:
         raise Declined.of(507, f"the recording cannot be kept: {error.strerror or error}") from None
-    if size == 0:
-        raise Malformed([wrong("recording", path.name, f"{path.name} is empty")])
-
-
-def _plain(name: str) -> str:
-    """The bare file name in what a browser calls a file, without folders and control characters."""
-    bare = "".join(c for c in name.replace("\\", "/").rpartition("/")[2] if c.isprintable())
-    return bare if bare.strip(". ") else "recording"

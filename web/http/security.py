@@ -8,8 +8,9 @@ therefore pure ASGI: it runs before a websocket is accepted, which ordinary HTTP
   whoever leaves it out is a program and can add it); other requests may come without, as curl's do.
 - What is costly to make (a brain, a whole map, a world) is not read for another site (Sec-Fetch-Site).
 - A request that is neither GET nor HEAD must not be cross-site (Sec-Fetch-Site) and must carry JSON of at most 64 KiB,
-  24 MiB with plans; a brain that is uploaded is application/octet-stream (no form can send that either) of at most 256 MiB.
-  So is a recording, of at most 900 MB, which goes to a file part by part.
+  24 MiB with plans and 128 MiB with situations; a brain that is uploaded is application/octet-stream (no form can send
+  that either) of at most 256 MiB. So is a recording, of at most 900 MB, which goes to a file part by part.
+- A page that only looks on changes nothing; its requests carry its id (X-Page).
 """
 
 from __future__ import annotations
@@ -23,13 +24,30 @@ from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from web.http.commands import Declined, problem, wrong
+from web.http.watching import NO, PAGE_HEADER, looks_on
 
 MAX_BODY_BYTES = 64 * 1024
 BRAIN_PATH, MAX_BRAIN_BYTES = "/api/brain", 256 * 1024 * 1024
 RECORDING_PATH, MAX_RECORDING_BYTES = "/api/recordings", 900_000_000
 PLAN_PATH, MAX_PLAN_BYTES = "/api/worlds/open", 24 * 1024 * 1024  # a picture of 16 MB in base64
-COSTLY_PATHS = (BRAIN_PATH, "/api/state", "/api/experience/", "/api/experiments", "/api/export", "/api/world")
-_MOST = {BRAIN_PATH: MAX_BRAIN_BYTES, PLAN_PATH: MAX_PLAN_BYTES, RECORDING_PATH: MAX_RECORDING_BYTES}
+OPEN_SITUATION_PATH, MAX_SITUATION_BYTES = "/api/situation/open", 128 * 1024 * 1024  # with a brain, in base64
+COSTLY_PATHS = (
+    BRAIN_PATH,
+    "/api/state",
+    "/api/experience/",
+    "/api/experiments",
+    "/api/export",
+    "/api/world",
+    "/api/picture/",
+)
+VOTE_PATH, MAX_VOTE_BYTES = "/api/vote", 4096
+_MOST = {
+    VOTE_PATH: MAX_VOTE_BYTES,
+    BRAIN_PATH: MAX_BRAIN_BYTES,
+    PLAN_PATH: MAX_PLAN_BYTES,
+    RECORDING_PATH: MAX_RECORDING_BYTES,
+}
+_MOST[OPEN_SITUATION_PATH] = MAX_SITUATION_BYTES
 HOST_NAMES = ("127.0.0.1", "localhost", "[::1]")
 
 PAGE_POLICY = (
@@ -55,18 +73,18 @@ class Guard:
     """ASGI middleware in front of everything; see the module's rules."""
 
     def __init__(self, app: ASGIApp, port: int) -> None:
-        self._app = app
+        self.app = app
         self._hosts = own_hosts(port)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] not in ("http", "websocket"):
-            await self._app(scope, receive, send)
+            await self.app(scope, receive, send)
             return
         refusal = refusal_of(scope, self._hosts)
         if refusal is not None:
-            await _refuse(scope, receive, send, refusal)
+            await refuse(scope, receive, send, refusal)
         elif scope["type"] == "websocket":
-            await self._app(scope, receive, send)
+            await self.app(scope, receive, send)
         else:
             await self._http(scope, receive, send)
 
@@ -76,10 +94,10 @@ class Guard:
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                _bind_browser(MutableHeaders(scope=message), policy.format(host=host))
+                bind_browser(MutableHeaders(scope=message), policy.format(host=host))
             await send(message)
 
-        await self._app(scope, receive, send_with_headers)
+        await self.app(scope, receive, send_with_headers)
 
 
 def own_hosts(port: int) -> frozenset[str]:
@@ -110,9 +128,11 @@ def _from_elsewhere(headers: Mapping[str, str]) -> bool:
     return headers.get("sec-fetch-site", "none") not in ("same-origin", "none")
 
 
-def _refusal_of_change(headers: Mapping[str, str], path: str) -> Refusal | None:
+def _refusal_of_change(headers: Headers, path: str) -> Refusal | None:
     if _from_elsewhere(headers):
         return Refusal(403, "changes from another site are refused")
+    if any(looks_on(page) for page in headers.getlist(PAGE_HEADER)):
+        return Refusal(403, NO)
     what = {BRAIN_PATH: "a brain", RECORDING_PATH: "a recording"}.get(path, "a JSON body")
     kind = "application/json" if what == "a JSON body" else "application/octet-stream"
     most = _MOST.get(path, MAX_BODY_BYTES)
@@ -126,21 +146,23 @@ def _refusal_of_change(headers: Mapping[str, str], path: str) -> Refusal | None:
     return None
 
 
-async def _refuse(scope: Scope, receive: Receive, send: Send, refusal: Refusal) -> None:
+async def refuse(scope: Scope, receive: Receive, send: Send, refusal: Refusal, *, local: bool = True) -> None:
     response = Response(problem(refusal.reason), status_code=refusal.status, media_type="application/json")
-    _bind_browser(response.headers, "default-src 'none'; frame-ancestors 'none'")
+    bind_browser(response.headers, "default-src 'none'; frame-ancestors 'none'", local)
     if scope["type"] == "websocket" and "websocket.http.response" not in scope.get("extensions", {}):
         await send({"type": "websocket.close", "code": 1008, "reason": refusal.reason[:120]})
     else:  # starlette turns this into the websocket's denial response
         await response(scope, receive, send)
 
 
-def _bind_browser(headers: MutableHeaders, policy: str) -> None:
+def bind_browser(headers: MutableHeaders, policy: str, local: bool = True) -> None:
+    """local: on this machine; browsers complain of an opener policy from elsewhere without https."""
     headers["Content-Security-Policy"] = policy
     headers["X-Content-Type-Options"] = "nosniff"
     headers["Referrer-Policy"] = "no-referrer"
     headers["X-Frame-Options"] = "SAMEORIGIN"
-    headers["Cross-Origin-Opener-Policy"] = "same-origin"
+    if local:
+        headers["Cross-Origin-Opener-Policy"] = "same-origin"
     headers["Cross-Origin-Resource-Policy"] = "same-origin"
     headers["Permissions-Policy"] = "camera=(), microphone=(), geolocation=(), payment=(), usb=()"
 
@@ -165,10 +187,10 @@ class Bucket:
 
 
 class Limits:
-    """One sender's limits: drive and seek 60 a second each, all other commands 10 a second."""
+    """One sender's limits: drive, seek and vote 60 a second each, all other commands 10 a second."""
 
     def __init__(self) -> None:
-        self._often = {"drive": Bucket(60.0), "seek": Bucket(60.0)}
+        self._often = {"drive": Bucket(60.0), "seek": Bucket(60.0), "vote": Bucket(60.0)}
         self._other = Bucket(10.0)
 
     def refusal(self, kind: str) -> str | None:

@@ -1,26 +1,34 @@
-"""The dashboard: one loopback port with the page, the API and the way to viser, from bind to a clean end."""
+"""The dashboard: one loopback port with the page, the API and the way to viser, from bind to a clean end; if it was asked for,
+a second one in the local network, for a class."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-import ipaddress
 import signal
 import socket
 import sys
 import threading
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
 from types import FrameType
+from typing import Literal
 
 import uvicorn
+from starlette.types import ASGIApp
 
 from web.http.api import create_app
+from web.http.class_door import ClassDoor, Classroom
 from web.http.experiments import Gallery
 from web.http.export import Exports
 from web.http.handshake import MAX_HEADER_BYTES, WebSocketProtocol
 from web.http.kept_offer import Offered
+from web.http.lessons import Lessons
+from web.http.listening import CannotListen, class_socket, listening_socket
 from web.http.proxy import ViewersLike
 from web.http.recordings import Opener
+from web.http.security import Guard
+from web.http.situations import Situations
 from web.http.stream import Submit
 from web.latest import Latest
 from web.messages import Snapshot
@@ -29,8 +37,12 @@ MAX_FRAME_BYTES = 64 * 1024
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-class CannotListen(Exception):  # noqa: N818
-    """The address is not available; the message says why and what to do."""
+@dataclass(frozen=True, slots=True)
+class ForClass:
+    """Where a class is to be let in. address: None: that of this machine in its local network."""
+
+    address: str | None = None
+    port: int = 8001
 
 
 class Dashboard:
@@ -48,9 +60,13 @@ class Dashboard:
         experiments: Gallery | None = None,
         exports: Exports | None = None,
         opener: Opener | None = None,
+        situations: Situations | None = None,
+        lessons: Lessons | None = None,
+        for_class: ForClass | None = None,
     ) -> None:
         """offered: the brain of an earlier program, for whoever opens the page. experiments: for the page's gallery.
-        exports: the formats in which the run can be had. opener: for recordings that are dropped on the page."""
+        exports: the formats in which the run can be had. opener: for recordings that are dropped on the page. situations:
+        links to moments. lessons: those of the page. for_class: where a class votes and looks on; None: nowhere."""
         self._latest = latest
         self._submit = submit
         self._viewers = viewers
@@ -58,6 +74,10 @@ class Dashboard:
         self._port = port
         self.on_ready = on_ready
         self._offered, self._experiments, self._exports, self._opener = offered, experiments, exports, opener
+        self._situations = situations
+        self._lessons, self._for_class = lessons, for_class
+        self.classroom: Classroom | None = None  # known after `bind`
+        self._class_socket: socket.socket | None = None
         self._socket: socket.socket | None = None
         self._server: _Server | None = None
         self._ended = False
@@ -72,6 +92,9 @@ class Dashboard:
         """Bind the port now, before anything slow starts. Raises CannotListen with a sentence."""
         self._socket = listening_socket(self._host, self._port)
         self._port = self._socket.getsockname()[1]
+        if self._for_class is not None:
+            self._class_socket = class_socket(self._for_class.address, self._for_class.port)
+            self.classroom = Classroom(*self._class_socket.getsockname()[:2])
 
     def run(self) -> None:
         """Serve until told to stop. Exits with code 2 and a sentence when the address is not available."""
@@ -84,11 +107,18 @@ class Dashboard:
         assert self._socket is not None
         try:
             self._viewers.start()
-            self._server = _Server(self._config(), self._announce)
+            guard = self._guard()
+            beside: list[tuple[uvicorn.Server, socket.socket]] = []
+            if self.classroom is not None and self._class_socket is not None:
+                door = _config(ClassDoor(guard.app, self.classroom), lifespan="off")
+                beside.append((_BesideServer(door), self._class_socket))
+            self._server = _Server(_config(guard), self._announce, beside)
             self._server.should_exit = self._ended
             self._server.run([self._socket])
         finally:
             self._socket.close()
+            if self._class_socket is not None:
+                self._class_socket.close()
             self._viewers.stop()
 
     def stop(self) -> None:
@@ -101,41 +131,53 @@ class Dashboard:
         if self.on_ready is not None:
             self.on_ready(self.url)
 
-    def _config(self) -> uvicorn.Config:
-        return uvicorn.Config(
-            create_app(
-                self._latest,
-                self._submit,
-                self._viewers,
-                self._port,
-                self._offered,
-                self._experiments,
-                self._exports,
-                self._opener,
-            ),
-            ws=WebSocketProtocol,
-            h11_max_incomplete_event_size=MAX_HEADER_BYTES,
-            ws_max_size=MAX_FRAME_BYTES,
-            ws_per_message_deflate=False,
-            timeout_graceful_shutdown=1,
-            limit_concurrency=256,
-            access_log=False,
-            log_level="warning",
-            server_header=False,
-            proxy_headers=False,
-        )
+    def _guard(self) -> Guard:
+        return create_app(
+            self._latest, self._submit, self._viewers, self._port, self._offered, self._experiments, self._exports,
+            self._opener, self._situations, self._lessons, self.classroom,
+        )  # fmt: skip
+
+
+def _config(app: ASGIApp, lifespan: Literal["auto", "off"] = "auto") -> uvicorn.Config:
+    return uvicorn.Config(
+        app,
+        ws=WebSocketProtocol,
+        lifespan=lifespan,
+        h11_max_incomplete_event_size=MAX_HEADER_BYTES,
+        ws_max_size=MAX_FRAME_BYTES,
+        ws_per_message_deflate=False,
+        timeout_graceful_shutdown=1,
+        limit_concurrency=256,
+        access_log=False,
+        log_level="warning",
+        server_header=False,
+        proxy_headers=False,
+    )
 
 
 class _Server(uvicorn.Server):
     """A uvicorn server that says when it listens, and that ends quietly on a signal instead of raising it again."""
 
-    def __init__(self, config: uvicorn.Config, on_ready: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        config: uvicorn.Config,
+        on_ready: Callable[[], None],
+        beside: Sequence[tuple[uvicorn.Server, socket.socket]] = (),
+    ) -> None:
+        """beside: servers that begin and end with this one, each with its socket."""
         super().__init__(config)
-        self._on_ready = on_ready
+        self._on_ready, self._beside = on_ready, beside
+        self._serving: list[asyncio.Task[None]] = []
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
+        self._serving = [asyncio.create_task(server.serve([listener])) for server, listener in self._beside]
         await asyncio.to_thread(self._on_ready)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        for server, _ in self._beside:
+            server.should_exit = True
+        await asyncio.gather(super().shutdown(sockets), *self._serving)
 
     @contextlib.contextmanager
     def capture_signals(self) -> Generator[None, None, None]:
@@ -153,32 +195,9 @@ class _Server(uvicorn.Server):
         self.should_exit = True
 
 
-def listening_socket(host: str, port: int) -> socket.socket:
-    """A bound socket on a loopback address (port 0: any free one). Raises CannotListen."""
-    address = _loopback(host)
-    family = socket.AF_INET6 if address.version == 6 else socket.AF_INET
-    listener = socket.socket(family, socket.SOCK_STREAM)
-    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    try:
-        listener.bind((str(address), port))
-        listener.listen(128)  # at once: until then a second one could bind the same port
-    except (OSError, OverflowError) as error:
-        listener.close()
-        if isinstance(error, OverflowError):
-            reason = f"Port {port} does not exist; take one from 0 (any free one) to 65535 with --port."
-        else:
-            reason = f"Port {port} is not free ({error.strerror}). Choose another with --port, or 0 for any free one."
-        raise CannotListen(reason) from None
-    return listener
+class _BesideServer(uvicorn.Server):
+    """One that leaves signals to the server that it stands beside."""
 
-
-def _loopback(host: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address:
-    """The address, which must be this machine's own: 127.0.0.1 or ::1."""
-    try:
-        address = ipaddress.ip_address("127.0.0.1" if host == "localhost" else host)
-    except ValueError:
-        address = None
-    if address is None or str(address) not in ("127.0.0.1", "::1"):
-        reason = f"{host!r} would let other machines in; the dashboard listens on 127.0.0.1, localhost or ::1 only."
-        raise CannotListen(reason)
-    return address
+    @contextlib.contextmanager
+    def capture_signals(self) -> Generator[None, None, None]:
+        yield

@@ -7,11 +7,14 @@ Each text is made at most once per snapshot, however many ask for it.
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import Any
 
 import orjson
 
+from web.http.stage_state import stage_fields
 from web.messages import (
+    BesideView,
     CellReport,
     Event,
     ExperienceReport,
@@ -23,6 +26,7 @@ from web.messages import (
     RecordingView,
     Report,
     Side,
+    SituationView,
     Snapshot,
     TickWalk,
     TimeView,
@@ -61,12 +65,16 @@ def state(snapshot: Snapshot) -> dict[str, Any]:
         "error_m": {"map": snapshot.error_map_m, "odometry": snapshot.error_odometry_m},
         "living": None if snapshot.living is None else _living(snapshot.living),
         "trial": None if snapshot.trial is None else trial_fields(snapshot.trial),
+        "lesson": None if snapshot.lesson is None else asdict(snapshot.lesson),
+        "until": None if snapshot.until is None else asdict(snapshot.until),
+        "beside": None if snapshot.beside is None else beside_fields(snapshot.beside),
     }
 
 
 def map_fields(layer: MapLayer, turn_rad: float) -> dict[str, Any]:
-    """The map's nodes: ids and places (map frame, metres) row by row, and the angle by which the page turns them."""
-    return {"ids": layer.ids, "xy": layer.xy, "turn_rad": turn_rad}
+    """The map's nodes: ids and places (map frame, metres) row by row, the links between these rows, and the angle by which the
+    page turns them."""
+    return {"ids": layer.ids, "xy": layer.xy, "links": layer.links, "turn_rad": turn_rad}
 
 
 def page_fields(snapshot: Snapshot) -> dict[str, Any]:
@@ -86,6 +94,8 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
         "walk": None if snapshot.walk is None else _walk(snapshot.walk),
         "moving": None if snapshot.living is None else _moving(snapshot.living),
         "time": None if snapshot.time is None else time_fields(snapshot.time),
+        "situation": None if snapshot.situation is None else situation_fields(snapshot.situation),
+        **stage_fields(snapshot),
     }
 
 
@@ -107,6 +117,17 @@ def recording_fields(recording: RecordingView) -> dict[str, Any]:
     }
 
 
+def situation_fields(situation: SituationView) -> dict[str, Any]:
+    return {
+        "state": situation.state,
+        "tick": situation.tick,
+        "end_tick": situation.end_tick,
+        "words": situation.words,
+        "state_hash": situation.state_hash,
+        "look": situation.look.model_dump(),
+    }
+
+
 def office_fields(office: OfficeEdition) -> dict[str, Any]:
     return {"edition": office.number, "undo": office.undo, "redo": office.redo, "saved": office.saved}
 
@@ -124,7 +145,10 @@ def time_fields(time: TimeView) -> dict[str, Any]:
         "branch": time.branch,
         "branches": branches,
         "loop": time.loop,
+        "bookmarks": [{"tick": each.tick, "time_s": each.time_s, "name": each.name} for each in time.bookmarks],
         "differs": time.differs,
+        "doing": time.doing,
+        "done": round(time.done, 3),
         "sides": [_side(side) for side in time.sides],
     }
 
@@ -147,6 +171,19 @@ def _side(side: Side) -> dict[str, Any]:
         "xy": side.xy.round(2),
         "robot": _pose(side.robot),
         "turn_rad": side.turn_rad,
+    }
+
+
+def beside_fields(beside: BesideView) -> dict[str, Any]:
+    """Two brains in figures, and since when they differ in what."""
+    return {
+        "first": asdict(beside.first),
+        "second": asdict(beside.second),
+        "since_s": beside.since_s,
+        "error_odometry_m": beside.error_odometry_m,
+        "estimate": _pose(beside.estimate),
+        "differences": [asdict(difference) for difference in beside.differences],
+        "changed": [asdict(changed) for changed in beside.changed],
     }
 
 

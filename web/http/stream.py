@@ -4,11 +4,15 @@ Out: {"type": "hello", ...} once; {"type": "waking", "doing"} before the first t
 <contract>, "page": ...}; {"type": "events", ...}; {"type": "panel", ...}: what the open tabs of the side panel show,
 framed with arrays (web/panel); {"type": "answer", "id", ...} to every message that carried an id or went wrong;
 {"type": "notice", "text"}: why something done on this page's plates was refused. In: any command of `POST
-/api/commands` with an optional "id". Three messages concern this page alone: {"type": "view", "name"}, {"type":
-"theme", "name"} and {"type": "tabs", "names"}, the tabs of the side panel that are open, since only those are sent.
-{"type": "switch", "name", "on"} concerns all pages. Each browser has its own sender, and the newest state wins. A
-browser that takes nothing for five seconds is disconnected. A page that connects with `got=1` says {"type": "got"}
-after each state and gets no other before, so that a slow page never falls behind because of what lies in buffers.
+/api/commands` with an optional "id". Messages that concern this page alone: {"type": "view", "name"}, {"type": "follow",
+"on"}: its camera goes with the robot; {"type": "theme", "name"}; {"type": "tabs", "names"}: the open tabs of the panel, since
+only those are sent; {"type": "camera", "name", "at"}: where a camera had been turned from a view. {"type": "replay",
+"event"} plays the correction of a loop closure again, for all pages of its theme.
+{"type": "switch", "name", "on"} concerns all pages, and {"type": "present", "on"} those that only look on: they hear
+{"type": "presenting", "on"}, and may say what concerns themselves alone. Each browser has its own sender, and the newest
+state wins. A browser that takes nothing for five seconds is disconnected. A page that connects with `got=1` says
+{"type": "got"} after each state and gets no other before, so that a slow page never falls behind because of what lies in
+buffers.
 """
 
 from __future__ import annotations
@@ -18,6 +22,8 @@ import secrets
 import time
 from typing import Any
 
+import numpy as np
+from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from web.http.asking import Submit, told
@@ -25,11 +31,13 @@ from web.http.client import Client
 from web.http.commands import Declined, Malformed, check, read_object, wrong
 from web.http.proxy import VIEWS, Cameras, close_quietly, end_all
 from web.http.state import StateText, event_fields, to_json
+from web.http.watching import must_look
 from web.latest import Latest
-from web.messages import Command, Drive, Snapshot
+from web.messages import CameraAt, Command, Drive, Snapshot
 from web.panel.panel import TABS, Panel, PanelReader
 from web.switches import NAMES, Switches
 from web.themes import THEMES, Themes
+from web.viewer.camera_views import Camera
 
 PERIOD_S = 0.045  # at x1 the engine ticks ten times a second; the effect of a command is shown sooner
 MOST_CLIENTS = 32
@@ -69,10 +77,10 @@ class Stream:
             self._wake()
             await asyncio.sleep(PERIOD_S)
 
-    async def serve(self, socket: WebSocket, page: str, confirms: bool = False) -> None:
-        """Serve one page until it leaves."""
+    async def serve(self, socket: WebSocket, page: str, confirms: bool = False, watches: bool = False) -> None:
+        """Serve one page until it leaves. watches: it only looks on."""
         await socket.accept()
-        client = Client(socket, page, confirms, PanelReader(self._panel))
+        client = Client(socket, page, confirms, PanelReader(self._panel), watches)
         self._clients.add(client)
         client.news.set()
         tasks = {asyncio.create_task(self._tell(client)), asyncio.create_task(self._listen(client))}
@@ -81,6 +89,7 @@ class Stream:
         finally:
             self._clients.discard(client)
             self._stop_robot_of(client)
+            self._wake()  # it may have been the one that presents
             await end_all(tasks | client.tasks)
             await close_quietly(socket)
 
@@ -100,9 +109,13 @@ class Stream:
         await client.send(
             _text({"type": "hello", "launch": self._launch, "themes": THEMES, "views": VIEWS, "tabs": TABS})
         )
-        said, last = "", None
+        said, last, presented = "", None, None
         while True:
             await client.wait_for_news(client.reader.soon_s)
+            presenting = any(other.presents for other in self._clients)
+            if client.watches and presenting != presented:
+                presented = presenting
+                await client.send(_text({"type": "presenting", "on": presenting}))
             _, snapshot = self._latest.get()
             if snapshot is None:
                 if said != self._latest.waking:
@@ -157,8 +170,20 @@ class Stream:
             await self._confirm(client, identity)
             return
         client.limits.pass_on(kind if isinstance(kind, str) else "")
+        if client.watches:
+            must_look(kind)
         if kind == "view":
             client.background(self._cameras.show(client.page, _choice(document, VIEWS)))
+            await self._confirm(client, identity)
+        elif kind == "follow":
+            self._cameras.follow(client.page, _flag(document))
+            await self._confirm(client, identity)
+        elif kind == "replay":
+            self._cameras.replay(client.page, _event(document))
+            await self._confirm(client, identity)
+        elif kind == "camera":
+            view, camera = _turned(document)
+            client.background(self._cameras.turn(client.page, view, camera))
             await self._confirm(client, identity)
         elif kind == "theme":
             self._themes.choose(client.page, "light" if _choice(document, THEMES) == "light" else "dark")
@@ -166,6 +191,10 @@ class Stream:
         elif kind == "tabs":
             client.reader.tabs = _tabs(document)
             client.news.set()
+            await self._confirm(client, identity)
+        elif kind == "present":
+            client.presents = _flag(document)
+            self._wake()
             await self._confirm(client, identity)
         elif kind == "switch":
             self._turn(document)
@@ -215,6 +244,32 @@ def _choice(document: dict[str, Any], names: tuple[str, ...]) -> str:
             return name
     reason = f"{document['type']} takes name, one of: {', '.join(names)}"
     raise Malformed([wrong("name", document.get("name"), reason)])
+
+
+def _flag(document: dict[str, Any]) -> bool:
+    on = document.get("on")
+    if document != {"type": document["type"], "on": on} or not isinstance(on, bool):
+        raise Malformed([wrong("on", on, f"{document['type']} takes on, true or false")])
+    return on
+
+
+def _event(document: dict[str, Any]) -> int:
+    event = document.get("event")
+    if document != {"type": document["type"], "event": event} or type(event) is not int:
+        raise Malformed([wrong("event", event, f"{document['type']} takes event, the number of a loop closure")])
+    return event
+
+
+def _turned(document: dict[str, Any]) -> tuple[str, Camera]:
+    """The view, and where the camera had been turned from it."""
+    name = document.get("name")
+    try:
+        at = CameraAt.model_validate(document.get("at"))
+    except ValidationError as error:
+        raise Malformed([wrong("at", None, f"camera takes at: {error.errors()[0]['msg']}")]) from None
+    if name not in VIEWS:
+        raise Malformed([wrong("name", name, f"camera takes name, one of: {', '.join(VIEWS)}")])
+    return str(name), Camera(np.array(at.position), np.array(at.look_at), at.fov_rad)
 
 
 def _tabs(document: dict[str, Any]) -> frozenset[str]:

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema
+from pydantic import AfterValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-
-class _Command(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
-
+from web.messages.command import CommandModel
+from web.messages.lesson_orders import LessonOrder
+from web.messages.time_orders import TimeOrder
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 _Name = Annotated[str, Field(min_length=1, max_length=40)]
 
 
-class SetGoal(_Command):
+class SetGoal(CommandModel):
     """Go to this place of the map (metres, map frame): to the quickest of all experiences that stand for it."""
 
     type: Literal["set_goal"]
@@ -24,35 +23,35 @@ class SetGoal(_Command):
     y: Finite
 
 
-class CancelGoal(_Command):
+class CancelGoal(CommandModel):
     type: Literal["cancel_goal"]
 
 
-class Tag(_Command):
+class Tag(CommandModel):
     """Name the place where the robot believes itself to be, to send it there later. A name that is given again moves."""
 
     type: Literal["tag"]
     name: _Name
 
 
-class Untag(_Command):
+class Untag(CommandModel):
     type: Literal["untag"]
     name: _Name
 
 
-class GoToTag(_Command):
+class GoToTag(CommandModel):
     """Go to the place that was given this name."""
 
     type: Literal["go_to_tag"]
     name: _Name
 
 
-class SetMode(_Command):
+class SetMode(CommandModel):
     type: Literal["set_mode"]
     mode: Literal["explore", "manual", "goal"]
 
 
-class Drive(_Command):
+class Drive(CommandModel):
     """Drive by hand. m/s forwards, rad/s counter-clockwise. Stops 0.3 s after the last such command."""
 
     type: Literal["drive"]
@@ -60,7 +59,7 @@ class Drive(_Command):
     yaw_rate: Annotated[float, Field(ge=-1.6, le=1.6)]
 
 
-class Kidnap(_Command):
+class Kidnap(CommandModel):
     """Put the robot elsewhere (office frame) without telling it. Without a place, a random free one is taken."""
 
     type: Literal["kidnap"]
@@ -69,15 +68,15 @@ class Kidnap(_Command):
     heading_rad: Finite | None = None
 
 
-class Pause(_Command):
+class Pause(CommandModel):
     type: Literal["pause"]
 
 
-class Resume(_Command):
+class Resume(CommandModel):
     type: Literal["resume"]
 
 
-class Step(_Command):
+class Step(CommandModel):
     """Pause and advance by this many ticks of 0.1 s."""
 
     type: Literal["step"]
@@ -100,14 +99,14 @@ def _speed(factor: float) -> float:
     return factor
 
 
-class SetSpeed(_Command):
+class SetSpeed(CommandModel):
     """Simulated seconds per second; 0 = as fast as possible."""
 
     type: Literal["set_speed"]
     factor: Annotated[float, AfterValidator(_speed), WithJsonSchema(_SPEED_SCHEMA)]
 
 
-class Reset(_Command):
+class Reset(CommandModel):
     """Start anew. Fields that are left out keep their values."""
 
     type: Literal["reset"]
@@ -115,7 +114,7 @@ class Reset(_Command):
     seed: Annotated[int, Field(ge=0, le=2**32 - 1)] | None = None
 
 
-class SetParameter(_Command):
+class SetParameter(CommandModel):
     type: Literal["set_parameter"]
     name: Annotated[str, Field(max_length=64)]
     value: float | int | bool | Annotated[str, Field(max_length=64)]
@@ -124,7 +123,7 @@ class SetParameter(_Command):
 _Size = Annotated[float, Field(ge=0.05, le=20.0)]
 
 
-class SetDoor(_Command):
+class SetDoor(CommandModel):
     """Open or shut a door of the office. It moves from the next tick on, and waits for anyone who stands in it."""
 
     type: Literal["set_door"]
@@ -132,13 +131,13 @@ class SetDoor(_Command):
     open: bool
 
 
-class SetLamp(_Command):
+class SetLamp(CommandModel):
     type: Literal["set_lamp"]
     name: _Name
     on: bool
 
 
-class PutBox(_Command):
+class PutBox(CommandModel):
     """Put a box down (office frame, metres). Refused where it would cover the robot. A reset removes it."""
 
     type: Literal["put_box"]
@@ -151,26 +150,26 @@ class PutBox(_Command):
     angle_rad: Finite = 0.0
 
 
-class RemoveBox(_Command):
+class RemoveBox(CommandModel):
     type: Literal["remove_box"]
     name: _Name
 
 
-class UsePreset(_Command):
+class UsePreset(CommandModel):
     """Set the robot's sensors and encoders to a preset: "Pioneer 2DXE 2004" or "ideal"."""
 
     type: Literal["use_preset"]
     name: _Name
 
 
-class StepStage(_Command):
+class StepStage(CommandModel):
     """Pause and show the next stage of a tick, or the previous one. After the last stage the next tick begins."""
 
     type: Literal["step_stage"]
     back: bool = False
 
 
-class InjectPacket(_Command):
+class InjectPacket(CommandModel):
     """Add a packet of activity at a place in the pose cells (cells, radians), to watch it compete. No sensor supports it.
 
     share: of all activity afterwards.
@@ -183,7 +182,7 @@ class InjectPacket(_Command):
     share: Annotated[float, Field(ge=0.01, le=0.95)] = 0.45
 
 
-class Inspect(_Command):
+class Inspect(CommandModel):
     """Choose what everybody inspects: an experience, a view, the pose cells at x', y', or why an event happened. Without
     any of them: nothing.
 
@@ -201,7 +200,7 @@ class Inspect(_Command):
 _Label = Annotated[str, Field(max_length=64)]
 
 
-class WatchExperiment(_Command):
+class WatchExperiment(CommandModel):
     """Begin a trial of an experiment and watch it. What is left out is as the experiment's file says.
 
     levels: one label of each axis. trial: the id of a trial that was run, to be told if it would not be the same run today.
@@ -223,7 +222,7 @@ OfficeList = Literal[
 ]  # fmt: skip
 
 
-class EditStep(_Command):
+class EditStep(CommandModel):
     """One item in one list of the world file: added at the end, changed, or deleted. `item` is written as in that file.
 
     `daylight` counts as a list of at most one item.
@@ -235,7 +234,7 @@ class EditStep(_Command):
     item: dict[str, Any] | None = None  # the new item; a wall without a colour gets looks of its own
 
 
-class EditWorld(_Command):
+class EditWorld(CommandModel):
     """Change the office under the running robot: all steps or none. Refused when the world would not be valid, when the
     robot would be covered, or when the office is no longer the edition that the editor saw. Undone as one."""
 
@@ -244,75 +243,48 @@ class EditWorld(_Command):
     edition: int | None = None
 
 
-class UndoEdit(_Command):
+class UndoEdit(CommandModel):
     """Undo the last change of the office."""
 
     type: Literal["undo_edit"]
 
 
-class RedoEdit(_Command):
+class RedoEdit(CommandModel):
     """Redo the change that was undone last."""
 
     type: Literal["redo_edit"]
 
 
-_Moment = Annotated[float, Field(ge=0, le=1e9)]
+class CompareBrains(CommandModel):
+    """Give a second brain the same senses, and show both. It differs from the first in the parameters of a named pair, or in
+    `values`, and changes nothing in the first.
+
+    since: "beginning" begins the run anew with both, "now" goes on with a copy of the first.
+    """
+
+    type: Literal["compare_brains"]
+    pair: _Name | None = None
+    values: (
+        Annotated[
+            dict[Annotated[str, Field(max_length=64)], float | int | bool | Annotated[str, Field(max_length=64)]],
+            Field(min_length=1, max_length=200),
+        ]
+        | None
+    ) = None
+    name: _Name | None = None  # of the second
+    since: Literal["beginning", "now"] = "beginning"
 
 
-class Seek(_Command):
-    """Pause and show a moment of the run, by simulated time or by tick. From the last one on: the present. Changes nothing."""
+class EndComparison(CommandModel):
+    """Go on with the first brain alone. The last figures of both stay on the timeline."""
 
-    type: Literal["seek"]
-    time_s: _Moment | None = None
-    tick: Annotated[int, Field(ge=0, le=10**9)] | None = None
-
-
-class BackToNow(_Command):
-    """Show the present again, paused."""
-
-    type: Literal["back_to_now"]
-
-
-class GoOnFromHere(_Command):
-    """Make the moment of the past that is shown the present of another branch. The run as it was stays as its own branch."""
-
-    type: Literal["go_on_from_here"]
-
-
-class GoOnWithout(_Command):
-    """Go back to before what led to this event, and go on in another branch in which the brain has forgotten the views that
-    led to it."""
-
-    type: Literal["go_on_without"]
-    event: Annotated[int, Field(ge=1)]
-
-
-class ChangeBranch(_Command):
-    """Go on with another branch, from its end."""
-
-    type: Literal["change_branch"]
-    number: Annotated[int, Field(ge=1, le=1000)]
-
-
-class CompareBranch(_Command):
-    """Show another branch beside the live one, at the same time, and say where they differ first. Without a number: none."""
-
-    type: Literal["compare_branch"]
-    number: Annotated[int, Field(ge=1, le=1000)] | None = None
-
-
-class Loop(_Command):
-    """Play the past between two times (simulated seconds) again and again. Without them: no longer."""
-
-    type: Literal["loop"]
-    begin_s: _Moment | None = None
-    end_s: _Moment | None = None
+    type: Literal["end_comparison"]
 
 
 EditOrder = EditWorld | UndoEdit | RedoEdit
-TimeOrder = Seek | BackToNow | GoOnFromHere | GoOnWithout | ChangeBranch | CompareBranch | Loop
 TagOrder = Tag | Untag | GoToTag
 OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
+BrainOrder = CompareBrains | EndComparison
 LookOrder = Inspect | StepStage | InjectPacket
 Command = Annotated[
     SetGoal
@@ -330,7 +302,9 @@ Command = Annotated[
     | OfficeOrder
     | EditOrder
     | LookOrder
+    | BrainOrder
     | TimeOrder
+    | LessonOrder
     | WatchExperiment,
     Field(discriminator="type"),
 ]

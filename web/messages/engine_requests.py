@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from sim2d.world.world import World
 from web.messages.commands import Command
+from web.messages.situation import OpenSituation, ReadSituation
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +117,8 @@ EngineRequest = (
     | WorldDeleted
     | WorldRestored
     | PlayRecording
+    | ReadSituation
+    | OpenSituation
 )  # what no command can hold; it takes the same way
 
 

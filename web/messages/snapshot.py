@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from web.messages.beside import BesideView
 from web.messages.brain import (
     Belief,
     Goal,
@@ -27,9 +28,13 @@ from web.messages.brain import (
     TaggedPlace,
     TimesLayer,
 )
+from web.messages.judged import Closure, Ghost, KnownPlace, Spread
+from web.messages.lesson import LessonView, UntilView
 from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
+from web.messages.pairs import PairChoice
 from web.messages.recording import RecordingView
 from web.messages.reports import Report
+from web.messages.situation import SituationView
 from web.messages.tick import TickWalk, Timing
 from web.messages.time import TimeView
 from web.messages.trial import TrialView
@@ -37,7 +42,7 @@ from web.messages.trial import TrialView
 EventKind = Literal[
     "kidnap", "lost", "recovered", "snap", "goal", "arrived", "unreachable", "packet", "brain", "office", "parameter",
     "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed", "closure", "branch",
-    "recording",
+    "recording", "lesson",
 ]  # fmt: skip
 
 
@@ -131,6 +136,24 @@ class Snapshot:
     belief: Belief | None = None  # None: there is no experience map
     recording: RecordingView | None = None  # None: the simulator runs
     trial: TrialView | None = None  # None: no trial of an experiment was begun in this run
+    lesson: LessonView | None = None  # None: no lesson was begun in this run
+    until: UntilView | None = None  # None: nothing is or was waited for
     tags: tuple[TaggedPlace, ...] = ()  # in the order in which they were given
+    situation: SituationView | None = None  # None: the run is no situation that was opened
     time: TimeView | None = None  # None: nothing of this run can be gone back to
+    beside: BesideView | None = None  # None: one brain only
+    pairs: tuple[PairChoice, ...] = ()  # brains that could be compared with the first
     map_turn_rad: float = 0.0  # turns the map, for the eye only, so that it lies as the office does
+    map_in_office: Pose | None = (
+        None  # the map's frame by the fit after which `error_map_m` is measured; None without truth
+    )
+    ghost: Ghost | None = None  # None without truth
+    spread: Spread | None = None  # None without a map
+    closures: tuple[Closure, ...] = ()  # of late, oldest first
+    places: tuple[KnownPlace, ...] = ()  # of the office, by name
+
+    def sought(self, last: Snapshot | None) -> bool:
+        """Whether somebody asked for this moment of the past and waits for it. last: what was shown before."""
+        if last is None or self.time is None or last.time is None or self.running:
+            return False
+        return (self.time.past or last.time.past) and (self.run, self.tick) != (last.run, last.tick)

@@ -20,6 +20,15 @@ class BranchView:
     end_s: float
 
 
+@dataclass(frozen=True, slots=True)
+class Bookmark:
+    """A moment that somebody has named."""
+
+    tick: int
+    time_s: float
+    name: str
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Side:
     """One of two branches that are shown side by side, at one moment or at its end. Map frame, metres."""
@@ -49,4 +58,7 @@ class TimeView:
     branches: tuple[BranchView, ...]
     loop: tuple[float, float] | None  # simulated seconds, between which the past is played again and again
     sides: tuple[Side, ...] = ()  # the live branch and the one that it is compared with; empty: with none
+    bookmarks: tuple[Bookmark, ...] = ()  # of the live branch, by tick
     differs: str = ""  # in words, where these two differ first
+    doing: str = ""  # what the page waits for, in words; empty: nothing
+    done: float = 0.0  # the share of it that is done

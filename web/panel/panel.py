@@ -63,6 +63,7 @@ PARTS = (
     Part("Inspect", "inspected", 4, lambda s: (s.snapshot.inspected,), inspected),
     Part("Tick", "walk", 10, lambda s: (s.snapshot.walk,), walk),
     Part("Tick", "timings", 1, lambda s: (s.snapshot.timings, s.snapshot.parameters), timings),
+    Part("Truth", "switches", 10, lambda s: (s.on,), _switches),
     Part("Truth", "numbers", 2, lambda s: (s.snapshot,), numbers),
     Part("Truth", "series", 1, lambda s: (s.snapshot.series,), series),
     Part("Office", "office", 5, lambda s: _office(s.snapshot), office),
@@ -116,12 +117,17 @@ class PanelReader:
         self.tabs: Collection[str] = ()
         self._panel = panel
         self._told: dict[str, Made] = {}
+        self._last: Snapshot | None = None
         self._news: list[str | bytes] = []
         self._throttles = {part: Throttle(part.hz, self._teller(part)) for part in PARTS}
 
     def news(self, snapshot: Snapshot, now_s: float) -> list[str | bytes]:
         """The messages that are due: text, or bytes where there are arrays."""
         self._news, sight = [], self._panel.sight(snapshot)
+        if snapshot.sought(self._last):
+            for throttle in self._throttles.values():
+                throttle.hurry()
+        self._last = snapshot
         for part, throttle in self._throttles.items():
             if part.tab in self.tabs:
                 throttle.offer(now_s, *part.of(sight))

@@ -1,13 +1,20 @@
 // The page: puts the parts together and turns clicks and keys into commands. The server is the only truth.
 
 import { $, find } from "./elements/dom.js";
+import { BesideStrip } from "./beside/beside.js";
+import { FirstMinuteCard } from "./help/first_minute.js";
 import { HandDrive } from "./driving/drive.js";
+import { Aids } from "./viewer/aids.js";
 import { Editor } from "./editor/editor.js";
 import { Exports } from "./export/export.js";
 import { Files } from "./worlds/files.js";
 import { Gallery } from "./experiments/gallery.js";
+import { takeBrainFiles } from "./worlds/brain_file.js";
+import { Help } from "./help/help.js";
 import { Header } from "./header/header.js";
-import { setIcon } from "./elements/icons.js";
+import { actOf } from "./model/key_table.js";
+import { Lesson } from "./lessons/lesson.js";
+import { LessonList } from "./lessons/list.js";
 import { KeptBrain } from "./worlds/kept_brain.js";
 import { Keys } from "./driving/keys.js";
 import { Connection } from "./net/connection.js";
@@ -15,21 +22,30 @@ import { closeOpenMenu } from "./header/menus.js";
 import { sentence } from "./model/sentences.js";
 import { NewWorld } from "./worlds/new_world.js";
 import { OwnWorlds } from "./worlds/own_worlds.js";
-import { THEMES, VIEWS } from "./shared.js";
+import { VIEWS } from "./shared.js";
+import { PlaceList } from "./access/place_list.js";
+import { Keeping } from "./share/keeping.js";
 import { Panel } from "./panel/panel.js";
+import { Speaker } from "./access/speaker.js";
+import { RunUntilMenu } from "./lessons/run_until.js";
+import { Presenter } from "./presenter/presenter.js";
 import { Source } from "./recordings/source.js";
 import { Viewer } from "./viewer/viewer.js";
+import { Theming } from "./header/theming.js";
+import { showPicture } from "./viewer/waking.js";
 import { Timeline } from "./timeline/timeline.js";
 import { dismissToast, toast } from "./elements/toasts.js";
 import { Watched } from "./experiments/watched.js";
+import { page, takeNoFiles, watching } from "./watch/watch.js";
+import { KEYS } from "./model/watching.js";
 
-const page = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 const link = new Connection(page);
 const header = new Header();
 const timeline = new Timeline(link);
 const drive = new HandDrive((command) => source.lacks === null && link.tell(command));
 const keys = new Keys({ drive: (name, down) => drive.key(name, down), act, allUp: () => drive.allUp() });
 const viewer = new Viewer(link, keys);
+const aids = new Aids(link, viewer, (wish, done) => command(wish, done));
 const panel = new Panel($("panel"), link, (text) => toast(text, { bad: true }));
 const source = new Source(panel);
 /** @type {State | null} */
@@ -46,15 +62,30 @@ const own = new OwnWorlds(
 const files = new Files(isSaved, own);
 const fresh = new NewWorld(isSaved, () => editor.toggle(true));
 const editor = new Editor(link, { open: () => files.open(), begin: () => fresh.ask() });
-const exports = new Exports();
+const exports = new Exports(() => timeline.time?.loop ?? null);
+const theme = new Theming(link);
+const help = new Help();
+const first = new FirstMinuteCard(link);
+const speaker = new Speaker();
+const presenter = new Presenter(viewer, panel, link);
+const places = new PlaceList(command, () => panel.open("Inspect"));
 const kept = new KeptBrain(async (world) => world === state?.world || mayLeave());
 const gallery = new Gallery(link, mayLeave);
+const lessons = new LessonList(link, mayLeave);
+const lesson = new Lesson(link, lessons, { viewer, panel, timeline });
+const runUntil = new RunUntilMenu(command);
+const beside = new BesideStrip(command);
 const watched = new Watched({
   here: () => command({ type: "resume" }),
   again: (wish) => command(wish),
   more: () => gallery.open(),
 });
-viewer.addEventListener("inside", () => viewer.frame.contentWindow && files.catchDrops(viewer.frame.contentWindow));
+if (!watching) takeBrainFiles();
+const keeping = new Keeping(link, { viewer, panel, files, timeline, mayLeave });
+viewer.addEventListener("inside", () => {
+  const inside = viewer.frame.contentWindow;
+  if (inside) watching ? takeNoFiles(inside) : files.catchDrops(inside);
+});
 
 // ---------------------------------------------------------------- what arrives
 
@@ -64,12 +95,18 @@ link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   source.show(detail.page.recording);
   header.show(state, detail.page);
   watched.show(state, detail.page);
+  aids.show(detail.page);
   panel.inspected(detail.page.inspected);
   timeline.at(state, detail.page.time);
+  lesson.at(state);
+  runUntil.at(state, detail.page.places);
+  beside.show(state.beside, detail.page.pairs);
+  first.at(state, detail.page);
   office = detail.page.office;
   if (source.lacks && editor.open) editor.toggle(false);
   editor.at(state, detail.page);
-  kept.ask();
+  keeping.show(state, detail.page);
+  if (!watching) kept.ask();
   document.body.dataset.alive = "true";
 });
 link.on("waking", (/** @type {{ doing: string }} */ { doing }) => {
@@ -78,6 +115,10 @@ link.on("waking", (/** @type {{ doing: string }} */ { doing }) => {
 });
 link.on("events", (/** @type {{ fresh: boolean, events: TimelineEvent[] }} */ detail) => {
   timeline.add(detail);
+  if (!detail.fresh) {
+    speaker.hear(detail.events);
+    first.hear(detail.events);
+  }
   const told = detail.fresh ? ["warning"] : ["warning", "unreachable"];
   for (const event of detail.events.slice(-20))
     if (told.includes(event.kind)) toast(sentence(event.text), { bad: true });
@@ -95,7 +136,7 @@ link.addEventListener("lost", () => {
   lostToast ??= toast("Connection lost. Trying again.", { bad: true, stays: true });
 });
 link.addEventListener("hello", () => {
-  link.tell({ type: "theme", name: theme() });
+  link.tell({ type: "theme", name: theme.name });
   if (!lostToast) return;
   lostToast.remove();
   lostToast = null;
@@ -122,19 +163,6 @@ const restart = (/** @type {number} */ seed) => {
   command({ type: "reset", seed }, `Started anew with seed ${seed}.`);
 };
 
-/** Uploads a saved brain as it is; the server says in a sentence what is wrong with it. @param {File} file */
-async function loadBrain(file) {
-  const headers = { "Content-Type": "application/octet-stream" };
-  try {
-    const answer = await fetch("/api/brain", { method: "POST", headers, body: file });
-    const told = await answer.json();
-    if (answer.ok) toast(`Started anew with the brain of ${file.name}.`);
-    else for (const wrong of told.detail) toast(sentence(wrong.reason), { bad: true });
-  } catch {
-    toast(`${file.name} could not be sent.`, { bad: true });
-  }
-}
-
 on("play", playOrPause);
 on("step", oneTick);
 on("stage-step", () => oneStage());
@@ -145,23 +173,16 @@ on("explore", explore);
 on("kidnap", kidnap);
 on("kidnap-phone", kidnap);
 on("cancel", cancelGoal);
-on("theme", toggleTheme);
-on("help", toggleHelp);
+on("theme", () => theme.toggle());
+on("help", () => help.toggle());
+on("places", () => places.open());
+on("present", () => presenter.turn(!presenter.on));
+on("lessons", () => lessons.open());
 on("experiments", () => gallery.open());
-on("help-close", toggleHelp);
 on("restart-same", () => state && restart(state.seed));
 on("restart-new", () => restart(crypto.getRandomValues(new Uint16Array(1))[0] % 10000));
 on("brain-save", () => {
   $("restart").open = false;
-});
-on("brain-load", () => {
-  $("restart").open = false;
-  $("brain-file").click();
-});
-$("brain-file").addEventListener("change", () => {
-  const input = $("brain-file");
-  if (input.files?.length) loadBrain(input.files[0]);
-  input.value = ""; // so that the same file can be chosen again
 });
 on("export", () => {
   $("restart").open = false;
@@ -203,37 +224,54 @@ async function mayLeave() {
     dialog.addEventListener("close", () => resolve(dialog.returnValue === "leave"), { once: true }),
   );
 }
-$("help-dialog").addEventListener("click", ({ target }) => target === $("help-dialog") && toggleHelp());
-
-/** What the keys do. @type {Record<string, () => unknown>} */
-const KEYS = {
-  " ": playOrPause,
-  ".": oneTick,
-  b: () => timeline.tools.tick(-1),
-  j: () => timeline.tools.tick(-10),
-  l: () => timeline.tools.tick(10),
-  "[": () => timeline.tools.event(-1),
-  "]": () => timeline.tools.event(1),
-  n: () => timeline.tools.now(),
-  v: () => timeline.list.toggle(),
-  ",": () => oneStage(),
-  e: explore,
-  k: kidnap,
-  t: toggleTheme,
-  p: () => panel.show(!panel.shown),
-  o: () => (source.lacks ? toast(source.lacks, { bad: true }) : editor.toggle()),
-  g: () => gallery.open(),
-  "?": toggleHelp,
+/** What the keys of key_table.js do; false: it had no meaning now. @type {Record<import("./model/key_table.js").Act, () => unknown>} */
+const ACTS = {
+  explore,
+  kidnap,
+  places: () => places.open(),
+  cancel: () => (state?.goal ? cancelGoal() : false),
+  play: playOrPause,
+  tick: () => (presenter.on ? false : oneTick()), // a clicker's keys for a black screen
+  stage: () => oneStage(),
+  tickBack: () => (presenter.on ? false : timeline.tools.tick(-1)),
+  secondBack: () => timeline.tools.tick(-10),
+  secondOn: () => timeline.tools.tick(10),
+  eventBack: () => timeline.tools.event(-1),
+  eventOn: () => timeline.tools.event(1),
+  now: () => timeline.tools.now(),
+  events: () => timeline.list.toggle(),
+  goOn: () => ($("go-on").hidden ? false : $("go-on").click()),
+  view1: () => viewer.show(VIEWS[0]),
+  view2: () => viewer.show(VIEWS[1]),
+  view3: () => viewer.show(VIEWS[2]),
+  view4: () => viewer.show(VIEWS[3]),
+  panel: () => panel.show(!panel.shown),
+  theme: () => theme.toggle(),
+  present: () => presenter.turn(!presenter.on),
+  spotlight: () => (presenter.on ? presenter.light(!presenter.lit) : false),
+  next: () => presenter.go(1),
+  back: () => presenter.go(-1),
+  lessons: () => lessons.open(),
+  gallery: () => gallery.open(),
+  edit: () => (source.lacks ? toast(source.lacks, { bad: true }) : editor.toggle()),
+  help: () => help.toggle(),
+  escape: () =>
+    closeOpenMenu() || timeline.list.close() || runUntil.close() || dismissToast() || (presenter.on && endPresenting()),
+  bookmark: () => timeline.bookmarks.put(),
+  follow: () => aids.follow(!aids.following),
+  vision: () => aids.see(!aids.seeing),
+  replay: () => aids.replay(),
 };
 
-/** True when the key had a meaning. @param {string} name */
-function act(name) {
-  const view = VIEWS[Number(name) - 1];
-  if (view) viewer.show(view);
-  else if (name === "x" && state?.goal) cancelGoal();
-  else if (Object.hasOwn(KEYS, name)) KEYS[name]();
-  else return name === "Escape" && (closeOpenMenu() || timeline.list.close() || dismissToast());
+function endPresenting() {
+  presenter.turn(false);
   return true;
+}
+
+/** True when the key had a meaning. @param {string} key */
+function act(key) {
+  const name = actOf(key);
+  return name !== undefined && (!watching || KEYS.has(name)) && ACTS[name]() !== false;
 }
 
 /** @param {keyof IndexIds} id @param {() => void} action */
@@ -244,45 +282,4 @@ function on(id, action) {
   });
 }
 
-// ---------------------------------------------------------------- looks
-
-/** @returns {Theme} */
-function theme() {
-  return document.documentElement.dataset.theme === "light" ? "light" : "dark";
-}
-
-/** The theme chosen earlier in this browser, else the system's. @returns {Theme} */
-function firstTheme() {
-  const preferred = window.matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
-  try {
-    const kept = localStorage.getItem("theme");
-    return THEMES.find((name) => name === kept) ?? preferred;
-  } catch {
-    return preferred; // this browser stores nothing
-  }
-}
-
-/** The viewer follows: the server shows this page the viewer of its theme. @param {Theme} name */
-function showTheme(name) {
-  document.documentElement.dataset.theme = name;
-  setIcon($("theme"), name === "dark" ? "sun" : "moon");
-  $("theme").setAttribute("aria-label", name === "dark" ? "Light colours" : "Dark colours");
-  link.tell({ type: "theme", name });
-}
-
-function toggleTheme() {
-  const other = theme() === "dark" ? "light" : "dark";
-  showTheme(other);
-  try {
-    localStorage.setItem("theme", other);
-  } catch {
-    // The choice is forgotten with the page.
-  }
-}
-
-function toggleHelp() {
-  if ($("help-dialog").open) $("help-dialog").close();
-  else $("help-dialog").showModal();
-}
-
-showTheme(firstTheme());
+showPicture(viewer.view, theme.name);

@@ -2,7 +2,8 @@
 export const VIEWS = /** @type {const} */ (["all", "office", "pose", "map"]);
 export const TABS = /** @type {const} */ (["Senses", "Memory", "Inspect", "Tick", "Truth", "Office", "Tune"]);
 export const THEMES = /** @type {const} */ (["dark", "light"]);
-export const EVENT_KINDS = /** @type {const} */ (["kidnap", "lost", "recovered", "snap", "goal", "arrived", "unreachable", "packet", "brain", "office", "parameter", "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed", "closure", "branch", "recording"]);
+export const LOOKS = /** @type {const} */ (["got", "view", "follow", "camera", "theme", "tabs"]);
+export const EVENT_KINDS = /** @type {const} */ (["kidnap", "lost", "recovered", "snap", "goal", "arrived", "unreachable", "packet", "brain", "office", "parameter", "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed", "closure", "branch", "recording", "lesson"]);
 export const GOAL_STATES = /** @type {const} */ (["tracking", "coasting", "exploring", "arrived", "unreachable"]);
 export const OFFICE_LISTS = /** @type {const} */ (["walls", "starts", "places", "doors", "lamps", "boxes", "people", "slow_zones", "script", "daylight"]);
 export const SCRIPT_ACTIONS = /** @type {const} */ (["open_door", "close_door", "lamp_on", "lamp_off", "box_appear", "box_vanish", "people_on", "people_off", "daylight"]);

@@ -62,6 +62,72 @@ type State = {
   goal: Goal | null;
   living: Living | null;
   trial: Trial | null;
+  lesson: LessonView | null;
+  until: UntilView | null;
+  beside: BesideFields | null;
+};
+type LessonMark = {
+  plate: "office" | "map" | "cells";
+  x: number;
+  y: number;
+  heading_rad: number | null;
+  words: string;
+  tick: number;
+  start?: [number, number, number] | null; // among the pose cells
+};
+type LessonView = {
+  name: string;
+  title: string;
+  state: "scene" | "predict" | "showing" | "compared" | "sandbox";
+  doing: string;
+  progress: number | null;
+  round: number;
+  rounds: number;
+  label: string;
+  seed: number;
+  prediction: { choice: number | null; x: number | null; y: number | null } | null;
+  votes: { counts: number[]; points: Point[] };
+  outcome: {
+    words: string;
+    because: string;
+    right: boolean | null;
+    choice: number | null;
+    x: number | null;
+    y: number | null;
+    distance_m: number | null;
+  } | null;
+  marks: LessonMark[];
+  altered: boolean;
+  draws: "office" | "map" | null;
+};
+type UntilView = { what: string; words: string; state: "running" | "met" | "too late" | "broken off"; progress: number };
+type LessonCard = {
+  name: string;
+  number: number;
+  title: string;
+  idea: string;
+  paper: string;
+  minutes: number;
+  rounds: number;
+  own: boolean;
+  wrong: string | null;
+};
+type SymbolText = { mathml: string; means: string; parameter: string | null; value: string | null };
+type FormulaText = { mathml: string; latex: string; says: string; source: string; symbols: SymbolText[] };
+type LessonText = {
+  card: LessonCard;
+  text: string;
+  formulas: FormulaText[];
+  world: string;
+  engine: string;
+  seed: number;
+  view: ViewName;
+  tab: string;
+  labels: string[];
+  predict: { question: string; options: string[]; draw: "the robot" | "the belief" | null; plate: "office" | "map" };
+  watch: { at: string; words: string }[];
+  explains: boolean;
+  sandbox: { words: string; button: string | null; commands: Command[] }[];
 };
 type TrialState = "running" | "over" | "ended";
 type Trial = {
@@ -90,12 +156,62 @@ type PageFields = {
   real_time_factor: number;
   title: string;
   worlds: [string, string][];
+  places: [string, number, number][];
   recording: RecordingFields | null;
   office: OfficeFields | null;
   inspected: string | null;
   walk: Walk | null;
   moving: Moving | null;
   time: TimeFields | null;
+  vision: boolean;
+  closure: { event: number; time_s: number; moved_m: number } | null;
+  situation: SituationFields | null;
+  pairs: PairChoice[];
+};
+type PairChoice = { name: string; title: string; about: string; since: "beginning" | "now" };
+type BrainFields = {
+  name: string;
+  views: number;
+  experiences: number;
+  links: number;
+  relocalisations: number;
+  error_map_m: number | null;
+  off_m: number | null;
+  lost: boolean;
+};
+type DifferenceFields = { kind: "packet" | "view" | "experience" | "link"; tick: number; time_s: number; words: string };
+type Value = number | boolean | string;
+type ChangedField = { name: string; first: Value; second: Value };
+type BesideFields = {
+  first: BrainFields;
+  second: BrainFields;
+  since_s: number;
+  error_odometry_m: number | null;
+  estimate: { x: number; y: number; heading_rad: number };
+  differences: DifferenceFields[];
+  changed: ChangedField[];
+};
+type CameraAt = { position: number[]; look_at: number[]; fov_rad: number };
+type Look = { plate: ViewName; tab: string | null; camera: CameraAt | null };
+type SituationFields = {
+  state: "playing" | "same" | "other" | "stopped";
+  tick: number;
+  end_tick: number;
+  words: string;
+  state_hash: string;
+  look: Look;
+};
+// What the server makes of the moment that is shown. `link`: null where `why` says that it fits into none.
+type Moment = {
+  link: string | null;
+  why: string;
+  name: string;
+  file: string;
+  python: string;
+  tick: number;
+  time_s: number;
+  state_hash: string;
+  orders: number;
 };
 type BranchFields = { number: number; parent: number | null; from_s: number; end_s: number };
 type TimeFields = {
@@ -108,11 +224,15 @@ type TimeFields = {
   loop: [number, number] | null;
   sides: SideFields[];
   differs: string;
+  doing: string;
+  done: number;
+  bookmarks: Bookmark[];
 };
+type Bookmark = { tick: number; time_s: number; name: string };
 type SideFields = {
   number: number;
   time_s: number;
-  error_m: { map: number; odometry: number };
+  error_m: { map: number | null; odometry: number | null }; // of a recording without truth: null
   views: number;
   experiences: number;
   links: number;
@@ -166,6 +286,10 @@ type WorldTitles = { yours: Record<string, string>; ours: Record<string, string>
 type PageMessage =
   | { type: "got" }
   | { type: "view"; name: ViewName }
+  | { type: "follow"; on: boolean }
+  | { type: "replay"; event: number }
+  | { type: "camera"; name: ViewName; at: CameraAt }
   | { type: "theme"; name: Theme }
   | { type: "tabs"; names: string[] }
+  | { type: "present"; on: boolean } // for those who look on
   | { type: "switch"; name: string; on: boolean }; // for all who look

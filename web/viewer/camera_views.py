@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -16,18 +17,6 @@ FLIGHT_S = 0.7
 PHONE_ASPECT = 0.85  # width over height below which a screen counts as a phone's
 
 
-@dataclass(frozen=True)
-class Framing:
-    """A box of half width and half height around a point, seen from an elevation and an azimuth."""
-
-    look_at: tuple[float, float, float]
-    half_width: float
-    half_height: float
-    elevation_deg: float
-    azimuth_deg: float
-    fov_deg: float
-
-
 @dataclass(frozen=True, eq=False)
 class Camera:
     position: NDArray[np.float64]
@@ -35,39 +24,113 @@ class Camera:
     fov_rad: float
 
 
-_WIDE = {
-    "all": Framing((0.0, 1.95, 0.0), 14.4, 10.3, 48, 0, 29),
-    "office": Framing((-5.85, -2.75, 0.0), 6.8, 5.0, 50, 0, 30),
-    "pose": Framing((0.1, 7.7, 1.6), 6.2, 5.9, 42, -22, 30),
-    "map": Framing((5.85, -2.45, 0.2), 6.8, 5.1, 54, 0, 30),
+Points = NDArray[np.float64]  # (n, 3)
+OFFICE_AT, MAP_AT, CELLS_AT = (-5.85, -2.2), (5.85, -2.2), (0.0, 8.5)  # x, y of the plates
+# Of two brains each has its pose cells behind and its map in front, and the office they share stands between.
+OFFICE_OF_TWO, MAPS_OF_TWO, CELLS_OF_TWO = (0.0, 8.5), ((-5.85, -2.2), (5.85, -2.2)), ((-10.4, 8.5), (10.4, 8.5))
+CELLS_OF_TWO_ALONE = ((-5.85, 8.5), (5.85, 8.5))  # without an office
+
+
+def _block(at: tuple[float, float], size: tuple[float, float, float], y: float = 0.0) -> Points:
+    """(8, 3) corners of a block of this width, depth and height, `y` beyond a plate's place."""
+    width, depth, height = size
+    corners = [(a * width / 2, y + b * depth / 2, z) for a in (-1, 1) for b in (-1, 1) for z in (0.0, height)]
+    return np.array(corners) + np.array((*at, 0.0))
+
+
+_OFFICE, _MAP = (_block(at, (11.0, 10.0, 0.0), -0.5) for at in (OFFICE_AT, MAP_AT))
+_CELLS = np.vstack([_block(CELLS_AT, (9.4, 9.9, 0.0), -0.75), _block(CELLS_AT, (7.0, 7.0, 4.6))])
+
+
+@dataclass(frozen=True)
+class _Look:
+    """Between which elevations a view may be seen, in a window that is wide and in one that is tall, and from which azimuth."""
+
+    wide_deg: tuple[float, float]
+    tall_deg: tuple[float, float]
+    azimuth_deg: tuple[float, float]
+    fov_deg: float
+    free: tuple[float, float]  # shares of the canvas that are left: above for the buttons, below for what the page says
+
+
+_BESIDE = 0.015  # share of the canvas that is left free around
+_LOOKS: dict[View, _Look] = {
+    "all": _Look((42, 54), (50, 72), (0, 0), 29, (0.06, 0.082)),
+    "office": _Look((46, 58), (56, 74), (0, 0), 30, (0.11, _BESIDE)),
+    "pose": _Look((38, 46), (42, 50), (-22, -10), 30, (0.09, _BESIDE)),
+    "map": _Look((46, 58), (56, 74), (0, 0), 30, (0.11, _BESIDE)),
 }
-_TALL = {
-    "all": Framing((0.0, 1.95, 0.6), 12.4, 10.3, 52, 0, 29),
-    "office": Framing((-5.85, -2.6, 0.2), 6.1, 5.2, 58, 0, 30),
-    "pose": Framing((0.1, 7.7, 1.9), 5.6, 5.9, 46, -10, 30),
-    "map": Framing((5.85, -2.4, 0.2), 6.1, 5.2, 60, 0, 30),
-}
+_STEP_DEG = 2.0
+_TALL_ROOM = (0.2, _BESIDE)  # in a tall window: there are two rows of buttons
+_ROOM = (0.09, 0.125)  # with two brains: above for the buttons, below for the figures
 
 
-ALONE_HALF_WIDTH = (
-    6.9  # of all plates when there is no office: the map then stands in the middle, before the pose cells
-)
+@lru_cache(maxsize=256)
+def camera_for(view: View, aspect: float, office: bool = True, two: bool = False) -> Camera:
+    """aspect: width over height of the visible canvas. office: whether there is one, else the others have its room. two:
+    whether two brains stand beside one another.
+
+    The plates are as large as the window allows: of the elevations in question, it takes the one with the nearest camera."""
+    tall, look = aspect < PHONE_ASPECT, _LOOKS[view if office or view != "office" else "all"]
+    low, high = look.tall_deg if tall else look.wide_deg
+    room = _ROOM if two else _TALL_ROOM if tall else look.free
+    points, azimuth_deg = (
+        _seen_of_two(view, office) if two else _seen(view, office),
+        0 if two else look.azimuth_deg[tall],
+    )
+    found = [
+        _fitted(points, elevation, azimuth_deg, look.fov_deg, max(aspect, 0.1), room)
+        for elevation in np.arange(low, high + 1e-9, _STEP_DEG).tolist()
+    ]
+    return min(found, key=lambda camera: float(np.linalg.norm(camera.position - camera.look_at)))
 
 
-def camera_for(view: View, aspect: float, office: bool = True) -> Camera:
-    """aspect: width over height of the visible canvas. office: whether there is one, else the others have its room."""
-    framings = _TALL if aspect < PHONE_ASPECT else _WIDE
-    framing = framings[view]
-    if not office and view in ("all", "office"):
-        framing = replace(framings["all"], half_width=ALONE_HALF_WIDTH)
-    elif not office and view == "map":
-        framing = replace(framing, look_at=(0.0, *framing.look_at[1:]))
-    fov, up, turn = (math.radians(d) for d in (framing.fov_deg, framing.elevation_deg, framing.azimuth_deg))
-    half = math.tan(fov / 2)
-    distance = max(framing.half_width / (half * max(aspect, 0.1)), framing.half_height / half)
-    direction = np.array([math.sin(turn) * math.cos(up), -math.cos(turn) * math.cos(up), math.sin(up)])
-    look_at = np.array(framing.look_at)
-    return Camera(look_at + distance * direction, look_at, fov)
+def _seen(view: View, office: bool) -> Points:
+    """What a view shows."""
+    alone = _MAP - (MAP_AT[0], 0.0, 0.0)  # without an office the map stands in the middle
+    if view == "pose":
+        return _CELLS
+    if view == "map":
+        return _MAP if office else alone
+    if view == "office" and office:
+        return _OFFICE
+    return np.vstack([_OFFICE, _MAP, _CELLS]) if office else np.vstack([alone, _CELLS])
+
+
+def _seen_of_two(view: View, office: bool) -> Points:
+    """The same of two brains."""
+    cells = np.vstack(
+        [_CELLS - (*CELLS_AT, 0.0) + (*at, 0.0) for at in (CELLS_OF_TWO if office else CELLS_OF_TWO_ALONE)]
+    )
+    maps = np.vstack([_MAP - (*MAP_AT, 0.0) + (*at, 0.0) for at in MAPS_OF_TWO])
+    between = _OFFICE - (*OFFICE_AT, 0.0) + (*OFFICE_OF_TWO, 0.0)
+    if view in ("pose", "map"):
+        return cells if view == "pose" else maps
+    if view == "office" and office:
+        return between
+    return np.vstack([cells, maps, between]) if office else np.vstack([cells, maps])
+
+
+def _fitted(
+    points: Points, elevation_deg: float, azimuth_deg: float, fov_deg: float, aspect: float, free: tuple[float, float]
+) -> Camera:
+    """The nearest camera that looks from there and sees all of (n, 3) points. free: shares of the canvas left above and
+    below."""
+    up_rad, turn = math.radians(elevation_deg), math.radians(azimuth_deg)
+    back = np.array([math.sin(turn) * math.cos(up_rad), -math.cos(turn) * math.cos(up_rad), math.sin(up_rad)])
+    right = np.array([math.cos(turn), math.sin(turn), 0.0])
+    up = np.cross(back, right)
+    across, aloft, near = points @ right, points @ up, points @ back
+    half = math.tan(math.radians(fov_deg) / 2)
+    beside, top, bottom = half * aspect * (1 - 2 * _BESIDE), half * (1 - 2 * free[0]), half * (1 - 2 * free[1])
+    # a point is seen if  across - x <= beside (distance - near),  and so on for the other three sides
+    most_x, least_x = (across + beside * near).max(), (across - beside * near).min()
+    most_y, least_y = (aloft + top * near).max(), (aloft - bottom * near).min()
+    distance = max((most_x - least_x) / (2 * beside), (most_y - least_y) / (top + bottom))
+    x = (most_x + least_x) / 2
+    y = (bottom * most_y + top * least_y) / (top + bottom)
+    middle = right * x + up * y
+    return Camera(middle + back * distance, middle, math.radians(fov_deg))
 
 
 def seen_by(camera: Camera, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

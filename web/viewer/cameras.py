@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from typing import cast
 
@@ -11,7 +12,9 @@ import viser
 from numpy.typing import ArrayLike
 
 from web.viewer.camera_views import FAR, NEAR, PHONE_ASPECT, Camera, Flight, View, camera_for
+from web.viewer.following import Follower, Point, follow_camera
 
+Robots = dict[str, tuple[Point, float]]  # by plate: where the robot stands in the scene, and plate units a metre
 SCREEN_ASPECT = 1.5
 RESHAPED = 0.01  # a larger change of aspect needs another framing
 TURNED = 0.02  # a camera farther from its view than this has been turned by hand
@@ -31,14 +34,15 @@ class Cameras:
         self._views: dict[int, View] = {}
         self._ends: dict[int, Camera] = {}  # where the last flight of each camera ended or will end
         self._flights: dict[int, Flight] = {}
-        self._office = True  # whether there is one to be seen
+        self._followers: dict[int, Follower] = {}
+        self._office, self._two = True, False  # whether there is one to be seen; whether there are two brains
         camera, initial = camera_for("all", SCREEN_ASPECT), server.initial_camera
         initial.position, initial.look_at, initial.fov = camera.position, camera.look_at, camera.fov_rad
         initial.near, initial.far = NEAR, FAR
 
     @property
     def flying(self) -> bool:
-        return bool(self._flights)
+        return bool(self._flights or self._followers)
 
     def welcome(self, client: viser.ClientHandle) -> None:
         """A new browser: a phone begins on the map, a screen with all three plates.
@@ -51,6 +55,7 @@ class Cameras:
 
         async def moved(camera: viser.CameraHandle) -> None:
             nonlocal aspect
+            self._heard(client.client_id, camera)
             if abs(aspect_of(camera) / aspect - 1) > RESHAPED:
                 aspect = aspect_of(camera)
                 self._post(lambda: self.reframe(client.client_id))
@@ -63,15 +68,16 @@ class Cameras:
         self._views.pop(client_id, None)
         self._ends.pop(client_id, None)
         self._flights.pop(client_id, None)
+        self._followers.pop(client_id, None)
 
     def reframe(self, client_id: int) -> None:
-        if client_id in self._views:
+        if client_id in self._views and client_id not in self._followers:
             self.take_off(client_id, self._views[client_id])
 
-    def give_room(self, *, office: bool) -> None:
-        """Frames every view anew when an office has come or gone."""
-        if office != self._office:
-            self._office = office
+    def give_room(self, *, office: bool, two: bool = False) -> None:
+        """Frames every view anew when an office or a second brain has come or gone."""
+        if (office, two) != (self._office, self._two):
+            self._office, self._two = office, two
             for client_id in list(self._views):
                 self.reframe(client_id)
 
@@ -80,7 +86,7 @@ class Cameras:
         client, view = self._server.get_clients().get(client_id), self._views.get(client_id)
         if client is None or view is None or client_id in self._flights:
             return None
-        camera, end = _standing(client.camera), camera_for(view, aspect_of(client.camera), self._office)
+        camera, end = _standing(client.camera), self._framed(view, client.camera)
         return None if _near(camera, end.position, end.look_at) else camera
 
     def take_off(
@@ -90,16 +96,55 @@ class Cameras:
         for client in self._server.get_clients().values():
             if client_id in (None, client.client_id):
                 camera, wanted = client.camera, cast(View, view)
+                self._followers.pop(client.client_id, None)
                 self._views[client.client_id] = wanted
-                end = turned or camera_for(wanted, aspect_of(camera), self._office)
+                end = turned or self._framed(wanted, camera)
                 self._ends[client.client_id] = end
                 start = end if now_s is None else _standing(camera)
                 self._flights[client.client_id] = Flight(start, end, -math.inf if now_s is None else now_s)
 
+    def _framed(self, view: View, camera: viser.CameraHandle) -> Camera:
+        return camera_for(view, aspect_of(camera), self._office, self._two)
+
+    def follow(self, client_id: int, robots: Robots, now_s: float) -> None:
+        """From now on this browser's camera goes with the robot, on the map if it looks at the map, else in the office. With no
+        robot it stays where it is."""
+        self._followers.pop(client_id, None)
+        client = self._server.get_clients().get(client_id)
+        plate = "map" if self._views.get(client_id) == "map" or "office" not in robots else "office"
+        if client is None or plate not in robots:
+            return
+        at, scale = robots[plate]
+        end = follow_camera(at, scale, aspect_of(client.camera))
+        self._flights[client_id] = Flight(_standing(client.camera), end, now_s)
+        self._ends[client_id] = end
+        self._followers[client_id] = Follower(plate, at, end.position - at, end.fov_rad, now_s)
+
+    def track(self, robots: Robots, now_s: float) -> None:
+        """Moves every camera that follows and is not in flight."""
+        clients = self._server.get_clients()
+        for client_id, follower in list(self._followers.items()):
+            if client_id in self._flights or client_id not in clients or follower.plate not in robots:
+                continue
+            camera = follower.step(robots[follower.plate][0], now_s)
+            if camera is not None:
+                _point(clients[client_id], camera)
+
+    def _heard(self, client_id: int, camera: viser.CameraHandle) -> None:
+        """From viser's thread."""
+        position, look_at = camera.position.copy(), camera.look_at.copy()
+
+        def heard() -> None:
+            if client_id in self._followers and client_id not in self._flights:
+                self._followers[client_id].heard(position, look_at, time.monotonic())
+
+        if client_id in self._followers:
+            self._post(heard)
+
     def _set_back(self, client_id: int, camera: viser.CameraHandle) -> bool:
         """Whether viser's client has gone to its initial camera by itself. From viser's thread."""
         end, initial = self._ends.get(client_id), self._server.initial_camera
-        if end is None or client_id in self._flights:
+        if end is None or client_id in self._flights or client_id in self._followers:
             return False
         back = _near(camera, initial.position, initial.look_at)
         return back and not _near(camera, end.position, end.look_at)

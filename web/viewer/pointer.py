@@ -13,7 +13,8 @@ from typing import Literal
 
 import numpy as np
 
-from web.messages import Accepted, Command, Inspect, Kidnap, Refused, SetDoor, SetGoal, Snapshot
+from web.messages import Accepted, Closure, Command, Inspect, Kidnap, KnownPlace, Refused, SetDoor, SetGoal, Snapshot
+from web.viewer.marks.place_names import Z as NAMES_Z
 from web.viewer.plates.map_plate import NODE_Z, MapPlate
 from web.viewer.plates.office_plate import OfficePlate
 from web.viewer.plates.plate import point_on_plane
@@ -49,9 +50,16 @@ class Pointer:
         self._asked: tuple[tuple[float, float], float, int | None] | None = None  # place, time, tick of acceptance
         self.dragging = False
 
-    def click(self, click: Click, plate: MapPlate, now_s: float, office: OfficePlate | None = None) -> None:
-        """A click on the map shows the marker at once and asks for the goal. A click on a door opens or shuts it."""
-        if office is not None and self._click_door(click, office):
+    def click(
+        self, click: Click, plate: MapPlate, now_s: float, office: OfficePlate, places: tuple[KnownPlace, ...] = ()
+    ) -> None:
+        """A click on the map shows the marker at once and asks for the goal. A click on a door opens or shuts it, one on the
+        name of a place asks for the way there."""
+        name = self._name_at(click, office) or self._name_at(click, plate)
+        if name is not None:
+            self._go_to(name, places, click.client_id, plate, now_s)
+            return
+        if self._click_door(click, office):
             return
         on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
         place = None if on_plate is None else plate.map_place(on_plate)
@@ -59,13 +67,28 @@ class Pointer:
             if on_plate is not None and plate.on_sheet(on_plate):
                 self._complain(click.client_id, "No goal set", "that is beside the map; click on the map itself")
             return
+        self._ask(place, click.client_id, plate, now_s)
+
+    def _name_at(self, click: Click, plate: MapPlate | OfficePlate) -> str | None:
+        at = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NAMES_Z)
+        return None if at is None or not plate.frame.visible else plate.names.at(at)
+
+    def _go_to(self, name: str, places: tuple[KnownPlace, ...], client_id: int, plate: MapPlate, now_s: float) -> None:
+        """The place of the map that is known by this name becomes the goal."""
+        known = next((place.map_xy for place in places if place.name == name), None)
+        if known is None:
+            self._complain(client_id, "No goal set", f"the map does not know the {name}: the robot has not been there")
+            return
+        self._ask(known, client_id, plate, now_s)
+
+    def _ask(self, place: tuple[float, float], client_id: int, plate: MapPlate, now_s: float) -> None:
         self._asked = (place, now_s, None)
         plate.show_click(place)
 
         def answered(answer: Answer) -> None:
             if isinstance(answer, Refused):
                 self._forget_click(plate)
-                self._complain(click.client_id, "No goal set", answer.reason)
+                self._complain(client_id, "No goal set", answer.reason)
             elif self._asked is not None and self._asked[0] == place:
                 self._asked = (place, now_s, answer.tick)
 
@@ -90,6 +113,11 @@ class Pointer:
         on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
         place = None if on_plate is None else plate.map_place(on_plate)
         return None if place is None else plate.nearest(place)
+
+    def closure_at(self, click: Click, plate: MapPlate) -> Closure | None:
+        """The loop closure whose mark a click has hit."""
+        on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
+        return None if on_plate is None else plate.closures.at(on_plate)
 
     def inspect(self, client_id: int, **wish: int | None) -> None:
         """Chooses what is inspected, by the fields of `Inspect`; the panel then shows it."""

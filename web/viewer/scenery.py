@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import viser
 
+from web.messages import Snapshot
+from web.viewer.cameras import Robots
+from web.viewer.plates.lesson_marks import LessonMarks
 from web.viewer.plates.map_plate import MapPlate
 from web.viewer.plates.office_plate import OfficePlate
 from web.viewer.plates.pose_cell_plate import PoseCellPlate
@@ -26,3 +30,16 @@ class Scenery:
         self.office = OfficePlate(scene, palette)
         self.cells = PoseCellPlate(scene, palette)
         self.map = MapPlate(scene, palette)
+        self.lesson = LessonMarks(scene, palette, self.office, self.map, self.cells)
+
+    def robots(self, snapshot: Snapshot) -> Robots:
+        """Where the robot stands on each plate, in the scene."""
+        found: Robots = {}
+        here, truth = snapshot.estimate, snapshot.truth
+        if truth is not None and snapshot.world is not None:
+            at = self.office.fit.to_plate(np.array([[truth.x, truth.y]]))[0]
+            found["office"] = np.array([*at, 0.0]) + self.office.origin, self.office.fit.scale
+        if snapshot.experiences:
+            at = self.map.fit.to_plate(np.array([[here.x, here.y]]))[0]
+            found["map"] = np.array([*at, 0.0]) + self.map.origin, self.map.fit.scale
+        return found

@@ -10,28 +10,31 @@ import queue
 import threading
 import time
 from collections.abc import Callable, Coroutine
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from typing import Any
 
 import numpy as np
 import viser
 
 from web.latest import Latest
-from web.messages import Accepted, Command, MapLayer, OccupancyLayer, OccupancyPicture, Refused, Snapshot
+from web.messages import Accepted, Command, MapLayer, Refused, Snapshot
 from web.switches import Switches
 from web.themes import Theme
 from web.throttle import Throttle
+from web.viewer.beside import Beside
 from web.viewer.camera_views import VIEWS, Camera
-from web.viewer.cameras import Cameras
-from web.viewer.plates.map_plate import ORIGIN as MAP_AT
-from web.viewer.plates.map_plate import MapPlate
+from web.viewer.cameras import Cameras, Robots
+from web.viewer.judged_layers import JudgedLayers
+from web.viewer.occupancy_artist import OccupancyArtist
 from web.viewer.pointer import Answer, Click, Drag, Pointer, ask
 from web.viewer.primitives.palette import Palette, palette_of
+from web.viewer.replay import Replay
 from web.viewer.scenery import Scenery
 from web.viewer.viser_server import guarded_server
 
 DragEvent = viser.SceneNodeDragEvent[viser.MeshHandle]
 FRAME_S = 1 / 30  # least time between two frames, however fast snapshots come
+ON_MAP = "times", "estimate", "other", "goal", "tags", "places", "closures"  # layers that move with it
 IDLE_S = 0.05  # longest time that a click waits
 
 
@@ -56,9 +59,7 @@ class Viewer:
         self.port = self.server.get_port()
         self._cameras = Cameras(self.server, self._inbox.put)
         self._pointer = Pointer(self._send, self._complain)
-        self._artist = ThreadPoolExecutor(1, "artist")  # for what takes longer than a frame
         self._now_s = 0.0
-        self.drawing = False  # something is being drawn in another thread
         self._set_up(palette_of(theme))
         self._listen()
 
@@ -74,8 +75,13 @@ class Viewer:
         if self._thread is not None:
             self._thread.join()
             self._thread = None
-        self._artist.shutdown(cancel_futures=True)
+        self._artist.stop()
         self.server.stop()
+
+    @property
+    def drawing(self) -> bool:
+        """Something is being drawn in another thread."""
+        return self._artist.drawing
 
     def turned(self, client_id: int) -> Camera | None:
         """Where somebody has turned this browser's camera by hand; None if nobody has."""
@@ -89,6 +95,14 @@ class Viewer:
             raise ValueError(f"unknown view {view!r}; expected one of: {', '.join(VIEWS)}")
         now_s = None if at_once else time.monotonic()
         self._inbox.put(lambda: self._cameras.take_off(client_id, view, now_s, turned))
+
+    def follow(self, client_id: int, on: bool) -> None:
+        """From now on this browser's camera goes with the robot, or no longer."""
+        self._inbox.put(lambda: self._cameras.follow(client_id, self._robots() if on else {}, time.monotonic()))
+
+    def replay(self, event: int) -> None:
+        """Plays the correction after this loop closure again, slowly, for all who look at this viewer."""
+        self._inbox.put(lambda: self._replay.find(self._snapshot, event, self._now_s))
 
     def click(self, click: Click, inspecting: bool = False) -> None:
         """Somebody has clicked on the plates. inspecting: with shift."""
@@ -112,6 +126,9 @@ class Viewer:
         """One round: handle what people did, move cameras in flight, and draw the layers that are new and due."""
         self._now_s = now_s
         if snapshot is not None:
+            if snapshot.sought(self._snapshot):
+                for layer in self._layers.values():
+                    layer.hurry()
             self._snapshot = snapshot
         with contextlib.suppress(queue.Empty):
             while True:
@@ -119,13 +136,15 @@ class Viewer:
         self._cameras.fly_on(now_s)
         if self._snapshot is not None and watched:
             self._draw(self._snapshot, now_s)
+            self._cameras.track(self._robots(), now_s)
 
     def _draw(self, snapshot: Snapshot, now_s: float) -> None:
         offer, cells = self._layers, snapshot.pose_cells
         with self.server.atomic():
             if offer["world"].offer(now_s, snapshot.world):
-                self._forget("robot", "trail", "living", "movements")
-                self._give_room(office=snapshot.world is not None)
+                self._forget("robot", "trail", "living", "movements", "names", "lesson")
+                self._judged.forget()
+            self._beside.draw(snapshot.beside, now_s, office=snapshot.world is not None)
             offer["living"].offer(now_s, snapshot.living)
             if self._pointer.dragging:
                 self._forget("robot")  # when it is let go, it goes back to its true place
@@ -134,57 +153,54 @@ class Viewer:
             tried = None if self._pointer.dragging or not self._switches.is_on("movements") else snapshot.movements
             offer["movements"].offer(now_s, tried)
             offer["trail"].offer(now_s, snapshot.trail)
+            offer["names"].offer(now_s, snapshot.places)
             self._draw_overlays(snapshot, now_s)
             offer["cells"].offer(now_s, cells)
             offer["path"].offer(now_s, cells.path, cells.shape)
             offer["glow"].offer(now_s, cells, self._scenery.cells.under)
-            offer["map"].offer(now_s, snapshot.map, snapshot.map_turn_rad)
-            offer["times"].offer(now_s, snapshot.times)
-            offer["estimate"].offer(now_s, snapshot.estimate)
-            offer["other"].offer(now_s, snapshot.belief.other if snapshot.belief else None)
-            offer["goal"].offer(now_s, snapshot.goal)
-            offer["tags"].offer(now_s, snapshot.tags)
+            if self._replay.draw(now_s):
+                self._forget("map", *ON_MAP)
+            if not self._replay.runs:
+                self._draw_on_map(snapshot, now_s)
+            self._judged.draw(snapshot, now_s)
+            offer["lesson"].offer(now_s, snapshot.lesson)
             self._pointer.settle(snapshot, self._scenery.map, now_s)
 
-    def _give_room(self, *, office: bool) -> None:
-        """Without an office the map stands in the middle."""
-        self._scenery.map.stand_at(MAP_AT[0] if office else 0.0)
-        self._cameras.give_room(office=office)
+    def _rearranged(self, two: bool) -> None:
+        """The plates stand elsewhere: two brains, or an office, have come or gone."""
+        self._forget("cells")
+        assert self._snapshot is not None
+        self._cameras.give_room(office=self._snapshot.world is not None, two=two)
+
+    def _draw_on_map(self, snapshot: Snapshot, now_s: float) -> None:
+        offer = self._layers
+        offer["map"].offer(now_s, snapshot.map, snapshot.map_turn_rad)
+        offer["times"].offer(now_s, snapshot.times)
+        offer["estimate"].offer(now_s, snapshot.estimate)
+        offer["other"].offer(now_s, snapshot.belief.other if snapshot.belief else None)
+        offer["goal"].offer(now_s, snapshot.goal)
+        offer["tags"].offer(now_s, snapshot.tags)
+        offer["places"].offer(now_s, snapshot.places)
+        offer["closures"].offer(now_s, snapshot.closures, snapshot.map, snapshot)
 
     def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
         if self._scenery.map.set_map(layer, turn_rad):
-            self._forget("times", "estimate", "other", "goal", "tags", "inspected")
+            self._forget("inspected", "lesson", *ON_MAP)
+            self._judged.forget()
             self._pointer.moved(self._scenery.map)
 
     def _draw_overlays(self, snapshot: Snapshot, now_s: float) -> None:
         """Draws the overlays that are switched on, and removes the others."""
         offer, is_on, cells = self._layers, self._switches.is_on, snapshot.pose_cells
-        goal = snapshot.goal_memory if is_on("goal_memory") else None
+        alone = snapshot.beside is None  # of two brains, both are drawn alike
+        goal = snapshot.goal_memory if alone and is_on("goal_memory") else None
         beneath = snapshot.occupancy if is_on("cell_occupancy") else None
         offer["cell_floor"].offer(now_s, cells.shape, beneath, goal, snapshot.inspected)
         offer["zone"].offer(now_s, snapshot.inspected, cells.shape)
         offer["inspected"].offer(now_s, snapshot.inspected)
         offer["way"].offer(now_s, cells, goal)
-        if not self.drawing:
-            offer["occupancy"].offer(now_s, snapshot.occupancy if is_on("occupancy") else None)
-
-    def _draw_occupancy(self, layer: OccupancyLayer | None) -> None:
-        """Draws in another thread, since it may take longer than a frame. If the switch is off by then, it is dropped."""
-        if layer is None:
-            self._scenery.map.set_occupancy(None)
-            return
-        plate, self.drawing = self._scenery.map, True
-
-        def drawn(future: Future[OccupancyPicture]) -> None:
-            if not future.cancelled():
-                self._inbox.put(lambda: self._lay_occupancy(plate, future))
-
-        self._artist.submit(layer.draw_map).add_done_callback(drawn)
-
-    def _lay_occupancy(self, plate: MapPlate, future: Future[OccupancyPicture]) -> None:
-        self.drawing = False
-        if plate is self._scenery.map and self._switches.is_on("occupancy"):
-            plate.set_occupancy(future.result())
+        if not self._artist.drawing:
+            offer["occupancy"].offer(now_s, snapshot.occupancy if alone and is_on("occupancy") else None)
 
     def _forget(self, *layers: str) -> None:
         for name in layers:
@@ -195,8 +211,12 @@ class Viewer:
     def _set_up(self, palette: Palette) -> None:
         """Builds the plates in a palette."""
         self._scenery = Scenery(self.server.scene, palette)
+        self._beside = Beside(self.server.scene, palette, self._scenery, self._rearranged)
         self.server.gui.configure_theme(dark_mode=palette.dark, show_logo=False, show_share_button=False)
         office, cells, map_plate = self._scenery.office, self._scenery.cells, self._scenery.map
+        self._judged = JudgedLayers(self.server.scene, palette, office, map_plate, self._switches)
+        self._replay = Replay(map_plate)
+        self._artist = OccupancyArtist(map_plate, self._switches, self._inbox.put)
         self._layers: dict[str, Throttle] = {
             "world": Throttle(5, office.set_world),
             "robot": Throttle(15, office.set_robot),
@@ -212,11 +232,15 @@ class Viewer:
             "other": Throttle(6, map_plate.set_other),
             "goal": Throttle(3, map_plate.set_goal),
             "tags": Throttle(2, map_plate.set_tags),
+            "names": Throttle(2, office.set_places),
+            "places": Throttle(2, map_plate.set_places),
+            "closures": Throttle(1, map_plate.set_closures),
+            "lesson": Throttle(3, self._scenery.lesson.show),
             "cell_floor": Throttle(2, cells.set_floor),
             "zone": Throttle(4, cells.set_inspected),
             "inspected": Throttle(4, map_plate.set_inspected),
             "way": Throttle(5, cells.set_way),
-            "occupancy": Throttle(0.6, self._draw_occupancy),
+            "occupancy": Throttle(0.6, self._artist.draw),
         }
         for part in office.robot.parts:
             part.on_drag("left")(self._dragged(False))
@@ -249,13 +273,29 @@ class Viewer:
     # ------------------------------------------------------------ in the thread
 
     def _click(self, click: Click, inspecting: bool) -> None:
+        lesson = None if self._snapshot is None or inspecting else self._snapshot.lesson
+        predicted = self._scenery.lesson.predicted(lesson, click.origin, click.direction)
+        if predicted is not None:
+            self._send(predicted, lambda _: None)  # it is open, and the server compares
+            return
+        if self._beside.holds(click.origin, click.direction):
+            self._complain(
+                click.client_id, "No goal set", "this is the other brain's map; the robot goes by the first one's"
+            )
+            return
         column = self._scenery.cells.column_at(np.array(click.origin), np.array(click.direction))
         if column is not None:
             self._pointer.inspect(click.client_id, x=column[0], y=column[1])
+        elif not inspecting and (closure := self._pointer.closure_at(click, self._scenery.map)) is not None:
+            self._replay.start(closure, self._now_s)
         elif inspecting or self._switches.is_on("click_inspects"):
             self._pointer.inspect(click.client_id, experience=self._pointer.experience_at(click, self._scenery.map))
         else:
-            self._pointer.click(click, self._scenery.map, self._now_s, self._scenery.office)
+            places = self._snapshot.places if self._snapshot is not None else ()
+            self._pointer.click(click, self._scenery.map, self._now_s, self._scenery.office, places)
+
+    def _robots(self) -> Robots:
+        return {} if self._snapshot is None else self._scenery.robots(self._snapshot)
 
     def _drag(self, drag: Drag) -> None:
         if self._snapshot is None:

@@ -12,7 +12,7 @@ from app.recordings.formats.clock import Clock
 from app.recordings.formats.held import Held
 from app.recordings.formats.problems import Problems
 from app.recordings.formats.sensed import Sensed
-from app.recordings.recording import About, Moment, Pose
+from app.recordings.recording import About, Moment, Pose, Wanted, every
 
 SCAN_HELD_S, TRUTH_HELD_S = 0.25, 0.1  # older ones are not those of a picture
 DEFAULT_DT = 0.1  # of a single moment
@@ -43,6 +43,7 @@ class StreamedRecording:
         """
         self._source, self._beams, self._name = source, beams, name
         self._problems = Problems()
+        self._readable: dict[int, bool] = {}  # of the pictures that were unpacked once, by their numbers
         self._about = self._look_through(name, format_, uses)
 
     @property
@@ -50,27 +51,29 @@ class StreamedRecording:
         """What is in it. Problems with pictures are found when they are read, so there are more of them later."""
         return replace(self._about, problems=self._problems.sentences)
 
-    def moments(self) -> Iterator[Moment]:
-        """In order of time."""
+    def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
+        """In order of time. Whoever wants all pictures is told what is wrong with them (`about`)."""
         camera = "camera" in self._about.has
-        self._problems.begin()
-        gathering = _Gathering(self._problems, camera, self._typical_ns, self._about.image_shape)
-        for sensed in self._in_time():
+        problems = self._problems if wanted is every else Problems()
+        problems.begin()
+        pictures = _Pictures(problems, self._about.image_shape, wanted, self._readable)
+        gathering = _Gathering(problems, pictures if camera else None, self._typical_ns)
+        for sensed in self._in_time(problems):
             if (moment := gathering.take(sensed)) is not None:
                 yield moment
         if (moment := gathering.emitted()) is not None:
             yield moment
 
-    def _in_time(self) -> Iterator[Sensed]:
-        clock = Clock(self._problems)
-        for sensed in self._source(self._problems):
+    def _in_time(self, problems: Problems) -> Iterator[Sensed]:
+        clock = Clock(problems)
+        for sensed in self._source(problems):
             yield replace(sensed, time_ns=clock.at(sensed.time_ns, sensed.where))
 
     def _look_through(self, name: str, format_: str, uses: tuple[str, ...]) -> About:
         counts, times = {"camera": 0, "ranges": 0}, dict[str, list[int]]()
         has, steps = set[str](), {"camera": list[int](), "ranges": list[int]()}
         shape: tuple[int, int] | None = None
-        for sensed in self._in_time():
+        for sensed in self._in_time(self._problems):
             for kind, there in (("camera", sensed.image), ("ranges", sensed.ranges_m)):
                 if there is None:
                     continue
@@ -123,8 +126,9 @@ def _kinds(sensed: Sensed) -> Iterator[str]:
 class _Gathering:
     """Gathers what was sensed up to the time of a picture, then makes the moment."""
 
-    def __init__(self, problems: Problems, camera: bool, typical_ns: int, shape: tuple[int, int] | None) -> None:
-        self._problems, self._camera, self._typical_ns, self._shape = problems, camera, typical_ns, shape
+    def __init__(self, problems: Problems, pictures: _Pictures | None, typical_ns: int) -> None:
+        """pictures: None: moments are those of the laser."""
+        self._problems, self._pictures, self._typical_ns = problems, pictures, typical_ns
         self._rates = {"speed": Held(), "yaw_rate": Held(), "throttle": Held()}
         self._truth: tuple[int, Pose] | None = None
         self._scan: tuple[int, NDArray[np.float64]] | None = None
@@ -139,14 +143,15 @@ class _Gathering:
         moment = None
         if self._waiting is not None and sensed.time_ns > self._waiting[1].time_ns:
             moment = self.emitted()
-        if (sensed.image if self._camera else sensed.ranges_m) is not None:
+        camera = self._pictures is not None
+        if (sensed.image if camera else sensed.ranges_m) is not None:
             self._wait(sensed)
         for name, held in self._rates.items():
             if (value := getattr(sensed, name)) is not None:
                 held.add(sensed.time_ns, value)
         if sensed.truth is not None:
             self._truth = sensed.time_ns, sensed.truth
-        if sensed.ranges_m is not None and (self._camera or self._waiting is None or self._waiting[1] is sensed):
+        if sensed.ranges_m is not None and (camera or self._waiting is None or self._waiting[1] is sensed):
             self._scan = sensed.time_ns, sensed.ranges_m
         if sensed.behaviour is not None:
             self._behaviour = sensed.behaviour
@@ -168,8 +173,10 @@ class _Gathering:
             return None
         (number, sensed), self._waiting = self._waiting, None
         image = None
-        if self._camera and (image := self._picture(sensed)) is None:
-            return None
+        if self._pictures is not None:
+            good, image = self._pictures.next(sensed)
+            if not good:
+                return None
         now = sensed.time_ns
         if not self._begun:
             self._begun, self._first_ns, self._last_ns = True, now, now - self._typical_ns
@@ -184,7 +191,32 @@ class _Gathering:
             behaviour=self._behaviour,
         )  # fmt: skip
 
-    def _picture(self, sensed: Sensed) -> NDArray[np.uint8] | None:
+
+class _Pictures:
+    """Unpacks the pictures of moments, one after the other, as far as they are wanted."""
+
+    def __init__(
+        self, problems: Problems, shape: tuple[int, int] | None, wanted: Wanted, readable: dict[int, bool]
+    ) -> None:
+        """readable: what is known of the pictures by their numbers, to which more is added."""
+        self._problems, self._shape, self._wanted, self._readable = problems, shape, wanted, readable
+        self._number = -1  # of the picture
+        self._good = 0  # pictures so far that can be read: the number of the next moment
+
+    def next(self, sensed: Sensed) -> tuple[bool, NDArray[np.uint8] | None]:
+        """Whether the next picture can be read, which has to be tried once; and the picture if it is wanted."""
+        self._number += 1
+        image, was_good = None, self._readable.get(self._number, False)
+        good = was_good
+        if not was_good or self._wanted(self._good):
+            image = self._unpacked(sensed)
+            good = self._readable[self._number] = image is not None
+        if was_good and not good:  # without it, all that follow would have other numbers
+            raise ValueError(f"{sensed.where}: it could be read before, and cannot be any more")
+        self._good += good
+        return good, image
+
+    def _unpacked(self, sensed: Sensed) -> NDArray[np.uint8] | None:
         assert sensed.image is not None
         try:
             image = sensed.image()

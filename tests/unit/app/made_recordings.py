@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from app.recordings.recording import About, Moment
+from app.recordings.recording import About, Moment, Wanted, every
 from app.session import Session
 from sim2d import SONAR_ANGLES_RAD, load_world
 
@@ -24,8 +25,9 @@ class MadeRecording:
         )
         self._moments = moments
 
-    def moments(self) -> Iterator[Moment]:
-        return iter(self._moments)
+    def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
+        for number, moment in enumerate(self._moments):
+            yield moment if wanted(number) else replace(moment, image=None)
 
 
 def recorded(ticks: int, truth: bool = True, world: str = "office") -> MadeRecording:

@@ -15,9 +15,11 @@ from app.cli import command_line as cli
 from app.cli import run
 from app.config import Config
 from app.kept_brains import keeper as brain_keeper
+from app.time_machine import BUDGET_BYTES
 from sim2d import World
 from tests.patience import PATIENCE_S
 from web.http import server
+from web.http.class_door import Classroom
 from web.viewer import viewers
 
 from .worlds import room
@@ -75,9 +77,19 @@ class DashboardDouble:
     on_ready: Callable[[str], None] | None = None
 
     def __init__(
-        self, doubles: Doubles, latest: object, submit: object, stage: object, *, port: int, **_options: object
+        self,
+        doubles: Doubles,
+        latest: object,
+        submit: object,
+        stage: object,
+        *,
+        port: int,
+        for_class: server.ForClass | None,
+        **_options: object,
     ) -> None:
         self._doubles = doubles
+        doubles.made["class"] = (for_class,)
+        self.classroom = None if for_class is None else Classroom(for_class.address or "192.168.1.5", for_class.port)
         doubles.made["dashboard"] = (latest, submit, stage, port)
 
     def bind(self) -> None:
@@ -107,6 +119,7 @@ def test_run_binds_first_then_starts_and_stops(
     ]  # fmt: skip
     name, seed, config, options = doubles.made["engine"]
     assert options.pop("keeper") is not None
+    assert options.pop("keyframe_bytes") == 200_000_000
     assert (name, seed, options) == ("loop", 9, {"speed": 3.0, "running": False, "brain": None, "first": None})
     assert config == Config().with_value("robot.light", 0.8)
     assert doubles.made["dashboard"][1:] == ("submit", "viewers", 0)
@@ -169,3 +182,36 @@ def test_a_screen(platform: str, environment: dict[str, str], screen: bool, monk
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     assert run._has_screen() is screen
+
+
+def test_the_memory_for_looking_back_is_said_in_megabytes(monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    assert 1e6 * run.PAST_MB == BUDGET_BYTES
+    doubles = Doubles(monkeypatch)
+    assert cli.main(["run", "--keep-past", "50"]) == 0
+    assert doubles.made["engine"][3]["keyframe_bytes"] == 50_000_000
+    assert cli.main(["run", "--keep-past", "3"]) != 0
+    assert "--keep-past must be megabytes from 20 on, got 3" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "wish", "door"),
+    [
+        ([], None, None),
+        (["--class"], (None, 8001), "http://192.168.1.5:8001/"),
+        (["--class", "--class-address", "10.0.0.7", "--class-port", "0"], ("10.0.0.7", 0), "http://10.0.0.7:0/"),
+    ],
+)
+def test_a_class_is_let_in_only_when_it_is_asked_for(options, wish, door, monkeypatch, capsys) -> None:
+    doubles = Doubles(monkeypatch)
+    assert cli.main(["run", "--no-browser", *options]) == 0
+    assert doubles.made["class"][0] == (None if wish is None else server.ForClass(*wish))
+    told = capsys.readouterr().out
+    assert ("A class votes at" in told) == (door is not None)
+    assert door is None or f"votes at {door} and looks on at {door}?watch" in told
+
+
+@pytest.mark.parametrize("option", [("--class-address", "10.0.0.7"), ("--class-port", "8001")])
+def test_where_a_class_is_let_in_says_nothing_without_that(option, monkeypatch, capsys) -> None:
+    Doubles(monkeypatch)
+    assert cli.main(["run", "--no-browser", *option]) == 2
+    assert capsys.readouterr().err == f"ratslam: {option[0]} goes with --class, which lets a class in\n"

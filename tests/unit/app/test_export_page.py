@@ -15,6 +15,7 @@ from app.export import page as page_exports
 from app.export.page import NOT_KEPT, PageExports
 from app.export.pose_graph import g2o_text
 from app.session_snapshot import take_session
+from web.http.export import Wish
 from web.messages import Accepted, ReadSession, Refused
 
 from .sessions import a_session
@@ -39,7 +40,7 @@ def test_what_can_be_had_depends_on_whether_the_run_keeps_itself() -> None:
 
 def test_the_map_now_comes_from_a_copy(tmp_path: Path) -> None:
     def write(to: str) -> list[Path]:
-        return asyncio.run(PageExports().write(to, submit, tmp_path / f"run.{to}"))
+        return asyncio.run(PageExports().write(to, submit, tmp_path / f"run.{to}", Wish()))
 
     (graph,), (poses,), pictures = write("graphml"), write("g2o"), write("png")
     assert len(nx.read_graphml(graph)) == len(SESSION.brain.experience_map)
@@ -65,11 +66,15 @@ def will(script: Path, do: str) -> None:
 def test_a_kept_run_is_played_again_by_a_process_of_its_own(program: Path, tmp_path: Path) -> None:
     exports, out = PageExports(lambda: tmp_path / "kept run"), tmp_path / "run.csv"
     will(program, 'echo "$@" > ' + f'"{out}"')
-    assert asyncio.run(exports.write("csv", submit, out)) == [out]
-    assert out.read_text() == f"-m app export {tmp_path / 'kept run'} --to csv --out {out}\n"
+    assert asyncio.run(exports.write("csv", submit, out, Wish())) == [out]
+    assert out.read_text() == f"-m app export {tmp_path / 'kept run'} --to csv --out {out} --say-share --pictures png\n"
+    will(program, 'echo done 0.42; echo "$@" > ' + f'"{out}"')
+    asyncio.run(exports.write("csv", submit, out, Wish(from_s=1.5, until_s=20.0, pictures="jpeg")))
+    assert out.read_text().endswith("--say-share --pictures jpeg --from 1.5 --until 20.0\n")
+    assert exports.done == 0.42
     will(program, "echo ratslam: the disk is full >&2; exit 2")
     with pytest.raises(ValueError, match=r"^the disk is full$"):
-        asyncio.run(exports.write("csv", submit, out))
+        asyncio.run(exports.write("csv", submit, out, Wish()))
 
 
 def test_what_nobody_waits_for_is_ended(program: Path, tmp_path: Path) -> None:
@@ -77,7 +82,7 @@ def test_what_nobody_waits_for_is_ended(program: Path, tmp_path: Path) -> None:
     will(program, f'echo $$ > "{pid}.new"; mv "{pid}.new" "{pid}"; exec sleep 1000')
 
     async def ask_and_leave() -> None:
-        writing = asyncio.create_task(PageExports(lambda: tmp_path).write("csv", submit, tmp_path / "run.csv"))
+        writing = asyncio.create_task(PageExports(lambda: tmp_path).write("csv", submit, tmp_path / "run.csv", Wish()))
         while not pid.exists():
             await asyncio.sleep(0.01)
         writing.cancel()

@@ -8,11 +8,13 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from app.config import Config
-from app.recordings.brain_rules import rules
+from app.recordings.brain_rules import WIDTH_ERROR, columns_of, rules
 from app.recordings.playing import Player
-from app.recordings.recording import About, Moment
+from app.recordings.recording import About, Moment, Wanted, every
 from app.session import Session
 from sim2d import SONAR_ANGLES_RAD, load_world
 
@@ -23,7 +25,7 @@ class Held:
     def __init__(self, about: About, moments: list[Moment]) -> None:
         self.about, self._moments = about, moments
 
-    def moments(self) -> Iterator[Moment]:
+    def moments(self, wanted: Wanted = every) -> Iterator[Moment]:  # noqa: ARG002
         return iter(self._moments)
 
 
@@ -74,6 +76,31 @@ def test_lengths_grow_with_the_typical_speed(run: tuple[Session, Held]) -> None:
 def test_the_field_of_view_is_measured(run: tuple[Session, Held]) -> None:
     told = rules(run[1])[0].local_view.field_of_view
     assert told == pytest.approx(Config().robot.camera_fov_rad, rel=0.25)
+
+
+@given(st.floats(math.radians(20), math.tau), st.floats(0.0, 0.5))
+def test_views_are_shifted_by_the_same_angle_whatever_the_camera(field_of_view: float, turned_rad: float) -> None:
+    column, shift = field_of_view / 12, columns_of(turned_rad, 12, field_of_view)
+    assert shift * column <= WIDTH_ERROR * turned_rad * (1 + 1e-9)
+    assert (shift + 1) * column > WIDTH_ERROR * turned_rad * (1 - 1e-9)
+
+
+def test_a_recording_in_which_hardly_anything_moves_plays(run: tuple[Session, Held]) -> None:
+    """Most views are the same, so only the same view counts as known."""
+    about, moments = run[1].about, list(run[1].moments())
+    still = Held(about, [dataclasses.replace(m, image=moments[0].image) for m in moments[:200]])
+    config, _ = rules(still)
+    assert config.local_view.composite_threshold == 0.0
+    assert sum(1 for _ in Player(still, 1, config).steps()) == 200
+
+
+def test_a_wide_camera_shifts_by_fewer_columns(run: tuple[Session, Held]) -> None:
+    """The office's own camera as in the simulator; one under which half a turn takes as many columns, by half as many."""
+    _, recording = run
+    turned = [dataclasses.replace(m, yaw_rate=2 * (m.yaw_rate or 0.0)) for m in recording.moments()]
+    usual = Config().local_view.shift
+    assert rules(recording)[0].local_view.shift == usual
+    assert rules(Held(recording.about, turned))[0].local_view.shift == usual // 2
 
 
 def test_after_a_gap_the_robot_knows_that_it_does_not_know(run: tuple[Session, Held]) -> None:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from app.cli import command_line as cli
 from app.headless.recorded import run_recording
-from app.recordings.opening import open_recording
+from app.recordings.motion import lengths
+from app.recordings.opening import Opening, open_recording
 from app.recordings.playing import Player
 from app.recordings.trace import HEADER
 from tests.recordings import N, airsim, drive, image_folder, tub
@@ -28,6 +30,19 @@ def test_check_tells_what_is_in_it(tmp_path: Path, capsys: pytest.CaptureFixture
     assert cli.main(["recording", "check", str(folder), "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert (report["moments"], report["image_shape"]) == (N, [12, 16])
+    assert report["lengths"] == "metres"
+
+
+def test_who_has_no_wheels_is_told_that_lengths_are_no_metres(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pictures = image_folder(tmp_path / "pictures")
+    for table in pictures.glob("*.csv"):
+        table.unlink()
+    cli.main(["recording", "check", str(pictures), "--rate", "10"])
+    assert "lengths are no metres: by pictures alone" in capsys.readouterr().out
+    about = open_recording(pictures, Opening(rate_hz=10.0)).about
+    assert "2 m/s" in (lengths(replace(about, has=frozenset({"camera", "throttle"}))) or "")
 
 
 def test_check_names_the_line_and_counts_what_is_left(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

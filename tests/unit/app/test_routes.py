@@ -235,6 +235,26 @@ def test_a_goal_is_reached_after_a_kidnap_on_the_way() -> None:
     assert math.dist(run.truth, (1.0, 0.6)) < 0.2
 
 
+def test_carried_away_from_the_goal_it_looks_for_the_way_back() -> None:
+    """It stands at its goal when it is put down elsewhere. Once it notices, it is on an island: it does not stand there, as
+    if it had arrived, but drives; and it goes on to the goal when the island has become a part of the map again."""
+    world = room((2.0, 0.0, 2.0, 2.8), start=(1.0, 0.6, 0.0))
+    map_ = HandMadeMap(*chain((1.0, 0.6), (1.0, 3.4), (3.0, 3.4), (3.0, 0.6)))
+    run = Run(Simulator(world, EXACT), a_pilot(), map_)
+    run.pilot.set_goal(0)
+    run.run(5.0)
+    assert run.pilot.goal_state == (0, "arrived")
+    run.simulator.teleport(3.0, 1.6, 0.0)
+    map_.landed = len(map_) // 2  # the half of the map where it now is
+    run.run(10.0)
+    assert run.pilot.goal_state == (0, "exploring")
+    assert len({(round(x, 1), round(y, 1)) for x, y in run.track[-100:]}) > 5
+    map_.landed = len(map_)
+    run.run(60.0)
+    assert run.pilot.goal_state == (0, "arrived")
+    assert math.dist(run.truth, (1.0, 0.6)) < 0.2
+
+
 def test_the_last_metre_is_driven_straight() -> None:
     """The route comes to the goal by a way round; where the sonars see that nothing lies between, the robot cuts it."""
     map_ = HandMadeMap(*chain((0.0, 0.0), (0.0, 3.0), (0.8, 3.0), (0.8, 0.0)))

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
 
 import pytest
 
 from app.commands import carry_out
+from app.engine import work
 from app.engine.engine import Engine
+from app.engine_thread import EngineThread
 from app.session import Session
 from app.time_machine import TimeMachine
 from app.views.history import History
 from sim2d import load_world
+from tests.patience import PATIENCE_S
+from tests.unit.app.engine_threads import accept, snapshot
 from tests.unit.app.engines import READER, an_engine
 from web import messages as m
 
@@ -224,3 +229,25 @@ def test_a_moment_that_cannot_be_played_again_leaves_the_present_as_it_is(monkey
     tell(engine, type="resume")
     engine.tick()
     assert engine.run.session.tick_count == 41
+
+
+def test_a_long_way_is_gone_in_slices_and_a_newer_wish_ends_it(
+    start: Callable[..., EngineThread], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The slices are as short as they can be, so that nothing depends on how fast the machine is."""
+    engine = start()
+    accept(engine, m.Step(type="step", ticks=140))
+    engine._engine.slices.first_s = 0.0
+    monkeypatch.setattr(work, "SLICE_S", 0.0)
+    first = engine.submit(m.Seek(type="seek", tick=139))
+    second = engine.submit(m.Seek(type="seek", tick=120))
+    assert isinstance(first.result(PATIENCE_S), m.Accepted)
+    assert second.result(PATIENCE_S) == m.Accepted(120)
+    now = snapshot(engine)
+    assert (now.tick, now.running) == (120, False)
+    assert now.time is not None
+    assert now.time.doing == ""
+    dropped = engine.submit(m.Seek(type="seek", tick=130))
+    accept(engine, m.BackToNow(type="back_to_now"))
+    assert isinstance(dropped.result(PATIENCE_S), m.Accepted)
+    assert snapshot(engine).tick == 140

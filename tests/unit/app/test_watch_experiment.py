@@ -77,6 +77,9 @@ def test_of_every_command_it_is_known_what_it_does_to_a_trial() -> None:
     leaves = {
         m.Tag, m.Untag, m.Pause, m.Resume, m.Step, m.StepStage, m.SetSpeed, m.Reset, m.Inspect, m.WatchExperiment,
         m.Seek, m.BackToNow, m.GoOnFromHere, m.GoOnWithout, m.ChangeBranch, m.CompareBranch, m.Loop,
+        m.LeaveSituation, m.PutBookmark, m.RemoveBookmark,
+        m.BeginLesson, m.Predict, m.Vote, m.ShowLesson, m.LessonAgain, m.EndLesson, m.RunUntil,
+        m.CompareBrains, m.EndComparison,
     }  # fmt: skip
     groups = [set(ENDS), set(ALTERS), leaves]
     assert set.union(*groups) == set(COMMANDS)

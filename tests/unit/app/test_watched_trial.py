@@ -138,13 +138,13 @@ def test_a_reset_ends_it_and_takes_its_settings_away() -> None:
     assert engine.run.session.config == own
 
 
-def test_settings_that_somebody_made_in_a_trial_stay() -> None:
+def test_settings_that_somebody_made_in_a_trial_stay_and_the_trials_own_do_not() -> None:
     engine = an_engine(OFFICE)
+    own = engine.run.session.config
     tell(engine, type="watch_experiment", experiment="table", engine="paper", quick=True)
     tell(engine, type="set_parameter", name="robot.light", value=0.8)
-    config = engine.run.session.config
     reset(engine)
-    assert engine.run.session.config == config
+    assert engine.run.session.config == own.with_values({"robot.light": 0.8})
 
 
 def reset(engine: Engine) -> None:

@@ -117,6 +117,25 @@ def test_a_robot_that_may_be_anywhere_within_reach_believes_it() -> None:
     assert robot.map.active == 0
 
 
+@pytest.mark.parametrize(("gate_rad", "held"), [(3.2, False), (0.8, True)])
+def test_a_look_that_turns_the_robot_is_held_back(gate_rad: float, held: bool) -> None:
+    """As near as it puts the robot: one whose heading is sure is not turned by a look-alike. 3.2 is the plain twin."""
+    robot = Robot(PLAIN, filter_params=replace(P, gate_rad=gate_rad))
+    robot.see(0, new=True)
+    robot.go(0.5, 0.0, 1, new=True)
+    assert robot.see(0, facing=1.5, packet=robot.packet(Pose2(0.0, 0.0, 0.0))) is held
+    assert (robot.map.active == 0) is not held
+    assert robot.map.robot.heading_rad == pytest.approx(0.0 if held else 1.5)
+
+
+def test_a_look_that_turns_it_less_is_not() -> None:
+    robot = Robot(PLAIN, filter_params=replace(P, gate_rad=0.8))
+    robot.see(0, new=True)
+    robot.go(0.5, 0.0, 1, new=True)
+    assert not robot.see(0, facing=0.7, packet=robot.packet(Pose2(0.0, 0.0, 0.0)))
+    assert robot.map.active == 0
+
+
 @settings(max_examples=20)
 @given(st.integers(1, 8))
 def test_sights_that_agree_win(needed: int) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -33,6 +34,9 @@ def test_boxes_stop_robot_and_rays_and_can_be_taken_away() -> None:
         (Box("b", 2.2, 2.0, 0.4, 0.4), r"box 'b' would cover the robot at \(2.00, 2.00\); keep 0.2\d m away from it"),
         (Box("b", 2.0, 2.0, 3.0, 3.0), r"box 'b' would cover the robot"),
         (Box("b", 5.0, 2.0, 0.4, 0.4), r"\(5, 2\) is outside of room, which spans 0 to 4 by 0 to 4 m"),
+        (Box("b", 3.0, 3.0, 1e9, 0.4), r"the width of a box must be 0.05 to 20 m, got 1e\+09"),
+        (Box("b", 3.0, 3.0, 0.4, 0.4, height=math.nan), r"the height of a box must be 0.05 to 20 m, got nan"),
+        (Box("b", 3.0, 3.0, 0.4, 0.4, angle_rad=math.inf), r"the angle of a box must be finite, got inf"),
     ],
 )
 def test_a_box_on_the_robot_is_refused_and_nothing_changes(box: Box, reason: str) -> None:

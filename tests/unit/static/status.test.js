@@ -24,6 +24,9 @@ test("what counts most is said: a fault, then a pause, being lost, the hand, the
   assert.equal(words({ mode: "goal", goal }), "going to the goal");
   assert.equal(words({ mode: "goal" }), "exploring");
   assert.equal(words({ goal }), "exploring");
+  const look = { plate: /** @type {const} */ ("all"), tab: null, camera: null };
+  const situation = { state: /** @type {const} */ ("playing"), tick: 1, end_tick: 2, words: "", state_hash: "", look };
+  assert.equal(statusOf({ ...state, running: false }, { ...page, situation })[2], "playing up to a moment");
 });
 
 test("a recording plays until it has ended", () => {

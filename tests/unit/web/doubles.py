@@ -66,6 +66,12 @@ class StubViewer:
     def fly(self, client_id: int, view: str, at_once: bool = False, turned: Camera | None = None) -> None:
         self._note("jump" if at_once else "fly", client_id, view, *[turned] * (turned is not None))
 
+    def follow(self, client_id: int, on: bool) -> None:
+        self._note("follow", client_id, on)
+
+    def replay(self, event: int) -> None:
+        self._note("replay", event)
+
     def turned(self, client_id: int) -> Camera | None:
         return self.cameras.get(client_id)
 

@@ -16,7 +16,7 @@ from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers
 from web.http.api import create_app
 from web.http.asking import Submit
-from web.http.export import Offer
+from web.http.export import Offer, Wish
 from web.latest import Latest
 from web.messages import Snapshot
 
@@ -27,15 +27,18 @@ class FewExports:
     def __init__(self) -> None:
         self.meanwhile: Callable[[], None] = lambda: None
         self.folders: list[Path] = []
+        self.wishes: list[Wish] = []
+        self.done = 0.25
 
     def offers(self) -> list[Offer]:
         refusals = {"one": None, "two": None, "never": "not today"}
         return [Offer(format=to, words=to.title(), refusal=why) for to, why in refusals.items()]
 
-    async def write(self, to: str, submit: Submit, out: Path) -> list[Path]:  # noqa: ARG002
+    async def write(self, to: str, submit: Submit, out: Path, wish: Wish) -> list[Path]:  # noqa: ARG002
         import asyncio
 
         self.folders.append(out.parent)
+        self.wishes.append(wish)
         await asyncio.to_thread(self.meanwhile)
         files = [out] if to == "one" else [out.with_stem(f"{out.stem}-{part}") for part in "ab"]
         for file in files:
@@ -116,3 +119,22 @@ def test_without_formats_there_is_nothing() -> None:
 
 def test_another_site_gets_no_export(client: TestClient) -> None:
     assert client.get("/api/export?to=one", headers={"Sec-Fetch-Site": "cross-site"}).status_code == 403
+
+
+def test_a_stretch_is_in_the_name_and_must_be_one(client: TestClient, exports: FewExports) -> None:
+    query = {"to": "one", "from_s": 2.5, "until_s": 30, "pictures": "none"}
+    assert client.get("/api/export", params=query).text.endswith("-2.5s-to-30s.one")
+    assert exports.wishes == [Wish(from_s=2.5, until_s=30.0, pictures="none")]
+    for wrong, words in ({"until_s": 2.5}, "must be after from_s, 2.5"), ({"from_s": -1}, "greater than or equal to 0"):
+        answer = client.get("/api/export", params=query | wrong)
+        assert answer.status_code == 422
+        assert words in answer.text
+    assert len(exports.wishes) == 1
+
+
+def test_how_much_is_written_can_be_asked_meanwhile(client: TestClient, exports: FewExports) -> None:
+    told: list[object] = []
+    exports.meanwhile = lambda: told.append(client.get("/api/exports/done").json())
+    assert client.get("/api/exports/done").json() is None
+    client.get("/api/export?to=one")
+    assert told == [0.25]

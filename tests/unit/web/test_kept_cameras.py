@@ -62,3 +62,18 @@ def test_those_of_pages_that_have_gone_are_forgotten():
         assert len(cameras._turned) == 2 * MOST_CLIENTS
 
     asyncio.run(run())
+
+
+def test_one_that_a_link_brings_is_taken_when_its_viewer_comes_or_at_once():
+    async def run():
+        stage, cameras = StubViewer(), Cameras()
+        assert cameras.turned(PAGE) is None
+        await cameras.turn(PAGE, "map", TURNED)
+        await arrive(cameras, stage, 3)
+        assert stage.calls == [("jump", 3, "map", TURNED)]
+        await cameras.turn(PAGE, "pose", TURNED)
+        assert stage.calls[-1] == ("fly", 3, "pose", TURNED)
+        stage.cameras[3] = TURNED
+        assert cameras.turned(PAGE) is TURNED
+
+    asyncio.run(run())

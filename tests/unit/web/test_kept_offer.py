@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -16,7 +18,8 @@ from sim2d import World, load_world
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers
 from web.http.api import create_app
-from web.http.kept_offer import Offered
+from web.http.asking import NoAnswer
+from web.http.kept_offer import KeptOffer, Offered
 from web.latest import Latest
 from web.messages import Accepted, GoOn, ReadFiled, Refused, Snapshot, UseBrain
 
@@ -57,10 +60,10 @@ class Page:
 def offering() -> Iterator[Callable[..., Page]]:
     opened: list[TestClient] = []
 
-    def start(read: Callable[[], RatSlam] | None, **facts: Any) -> Page:
+    def start(read: Callable[[], RatSlam] | None = None, **facts: Any) -> Page:
         engine, latest = StubEngine(), Latest[Snapshot]()
         latest.put(fake_snapshot(12))
-        offered = None if read is None else Offered(**{**FACTS, **facts}, read=read)
+        offered = None if read is None and not facts else Offered(**{**FACTS, **facts}, read=read)
         client = TestClient(create_app(latest, engine.submit, StubViewers(), PORT, offered), base_url=ORIGIN)
         opened.append(client.__enter__())
         return Page(client, engine)
@@ -104,18 +107,49 @@ def test_a_world_that_the_engine_has_read_is_not_read_again(offering, brain) -> 
 def test_a_run_that_was_cut_off_goes_on(offering) -> None:
     request, broken = GoOn("run", "session"), [ValueError("the run r comes out differently from tick 7 on")]
 
-    def read() -> GoOn:
+    def go_on(tell: Callable[[float], object]) -> GoOn:
+        tell(0.5)
+        shares.append(page.client.get("/api/brain/kept/done").json())
         if broken:
             raise broken.pop()
         return request
 
-    page = offering(read, run="r")
+    shares: list[object] = []
+    page = offering(run="r", go_on=go_on)
+    assert page.client.get("/api/brain/kept/done").json() is None
     assert page.told()["run"] == "r"
     assert page.refused(True) == "this run cannot go on: the run r comes out differently from tick 7 on"
     assert page.told()["run"] == "r"
     assert page.answer(True) == (200, {"used": True})
     assert page.engine.commands == [request]
     assert page.told() is None
+    assert shares == [0.5, 0.5]
+    assert page.client.get("/api/brain/kept/done").json() is None
+
+
+def test_a_run_that_nobody_waits_for_is_given_up() -> None:
+    """The request is one whose page has gone; what runs in the thread hears of it at its next tick."""
+    stopped = threading.Event()
+
+    def go_on(tell: Callable[[float], object]) -> GoOn:
+        try:
+            while True:
+                tell(0.1)
+                time.sleep(0.001)
+        finally:
+            stopped.set()
+
+    class Gone:
+        async def is_disconnected(self) -> bool:
+            return True
+
+    engine = StubEngine()
+    offer = KeptOffer(Offered(**FACTS, run="r", go_on=go_on), Latest[Snapshot](), engine.submit)
+    with pytest.raises(NoAnswer, match="nobody waits"):
+        asyncio.run(offer._go_on(go_on, Gone()))  # type: ignore[arg-type]
+    assert stopped.is_set()
+    assert offer.done is None
+    assert engine.commands == []
 
 
 def test_not_now_is_for_good(offering, brain) -> None:

@@ -13,10 +13,13 @@ from hypothesis.extra import numpy as hnp
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.frames import read_frame, read_message
 from tests.unit.web.panel_page import Page, words_of
+from web.messages import TimeView
 from web.panel import panel as module
 from web.panel.packing import framed, packed
 from web.panel.panel import Panel
 from web.switches import Switches
+
+A_PAST = TimeView(past=True, end_tick=600, end_s=60.0, begin_s=0.0, branch=1, branches=(), loop=None)
 
 
 @pytest.fixture
@@ -78,7 +81,7 @@ def test_tabs_that_are_not_open_are_told_nothing_and_told_all_when_they_open(pag
     page.reader.tabs = ("Senses",)
     assert set(page.told(snapshot)) == {"views", "cells"}
     page.reader.tabs = ("Tune", "Truth")
-    assert set(page.told(snapshot)) == {"tune", "numbers", "series"}
+    assert set(page.told(snapshot)) == {"tune", "switches", "numbers", "series"}
     page.reader.tabs = ()
     assert page.told(fake_snapshot(431)) == {}
 
@@ -102,3 +105,16 @@ def test_each_content_is_made_once_for_all_who_look(monkeypatch: pytest.MonkeyPa
     first, second = one.told(snapshot), two.told(snapshot)
     assert len(made) == sum(len(arrays) for _, arrays in first.values())
     assert {name: data for name, (data, _) in first.items()} == {name: data for name, (data, _) in second.items()}
+
+
+def test_a_moment_that_was_sought_is_told_at_once_and_the_playing_past_in_turn(page: Page) -> None:
+    snapshot = replace(fake_snapshot(430), running=False, time=A_PAST)
+    page.told(snapshot)
+
+    def soon(tick: int, *, running: bool) -> set[str]:
+        moment = replace(fake_snapshot(tick), running=running, time=A_PAST)
+        return {read_message(message)[0]["part"] for message in page.reader.news(moment, page.now_s + 0.01)}
+
+    assert "series" in soon(300, running=False)
+    assert "series" in soon(200, running=False)
+    assert soon(201, running=True) == set()

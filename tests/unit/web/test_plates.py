@@ -88,12 +88,27 @@ def test_the_pose_cells_floor_shows_what_is_switched_on(bench: Bench) -> None:
 
 
 def test_a_map_that_outgrows_its_room_gets_more(bench: Bench) -> None:
-    nodes = len([name for name in bench.nodes() if "/map/links_" not in name])
+    nodes = len([name for name in bench.nodes() if "/map/links_" not in name and "/map/nodes_" not in name])
     bench.show(fake_snapshot(450, nodes=2500), 5)
     bench.settle()
-    assert len(bench.drawn("/map/nodes")) == 2500
-    assert bench.node("/map/nodes")["colors"][2400].any()
-    assert len([name for name in bench.nodes() if "/map/links_" not in name]) == nodes
+    assert len(bench.dots()) == 2500
+    assert bench.dots("colors").any(1).all()
+    assert len([name for name in bench.nodes() if "/map/links_" not in name and "/map/nodes_" not in name]) == nodes
+
+
+def test_in_a_large_map_only_what_moves_is_sent(bench: Bench) -> None:
+    """One experience of 2,500 moves: the dots and links around it are sent again, and nothing else of the map."""
+    snapshot = fake_snapshot(450, nodes=2500)
+    bench.show(snapshot, 5)
+    bench.settle()
+    xy = snapshot.map.xy.copy()
+    xy[2000] += 0.05
+    moved = bench.show(replace(snapshot, map=replace(snapshot.map, xy=xy), tick=snapshot.tick + 1), 5)
+    assert moved["/map/nodes_7"] == 1
+    assert sum(count for name, count in moved.items() if name.startswith("/map/nodes_")) == 1
+    assert sum(count for name, count in moved.items() if name.startswith("/map/links_")) <= 3
+    at = bench.viewer._scenery.map.fit.to_plate(xy[2000:2001])[0]
+    assert np.abs(bench.dots()[2000, :2].astype(float) - at).max() < 0.02
 
 
 def test_packets_bear_their_ids_whatever_their_rank(bench: Bench) -> None:

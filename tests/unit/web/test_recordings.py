@@ -28,13 +28,23 @@ class Sender:
     def send(self, name: str, body: bytes, **headers: str) -> Any:
         return self.client.post("/api/recordings", params={"name": name}, content=body, headers={**KIND, **headers})
 
+    def put(self, name: str, body: bytes, folder: str = "0123abcd", **headers: str) -> Any:
+        params = {"name": name, "of": "tub", "folder": folder}
+        return self.client.put("/api/recordings", params=params, content=body, headers={**KIND, **headers})
+
+    def play_folder(self, folder: str = "0123abcd") -> Any:
+        params = {"name": "tub", "folder": folder}
+        return self.client.post("/api/recordings", params=params, headers=KIND)
+
     @property
     def files(self) -> list[str]:
         return sorted(path.name for path in self.folder.rglob("*") if path.is_file())
 
 
 def opened(path: Path) -> object:
-    """A file that begins with `good` can be played."""
+    """A file that begins with `good` can be played, and a folder with such a file in it."""
+    if path.is_dir():
+        return [opened(file) for file in sorted(path.rglob("*")) if file.is_file()]
     if not path.read_bytes().startswith(b"good"):
         raise ValueError(f"{path}: line 1 is no recording")
     return path.name
@@ -104,3 +114,62 @@ def test_too_much_and_other_kinds_are_refused(sender: Sender, monkeypatch: pytes
     monkeypatch.setattr("web.http.recordings.MAX_RECORDING_BYTES", 10)
     assert sender.send("a.mcap", b"good" + bytes(10)).status_code == 413
     assert sender.files == []
+
+
+# ------------------------------------------------------------ folders
+
+
+def test_a_folder_is_sent_file_by_file_and_played(sender: Sender) -> None:
+    sender.send("walk.mcap", b"good")
+    assert sender.put("manifest.json", b"good").json() == {"room": MAX_RECORDING_BYTES - 4}
+    assert sender.put("images/1.jpg", b"good 1").status_code == 200
+    assert sender.put("empty.txt", b"").status_code == 200, "an empty file belongs to it, too"
+    assert sender.files == ["1.jpg", "empty.txt", "manifest.json", "walk.mcap"]
+    sender.put("empty.txt", b"good")
+    assert sender.play_folder().status_code == 200
+    assert sender.files == ["1.jpg", "empty.txt", "manifest.json"], "what played before is deleted"
+    played = sender.engine.commands[-1]
+    assert isinstance(played, PlayRecording)
+    assert played.player == ["empty.txt", "1.jpg", "manifest.json"]
+    home = next(path for path in sender.folder.rglob("tub"))
+    assert (home / "images" / "1.jpg").read_bytes() == b"good 1"
+
+
+def test_a_folder_that_cannot_be_played_is_refused_and_deleted(sender: Sender) -> None:
+    sender.send("walk.mcap", b"good")
+    sender.put("a.txt", b"bad")
+    answer = sender.play_folder()
+    assert answer.status_code == 422
+    assert "line 1 is no recording" in answer.json()["detail"][0]["reason"]
+    assert sender.files == ["walk.mcap"]
+    assert "no file of this folder has been sent" in sender.play_folder().json()["detail"][0]["reason"]
+
+
+def test_another_folder_takes_the_place_of_one_that_was_not_played(sender: Sender) -> None:
+    sender.put("a.txt", b"good")
+    sender.put("b.txt", b"good", folder="ffff0000")
+    assert sender.files == ["b.txt"]
+    assert sender.play_folder().status_code == 422
+    assert sender.play_folder("ffff0000").status_code == 200
+
+
+@pytest.mark.parametrize(
+    "name", ["../up", "a/../../up", "/up", "a//up", "a\\..\\..\\up", "/".join("abcdefghi"), "a\x07b"]
+)
+def test_no_file_leads_out_of_the_folder(sender: Sender, name: str) -> None:
+    answer = sender.put(name, b"good")
+    assert answer.status_code == 422
+    assert "plain names" in answer.json()["detail"][0]["reason"]
+    assert sender.files == []
+
+
+def test_a_folder_has_limits(sender: Sender, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("web.http.sent_folder.MAX_RECORDING_BYTES", 10)
+    monkeypatch.setattr("web.http.sent_folder.MOST_FILES", 3)
+    assert sender.put("a", b"good").json() == {"room": 6}
+    assert sender.put("b", b"good").json() == {"room": 2}
+    assert sender.put("c", b"good").status_code == 413
+    assert "more than 3 files" in sender.put("d", b"").json()["detail"][0]["reason"]
+    assert sender.put("e", b"good", **{"Content-Type": "text/plain"}).status_code == 415
+    assert sender.put("e", b"good", **{"Sec-Fetch-Site": "cross-site"}).status_code == 403
+    assert sender.put("e", b"good", folder="../..").status_code == 422

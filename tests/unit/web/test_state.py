@@ -24,6 +24,7 @@ def test_has_the_fields_of_the_contract_and_no_others(snapshot):
     assert list(fields) == [
         "tick", "time_s", "mode", "running", "speed", "world", "seed", "robot", "estimate", "pose_cells", "views",
         "experiences", "links", "relocalisations", "goal", "error_m", "living", "trial",
+        "lesson", "until", "beside",
     ]  # fmt: skip
     assert list(fields["robot"]) == list(fields["estimate"]) == ["x", "y", "heading_rad"]
     assert list(fields["pose_cells"]) == ["shape", "packets"]

@@ -41,9 +41,13 @@ def test_greets_then_tells_the_state_and_the_events(server):
             "office",
             "inspected",
             "walk",
+            "vision",
+            "pairs",
+            "closure",
             "moving",
             "time",
             "recording",
+            "situation",
         }
         assert until(socket, "events")["fresh"]
 

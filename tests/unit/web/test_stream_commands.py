@@ -33,6 +33,12 @@ def test_a_command_with_an_id_is_answered(server):
         ('{"type": "dance", "id": 1}', 422, "is not a command"),
         ('{"type": "set_goal", "x": 1, "id": 1}', 422, "y is missing"),
         ('{"type": "view", "name": "moon", "id": 1}', 422, "view takes name, one of: all, office"),
+        ('{"type": "camera", "name": "map", "at": {"position": [1, 2]}, "id": 1}', 422, "camera takes at: "),
+        (
+            '{"type": "camera", "name": "moon", "at": {"position": [1, 2, 3], "look_at": [0, 0, 0], "fov_rad": 0.5}, "id": 1}',
+            422,
+            "camera takes name, one of: all, office",
+        ),
         ('{"type": "theme", "name": "dark", "more": 1, "id": 1}', 422, "theme takes name, one of: dark, light"),
     ],
 )

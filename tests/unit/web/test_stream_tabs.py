@@ -35,7 +35,7 @@ def test_only_open_tabs_are_told_and_each_page_has_its_own(server):
         two.send_text('{"type": "tabs", "names": ["Tune", "Memory"]}')
         assert parts(two, 3) == ["switches", "memory", "tune"]
         one.send_text('{"type": "tabs", "names": ["Truth"]}')
-        assert parts(one, 2) == ["numbers", "series"]
+        assert parts(one, 3) == ["switches", "numbers", "series"]
         two.send_text('{"type": "tabs", "names": []}')
         server.latest.put(fake_snapshot(13))
         assert until(two, "state")["state"]["tick"] == 13

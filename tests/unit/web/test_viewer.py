@@ -157,7 +157,7 @@ def test_the_newest_wins_and_rates_are_kept(bench: Bench) -> None:
     assert not [name for name, _ in about if name.startswith("/office/furniture")]
     assert 10 <= about["/pose_cells/voxels", "batched_positions"] <= 13
     assert about["/pose_cells/floor", "_data"] <= 7
-    assert about["/map/nodes", "points"] <= 5
+    assert 0 < about["/map/nodes_0", "points"] <= 5
     bench.settle()  # what was not due is drawn later, without another snapshot
     assert bench.show(as_new(fake_snapshot(540)), 5.0) == Counter()
 
@@ -176,8 +176,8 @@ def test_nodes_and_backlog_stay_the_same_over_two_hundred_snapshots(bench: Bench
 
 
 def count(bench: Bench) -> int:
-    """The number of nodes without those for the map's links, of which a larger map has more."""
-    return sum("/map/links_" not in name for name in bench.nodes())
+    """The number of nodes without those for the map's links and dots, of which a larger map has more."""
+    return sum("/map/links_" not in name and "/map/nodes_" not in name for name in bench.nodes())
 
 
 def test_unwatched_it_draws_nothing(bench: Bench) -> None:
@@ -195,7 +195,10 @@ def test_a_throttle_waits_its_turn_and_forgets_on_request() -> None:
     assert throttle.offer(1.0, second)
     assert not throttle.offer(1.05, first)
     assert throttle.waiting
+    throttle.hurry()
+    assert not throttle.offer(1.05, second)  # nothing new
+    assert throttle.offer(1.05, first)
     throttle.forget()
-    assert throttle.offer(1.05, second)
+    assert throttle.offer(1.05, first)
     assert not throttle.waiting
-    assert shown == [first, second, second]
+    assert shown == [first, second, first, first]

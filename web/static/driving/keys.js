@@ -5,10 +5,10 @@ import { directionOf, meaningOf } from "../model/key_meanings.js";
 
 // Widgets that use arrows, space or letters themselves.
 const TYPING =
-  "input:not([type='checkbox']), textarea, select, [contenteditable='true'], [role='textbox'], [role='combobox'], [role='listbox'], [role='application']";
+  "input:not([type='checkbox'], [type='radio']), textarea, select, [contenteditable='true'], [role='textbox'], [role='combobox'], [role='listbox'], [role='application']";
 const ARROWS =
-  "[role='slider'], [role='tab'], [role='radio'], [role='menuitem'], [role='spinbutton'], [role='separator']";
-const PRESSING = "button, summary, a[href], input[type='checkbox'], [role='button'], [role='tab']";
+  "input[type='radio'], [role='slider'], [role='tab'], [role='radio'], [role='menuitem'], [role='spinbutton'], [role='separator']";
+const PRESSING = "button, summary, a[href], input:is([type='checkbox'], [type='radio']), [role='button'], [role='tab']";
 
 export class Keys {
   /**

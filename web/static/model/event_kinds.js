@@ -14,7 +14,7 @@ const KINDS = {
   arrived: { name: "arrived", weight: 4, d: "M-6 0l4 5 8-10", open: true },
   unreachable: { name: "no way", weight: 4, d: "M-5-5l10 10M5-5l-10 10", open: true },
   packet: { name: "packet put in", weight: 2, d: "M-5-5h10v10h-10z" },
-  brain: { name: "brain loaded", weight: 3, d: "M-5-5h10v10h-10z", open: true },
+  brain: { name: "brain", weight: 3, d: "M-5-5h10v10h-10z", open: true },
   office: { name: "office changed", weight: 1, d: "M0-6v12", open: true },
   parameter: { name: "setting", weight: 1, d: "M0-6v12M-3-6h6M-3 6h6", open: true },
   link: { name: "link lost", weight: 2, d: "M-4-4l8 8M-4 4l8-8", open: true },
@@ -29,6 +29,7 @@ const KINDS = {
   closure: { name: "loop closed", weight: 2, d: "M5-3a6 6 0 1 0 0 6M5-3v-4M5-3h-4", open: true },
   branch: { name: "branch", weight: 4, d: "M-4 7V-7M-4 3c0-6 8-3 8-10", open: true },
   recording: { name: "recording", weight: 5, d: "M-6-6v12M0-6v12M6-6v12M-6 0h12", open: true },
+  lesson: { name: "lesson", weight: 5, d: "M-7-2l7-4 7 4-7 4zM-4 0v4c2 2 6 2 8 0v-4", open: true },
 };
 const UNKNOWN = { weight: 1, d: "M0-5l5 5-5 5-5-5z", open: true };
 

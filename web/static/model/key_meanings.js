@@ -33,7 +33,7 @@ export function meaningOf(event, where) {
   if (event.ctrlKey || event.metaKey || event.altKey || event.isComposing || where.typing) return null;
   const drive = DRIVE[event.code];
   if (drive && !where.dialog) return event.code.startsWith("Arrow") && where.arrows ? null : { drive };
-  const act = event.key === "?" || event.key === "Escape" ? event.key : event.key.toLowerCase();
+  const act = event.key.length > 1 ? event.key : event.key.toLowerCase();
   if (where.dialog) return act === "?" ? { act } : null;
   return act === " " && where.pressing ? null : { act };
 }

@@ -13,14 +13,14 @@ const GOALS = {
 
 /**
  * @param {Pick<State, "running" | "mode" | "goal" | "pose_cells">} state
- * @param {Pick<PageFields, "fault" | "lost"> & Partial<Pick<PageFields, "recording">> & { time?: TimeFields | null }} page
+ * @param {Pick<PageFields, "fault" | "lost"> & Partial<Pick<PageFields, "recording" | "situation">> & { time?: TimeFields | null }} page
  * @returns {Chip}
  */
 export function statusOf(state, page) {
   if (page.time?.past) return ["clock", "past", state.running ? "the past, played" : "the past"];
   if (page.fault) return ["warn", "bad", state.running ? "in a long tick" : "stopped by a fault"];
   if (page.recording?.over) return ["check", "", "the recording has ended"];
-  if (!state.running) return ["pause", "", "paused"];
+  if (!state.running) return atRest(page);
   const packets = state.pose_cells.packets.length;
   if (page.lost) return ["lost", "lost", packets > 1 ? `lost: ${packets} packets` : "lost"];
   if (page.recording) return ["play", "good", "playing a recording"];
@@ -28,6 +28,10 @@ export function statusOf(state, page) {
   if (state.goal && state.mode === "goal") return GOALS[state.goal.state];
   return ["compass", "good", "exploring"];
 }
+
+/** @param {Partial<Pick<PageFields, "situation">>} page @returns {Chip} */
+const atRest = ({ situation }) =>
+  situation?.state === "playing" ? ["play", "good", "playing up to a moment"] : ["pause", "", "paused"];
 
 /** @param {Goal} goal */
 export function goalWords({ state, experience, remaining_m, eta_s }) {

@@ -1,6 +1,7 @@
 // The page's websocket: it reconnects by itself, hands out what arrives, sends commands and matches their answers.
 
 import { unframed } from "../model/frames.js";
+import { isLook, looksOn } from "../model/watching.js";
 
 const RETRY_MS = [150, 400, 800, 1000];
 
@@ -9,6 +10,7 @@ export class Connection extends EventTarget {
   constructor(page) {
     super();
     this.page = page;
+    this.watches = looksOn(page); // it only looks on: whatever steers is not even sent
     this.open = false;
     /** @type {Map<number, { resolve: (answer: Answer) => void, quiet: boolean }>} */
     this.waiting = new Map(); // by the id of the command
@@ -73,8 +75,9 @@ export class Connection extends EventTarget {
    * @param {(Command | PageMessage) & { id?: number }} command
    */
   tell(command) {
-    if (this.open) this.socket.send(JSON.stringify(command));
-    return this.open;
+    const goes = this.open && (!this.watches || isLook(command.type));
+    if (goes) this.socket.send(JSON.stringify(command));
+    return goes;
   }
 
   /**

@@ -6,14 +6,16 @@ import { sentence } from "../model/sentences.js";
  * Resolves to the server's answer. If something was wrong, `wrong` says what, in sentences, and `field` says where.
  * @param {string} path
  * @param {object} body
+ * @param {AbortSignal} [signal] gives it up
  * @returns {Promise<Told>}
  */
-export async function post(path, body) {
+export async function post(path, body, signal) {
   try {
     const answer = await fetch(path, {
       method: "POST",
       headers: { "Content-Type": "application/json" },
       body: JSON.stringify(body),
+      signal,
     });
     const told = await answer.json();
     if (answer.ok) return told;

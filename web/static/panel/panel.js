@@ -33,7 +33,8 @@ export class Panel {
     /** @type {Ask} */
     const ask = (command) => link.ask(command);
     const inspect = (/** @type {Record<string, number>} */ wish) => void ask({ type: "inspect", ...wish });
-    this.truth = new TruthTab();
+    this.truth = new TruthTab(ask);
+    this.tuning = new TuneTab(ask);
     /** @type {Record<string, { box: HTMLElement, parts: Parts }>} */
     this.views = {
       Senses: new SensesTab(inspect),
@@ -42,8 +43,10 @@ export class Panel {
       Tick: new TickTab(ask),
       Truth: this.truth,
       Office: new OfficeTab(ask),
-      Tune: new TuneTab(ask),
+      Tune: this.tuning,
     };
+    /** @type {Map<string, HTMLElement>} what each tab opens */
+    this.panels = new Map();
     this.tabs = new TabList(Object.keys(this.views), (name) => this.open(name));
     /** @type {Map<string, Message>} the last message of each part, with all its arrays */
     this.told = new Map();
@@ -72,23 +75,34 @@ export class Panel {
       make("button", { type: "button", className: "bare close" }, icon("close")),
     );
     close.addEventListener("click", () => this.show(false));
-    const panels = Object.entries(this.views).map(([name, view]) => {
-      Object.assign(view.box, { id: `panel-${name.toLowerCase()}`, tabIndex: 0 });
-      view.box.classList.add("tabpanel");
-      view.box.setAttribute("role", "tabpanel");
-      view.box.setAttribute("aria-labelledby", `tab-${name.toLowerCase()}`);
-      return view.box;
-    });
-    this.box.append(make("div", { className: "head" }, this.tabs.box, close), ...panels);
+    for (const [name, view] of Object.entries(this.views)) {
+      // On a page that only looks on, a fieldset disables whatever there is to press or to set.
+      const box = this.link.watches ? make("div", {}, make("fieldset", { disabled: true }, view.box)) : view.box;
+      Object.assign(box, { id: `panel-${name.toLowerCase()}`, tabIndex: 0 });
+      box.classList.add("tabpanel");
+      box.setAttribute("role", "tabpanel");
+      box.setAttribute("aria-labelledby", `tab-${name.toLowerCase()}`);
+      this.panels.set(name, box);
+    }
+    this.box.append(make("div", { className: "head" }, this.tabs.box, close), ...this.panels.values());
   }
 
   /** @param {string} name */
   open(name) {
     this.opened = name;
     this.tabs.select(name);
-    for (const [other, { box }] of Object.entries(this.views)) box.hidden = other !== name;
+    for (const [other, box] of this.panels) box.hidden = other !== name;
     this.tell();
   }
+
+  /** Opens Tune at one parameter, as soon as it has come. @param {string} name */
+  tune(name) {
+    this.open("Tune");
+    this.tuning.at(name);
+  }
+
+  /** The value of a parameter as it is now; null: not known here. @param {string} name */
+  valueOf = (name) => this.tuning.valueOf(name);
 
   /** Hides the tabs that have nothing to show, and shows the others. @param {string[]} names */
   hide(names) {

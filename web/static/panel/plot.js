@@ -1,6 +1,7 @@
 // A plot against the session's time, drawn by uPlot, which is fetched when the first plot is made.
 
 import { make } from "../elements/elements.js";
+import { saveButtons } from "../share/pictures.js";
 
 /** @typedef {{ label: string, colour: string, digits: number, dash?: number[] }} Line `colour`: a custom property of the page */
 
@@ -13,6 +14,7 @@ export class Plot {
     this.lines = lines;
     this.height = height;
     this.box = make("div", { className: "plot" });
+    this.box.append(saveButtons(words, () => ({ columns: this.data, lines })));
     this.box.setAttribute("role", "group");
     this.box.setAttribute("aria-label", words);
     /** @type {import("../vendor/uplot/uPlot.esm.js").default | null} */

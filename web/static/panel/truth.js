@@ -3,11 +3,14 @@
 import { make } from "../elements/elements.js";
 import { Table, heading, note, say } from "./parts.js";
 import { Plot } from "./plot.js";
+import { SwitchList } from "./switch_list.js";
 
 const DASH = [6, 4];
 
 export class TruthTab {
-  constructor() {
+  /** @param {import("./panel.js").Ask} ask */
+  constructor(ask) {
+    this.switches = new SwitchList("Truth", ask);
     this.table = new Table();
     this.errors = new Plot(
       "Errors against time",
@@ -39,6 +42,7 @@ export class TruthTab {
       "div",
       {},
       note("The robot knows none of this."),
+      this.switches.box,
       this.table.box,
       this.errors.box,
       heading("What it has stored"),
@@ -66,6 +70,7 @@ export class TruthTab {
 
   get parts() {
     return {
+      switches: this.switches.show.bind(this.switches),
       /** @param {{ table: import("./parts.js").TableData }} data */
       numbers: ({ table }) => this.table.show(table),
       series: this.series.bind(this),

@@ -31,6 +31,7 @@ export class TuneTab {
       this.groups.addEventListener(kind, (event) => this.explain(/** @type {Element} */ (event.target)));
     /** @type {Map<string, Knob>} */
     this.knobs = new Map();
+    this.sought = ""; // which one is to have the focus as soon as it is there
   }
 
   /** @param {{ knobs: Parameter[] }} data */
@@ -48,6 +49,8 @@ export class TuneTab {
     });
     this.groups.replaceChildren(...drawn);
     this.find();
+    if (this.sought && document.activeElement === this.search) this.at(this.sought);
+    this.sought = "";
   }
 
   /** Shows what the search finds; without a search, groups are open or closed as people left them. */
@@ -70,6 +73,21 @@ export class TuneTab {
     }
     const words = count === 1 ? "1 parameter" : `${count} parameters`;
     say(this.found, search ? (count ? words : `nothing is called “${search}”`) : words);
+  }
+
+  /** Shows one parameter alone, and puts the focus on it. @param {string} name */
+  at(name) {
+    this.search.value = name;
+    this.find();
+    const knob = this.knobs.get(name);
+    if (!knob) this.sought = name;
+    (knob?.input ?? this.search).focus();
+  }
+
+  /** @param {string} name */
+  valueOf(name) {
+    const value = this.knobs.get(name)?.parameter.value;
+    return value === undefined ? null : String(value);
   }
 
   /** @param {Element} target */

@@ -22,7 +22,7 @@ export class Source {
     this.shown = now;
     document.body.dataset.source = recording ? "recording" : "office";
     document.body.dataset.truth = String(truth);
-    find(document, '[data-view="office"]').textContent = recording ? "True path" : "Office";
+    find(document, 'button[data-view="office"]').textContent = recording ? "True path" : "Office";
     this.panel.hide([...(recording ? OFFICE_TABS : []), ...(truth ? [] : ["Truth"])]);
     $("restart-words").textContent = recording ? "Play from the beginning with seed" : "Restart with seed";
   }

@@ -63,9 +63,10 @@ function picture(side, frame) {
     svg("path", { d: dots.join(""), class: "dots" }),
     svg("circle", { cx: x, cy: -y, r: 0.28, class: "robot" }),
   );
+  const { map: error, odometry } = side.error_m;
+  const errors = error === null || odometry === null ? [] : [error, odometry];
   const rows = [
-    ["error of the map", `${side.error_m.map.toFixed(2)} m`],
-    ["of odometry", `${side.error_m.odometry.toFixed(2)} m`],
+    ...errors.map((value, k) => [k ? "of odometry" : "error of the map", `${value.toFixed(2)} m`]),
     ["experiences, links", `${side.experiences}, ${side.links}`],
     [
       "packet x′ y′ θ′",

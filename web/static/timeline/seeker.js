@@ -1,4 +1,8 @@
-// Asks for moments of the past, one at a time: while one is on its way, only the newest wish waits.
+// Asks for moments of the past, one at a time: while one is on its way, only the newest wish waits. A moment that takes long is
+// given up for a newer wish.
+
+const PATIENCE_MS = 150;
+const LOOK_MS = 30;
 
 export class Seeker {
   /** @param {import("../net/connection.js").Connection} link */
@@ -25,8 +29,19 @@ export class Seeker {
     while (this.wish) {
       const wish = this.wish;
       this.wish = null;
-      await this.link.ask(wish);
+      await this.answered(wish);
     }
     this.busy = false;
+  }
+
+  /** Waits for the answer, or until a newer wish has waited for long enough. @param {Seek} wish */
+  async answered(wish) {
+    let here = false;
+    const answer = this.link.ask(wish).then(() => {
+      here = true;
+    });
+    const asked = performance.now();
+    while (!here && !(this.wish && performance.now() - asked > PATIENCE_MS))
+      await Promise.race([answer, new Promise((resolve) => setTimeout(resolve, LOOK_MS))]);
   }
 }

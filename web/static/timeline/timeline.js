@@ -7,6 +7,7 @@ import { svg } from "../elements/icons.js";
 import { clock, tickTimesIn } from "../model/clock.js";
 import { nameOf } from "../model/event_kinds.js";
 import { fine, labelsOf, marksOf, parted, whole, within, words, zoomed } from "../model/timeline.js";
+import { Bookmarks } from "./bookmarks.js";
 import { Comparison } from "./comparison.js";
 import { EventList } from "./event_list.js";
 import { legend, markAt } from "./events.js";
@@ -41,10 +42,12 @@ export class Timeline {
     this.due = undefined;
     /** @type {import("../model/timeline.js").Axis} */
     this.x = () => 0; // where a time is
+    this.watches = link.watches;
     this.seeker = new Seeker(link);
     this.list = new EventList(this);
     this.tools = new Tools(this, link);
     this.comparison = new Comparison(this, link);
+    this.bookmarks = new Bookmarks(this, link);
     new Pointers(this);
     new ResizeObserver(() => this.redraw(true)).observe(this.place);
     for (const kind of /** @type {const} */ (["pointermove", "pointerdown"]))
@@ -99,6 +102,7 @@ export class Timeline {
     if (time) {
       this.tools.show(time, time_s);
       this.comparison.show(time);
+      this.bookmarks.show(time);
     }
     this.redraw(Boolean(moved || jumped || looped));
   }
@@ -114,7 +118,7 @@ export class Timeline {
 
   /** Shows the moment under the pointer. @param {number} time_s */
   drag(time_s) {
-    if (!this.time) return;
+    if (!this.time || this.watches) return;
     this.dragged = Math.min(this.end_s, Math.max(this.time.begin_s, time_s));
     this.seeker.seek({ time_s: this.dragged });
     this.redraw(true);
@@ -180,6 +184,7 @@ export class Timeline {
       line(inside(0), inside(this.shown_s), y, "done"),
       ...this.loopMarks(y, inside),
       ...tickTimesIn(from, to, width).map((time) => tick(time ? x(time) : 0, height - 4, time)),
+      ...this.bookmarks.marks(x, y, from, to),
       ...marksOf(events, x).map(({ kind, at }) => markAt(kind, at, y)),
       ...labelsOf(events, x, width).map(({ kind, at }) => label(at, y - 13, kind)),
       svg("path", { d: `M${x(this.shown_s)} ${y - 12}v24`, class: "now" }),

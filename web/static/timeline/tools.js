@@ -66,6 +66,10 @@ export class Tools {
     for (const id of /** @type {const} */ (["past", "go-on", "now"])) $(id).hidden = !time.past;
     find($("past"), "b").textContent = fine(time_s);
     $("past").title = `${fine(time_s)} of ${clock(time.end_s)}`;
+    const done = /** @type {HTMLProgressElement} */ ($("time-done"));
+    done.hidden = !time.doing;
+    done.value = time.done;
+    done.setAttribute("aria-label", time.doing || "nothing");
     $("loop-off").hidden = !time.loop && this.a === null;
     const told = JSON.stringify([time.branch, time.branches.length, time.sides.length]);
     if (told !== this.told) this.branches(time);

@@ -28,14 +28,16 @@ export class Viewer extends EventTarget {
     link.on("hello", (/** @type {{ launch: number | string }} */ detail) => this.hello(detail));
   }
 
-  /** @param {ViewName} view */
-  show(view) {
+  /** @param {ViewName} view @param {CameraAt | null} camera where it had been turned from there */
+  show(view, camera = null) {
     this.view = view;
     this.mark();
-    this.link.tell({ type: "view", name: view });
+    this.dispatchEvent(new Event("view"));
+    this.link.tell(camera ? { type: "camera", name: view, at: camera } : { type: "view", name: view });
   }
 
   mark() {
+    document.body.dataset.plate = this.view;
     for (const button of this.buttons) button.setAttribute("aria-pressed", String(button.dataset.view === this.view));
   }
 

@@ -1,7 +1,7 @@
 // Files dropped on the page or chosen: worlds and floor plans. The server says what is wrong with one.
 
 import { $ } from "../elements/dom.js";
-import { isRecording, play } from "../recordings/upload.js";
+import { chosen, dropped, isRecording, play, playFolder } from "../recordings/upload.js";
 import { ended, megabytes } from "../model/sentences.js";
 import { toast } from "../elements/toasts.js";
 
@@ -22,6 +22,8 @@ export class Files {
     /** @type {Point | null} */
     this.size = null; // of the picture, pixels
     this.busy = false;
+    /** @type {(file: File) => Promise<boolean>} true: the file was something else, and has been taken */
+    this.taken = async () => false;
     this.dialog = $("open-dialog");
     this.catchDrops(window);
     $("open-choose").addEventListener("click", () => $("open-files").click());
@@ -29,6 +31,13 @@ export class Files {
       const input = $("open-files");
       if (input.files?.length) this.offer([...input.files]);
       input.value = "";
+    });
+    $("open-folder").addEventListener("click", () => $("open-folder-files").click());
+    $("open-folder-files").addEventListener("change", () => {
+      const input = $("open-folder-files");
+      const files = [...(input.files ?? [])];
+      input.value = "";
+      if (files.length) this.offerFolder(async () => chosen(files));
     });
     $("open-scale").addEventListener("submit", (event) => {
       event.preventDefault();
@@ -48,7 +57,11 @@ export class Files {
     drop.addEventListener("drop", (event) => {
       event.preventDefault();
       drop.hidden = true;
-      if (!this.busy) this.offer([...(event.dataTransfer?.files ?? [])]);
+      if (this.busy) return;
+      const entries = [...(event.dataTransfer?.items ?? [])].map((item) => item.webkitGetAsEntry?.());
+      const folder = entries.find((entry) => entry?.isDirectory);
+      if (folder) this.offerFolder(() => dropped(/** @type {FileSystemDirectoryEntry} */ (folder)), entries.length);
+      else this.offer([...(event.dataTransfer?.files ?? [])]);
     });
   }
 
@@ -78,6 +91,7 @@ export class Files {
   /** @param {File[]} files */
   async offer(files) {
     this.files = files;
+    if (files.length === 1 && (await this.taken(files[0]))) return this.dialog.close();
     this.open();
     if (files.length > MOST_FILES)
       return this.fail(`${files.length} files at once; at most ${MOST_FILES} that belong together.`);
@@ -109,16 +123,40 @@ export class Files {
         : "One pixel of most robot maps is 0.05 m.";
   }
 
+  /** A folder is a recording. @param {() => Promise<import("../recordings/upload.js").Folder>} read @param {number} count of what was dropped */
+  async offerFolder(read, count = 1) {
+    this.files = [];
+    this.open();
+    if (count > 1) return this.fail("More than one thing beside a folder; drop the folder alone.");
+    this.wait("Looking into the folder …");
+    try {
+      const folder = await read();
+      const wrong = await playFolder(folder, (words) => this.wait(words));
+      return this.played(folder.name, wrong);
+    } catch {
+      return this.played("", "The folder cannot be read.");
+    }
+  }
+
   /** @param {File} file */
   async play(file) {
+    this.wait(`Looking over ${file.name} …`);
+    return this.played(file.name, await play(file));
+  }
+
+  /** @param {string} words what is being done */
+  wait(words) {
+    if (!this.busy) this.say("busy");
     this.busy = true;
-    this.say("busy");
-    $("open-doing").textContent = `Looking over ${file.name} …`;
-    const wrong = await play(file);
+    $("open-doing").textContent = words;
+  }
+
+  /** @param {string} name @param {string} wrong */
+  played(name, wrong) {
     this.busy = false;
     if (wrong) return this.fail(wrong);
     this.dialog.close();
-    return toast(`${file.name} plays.`);
+    return toast(`${name} plays.`);
   }
 
   /** @param {File[]} files @param {number | null} scale */

@@ -5,6 +5,8 @@ import { experiences, keptWords } from "../model/sentences.js";
 import { post } from "../net/post.js";
 import { toast } from "../elements/toasts.js";
 
+const LOOK_MS = 400;
+
 export class KeptBrain {
   /** @param {(world: string) => Promise<boolean>} mayLeave whether the office as it is now may be left for that world */
   constructor(mayLeave) {
@@ -14,6 +16,9 @@ export class KeptBrain {
     /** @type {KeptOffer | null} */
     this.kept = null;
     $("kept-wake").addEventListener("click", () => this.wake());
+    /** @type {AbortController | null} */
+    this.going = null; // on with a run
+    $("kept-cancel").addEventListener("click", () => this.going?.abort());
     $("kept-not-now").addEventListener("click", () => this.answer(false));
     document.addEventListener("visibilitychange", () => !document.hidden && !this.box.hidden && this.look());
   }
@@ -52,12 +57,45 @@ export class KeptBrain {
 
   /** @param {boolean} use */
   async answer(use) {
+    if (use && this.kept?.run) return this.goOn(this.kept);
     for (const button of this.box.querySelectorAll("button")) button.disabled = true;
     const { wrong } = await post("/api/brain/kept", { use });
     for (const button of this.box.querySelectorAll("button")) button.disabled = false;
     if (wrong) toast(wrong, { bad: true });
-    else if (use && this.kept?.run) toast(`The run in ${this.kept.title} goes on where it was.`);
     else if (use && this.kept) toast(`Started anew in ${this.kept.title} with ${experiences(this.kept.experiences)}.`);
     await this.look();
+  }
+
+  // What led to where the run was is run again, which takes a while after a long run.
+  /** @param {KeptOffer} kept */
+  async goOn(kept) {
+    this.going = new AbortController();
+    const { signal } = this.going;
+    this.waits(true);
+    const looking = setInterval(() => this.far(), LOOK_MS);
+    const { wrong } = await post("/api/brain/kept", { use: true }, signal);
+    clearInterval(looking);
+    this.going = null;
+    this.waits(false);
+    if (signal.aborted) toast("The run stays where it was left.");
+    else if (wrong) toast(wrong, { bad: true });
+    else toast(`The run in ${kept.title} goes on where it was.`);
+    await this.look();
+  }
+
+  /** @param {boolean} going */
+  waits(going) {
+    $("kept-wake").hidden = $("kept-not-now").hidden = going;
+    $("kept-cancel").hidden = $("kept-done").hidden = !going;
+    $("kept-done").removeAttribute("value");
+    if (going) $("kept-words").textContent = "What led to where it was is run again.";
+  }
+
+  async far() {
+    const share = await fetch("/api/brain/kept/done").then(
+      (answer) => answer.json(),
+      () => null,
+    );
+    if (share) $("kept-done").value = share;
   }
 }

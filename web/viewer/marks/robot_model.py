@@ -10,16 +10,17 @@ from numpy.typing import NDArray
 
 from web.viewer.primitives import meshes
 from web.viewer.primitives.labels import add_mesh
-from web.viewer.primitives.palette import Palette
+from web.viewer.primitives.palette import Palette, Rgb
 
 ENLARGED = 1.25
-SMALLEST = 0.13  # plate units: stays visible in large worlds
+SMALLEST = 0.19  # plate units: stays visible in large worlds, however small they are drawn
 
 
 class RobotModel:
-    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
+    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str, plain: Rgb | None = None) -> None:
+        """plain: one colour for all of it, and then it is hidden at first."""
         self.radius = 0.25
-        self.frame = scene.add_frame(name, show_axes=False)
+        self.frame = scene.add_frame(name, show_axes=False, visible=plain is None)
         circle = meshes.circle(1.0)
         wheels = [meshes.rounded_rectangle(0.62, 0.2, 0.09, 4, centre=(0.0, side)) for side in (1.0, -1.0)]
         lens = meshes.rounded_rectangle(0.36, 0.5, 0.1, 4, centre=(0.72, 0.0))
@@ -30,6 +31,8 @@ class RobotModel:
             "left": (meshes.extruded(wheels[0], 0.0, 0.5), palette.tyre),
             "right": (meshes.extruded(wheels[1], 0.0, 0.5), palette.tyre),
         }
+        if plain is not None:
+            parts = {"body": (meshes.joined(*(mesh for mesh, _ in parts.values())), plain)}
         self.parts = [
             add_mesh(scene, f"{name}/{part}", mesh, palette.lit(colour), scale=self.radius)
             for part, (mesh, colour) in parts.items()

@@ -17,7 +17,8 @@ PILL, BELOW, PILL_Z = 0.4, 0.5, 0.2
 class TagMarks:
     """More marks are made when there are more tags; those that are not needed are hidden."""
 
-    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
+    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str, pill_z: float = PILL_Z) -> None:
+        self._pill_z = pill_z
         self._scene, self._palette, self._name = scene, palette, name
         self._rings: list[viser.FrameHandle] = []
         self._pills: list[Pill] = []
@@ -34,7 +35,7 @@ class TagMarks:
                 self._add(k)
             self._rings[k].position = (x, y, 0.0)
             self._rings[k].visible = True
-            self._pills[k].show(name, self._palette.sheet, (x, y - BELOW, PILL_Z))
+            self._pills[k].show(name, self._palette.sheet, (x, y - BELOW, self._pill_z))
         for k in range(len(names), len(self._rings)):
             self._rings[k].visible = False
             self._pills[k].hide()

@@ -13,7 +13,7 @@ from web.viewer.fits.office_fit import METRE_HIGH, OfficeFit
 from web.viewer.plates.sight import inside, solid_runs
 from web.viewer.primitives import images, meshes
 from web.viewer.primitives.labels import add_mesh, add_picture
-from web.viewer.primitives.palette import Palette, Rgb, mix
+from web.viewer.primitives.palette import Palette, Rgb
 
 Array = NDArray[np.float64]
 FLOOR_PX_PER_UNIT = 96
@@ -28,7 +28,7 @@ GLASS_RGB: Rgb = (150, 200, 225)
 def add_floor(
     scene: viser.SceneApi, name: str, palette: Palette, world: WorldDrawing, fit: OfficeFit, z: float
 ) -> None:
-    """The floor image: metre grid, contact shadows and the names of places."""
+    """The floor image: metre grid and contact shadows."""
     px = FLOOR_PX_PER_UNIT * fit.scale
     floor = images.gridded_floor(fit.size_m, px, palette.floor, palette.grid, 1.0 if fit.scale > 0.35 else 5.0)
     height = floor.shape[0]
@@ -42,11 +42,6 @@ def add_floor(
     lines = np.hstack([pixels(walls[:, :2]), pixels(walls[:, 2:])]) if len(walls) else walls
     solids = [pixels(outline) for _, outline in solid_runs(world)]
     floor = images.contact_shadow(floor, lines, solids, 0.16 * FLOOR_PX_PER_UNIT * fit.relief, palette.shadow)
-    ink = mix(palette.floor, palette.text_2, 0.6)
-    for words, x, y in world.places:
-        left, middle = pixels(np.array([[x, y]]))[0]
-        label = images.text(words, ink, 26)
-        images.paste(floor, label, max(0, int(left - label.shape[1] / 2)), max(0, int(middle - 15)))
     add_picture(
         scene,
         name,

@@ -6,12 +6,27 @@ import math
 
 import numpy as np
 import viser
+from numpy.typing import NDArray
 
-from web.messages import Goal, MapLayer, OccupancyPicture, Pose, Report, TaggedPlace, TimesLayer
+from web.messages import (
+    Closure,
+    Goal,
+    KnownPlace,
+    MapLayer,
+    OccupancyPicture,
+    Pose,
+    Report,
+    Snapshot,
+    TaggedPlace,
+    TimesLayer,
+)
 from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
+from web.viewer.marks.closures import ClosureMarks
 from web.viewer.marks.goal_flag import GoalFlag
 from web.viewer.marks.inspected import MapMark
 from web.viewer.marks.links import Links
+from web.viewer.marks.nodes import Nodes
+from web.viewer.marks.place_names import PlaceNames
 from web.viewer.marks.route import Route
 from web.viewer.marks.tags import TagMarks
 from web.viewer.plates.overlays import map_floor
@@ -27,16 +42,15 @@ ARROW = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)])
 BAR = (2.7, 0.26)
 BAR_X = 3.65
 GRID_LINES = 48
-NODE_STEP = 64
+TIME_STEPS = 64  # shades of the map: a dot whose time changes by less than one is not sent again
 NEAR = 0.5
 
 
 class MapPlate(Plate):
-    def __init__(self, scene: viser.SceneApi, palette: Palette) -> None:
-        super().__init__(scene, palette, "map", ORIGIN, SHEET)
+    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str = "map") -> None:
+        super().__init__(scene, palette, name, ORIGIN, SHEET)
         self.fit = MapFit()
         self._layer: MapLayer | None = None
-        self._capacity = 0
         floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (WIDTH / 2, DEPTH / 2)
         add_mesh(scene, f"{self.root}/floor", meshes.flat_polygon(floor, FLOOR_Z), palette.lit(palette.floor))
         self._picture: OccupancyPicture | None = None
@@ -55,7 +69,7 @@ class MapPlate(Plate):
             f"{self.root}/grid", meshes.NOWHERE, palette.drawn(palette.grid), thickness=0.025
         )
         self._links = Links(scene, f"{self.root}/links", palette.drawn(palette.link))
-        self._reserve(NODE_STEP)
+        self._nodes = Nodes(scene, f"{self.root}/nodes", 0.075)
         self._arrow = scene.add_frame(f"{self.root}/arrow", show_axes=False, visible=False)
         add_mesh(scene, f"{self.root}/arrow/casing", _arrow(1.22, 0.0), palette.lit(palette.casing))
         add_mesh(scene, f"{self.root}/arrow/body", _arrow(1.0, 0.02), palette.lit(palette.robot))
@@ -65,6 +79,8 @@ class MapPlate(Plate):
         self._route = Route(scene, palette, f"{self.root}/route")
         self._flag = GoalFlag(scene, palette, f"{self.root}/flag")
         self._tags = TagMarks(scene, palette, f"{self.root}/tags")
+        self.names = PlaceNames(scene, palette, f"{self.root}/name")
+        self.closures = ClosureMarks(scene, palette, f"{self.root}/closure")
         self._clicked = scene.add_frame(f"{self.root}/clicked", show_axes=False, visible=False)
         for k, radius in enumerate((0.16, 0.34)):
             add_mesh(scene, f"{self.root}/clicked/ring_{k}", meshes.ring(radius, 0.06, 0.09), palette.lit(palette.goal))
@@ -81,31 +97,12 @@ class MapPlate(Plate):
         self._draw_grid()
         self.set_heading("Experience map", "what it built")
 
-    def _reserve(self, nodes: int) -> None:
-        """Makes room for this many nodes. Places and colours are sent separately and must be equally many."""
-        self._capacity = nodes
-        self._nodes = self.scene.add_point_cloud(
-            f"{self.root}/nodes",
-            np.full((self._capacity, 3), -50.0, np.float32),
-            np.zeros((self._capacity, 3), np.uint8),
-            point_size=0.075,
-            point_shape="circle",
-            point_shading="flat",
-        )
-
     def set_map(self, layer: MapLayer, turn_rad: float) -> bool:
         """Draws nodes and links. True when the whole map has moved on the plate, so that all else on it must follow."""
         self._layer = layer
         before, self.fit = self.fit, refit(self.fit, layer.xy, turn_rad)
-        room = NODE_STEP * max(1, math.ceil(len(layer.xy) / NODE_STEP))
-        grew = room != self._capacity
-        if grew:
-            self._reserve(room)
         places = meshes.stepped(self.fit.to_plate(layer.xy))
-        points = np.full((self._capacity, 3), -50.0, np.float32)
-        points[: len(places)] = meshes.lifted(places, NODE_Z)
-        self._nodes.points = points
-        self._links.show(meshes.lifted(places, LINK_Z), layer.links)
+        self._draw(places, layer.links)
         if len(layer.xy):
             self._empty.hide()
         else:
@@ -114,7 +111,19 @@ class MapPlate(Plate):
             self._draw_grid()
         if self.fit is not before and self._picture is not None:
             self.set_occupancy(self._picture)
-        return grew or self.fit is not before
+        return self.fit is not before
+
+    def _draw(self, places: NDArray[np.float64], links: NDArray[np.integer]) -> None:
+        self._nodes.place(meshes.lifted(places, NODE_Z))
+        self._links.show(meshes.lifted(places, LINK_Z), links)
+
+    def show_replay(self, xy: NDArray[np.float64], links: NDArray[np.integer], words: str) -> None:
+        """Shows the map as it was once, in place of the present one, until `set_map` and the others are called again."""
+        places = meshes.stepped(self.fit.to_plate(xy))
+        self._draw(places, links)
+        self._arrow.visible = False
+        self.set_goal(None)
+        self.set_heading("Experience map", words)
 
     def _draw_grid(self) -> None:
         """Draws a line per metre of the map (per five in large ones), from the middle of the plate."""
@@ -137,11 +146,8 @@ class MapPlate(Plate):
     def set_times(self, times: TimesLayer) -> None:
         """Colours the nodes, and sets the numbers of the scale."""
         finite = times.seconds[np.isfinite(times.seconds)]
-        longest = _round_up(float(finite.max(initial=1.0)))
-        colours = np.zeros((self._capacity, 3), np.uint8)
-        kept = times.seconds[: self._capacity]
-        colours[: len(kept)] = self.palette.times(kept, longest)
-        self._nodes.colors = colours
+        longest = round_up(float(finite.max(initial=1.0)))
+        self._nodes.paint(self.palette.times(_in_steps(times.seconds, longest), longest))
         ink = self.palette.text_2
         left, right, at = BAR_X - BAR[0] / 2, BAR_X + BAR[0] / 2, self.front + 0.62
         self._bar_ends[0].show(images.text("0 s", ink, 64), (left, at, TEXT_Z))
@@ -179,6 +185,15 @@ class MapPlate(Plate):
         places = self.fit.to_plate(np.array([(tag.x, tag.y) for tag in tags]).reshape(-1, 2))
         self._tags.show([tag.name for tag in tags], meshes.stepped(places))
 
+    def set_places(self, places: tuple[KnownPlace, ...]) -> None:
+        """Shows the names of those places of the office that the map knows, where it has them."""
+        known = [(place.name, place.map_xy) for place in places if place.map_xy is not None]
+        at = meshes.stepped(self.fit.to_plate(np.array([xy for _, xy in known]).reshape(-1, 2)))
+        self.names.show([name for name, _ in known], [True] * len(known), at)
+
+    def set_closures(self, closures: tuple[Closure, ...], layer: MapLayer, snapshot: Snapshot) -> None:
+        self.closures.show(closures, self.fit.to_plate(layer.xy), snapshot.time_s)
+
     def show_click(self, place: tuple[float, float] | None) -> None:
         """Shows the marker of a goal that has been requested (map frame) but is not set yet; None hides it."""
         self._clicked.visible = place is not None
@@ -213,6 +228,10 @@ def seconds_words(seconds: float) -> str:
     return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
 
 
+def _in_steps(seconds: NDArray[np.float32], longest: float) -> NDArray[np.float32]:
+    return np.asarray(np.rint(seconds * (TIME_STEPS / longest)) * (longest / TIME_STEPS), np.float32)
+
+
 def _promise(goal: Goal) -> str:
     if goal.state in ("arrived", "unreachable") or goal.eta_s is None or not math.isfinite(goal.eta_s):
         return {"arrived": "arrived", "unreachable": "no way known"}.get(goal.state, "? s")
@@ -224,7 +243,7 @@ def _arrow(size: float, z: float) -> meshes.Mesh:
     return vertices, faces
 
 
-def _round_up(seconds: float) -> float:
+def round_up(seconds: float) -> float:
     """Rounded up to 5, 10, 30 or 60 s, so that colours do not change with every new node."""
     step = 5 if seconds < 40 else 10 if seconds < 120 else 30 if seconds < 600 else 60
     return math.ceil(seconds / step) * step

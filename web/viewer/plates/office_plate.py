@@ -8,22 +8,23 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from web.messages import LivingLayer, Movements, Pose, Senses, WorldDrawing
-from web.viewer.fits.office_fit import OfficeFit
+from web.messages import KnownPlace, LivingLayer, Movements, Pose, Senses, WorldDrawing
+from web.viewer.fits.office_fit import DEPTH, WIDTH, OfficeFit
 from web.viewer.marks.actors import LivingThings
+from web.viewer.marks.ghost import GhostRobot
 from web.viewer.marks.movements import MovementArcs
+from web.viewer.marks.place_names import PlaceNames
 from web.viewer.marks.robot_model import RobotModel
+from web.viewer.marks.trail import Trail
 from web.viewer.plates.furniture import add_floor, add_furniture
 from web.viewer.plates.plate import FLOOR_Z, Plate
 from web.viewer.plates.sight import fan_of_view
 from web.viewer.primitives import meshes
 from web.viewer.primitives.labels import add_mesh
 from web.viewer.primitives.palette import Palette, mix
-from web.viewer.primitives.tone_mapping import vertex_paint
 
 ORIGIN = (-5.85, -2.2, 0.0)
 SHEET = (11.0, 10.0, -0.5, 0.45)
-TRAIL_SEGMENTS, TRAIL_STEP = 240, 0.16
 OFFICE = "Office", "the true world - the robot cannot know this"
 TRUE_PATH = "True path", "as the recording tells it - the robot cannot know this"
 LATE = (
@@ -72,12 +73,9 @@ class OfficePlate(Plate):
             point_shape="circle",
             point_shading="flat",
         )
-        self._trail = scene.add_line_segments(
-            f"{self.root}/trail",
-            meshes.NOWHERE,
-            np.zeros((1, 2, 3), np.uint8),
-            thickness=0.05,
-        )
+        self._trail = Trail(scene, palette, f"{self.root}/trail", palette.true_path, 0.05)
+        self.names = PlaceNames(scene, palette, f"{self.root}/name")
+        self.ghost = GhostRobot(scene, palette, f"{self.root}/ghost", (WIDTH / 2, DEPTH / 2))
         self._room_for = scene.add_line_segments(
             f"{self.root}/room",
             meshes.closed_line(meshes.rounded_rectangle(2, 2, 1), 0.0),
@@ -102,7 +100,8 @@ class OfficePlate(Plate):
         self.world, self.fit = world, OfficeFit(world.bounds)
         opaque = [kind != "glass" for kind in world.wall_kind]
         self._walls = np.asarray(world.walls, np.float64)[opaque]
-        self.robot.resize(self.fit.scale * max(world.robot_radius_m, 0.05))
+        for robot in (self.robot, self.ghost.robot):
+            robot.resize(self.fit.scale * max(world.robot_radius_m, 0.05))
         add_floor(self.scene, f"{self.root}/floor", self.palette, world, self.fit, FLOOR_Z)
         add_furniture(self.scene, f"{self.root}/furniture", self.palette, world, self.fit)
 
@@ -151,21 +150,13 @@ class OfficePlate(Plate):
 
     def set_trail(self, trail: NDArray[np.float32]) -> None:
         """Shows the true path of the last two minutes, with older parts fading into the floor."""
-        if len(trail) < 2:
-            self._trail.points, self._trail.colors = meshes.NOWHERE, np.zeros((1, 2, 3), np.uint8)
-            return
-        path = meshes.thinned(self.fit.to_plate(np.asarray(trail, np.float64)), TRAIL_STEP)[-TRAIL_SEGMENTS - 1 :]
-        path = meshes.lifted(path, 0.02)
-        steps = np.hypot(*np.diff(path[:, :2], axis=0).T)
         office = self.world is None or self.world.is_office
-        jumps = steps > (1.2 * self.fit.scale if office else np.inf)  # a kidnap leaves no line
-        path[:, 2] += np.linspace(0.0, 0.015, len(path))  # where the path crosses itself, the newer part is on top
-        points = meshes.open_line(path)
-        points[jumps] = -50.0
-        ages = np.linspace(0.0, 1.0, len(points) + 1) ** 0.7
-        floor, line = np.array(self.palette.floor), np.array(self.palette.true_path)
-        tints = vertex_paint(floor + (line - floor) * (0.08 + 0.92 * ages[:, None]))
-        self._trail.points, self._trail.colors = points, np.stack([tints[:-1], tints[1:]], 1)
+        path = self.fit.to_plate(np.asarray(trail, np.float64).reshape(-1, 2))
+        self._trail.show(path, 1.2 * self.fit.scale if office else np.inf)  # a kidnap leaves no line
+
+    def set_places(self, places: tuple[KnownPlace, ...]) -> None:
+        at = self.fit.to_plate(np.array([(place.x, place.y) for place in places]).reshape(-1, 2))
+        self.names.show([place.name for place in places], [place.map_xy is not None for place in places], at)
 
     def show_drop(self, place: tuple[float, float] | None, room: bool, heading_rad: float) -> None:
         """Shows the ring under a dragged robot (office frame): teal where it fits, red where it does not."""

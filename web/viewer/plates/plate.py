@@ -7,7 +7,7 @@ import viser
 
 from web.viewer.primitives import images, meshes
 from web.viewer.primitives.labels import Sign, add_mesh
-from web.viewer.primitives.palette import Palette
+from web.viewer.primitives.palette import Palette, Rgb
 
 TITLE_M, SUBTITLE_M = 0.62, 0.36
 BEHIND = (
@@ -38,20 +38,35 @@ class Plate:
         vertices, faces = meshes.flat_polygon(outline, SHEET_Z)
         far = (vertices - np.array(BEHIND, np.float32), faces)
         add_mesh(scene, f"{self.root}/sheet", far, palette.lit(palette.sheet), position=BEHIND)
-        scene.add_line_segments(
+        self._rim = scene.add_line_segments(
             f"{self.root}/rim", meshes.closed_line(outline, RIM_Z), palette.drawn(palette.rim), thickness=0.04
         )
+        self._heading_words = ("", "")
+        self._brain: tuple[str, Rgb] | None = None
         self._title = Sign(scene, f"{self.root}/title", TITLE_M)
         self._subtitle = Sign(scene, f"{self.root}/subtitle", SUBTITLE_M)
 
-    def stand_at(self, x: float) -> None:
-        """Moves the plate sideways, with all that stands on it."""
-        self.origin = (x, *self.origin[1:])
+    def stand_at(self, x: float, y: float) -> None:
+        """Moves the plate over the floor, with all that stands on it."""
+        self.origin = (x, y, self.origin[2])
         self.frame.position = self.origin
 
+    def belong_to(self, brain: tuple[str, Rgb] | None) -> None:
+        """Shows whose plate it is, while there are two brains: name and colour; None: no longer."""
+        self._brain = brain
+        colour = self.palette.rim if brain is None else brain[1]
+        self._rim.colors = np.array(self.palette.drawn(colour), np.uint8)
+        self._rim.thickness = 0.04 if brain is None else 0.1
+        self.set_heading(*self._heading_words)
+
     def set_heading(self, title: str, subtitle: str) -> None:
-        """Shows title and subtitle, flat in front of the content."""
-        self._title.show(images.text(title, self.palette.text, 96, True), (self.left, self.front + 1.08, TEXT_Z))
+        """Shows title and subtitle, flat in front of the content. Of two brains, the name takes the title's place."""
+        self._heading_words, ink = (title, subtitle), self.palette.text
+        if self._brain is not None:
+            first, _, last = subtitle.rpartition(" - ")
+            (words, ink), what = self._brain, title.lower().removeprefix("experience ")  # beside the scale
+            title, subtitle = words, f"{what} - {last}" if first else what
+        self._title.show(images.text(title, ink, 96, True), (self.left, self.front + 1.08, TEXT_Z))
         self._subtitle.show(images.text(subtitle, self.palette.text_2, 64), (self.left, self.front + 0.46, TEXT_Z))
 
 

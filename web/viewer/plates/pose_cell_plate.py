@@ -38,8 +38,8 @@ WEAKEST = 0.02  # share of the strongest cell
 
 
 class PoseCellPlate(Plate):
-    def __init__(self, scene: viser.SceneApi, palette: Palette) -> None:
-        super().__init__(scene, palette, "pose_cells", ORIGIN, SHEET)
+    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str = "pose_cells") -> None:
+        super().__init__(scene, palette, name, ORIGIN, SHEET)
         self.set_heading("Pose cells", BELIEVES)
         self._box = GlassBox(scene, palette, self.root)
         self._shape: tuple[int, int, int] = (0, 0, 0)
@@ -56,7 +56,7 @@ class PoseCellPlate(Plate):
             SIDE,
             position=(0, 0, FLOOR_Z),
             format="jpeg",
-            jpeg_quality=88,
+            jpeg_quality=80,
         )
         self._capacity = VOXEL_STEP
         self._voxels = self._add_voxels()
@@ -85,6 +85,10 @@ class PoseCellPlate(Plate):
         self._goal = add_mesh(
             scene, f"{self.root}/goal", meshes.ring(0.24, 0.08, 0.02), palette.lit(palette.goal), visible=False
         )
+
+    @property
+    def fit(self) -> CellFit:
+        return self._fit
 
     def _add_voxels(self) -> viser.BatchedMeshHandle:
         vertices, faces = meshes.sharp(meshes.UNIT_CUBE)
@@ -145,7 +149,7 @@ class PoseCellPlate(Plate):
         packets = [packet for packet in layer.packets[:PACKETS] if packet.mass >= LEAST_SHARE]
         tops = np.array([self._fit.packet(p) for p in packets]).reshape(-1, 3)
         words = [f"{packet.id}   {packet.mass:.0%}".replace("%", " %") for packet in packets]
-        places = pill_places(tops, np.array([pill_width(w, PILL_M) for w in words]))
+        places = pill_places(tops, np.array([pill_width(w, PILL_M) for w in words]), self.origin)
         for k, pill in enumerate(self._pills):
             self._rings[k].visible = k < len(packets)
             if k >= len(packets):
@@ -241,10 +245,11 @@ def way_arrow(rim: float) -> meshes.Mesh:
     return meshes.joined(meshes.flat_polygon(shaft, 0.0), meshes.flat_polygon(head, 0.0))
 
 
-def pill_places(tops: np.ndarray, widths: np.ndarray) -> np.ndarray:
-    """(n, 3) places for pills above packets at `tops` (n, 3), so that none covers another in the view of all plates."""
+def pill_places(tops: np.ndarray, widths: np.ndarray, at: tuple[float, float, float] = ORIGIN) -> np.ndarray:
+    """(n, 3) places for pills above packets at `tops` (n, 3) on a plate that stands at `at`, so that none covers another in
+    the view of all plates."""
     raised = tops + np.array([0.0, 0.0, 0.95])
-    seen, larger = seen_by(camera_for("all", 1.2), raised + np.array(ORIGIN))
+    seen, larger = seen_by(camera_for("all", 1.2), raised + np.array(at))
     height = PILL_M * float(larger.max(initial=1.0))
     shift = (spread(seen, widths * larger, height) - seen) / larger[:, None]
     return raised + np.column_stack([shift[:, 0], shift[:, 1] * math.cos(LEAN_RAD), shift[:, 1] * math.sin(LEAN_RAD)])

@@ -38,6 +38,19 @@ def text(words: str, colour: Rgb, size_px: int = 48, bold: bool = False) -> Pixe
     return np.asarray(image)
 
 
+@lru_cache(maxsize=256)
+def plaque(words: str, ink: Rgb, fill: Rgb, size_px: int = 48) -> Pixels:
+    """`words` on a rounded ground, RGBA."""
+    face = font(size_px, True)
+    height = round(size_px * 1.55)
+    width = round(face.getlength(words)) + height
+    image = Image.new("RGBA", (width, height), (*fill, 0))
+    draw = ImageDraw.Draw(image)
+    draw.rounded_rectangle((0, 0, width - 1, height - 1), height / 2, fill=(*fill, 255), outline=(*ink, 255), width=2)
+    draw.text((width / 2, height / 2), words, font=face, fill=(*ink, 255), anchor="mm")
+    return np.asarray(image)
+
+
 def sky(top: Rgb, bottom: Rgb) -> Pixels:
     """The background: a gradient."""
     ramp = np.linspace(0, 1, 720)[:, None, None] * (np.array(bottom) - top) + np.array(top)

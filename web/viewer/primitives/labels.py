@@ -65,7 +65,8 @@ class Pill:
     def __init__(
         self, scene: viser.SceneApi, name: str, height: float, fill: Rgb, palette: Palette, rim: Rgb | None = None
     ) -> None:
-        self._height, self._words = height, ""
+        self._height = height
+        self._words: str = ""
         self.width = 0.0
         self.frame = scene.add_frame(name, show_axes=False, visible=False, wxyz=LEANING)
         self._bar = add_mesh(scene, f"{name}/bar", meshes.NOTHING, palette.lit(fill, LEANING_NORMAL), side="double")

@@ -57,3 +57,11 @@ def test_a_line_that_is_missing_or_twice_is_noticed(tmp_path_factory, values: li
     lines = read_lines(path)
     assert lines.damage
     assert len(lines.values) <= number + 1
+
+
+def test_a_line_of_more_values_than_a_world_has_is_not_even_parsed(tmp_path: Path) -> None:
+    line, _ = line_of({"tick": 0, "end": [[]] * 600_000}, 0)
+    (tmp_path / "lines").write_bytes(line)
+    lines = read_lines(tmp_path / "lines")
+    assert (lines.values, lines.size) == ([], 0)
+    assert lines.damage == "line 1 is cut off or damaged; what follows is left out"

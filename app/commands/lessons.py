@@ -1,0 +1,111 @@
+"""Lessons: beginning one, predicting, voting, letting it happen; and running until something happens."""
+
+from __future__ import annotations
+
+from app.commands.outcome import Outcome, attempt
+from app.engine.engine import Engine
+from app.engine.lesson_run import LessonRun
+from app.engine.teaching import Teaching
+from app.engine.until import RunUntil
+from app.lessons.conditions import read_until
+from app.lessons.files import find_lesson
+from web import messages as m
+
+NONE = "no lesson was begun in this run: begin one first"
+
+
+def begin_lesson(engine: Engine, command: m.BeginLesson) -> Outcome:
+    def go() -> None:
+        lesson = find_lesson(command.name)
+        seed = lesson.scene.seed if command.seed is None else command.seed
+        engine.begin_lesson(Teaching(lesson, seed, engine.next_config))
+
+    return attempt("name", command.name, go)
+
+
+def predict(engine: Engine, command: m.Predict) -> Outcome:
+    def go() -> None:
+        _open(engine).teaching.predict(m.LessonPrediction(command.choice, command.x, command.y))
+
+    return attempt("choice", command.choice, go) or m.Accepted(engine.shown.session.tick_count)
+
+
+def vote(engine: Engine, command: m.Vote) -> Outcome:
+    def go() -> None:
+        lesson = _open(engine)
+        if lesson.teaching.lesson.name != command.lesson:
+            raise ValueError(f"the lesson is {lesson.teaching.lesson.name!r} now, not {command.lesson!r}")
+        lesson.teaching.vote(command.voter, m.LessonPrediction(command.choice, command.x, command.y))
+
+    return attempt("choice", command.choice, go) or m.Accepted(engine.shown.session.tick_count)
+
+
+def show_lesson(engine: Engine, command: m.ShowLesson) -> Outcome:
+    """Let it happen, from the present."""
+    lesson = engine.run.lesson
+    if lesson is None:
+        return m.Refused("type", command.type, NONE)
+    if lesson.state != "predict":
+        return m.Refused(
+            "type", command.type, f"the lesson is in the state {lesson.state!r}: lesson_again begins it anew"
+        )
+    refused = engine.pause_for(command.type)
+    if refused is not None:
+        return refused
+    engine.break_off()
+    engine.time.back_to_now()
+    if lesson.round_over:
+        engine.begin_lesson(lesson.next_round(), at_once=True)
+    else:
+        lesson.show()
+    engine.running = True
+    engine.pace.speed = lesson.speed
+    engine.pace.hurry()
+    return None
+
+
+def lesson_again(engine: Engine, command: m.LessonAgain) -> Outcome:
+    lesson = engine.run.lesson
+    if lesson is None:
+        return m.Refused("type", command.type, NONE)
+    teaching = lesson.teaching
+    again = Teaching(teaching.lesson, teaching.seed, teaching.config_before)
+    return attempt("type", command.type, lambda: engine.begin_lesson(again))
+
+
+def end_lesson(engine: Engine, command: m.EndLesson) -> Outcome:
+    if engine.run.lesson is None:
+        return m.Refused("type", command.type, NONE)
+    engine.break_off()
+    engine.run.lesson = None
+    return None
+
+
+def run_until(engine: Engine, command: m.RunUntil) -> Outcome:
+    """From the present on."""
+    where = command.place if command.x is None or command.y is None else (command.x, command.y)
+
+    def go() -> None:
+        if command.place is not None and isinstance(where, tuple):
+            raise ValueError("give either place or x and y")
+        until = read_until({"what": command.what, "count": command.count, "place": where})
+        engine.run.until = RunUntil(until, command.within_s, engine.run.session, engine.run.history)
+
+    refused = engine.pause_for(command.type)
+    if refused is not None:
+        return refused
+    engine.break_off()
+    engine.time.back_to_now()
+    refused = attempt("what", command.what, go)
+    engine.running = refused is None
+    return refused
+
+
+def _open(engine: Engine) -> LessonRun:
+    """The lesson, while predictions are taken. ValueError otherwise."""
+    lesson = engine.run.lesson
+    if lesson is None:
+        raise ValueError(NONE)
+    if lesson.state not in ("scene", "predict"):
+        raise ValueError("it has been shown already: predictions come first")
+    return lesson

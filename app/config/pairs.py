@@ -1,0 +1,96 @@
+"""Brains that are worth comparing with a first one, by name. What the second is depends on the first, so that they differ."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from app.config.tree import Config, Value
+from ratslam_core.params.presets import PRESETS as ENGINES
+
+NAMES = "papers", "vision", "cells", "cells-64", "rate", "no-map"
+FEW, MANY = 8, 64  # cells along x' and y'
+SLOW, USUAL = 0.02, 0.15
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """first, second: what the two are called. title, about: of the second, for who chooses it; values: what it has otherwise."""
+
+    name: str
+    first: str
+    second: str
+    title: str
+    about: str
+    values: dict[str, Value]
+
+
+def engine_of(config: Config) -> str:
+    """The paper whose rules the brain follows, "ours", or "as set"."""
+    values = {name: value for name, _, value in config.items()}
+    return next(
+        (name for name, wanted in ENGINES.items() if all(values[key] == value for key, value in wanted.items())),
+        "as set",
+    )
+
+
+def pairs_beside(config: Config) -> tuple[Pair, ...]:
+    """Those that differ from a brain with this config."""
+    return tuple(pair for pair in _pairs(config) if config.with_values(pair.values) != config)
+
+
+def pair_of(name: str, config: Config) -> Pair:
+    """A pair by name. ValueError: there is none of this name, or nothing would differ."""
+    if name not in NAMES:
+        raise ValueError(f"there is no pair {name!r}; expected one of: {', '.join(NAMES)}")
+    found = {pair.name: pair for pair in pairs_beside(config)}
+    if name not in found:
+        raise ValueError(f"the first brain is that already: nothing would differ; what would: {', '.join(found)}")
+    return found[name]
+
+
+def _pairs(config: Config) -> Iterator[Pair]:
+    rules = engine_of(config)
+    if rules.startswith("paper-"):
+        yield _rules("papers", rules, "ours", "Ours", "With what we have added to the papers.")
+    else:
+        about = "Those of 2006 by themselves, without what is ours."
+        yield _rules("papers", rules, "paper-2006", "The papers' rules", about)
+    yield _vision(config)
+    yield from _cells(config)
+    yield _rate(config)
+    if rules == "paper-2004":
+        yield _rules("no-map", rules, "paper-2006", "With a map, as in 2006", "Experiences and links beside the cells.")
+    else:
+        about = "The packet's place among the pose cells is the robot's place."
+        yield _rules("no-map", rules, "paper-2004", "No map, as in 2004", about)
+
+
+def _rules(name: str, first: str, second: str, title: str, about: str) -> Pair:
+    return Pair(name, first, second, title, about, dict(ENGINES[second]))
+
+
+def _vision(config: Config) -> Pair:
+    off = "without vision", "Without vision", "Path integration alone: soon lost."
+    on = "with vision", "With vision", "It recognises what it has seen before."
+    (first, *_), (second, title, about) = (on, off) if config.local_view.enabled else (off, on)
+    return Pair("vision", first, second, title, about, {"local_view.enabled": not config.local_view.enabled})
+
+
+def _cells(config: Config) -> Iterator[Pair]:
+    n_x, n_y = config.pose_cells.n_x, config.pose_cells.n_y
+    few = "So few that the packet goes round them every few metres."
+    many = "So many that it rarely goes round them."
+    sizes = [("cells", MANY, many)] if (n_x, n_y) == (FEW, FEW) else [("cells", FEW, few), ("cells-64", MANY, many)]
+    for name, size, about in sizes:
+        words = f"{size} x {size}"
+        values: dict[str, Value] = {"pose_cells.n_x": size, "pose_cells.n_y": size}
+        yield Pair(name, f"{n_x} x {n_y} cells", f"{words} cells", f"{words} pose cells", about, values)
+
+
+def _rate(config: Config) -> Pair:
+    rate = config.local_view.learning_rate
+    other, how = (SLOW, "slowly") if rate > SLOW else (USUAL, "quickly")
+    about = f"It learns more {how} where a view belongs."
+    values: dict[str, Value] = {"local_view.learning_rate": other}
+    return Pair("rate", f"rate {rate:g}", f"rate {other:g}", f"Learning rate {other:g}", about, values)

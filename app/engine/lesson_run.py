@@ -1,0 +1,158 @@
+"""One run of a lesson in the engine: its scene, what is shown, and the free play afterwards."""
+
+from __future__ import annotations
+
+from app.engine.teaching import Teaching
+from app.lessons.performance import Performance
+from app.session import Session
+from app.views.history import History
+from web.messages import Inspect, LessonState, LessonView
+
+
+class LessonRun:
+    """Call `before_tick` before each tick and `advance` after it. What is shown is the same, bit for bit, without a page."""
+
+    def __init__(
+        self, teaching: Teaching, session: Session, history: History, *, at_once: bool = False, branch: bool = False
+    ) -> None:
+        """at_once: show it as soon as the scene is set, as in a second round. branch: the run leaves another of the lesson in
+        its past, and is played freely. ValueError: the lesson does not fit its world.
+        """
+        self.teaching, self._session, self._history = teaching, session, history
+        self._performance = None if branch else Performance(teaching.lesson, teaching.number, session, history)
+        self.state: LessonState = "sandbox" if branch else "scene"
+        self.altered, self.runs_ahead = branch, not branch
+        self.pauses = False  # it wants to be looked at in peace
+        self.inspects: Inspect | None = None  # what is to be inspected now
+        self._at_once, self._doing = at_once, "another branch: play freely" if branch else ""
+        if branch:
+            return
+        if teaching.number == 0:
+            history.log.note("lesson", f"{teaching.lesson.title}: the scene is set")
+        self.advance()
+
+    @property
+    def speed(self) -> float:
+        return self.teaching.lesson.scene.speed
+
+    @property
+    def round_over(self) -> bool:
+        """Whether it is over, and another round follows."""
+        return self.state == "predict" and self._performance is not None and self._performance.phase == "over"
+
+    def next_round(self) -> Teaching:
+        self.teaching.number += 1
+        return self.teaching
+
+    # ------------------------------------------------------------ ticks
+
+    def before_tick(self) -> None:
+        """Whoever lets time go on lets it happen, or plays freely when it is over."""
+        if self.state == "predict" and not self.round_over:
+            self.show()
+        elif self.state == "compared":
+            self._play_freely()
+            if self._session.pilot.mode == "manual":
+                self._session.set_mode("explore")
+
+    def advance(self) -> None:
+        """Give the robot its orders for the next tick, and note what has happened."""
+        performance = self._performance
+        if performance is None or self.state not in ("scene", "showing"):
+            return
+        try:
+            performance.advance()
+        except ValueError as error:  # what it needs is no longer there
+            self._break_off(f"it cannot go on: {error}")
+            return
+        if performance.phase == "ready" and self.state == "scene":
+            self.runs_ahead, self.state = False, "predict"
+            if self._at_once:
+                self.show()
+            else:
+                self.pauses = True
+        elif performance.phase == "over":
+            self._over(performance)
+
+    def show(self) -> None:
+        """Let it happen. ValueError says why that cannot be now."""
+        if self.state != "predict" or self._performance is None:
+            raise ValueError(f"the lesson is in the state {self.state!r}: what it shows begins from 'predict'")
+        label = f" ({self._performance.label})" if self._performance.label else ""
+        self.state = "showing"
+        self._history.log.note("lesson", f"{self.teaching.lesson.title}: it happens{label}")
+        try:
+            self._performance.show()
+        except ValueError as error:
+            self._break_off(f"it cannot go on: {error}")
+
+    def stop_running_ahead(self) -> None:
+        self.runs_ahead = False
+
+    # ------------------------------------------------------------ what others do
+
+    def ordered(self, why: str) -> None:
+        """Somebody has given the robot orders: it has one master only, so that nothing more is shown."""
+        if self.state in ("scene", "showing", "predict"):
+            self.altered = True
+            self._break_off(why)
+        elif self.state == "compared":
+            self._play_freely()
+
+    def alter(self) -> None:
+        """Somebody has changed office or parameters: it goes on, but need not keep what it promises."""
+        if self.state == "compared":
+            self._play_freely()
+        elif self.state != "sandbox":
+            self.altered = True
+
+    # ------------------------------------------------------------ looking
+
+    def view(self) -> LessonView:
+        teaching, performance = self.teaching, self._performance
+        lesson = teaching.lesson
+        marks = performance.marks.view() if performance is not None and performance.marks is not None else ()
+        return LessonView(
+            lesson.name, lesson.title, self.state, self._what, None if performance is None else performance.progress,
+            teaching.number + 1, lesson.round_count, lesson.rounds[teaching.number].label if lesson.rounds else "",
+            teaching.seed, teaching.prediction, teaching.votes, teaching.outcome, marks, self.altered,
+            None if lesson.predict.draw is None else lesson.predict.plate,
+        )  # fmt: skip
+
+    @property
+    def _what(self) -> str:
+        if self._performance is None or self._doing:
+            return self._doing
+        if self.round_over:
+            following = self.teaching.lesson.rounds[self.teaching.number + 1].label
+            return f"{self._performance.label} is over; next: {following}"
+        return {
+            "scene": f"the scene is set: {self._performance.doing}",
+            "predict": "waits for a prediction",
+            "showing": self._performance.doing,
+            "compared": "prediction and outcome are compared",
+            "sandbox": "play freely",
+        }[self.state]
+
+    # ------------------------------------------------------------ inside
+
+    def _over(self, performance: Performance) -> None:
+        teaching, log = self.teaching, self._history.log
+        teaching.over(performance)
+        self.pauses = True
+        if teaching.outcome is None:
+            self.state = "predict"
+            log.note("lesson", f"{teaching.lesson.title}: {performance.label} is over")
+            return
+        self.state = "compared"
+        log.note("lesson", teaching.outcome.words)
+        kind, marks = teaching.lesson.show.explain, performance.marks
+        event = None if kind is None or marks is None else marks.last_event(kind)
+        self.inspects = None if event is None else Inspect(type="inspect", event=event)
+
+    def _break_off(self, why: str) -> None:
+        self.state, self.runs_ahead, self._doing = "sandbox", False, f"broken off: {why}"
+        self._history.log.note("lesson", f"{self.teaching.lesson.title} is broken off: {why}")
+
+    def _play_freely(self) -> None:
+        self.state = "sandbox"

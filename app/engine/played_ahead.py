@@ -1,0 +1,70 @@
+"""A situation that was opened: its orders are given at their ticks, up to its moment; there the hashes are compared."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from app.engine.order_words import events_of
+from app.order_book import carry_out
+from app.session import Session
+from app.situations import Situation
+from app.views.event_log import EventLog
+from sim2d import World
+from web.messages import SituationState, SituationView
+
+if TYPE_CHECKING:
+    from app.engine.run import Run
+    from app.engine.time_travel import TimeTravel
+
+
+class PlayedAhead:
+    """Call `advance` at the beginning and after each tick. before: the run that waits until this one is at its moment."""
+
+    def __init__(
+        self, situation: Situation, session: Session, log: EventLog, before: tuple[Run, TimeTravel, World] | None
+    ) -> None:
+        self.situation, self.before = situation, before
+        self.state: SituationState = "playing"
+        self._words = ""
+        self._session, self._log = session, log
+        self._orders = list(situation.orders[::-1])
+
+    def advance(self) -> None:
+        """Give the orders of the tick that has just been run; at the moment, see whether it is the same."""
+        if self.state != "playing":
+            return
+        tick = self._session.tick_count
+        while self._orders and self._orders[-1].tick <= tick:
+            order = self._orders.pop()
+            try:
+                carry_out(self._session, order)
+            except Exception as error:  # the order comes from elsewhere, and may be one that no page would give
+                self.stop(f"the order {order.name} of tick {order.tick} cannot be carried out: {error}")
+                self._log.note("warning", self._words)
+                return
+            for kind, words in events_of(order, self._session):
+                self._log.note(kind, words)
+        if tick >= self.situation.tick:
+            same, self._words = self.situation.verdict(self._session)
+            self.state, self.before = "same" if same else "other", None
+            if not same:
+                self._log.note("warning", self._words)
+
+    @property
+    def runs_ahead(self) -> bool:
+        return self.state == "playing"
+
+    def stop_running_ahead(self) -> None:
+        self.stop("it was stopped")
+
+    def stop(self, why: str) -> None:
+        """It does not come to its moment."""
+        if self.state == "playing":
+            self.state = "stopped"
+            self._words = f"Stopped at tick {self._session.tick_count} of {self.situation.tick}: {why}"
+
+    def view(self) -> SituationView:
+        situation, done = self.situation, self._session.tick_count
+        return SituationView(
+            self.state, min(done, situation.tick), situation.tick, self._words, situation.state_hash, situation.look
+        )

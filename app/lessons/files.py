@@ -1,0 +1,107 @@
+"""The lessons there are: those that come with the program, and the user's own in ~/.ratslam/lessons."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, cast
+
+from pydantic import ValidationError
+
+from app.lessons.lines import line_of
+from app.lessons.performance import Performance, session_of
+from app.lessons.schema import Lesson
+from app.views.history import History
+
+_CATALOGUE = Path(__file__).with_name("catalogue")
+ENVIRONMENT = "RATSLAM_LESSONS"
+MOST_BYTES = 200_000
+
+
+def own_folder() -> Path:
+    """Where a teacher's own lessons lie."""
+    return Path(os.environ.get(ENVIRONMENT) or Path.home() / ".ratslam" / "lessons")
+
+
+def read_lesson(path: Path) -> Lesson:
+    """ValueError: file, line, name, value, and what would be right."""
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise ValueError(f"{path}: a lesson has at most {MOST_BYTES // 1000} kB")
+        text = path.read_text(encoding="utf-8")
+        tree = tomllib.loads(text)
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror or error}") from None
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ValueError(f"{path}: not valid TOML: {error}") from None
+    except RecursionError:
+        raise ValueError(f"{path}: not valid TOML: its brackets are nested too deeply") from None
+    _find_world(path, tree)
+    try:
+        return Lesson.model_validate(tree)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = _without_kinds(first["loc"])
+        name = ".".join(str(part + 1) if isinstance(part, int) else part for part in where) or "the file"
+        what = first["msg"].removeprefix("Value error, ")
+        got = "" if first["type"] == "missing" or first["msg"] != what else f", got {_shown(first['input'])}"
+        raise ValueError(f"{path}, line {line_of(text, where)}: {name}: {what[0].lower()}{what[1:]}{got}") from None
+
+
+def _find_world(path: Path, tree: dict[str, Any]) -> None:
+    """A world may be a file beside the lesson's."""
+    scene = tree.get("scene")
+    name = cast("dict[str, object]", scene).get("world") if isinstance(scene, dict) else None
+    if isinstance(name, str) and (beside := path.parent / name).is_file():
+        cast("dict[str, object]", scene)["world"] = str(beside)
+
+
+def check_lesson(lesson: Lesson) -> None:
+    """ValueError says what does not fit together: a world, a place, a door."""
+    for number in range(lesson.round_count):
+        session = session_of(lesson, number)
+        Performance(lesson, number, session, History(session))
+
+
+def catalogue() -> Iterator[Lesson]:
+    """The lessons that come with the program, in their order."""
+    for path in sorted(_CATALOGUE.glob("*.toml")):
+        yield read_lesson(path)
+
+
+def own_lessons() -> Iterator[tuple[Path, Lesson | str]]:
+    """The user's, each read or with what is wrong with it."""
+    for path in sorted(own_folder().glob("*.toml")):
+        try:
+            yield path, read_lesson(path)
+        except ValueError as error:
+            yield path, str(error)
+
+
+def all_lessons() -> list[Lesson]:
+    """Those that can be begun. One of the user's takes the place of one of the program's with the same name."""
+    found = {lesson.name: lesson for lesson in catalogue()}
+    found.update({lesson.name: lesson for _, lesson in own_lessons() if isinstance(lesson, Lesson)})
+    return list(found.values())
+
+
+def find_lesson(name: str) -> Lesson:
+    """A lesson by name. ValueError lists the names there are."""
+    lessons = {lesson.name: lesson for lesson in all_lessons()}
+    if name not in lessons:
+        raise ValueError(f"there is no lesson {name!r}; expected one of: {', '.join(lessons)}")
+    return lessons[name]
+
+
+def _without_kinds(path: tuple[str | int, ...]) -> list[str | int]:
+    """pydantic names the kind of a step after its number: as the file has no such level, it is left out."""
+    return [
+        part for k, part in enumerate(path) if not (isinstance(part, str) and k and path[k - 2 : k - 1] == ("steps",))
+    ]
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else text[:77] + "..."

@@ -1,0 +1,65 @@
+"""An order that comes from elsewhere: is it one that a session can be given, with values of the right kinds?"""
+
+from __future__ import annotations
+
+import inspect
+from functools import cache
+from typing import Annotated, Any, get_type_hints
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, create_model
+
+from app.order_book import Order
+from app.orders import Orders
+from sim2d import Box, World
+
+_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+_Size = Annotated[float, Field(ge=0.05, le=20.0)]  # as of the page's boxes
+_Byte = Annotated[int, Field(ge=0, le=255)]
+_Name = Annotated[str, Field(min_length=1, max_length=40)]
+
+
+class _Box(BaseModel):
+    model_config = _STRICT
+    name: _Name
+    x: float
+    y: float
+    width: _Size
+    depth: _Size
+    height: _Size
+    angle_rad: float
+    colour: Annotated[list[_Byte], Field(min_length=3, max_length=3)]
+    present: bool
+
+
+_AS_JSON: dict[Any, Any] = {World: str, Box: _Box, int: Annotated[int, Field(ge=0)]}  # how the order book writes them
+_NARROWER: dict[tuple[str, str], Any] = {  # what the page's commands allow, where a session itself allows more
+    ("drive", "speed"): Annotated[float, Field(ge=-0.5, le=0.5)],
+    ("drive", "yaw_rate"): Annotated[float, Field(ge=-1.6, le=1.6)],
+    ("put_packet", "share"): Annotated[float, Field(ge=0.01, le=0.95)],
+    ("tag", "name"): _Name,
+}
+
+
+def check_order(order: Order) -> None:
+    """ValueError says what is wrong with it."""
+    method = getattr(Orders, order.name, None)
+    if not getattr(method, "is_order", False):
+        raise ValueError(f"{order.name[:40]!r} is no order that a session can be given")
+    try:
+        _values_of(order.name).validate_python(order.values)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        wrong = first["msg"][0].lower() + first["msg"][1:]
+        raise ValueError(f"{order.name}: {'.'.join(map(str, first['loc']))}: {wrong}") from None
+
+
+@cache
+def _values_of(name: str) -> TypeAdapter[Any]:
+    method = inspect.unwrap(getattr(Orders, name))
+    kinds = get_type_hints(method, globalns=method.__globals__)
+    fields: dict[str, Any] = {}
+    for field, parameter in list(inspect.signature(method).parameters.items())[1:]:
+        default = ... if parameter.default is inspect.Parameter.empty else parameter.default
+        kind = _AS_JSON.get(kinds[field], kinds[field])
+        fields[field] = (_NARROWER.get((name, field), kind), default)
+    return TypeAdapter(create_model(name, __config__=_STRICT, **fields))

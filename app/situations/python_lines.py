@@ -1,0 +1,73 @@
+"""A situation as lines of Python that make it again: for a notebook."""
+
+from __future__ import annotations
+
+import pprint
+from typing import Any
+
+from app.situations.situation import Situation
+from app.situations.writing import changed_values, is_ours
+
+WIDE = 120  # characters of a line
+_AS_OBJECTS = {"edit_world", "put_box"}  # orders whose values are the texts of objects
+
+
+def python_lines(situation: Situation, file_name: str) -> str:
+    """Lines to be run where the package is installed. They end with the session `session`, and say whether it is the same.
+
+    A brain, a world or boxes of its own would fill pages: such a run is read from its file. file_name: of that.
+    """
+    head = [f"# {situation.header.world_name}, seed {situation.header.seed}, up to tick {situation.tick}"]
+    if (
+        situation.brain is not None
+        or not is_ours(situation)
+        or _AS_OBJECTS & {order.name for order in situation.orders}
+    ):
+        body = _from_file(file_name)
+    else:
+        body = _from_the_beginning(situation)
+    end = [
+        "",
+        f'assert session.state_hash() == "{situation.state_hash}", "not the same: this is another version"',
+        f"# Made by version {situation.header.version}, Python {situation.header.python}, numpy {situation.header.numpy}, "
+        f"{situation.header.platform}.",
+    ]
+    return "\n".join([*head, *body, *end]) + "\n"
+
+
+def _from_file(file_name: str) -> list[str]:
+    return [
+        "# Save it to a file first: its world, boxes or brain are in there.",
+        "from pathlib import Path",
+        "",
+        "from app.situations import read_situation",
+        "",
+        f'session = read_situation(Path("{file_name}").read_text()).play()',
+    ]
+
+
+def _from_the_beginning(situation: Situation) -> list[str]:
+    header, values = situation.header, changed_values(situation)
+    # All or nothing: a value that follows from another one (`with_values`) is given with it.
+    config = f"Config().with_values({_shown(values)})" if values else "Config()"
+    lines = [
+        "from app.config import Config",
+        "from app.session import Session",
+        "from sim2d import load_world",
+        "",
+        f'session = Session(load_world("{header.world_name}"), {header.seed}, {config})',
+    ]
+    if situation.orders:
+        rows = [f"    ({order.tick}, {order.name!r}, {_shown(order.values)})," for order in situation.orders]
+        lines += ["orders = [  # after this tick", *rows, "]"]
+        lines += ["for tick, order, values in orders:", *_ticks("tick", "    ")]
+        lines += ["    getattr(session, order)(**values)"]
+    return [*lines, *_ticks(str(situation.tick), "")]
+
+
+def _ticks(until: str, indent: str) -> list[str]:
+    return [f"{indent}while session.tick_count < {until}:", f"{indent}    session.tick()"]
+
+
+def _shown(values: dict[str, Any]) -> str:
+    return pprint.pformat(values, width=10**6 if len(values) < 8 else WIDE, sort_dicts=False)

@@ -1,0 +1,69 @@
+"""A run up to a moment: what it began from, its orders, the hash of its state there, and from where it is looked at."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from app.order_book import SMALLEST_M, Order, carry_out
+from app.runs.header import Header
+from app.session import Session
+from ratslam_core import RatSlam
+from ratslam_core.brain_file import read_brain
+from sim2d import world_from_json
+from web.messages.situation import Look
+
+TELL_AFTER = 10  # ticks between two calls of `tell`
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Situation:
+    """header: of the program that made it. orders: all that lead to the moment, oldest first; those of the last tick, too,
+    if they had been given. state_hash: of the session then. brain: the file of the one that the run began with."""
+
+    header: Header
+    orders: tuple[Order, ...]
+    tick: int
+    state_hash: str
+    look: Look = Look()
+    brain: bytes | None = None
+    notes: tuple[str, ...] = ()  # why it may come out differently here
+
+    def begin(self, brain: RatSlam | None = None) -> Session:
+        """The session before its first tick. brain: its own, if that has been read already. ValueError says why it cannot
+        begin."""
+        header = self.header
+        world = world_from_json(header.world, f"the world {header.world_name}", SMALLEST_M)
+        return Session(world, header.seed, header.config, brain or self.first_brain())
+
+    def first_brain(self) -> RatSlam | None:
+        """The brain that the run began with, if it was not a new one. ValueError says what is wrong with it."""
+        return None if self.brain is None else read_brain(io.BytesIO(self.brain))
+
+    def play(self, tell: Callable[[int], object] = lambda _ticks: None) -> Session:
+        """The session at the moment. ValueError: an order cannot be carried out."""
+        session = self.begin()
+        orders = list(self.orders[::-1])
+        while True:
+            while orders and orders[-1].tick <= session.tick_count:
+                carry_out(session, orders.pop())
+            if session.tick_count >= self.tick:
+                return session
+            session.tick()
+            if session.tick_count % TELL_AFTER == 0:
+                tell(TELL_AFTER)
+
+    def verdict(self, session: Session) -> tuple[bool, str]:
+        """Whether the session, which has come to the moment, is the same as the one that was linked, and what to say."""
+        found = session.state_hash()
+        if found == self.state_hash:
+            return True, f"The same, bit for bit: state hash {found[:12]} at tick {self.tick}."
+        header = self.header
+        made = f"version {header.version}, Python {header.python}, numpy {header.numpy}, {header.platform}"
+        by = "this version of the program" if header.same_program else "another version of the program"
+        because = "".join(f" {note}" for note in self.notes)
+        return False, (
+            f"Not the same: state hash {found[:12]} at tick {self.tick}, the link says {self.state_hash[:12]}. It was "
+            f"made by {by} ({made}).{because}"
+        )

@@ -1,0 +1,76 @@
+"""A newcomer's first visit, with a stopwatch: `python -m benchmarks.newcomer [SEED ...]`. Bars: 120 s, 60 words to read.
+
+It does what the card says, at the speed that the page begins with: *Quickly*, a click on the map at the far end of it, then, when
+the robot has arrived, *Kidnap* to wherever chance will have it, and *Quickly* once more when that has not ended in ten seconds.
+Before each act it waits as long as a person who reads and aims. It counts the words of the card, hints and messages.
+"""
+
+from __future__ import annotations
+
+import statistics
+import sys
+import time
+
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from tests.e2e.browser import launch, on_screen, open_page, show, until
+from tests.e2e.program import Program
+from tests.e2e.test_first_visit import far_node, is_done
+
+BAR_S, BAR_WORDS = 120.0, 60
+READ_S, AIM_S, WATCH_S = 5.0, 2.0, 10.0
+WORDS = """() => { const shown = [...document.querySelectorAll("#first, .hints")].filter((part) => part.checkVisibility());
+    return [...shown.map((part) => part.innerText), ...toasted].join(" ").split(/\\s+/).filter(Boolean).length; }"""
+
+
+def main(seeds: list[int]) -> int:
+    found = list[tuple[float, float, int]]()
+    with sync_playwright() as playwright:
+        browser = launch(playwright)
+        for seed in seeds:
+            program = Program("--port", "0", "--seed", str(seed))
+            try:
+                found.append(visit(browser, program))
+            finally:
+                program.stop()
+            goal_s, kidnap_s, words = found[-1]
+            print(
+                f"seed {seed}: at its goal after {goal_s:.0f} s, found again after {kidnap_s:.0f} s, {words} words",
+                flush=True,
+            )
+        browser.close()
+    all_s, words = [kidnap_s for _, kidnap_s, _ in found], max(words for *_, words in found)
+    met = max(all_s) <= BAR_S and words <= BAR_WORDS
+    verdict = "met" if met else "MISSED"
+    print(f"{statistics.median(all_s):.0f} s in the median, {max(all_s):.0f} s at worst, {words} words: {verdict}")
+    return not met
+
+
+def visit(browser: Browser, program: Program) -> tuple[float, float, int]:
+    """Seconds until the goal is reached and until the robot is found again, and how many words there were to read."""
+    began_s = time.monotonic()
+    with open_page(browser, program.url, first=True) as page:
+        wait(page, READ_S)
+        page.click("#first-explore")
+        is_done(page, 0)
+        until(page, "() => document.getElementById('first-share').hidden")
+        show(page, "map")
+        wait(page, AIM_S)
+        page.mouse.click(*on_screen(page, "map", far_node(program)))
+        is_done(page, 1)
+        goal_s = time.monotonic() - began_s
+        wait(page, AIM_S)
+        page.click("#kidnap")
+        wait(page, WATCH_S)
+        if page.locator("#first-find").is_visible():
+            page.click("#first-find")
+        is_done(page, 2)
+        return goal_s, time.monotonic() - began_s, page.evaluate(WORDS)
+
+
+def wait(page: Page, seconds: float) -> None:
+    page.wait_for_timeout(1000 * seconds)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main([int(word) for word in sys.argv[1:]] or [31, 32, 33, 34, 35]))

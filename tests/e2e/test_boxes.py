@@ -1,0 +1,136 @@
+"""Whatever the page shows at once, at the usual sizes, enlarged and by touch: nothing is covered, nothing is cut, and all that
+can be pressed is large enough for who presses it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.e2e.browser import calm, open_page
+from tests.e2e.program import Program
+
+# 683 x 384 is 1366 x 768 enlarged twice; below 500 pixels the page is touched.
+SIZES = [(1024, 768), (1280, 720), (1366, 768), (1920, 1080), (683, 384), (390, 844), (820, 1180)]
+# Each of these stands alone; what lies in one of them may not cover its neighbours there either.
+PARTS = """header, footer, .views, .aids, .hints, #panel, #panel-show, #beside, #lesson, #trial, #first, #situation, #film,
+    #walk, #kept, #presenter-bar, .toast"""
+WRONG = """([parts, least]) => {
+    const wrong = [], name = (part) => part.id || part.className || part.tagName;
+    const shown = (part) => part.checkVisibility({ visibilityProperty: true }) && part.getBoundingClientRect().width > 0;
+    const all = [...document.querySelectorAll(parts)].filter(shown);
+    const apart = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) <= 0.5
+        || Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) <= 0.5;
+    for (const [k, part] of all.entries()) {
+        const box = part.getBoundingClientRect();
+        if (box.left < -0.5 || box.right > innerWidth + 0.5 || box.top < -0.5 || box.bottom > innerHeight + 0.5)
+            wrong.push(`${name(part)} sticks out`);
+        for (const other of all.slice(k + 1)) {
+            const sheet = part.id === "panel" && innerWidth <= 1000 || other.id === "panel" && innerWidth <= 1000;
+            if (!sheet && !part.contains(other) && !other.contains(part) && !apart(box, other.getBoundingClientRect()))
+                wrong.push(`${name(part)} and ${name(other)} cover one another`);
+        }
+    }
+    const scrolled = (part) => { // out of sight in something that can be scrolled to it
+        for (let up = part.parentElement; up; up = up.parentElement)
+            if (/auto|scroll/.test(getComputedStyle(up).overflow)
+                && (up.scrollHeight > up.clientHeight || up.scrollWidth > up.clientWidth)) return true;
+        return false;
+    };
+    const pressed = [...document.querySelectorAll("button, select, summary, [role=tab]")].filter(shown);
+    for (const part of pressed.filter((part) => !part.closest("#panel, dialog, #timeline"))) {
+        const box = part.getBoundingClientRect();
+        if (Math.min(box.width, box.height) < least - 0.5)
+            wrong.push(`${name(part)} is ${box.width.toFixed(0)} x ${box.height.toFixed(0)}`);
+        if (part.tagName !== "SELECT" && part.scrollWidth > part.clientWidth + 1 && getComputedStyle(part).overflow !== "visible")
+            wrong.push(`${name(part)} is cut`);
+        if (scrolled(part)) continue;
+        const at = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2);
+        if (at && !part.contains(at) && !at.contains(part) && !at.closest("label")?.contains(part))
+            wrong.push(`${name(part)} is beneath ${name(at)}`);
+    }
+    return wrong; }"""
+
+
+@pytest.fixture(scope="module")
+def program() -> Iterator[Program]:
+    made = Program("--port", "0", "--seed", "5", "--paused")
+    made.command("step", ticks=300)
+    yield made
+    assert made.stop() == 0
+
+
+def plain(_program: Program, _page: Page) -> None:
+    pass
+
+
+def on_the_way(program: Program, page: Page) -> None:
+    program.command("set_goal", x=0.0, y=0.0)
+    expect(page.locator("#goal")).to_be_visible()
+
+
+def in_the_past(program: Program, page: Page) -> None:
+    program.command("seek", tick=100)
+    expect(page.locator("#now")).to_be_visible()
+
+
+def branched(program: Program, page: Page) -> None:
+    program.command("seek", tick=200)
+    expect(page.locator("#now")).to_be_visible()
+    program.command("go_on_from_here")
+    expect(page.locator("#now")).to_be_hidden()
+
+
+def stage_by_stage(program: Program, page: Page) -> None:
+    program.command("step_stage")
+    expect(page.locator("#walk")).to_be_visible()
+
+
+def compared(program: Program, page: Page) -> None:
+    program.command("compare_brains", pair="vision", since="now")
+    program.command("step", ticks=20)
+    expect(page.locator("#beside-second")).to_contain_text("without vision")
+
+
+def presented(_program: Program, page: Page) -> None:
+    page.keyboard.press("z")
+
+
+def in_a_lesson(program: Program, page: Page) -> None:
+    page.keyboard.press("z")  # ends presenting
+    program.command("begin_lesson", name="packet")
+    expect(page.locator("#lesson")).to_have_attribute("data-state", "predict")
+
+
+def in_a_lesson_before_a_class(_program: Program, page: Page) -> None:
+    page.keyboard.press("z")
+
+
+def with_a_trial(program: Program, page: Page) -> None:
+    page.keyboard.press("z")
+    program.command("watch_experiment", experiment="table", engine="ours", quick=True)
+    program.command("pause")
+    expect(page.locator("#trial")).to_be_visible()
+
+
+STATES: list[Callable[[Program, Page], None]] = [
+    plain, on_the_way, in_the_past, branched, compared, presented, stage_by_stage, in_a_lesson,
+    in_a_lesson_before_a_class, with_a_trial,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_nothing_is_covered_cut_or_too_small(program: Program, browser: Browser, size: tuple[int, int]) -> None:
+    program.command("reset", world="office", seed=5)
+    program.command("step", ticks=300)
+    with open_page(browser, program.url, *size, stage=False) as page:
+        page.evaluate("() => document.querySelectorAll('.toast').forEach((toast) => toast.remove())")
+        wrong: list[str] = []
+        for state in STATES:
+            state(program, page)
+            calm(page)
+            wrong += [
+                f"{state.__name__}: {each}" for each in page.evaluate(WRONG, [PARTS, 44 if size[0] < 500 else 24])
+            ]
+        assert not wrong, "\n".join(wrong)

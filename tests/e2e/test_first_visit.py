@@ -1,0 +1,130 @@
+"""The first visit: what this is, three things to do, done by doing them; the help; places chosen from a list by keyboard."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.e2e.browser import on_screen, open_page, show, until
+from tests.e2e.program import Program
+from web.viewer.fits.map_fit import MapFit, refit
+from web.viewer.plates.map_plate import NODE_Z, ORIGIN
+
+MOST_WORDS = 60
+STATES = "() => [...document.querySelectorAll('#first li')].map((row) => row.dataset.state)"
+
+
+@pytest.fixture(scope="module")
+def fresh():
+    made = Program("--port", "0", "--seed", "23")
+    yield made
+    assert made.stop() == 0
+
+
+def far_node(program: Program) -> tuple[float, float, float]:
+    """The experience farthest from the robot, on the stage."""
+    state = program.state(full=True)
+    nodes = np.array(state["map"]["xy"])
+    away = np.hypot(*(nodes - [state["estimate"]["x"], state["estimate"]["y"]]).T)
+    x, y = refit(MapFit(), nodes, state["map"]["turn_rad"]).to_plate(nodes[[np.argmax(away)]])[0]
+    return ORIGIN[0] + x, ORIGIN[1] + y, ORIGIN[2] + NODE_Z
+
+
+def is_done(page: Page, row: int) -> None:
+    until(page, f"() => ({STATES})()[{row}] === 'done'")
+
+
+def test_a_newcomer_sends_it_and_sees_a_kidnap_through(fresh, browser) -> None:
+    with open_page(browser, fresh.url, first=True) as page:
+        card = page.locator("#first")
+        expect(card).to_be_visible()
+        words = page.evaluate("() => document.getElementById('first').innerText.split(/\\s+/).filter(Boolean).length")
+        assert words <= MOST_WORDS
+        assert page.evaluate(STATES) == ["now", "later", "later"]
+        page.click("#first-explore")
+        is_done(page, 0)
+        until(page, "() => document.getElementById('first-share').hidden")
+        fresh.command("pause")  # nothing moves while the person aims
+        was = fresh.state()["robot"]
+        show(page, "map")
+        page.mouse.click(*on_screen(page, "map", far_node(fresh)))
+        until(page, "() => !document.getElementById('goal').hidden")
+        page.select_option("#speed", "0")
+        page.click("#play")
+        is_done(page, 1)
+        fresh.command("kidnap", **was)  # by chance it may be put where it has to search for long
+        is_done(page, 2)
+        expect(page.locator("#first-end")).to_be_visible()
+        page.click("#first-close")
+        expect(card).to_be_hidden()
+        page.reload()
+        page.wait_for_selector("body[data-alive]")
+        expect(card).to_be_hidden()
+        page.keyboard.press("?")
+        page.click("#help-first")
+        expect(card).to_be_visible()
+
+
+def test_a_place_is_chosen_from_a_list_by_keyboard_and_told_aloud(fresh, browser) -> None:
+    with open_page(browser, fresh.url, stage=False) as page:
+        fresh.command("reset", seed=5)
+        fresh.command("step", ticks=250)
+        fresh.command("tag", name="the printer")
+        page.keyboard.press("/")
+        expect(page.locator("#places-typed")).to_be_focused()
+        rows = page.locator("#places-list li")
+        expect(rows.first).to_contain_text("the printer")
+        assert rows.count() > 5
+        page.keyboard.type("the print")
+        expect(rows).to_have_count(1)
+        page.keyboard.press("Enter")
+        expect(page.locator("#places-dialog")).to_be_hidden()
+        until(page, "() => !document.getElementById('goal').hidden")
+        until(page, "() => document.getElementById('said').textContent.includes('goal set')")
+        page.keyboard.press("x")
+        page.keyboard.press("/")
+        unknown = rows.filter(has_text="library")
+        expect(unknown).to_contain_text("the robot has not been near it yet")
+        expect(unknown.locator("button")).to_have_attribute("aria-disabled", "true")
+        page.keyboard.type("library")
+        page.keyboard.press("Enter")  # nothing is given: it stays open
+        expect(page.locator("#places-dialog")).to_be_visible()
+        page.locator("#places-typed").fill("")
+        rows.filter(has_text="Experience").first.locator("text=Inspect").focus()
+        page.keyboard.press("Enter")
+        expect(page.locator("#panel [role=tab][aria-selected=true]")).to_have_text("Inspect")
+
+
+def test_the_help_lists_the_keys_by_group(fresh, browser) -> None:
+    with open_page(browser, fresh.url, stage=False) as page:
+        page.keyboard.press("?")
+        expect(page.locator("#keys h4")).to_have_text(["Robot", "Time", "Looking", "Presenter", "Page"])
+        expect(page.locator("#keys li", has_text="kidnap").locator("kbd")).to_have_text("k")
+
+
+def test_a_presenter_goes_on_and_back_without_the_panel(fresh, browser) -> None:
+    with open_page(browser, fresh.url, stage=False) as page:
+        size = "() => parseFloat(getComputedStyle(document.getElementById('status')).fontSize)"
+        before = page.evaluate(size)
+        page.keyboard.press("z")
+        expect(page.locator("#panel")).to_be_hidden()
+        assert page.evaluate(size) > before
+        shown = page.locator(".views [aria-pressed=true]")
+        page.keyboard.press("PageDown")
+        page.keyboard.press("PageDown")
+        expect(shown).to_have_text("Pose cells")
+        page.keyboard.press("PageUp")
+        expect(shown).to_have_text("Office")
+        page.evaluate("() => document.addEventListener('presenter:next', (event) => event.preventDefault())")
+        page.keyboard.press("PageDown")  # somebody else goes through something
+        expect(shown).to_have_text("Office")
+        page.keyboard.press("q")
+        page.mouse.move(300, 300)
+        expect(page.locator("#spot")).to_be_visible()
+        until(page, "() => document.getElementById('spot').style.getPropertyValue('--x') === '300px'")
+        page.keyboard.press("z")
+        expect(page.locator("#panel")).to_be_visible()
+        expect(page.locator("#spot")).to_be_hidden()
+        page.keyboard.press("PageDown")
+        expect(shown).to_have_text("Office")

@@ -1,0 +1,126 @@
+"""Two brains compared on the page: two clicks begin it, the strip tells how they differ, one click ends it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.e2e.browser import box_of, calm, eye_of, open_page, show, told, turn_theme
+from tests.e2e.program import Program
+from tests.e2e.test_accessibility import findings
+from tests.patience import until
+from web.viewer.camera_views import camera_for
+
+
+@pytest.fixture(scope="module")
+def program() -> Iterator[Program]:
+    made = Program("--port", "0", "--seed", "5", "--paused")
+    yield made
+    assert made.stop() == 0
+
+
+def row(page: Page, which: str) -> list[str]:
+    return page.locator(f"#beside-{which} > *").all_inner_texts()
+
+
+def test_two_clicks_begin_it_and_one_ends_it(program: Program, browser: Browser) -> None:
+    program.command("reset", seed=5)
+    with open_page(browser, program.url, stage=False) as page:
+        expect(page.locator("#beside")).to_be_hidden()
+        page.get_by_label("Compare brains").click()
+        page.get_by_role("button", name="Without vision Path integration alone").click()
+        told(page, "Two brains, the same senses")
+        expect(page.get_by_role("button", name="Both")).to_be_visible()
+        program.command("step", ticks=300)
+        state = program.state()
+        first, second = page.locator("#beside-first"), page.locator("#beside-second")
+        expect(first).to_contain_text("with vision")
+        expect(first).to_contain_text(str(state["experiences"]))
+        expect(second).to_contain_text("without vision")
+        view = page.get_by_role("button", name="view 0:00.0")
+        expect(view).to_have_attribute(
+            "title", "Since tick 0: with vision sees view #0, without vision no view. Show that moment."
+        )
+        differing = page.locator("#beside-changed")
+        expect(differing.locator("summary")).to_have_attribute("title", "local_view.enabled: on → off")
+        differing.locator("summary").click()
+        expect(differing.locator("tbody tr")).to_have_text("local_view.enabledonoff")
+        page.keyboard.press("Escape")
+        expect(differing.locator("tbody")).to_be_hidden()
+        assert state["beside"]["changed"] == [{"name": "local_view.enabled", "first": True, "second": False}]
+        view.click()
+        program.wait(lambda state: state["tick"] == 1)
+        expect(page.locator("#past")).to_be_visible()
+        page.keyboard.press("n")
+        program.wait(lambda state: state["tick"] == 300)
+        page.get_by_role("button", name="End the comparison").click()
+        expect(page.locator("#beside")).to_be_hidden()
+        page.get_by_role("button", name="Events", exact=True).click()
+        expect(page.locator("#event-list")).to_contain_text("the comparison ends: after 30 s with vision")
+
+
+def test_the_menu_names_what_would_really_begin(program: Program, browser: Browser) -> None:
+    program.command("use_preset", name="paper-2006")
+    for axis in ("x", "y"):
+        program.command("set_parameter", name=f"pose_cells.n_{axis}", value=8)
+    with open_page(browser, program.url, stage=False) as page:
+        page.get_by_label("Compare brains").click()
+        anew = page.locator("#brains-anew button > span")
+        expect(anew).to_have_text(
+            ["Ours", "Without vision", "64 x 64 pose cells", "Learning rate 0.15", "No map, as in 2004"]
+        )
+        page.get_by_role("button", name="64 x 64 pose cells").click()
+        told(page, "Two brains, the same senses")
+        expect(page.locator("#beside-first")).to_contain_text("8 x 8 cells")
+        expect(page.locator("#beside-second")).to_contain_text("64 x 64 cells")
+    program.command("end_comparison")
+    program.command("use_preset", name="ours")
+    for axis in ("x", "y"):
+        program.command("set_parameter", name=f"pose_cells.n_{axis}", value=64)
+    program.command("reset", seed=5)
+
+
+@pytest.mark.parametrize("size", [(1920, 1080), (1280, 800), (1024, 768), (390, 844)])
+def test_the_strip_covers_nothing_and_is_whole(program: Program, browser: Browser, size: tuple[int, int]) -> None:
+    program.command("compare_brains", pair="cells")
+    program.command("step", ticks=200)
+    with open_page(browser, program.url, *size, stage=False) as page:
+        strip, stage, views = (box_of(page.locator(name)) for name in ("#beside", "#stage", ".views"))
+        assert strip["height"] < 130
+        assert strip["y"] > views["y"] + views["height"]
+        assert strip["y"] + strip["height"] <= stage["y"] + stage["height"]
+        end = box_of(page.locator("#beside-end"))
+        assert strip["x"] <= end["x"]
+        assert end["x"] + end["width"] <= strip["x"] + strip["width"] <= stage["x"] + stage["width"]
+        for which in ("first", "second"):
+            cells = page.locator(f"#beside-{which} > :visible")
+            last = box_of(cells.last)
+            assert last["x"] + last["width"] <= strip["x"] + strip["width"]
+        for _ in range(2):
+            calm(page)
+            assert findings(page) == []
+            turn_theme(page)
+        page.get_by_label("Compare brains").click()
+        calm(page)
+        assert findings(page) == []
+    program.command("end_comparison")
+
+
+def test_the_stage_shows_both_and_then_one_again(program: Program, browser: Browser) -> None:
+    program.command("compare_brains", pair="papers")
+    program.command("step", ticks=100)
+    with open_page(browser, program.url) as page:
+        canvas = page.frame_locator("#stage").locator("canvas").first
+
+        def stands(two: bool) -> bool:
+            box = box_of(canvas)
+            wanted = camera_for("all", box["width"] / box["height"], two=two).position
+            page.wait_for_timeout(30)
+            return bool(abs(eye_of(page) - wanted).max() < 0.05)
+
+        until(lambda: stands(two=True), "both brains are in view")
+        page.get_by_role("button", name="End the comparison").click()
+        until(lambda: stands(two=False), "one brain is in view")
+        show(page, "map")

@@ -1,0 +1,249 @@
+"""Kept runs that were spoilt: their lines, signed again or not, and the brain and the state beside them."""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import io
+import json
+import os
+import tempfile
+import zlib
+from functools import cache
+from pathlib import Path
+from random import Random
+from typing import Any
+
+from app.cli.command_line import main
+from app.config import Config
+from app.engine.engine import Engine
+from app.engine.pace import Pace
+from app.engine.watchdog import Watchdog
+from app.runs.folder import BRAIN, LINES, STATE
+from app.runs.header import beginning_of, header_of, written
+from app.runs.journal import Journal
+from app.runs.keeper import RunKeeper
+from app.runs.line_book import LineBook
+from app.runs.pulse import pulse_of
+from app.runs.replay import replay, resumed
+from app.runs.run_file import open_run
+from app.runs.world_edits import edit_of
+from app.session import Session
+from app.session_snapshot import read_session, take_session
+from disk import State, encode, write_state
+from ratslam_core.brain_file import read_brain
+from sim2d import Box, load_world, world_to_json
+from tests.fuzz.brains import file_of, state_of
+from tests.fuzz.mutators import bytes_spoilt, text_of, tree_spoilt
+
+TICKS = 40
+Files = dict[str, bytes]
+BOMBS = (
+    lambda: b"[" + b"[]," * 5_000_000 + b"[]]", lambda: b'"' + b"a" * 17_000_000 + b'"', lambda: b"9" * 4_000_000,
+    lambda: b"[" * 1_000_000, lambda: b'{"tick":0,"end":[' + b"{}," * 1_000_000 + b"0]}",
+)  # fmt: skip
+
+
+def run_file(rng: Random) -> str:
+    """Spoil a run; list it, run it again, go on with it, and keep on keeping it. Returns what became of it."""
+    files = dict(rng.choice(bases()))
+    for _ in range(rng.choice((1, 1, 2))):
+        name = rng.choice([name for name in (LINES, LINES, LINES, STATE, BRAIN) if name in files])
+        files[name] = _lines_spoilt(files[name], rng) if name == LINES else _state_spoilt(files, name, rng)
+    return use(files)
+
+
+@cache
+def bases() -> tuple[Files, ...]:
+    """Short runs with a box, an edit of the world, a kidnap, another parameter and driving by hand; one began with a brain."""
+    return _kept(False), _kept(True)
+
+
+def _kept(with_brain: bool) -> Files:
+    before = Session(load_world("loop"), 4)
+    for _ in range(60 if with_brain else 0):
+        before.tick()
+    with tempfile.TemporaryDirectory() as home:
+        folder = Path(home) / "run"
+        brain = None
+        journal = Journal(folder)
+        if with_brain:
+            with (folder / BRAIN).open("wb") as file:
+                write_state(encode(before.brain), file)
+            brain = read_brain(io.BytesIO((folder / BRAIN).read_bytes()))
+        session = Session(load_world("loop"), 2, Config(), brain)
+        journal.add(written(header_of(beginning_of(session, brain=with_brain))))
+        lines = LineBook(journal, session.world_text, 0)
+        session.on_order = lines.order
+        for tick in range(1, TICKS + 1):
+            session.tick()
+            lines.tick(tick, pulse_of(session))
+            if tick in (20, 35):
+                lines.hash(tick, session.state_hash(), len(session.brain.experience_map))
+            if tick == 20:
+                with (folder / STATE).open("wb") as file:
+                    write_state(take_session(session), file)
+            _give_order(session, tick)
+        lines.flush()
+        journal.close()
+        return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def _give_order(session: Session, tick: int) -> None:
+    match tick:
+        case 5:
+            session.put_box(Box("crate", 2.0, 2.0, 0.4, 0.4, 0.5, 0.2))
+        case 10:
+            session.kidnap()
+        case 15:
+            session.edit_world(load_world("loop"))
+        case 22:
+            session.set_parameter("pose_cells.inhibit", 0.0003)
+        case 30:
+            session.set_mode("manual")
+        case 31:
+            session.drive(0.2, 0.3)
+
+
+def _lines_spoilt(data: bytes, rng: Random) -> bytes:
+    """Other bytes; or other lines, with checksums that fit."""
+    if rng.random() < 0.2:
+        return bytes_spoilt(data, rng, rng.choice(bases())[LINES])
+    texts = [line.split(b" ", 1)[-1] for line in data.splitlines()]
+    for _ in range(rng.choice((1, 1, 2, 5))):
+        at, other = rng.randrange(len(texts)), rng.randrange(len(texts))
+        match rng.randrange(10):
+            case 0:
+                texts[at:at] = [texts[other]] * rng.choice((1, 1, 500))
+            case 1:
+                texts[at], texts[other] = texts[other], texts[at]
+            case 2 if len(texts) > 1:
+                del texts[at]
+            case 3:
+                texts[at] = bytes_spoilt(texts[at], rng, texts[other]).replace(b"\n", b"")
+            case 4 if rng.random() < 0.1:
+                texts[at] = rng.choice(BOMBS)()
+            case 5:
+                ticks = rng.choice((1, 10, 1000, 2_000_000))
+                pulses = base64.b64encode(bytes(4 * ticks)).decode()
+                texts[at:at] = [json.dumps({"tick": TICKS + ticks, "pulses": pulses}).encode()]
+            case 6:
+                tree = tree_spoilt(json.loads(world_to_json(load_world("loop"))), rng)
+                text = json.dumps(tree, indent=1)
+                texts[at:at] = [json.dumps(_edit(text)).encode()]
+            case _:
+                with contextlib.suppress(ValueError, RecursionError):  # spoilt before
+                    texts[at] = text_of(tree_spoilt(json.loads(texts[at]), rng)).encode("utf-8", "surrogatepass")
+    return signed(texts)
+
+
+def _edit(text: str) -> dict[str, Any]:
+    """The last order of a run: an edit that makes the world's text this one."""
+    edit = edit_of(world_to_json(load_world("loop")), text)
+    return {"tick": TICKS, "order": "edit_world", "values": {}, "edit": edit}
+
+
+def signed(texts: list[bytes]) -> bytes:
+    """A file of these lines, with their checksums."""
+    out, check = b"", 0
+    for text in texts:
+        check = zlib.crc32(text, check)
+        out += b"%08x %s\n" % (check, text)
+    return out
+
+
+def _state_spoilt(files: Files, name: str, rng: Random) -> bytes:
+    """The file with other bytes, or with another state whose digest fits, and which the run's hashes know."""
+    data = files[name]
+    if rng.random() < 0.3 or len(data) < 100:
+        return bytes_spoilt(data, rng) if data else b"x"
+    whole = _states()[name]
+    spoilt = file_of(*state_of(rng.choice(whole), rng))
+    if name == STATE:
+        with contextlib.suppress(Exception):  # one that cannot be read has no hash
+            session = read_session(io.BytesIO(spoilt))
+            texts = [line.split(b" ", 1)[-1] for line in files[LINES].splitlines()]
+            hash_ = {"tick": session.tick_count, "hash": session.state_hash(), "experiences": 3}
+            files[LINES] = signed([*texts, json.dumps(hash_).encode()])
+    return spoilt
+
+
+@cache
+def _states() -> dict[str, tuple[State, ...]]:
+    first, second = bases()
+    sessions = [read_session(io.BytesIO(files[STATE])) for files in (first, second)]
+    return {
+        STATE: tuple(take_session(session) for session in sessions),
+        BRAIN: (encode(read_brain(io.BytesIO(second[BRAIN]))),),
+    }
+
+
+def use(files: Files) -> str:
+    with tempfile.TemporaryDirectory() as home:
+        folder = Path(home) / "run"
+        folder.mkdir()
+        for name, data in files.items():
+            (folder / name).write_bytes(data)
+        os.environ["RATSLAM_RUNS"] = home
+        _list()
+        run = open_run(folder)
+        there: Session | None = None
+        refused: ValueError | None = None
+        try:
+            replay(run)
+        except ValueError as error:
+            refused = error
+            _require_sentence(error)
+        there = resumed(run)
+        _go_on(folder, there)
+        if refused is not None:
+            raise refused
+    return "taken"
+
+
+def _list() -> None:
+    for words in (["runs"], ["runs", "--json"]):
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            assert main(words) == 0
+        lines = said.getvalue().splitlines()
+        assert len(lines) == (2 if len(words) == 1 else 1), lines
+        for line in lines:
+            assert len(line) < 2000, line
+            assert line.isprintable(), line
+            line.encode()
+
+
+def _go_on(folder: Path, session: Session) -> None:
+    """What `ratslam run --resume` does with it."""
+    kept, complaints = open_run(folder), list[str]()
+    keeper = RunKeeper(complaints.append)
+    engine = Engine(session.world, Pace(1.0), Watchdog(60.0, lambda: None), running=True, answer=_nobody, keeper=keeper)
+    keeper.start()
+    try:
+        engine.go_on(kept, session)
+        for _ in range(3):
+            engine.tick()
+    finally:
+        keeper.stop()
+    again = open_run(folder)
+    assert complaints or engine.fault is not None or again.last_tick == kept.last_tick + 3, again.last_tick
+    for words in complaints:
+        _require_sentence(ValueError(words))
+
+
+def _require_sentence(error: ValueError) -> None:
+    words = str(error)
+    assert words, repr(error)
+    assert len(words) < 2000, words
+    assert "\n" not in words.strip(), words
+
+
+def _nobody(_request: object, _answer: object) -> None:
+    pass
+
+
+def warm() -> None:
+    """Compile whatever a case needs."""
+    for files in bases():
+        assert use(files) == "taken"

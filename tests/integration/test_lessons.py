@@ -1,0 +1,95 @@
+"""Every lesson of the catalogue keeps what it promises, on its own seed."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from app.engine.teaching import Teaching
+from app.gallery.lessons import StoredLessons, check_formulas
+from app.lessons.files import catalogue, check_lesson
+from app.lessons.performance import perform_round
+from app.lessons.report import report_of
+from app.lessons.schema import Lesson
+from sim2d import load_world
+from tests.unit.app.engines import an_engine, tell
+
+MOST_TICKS = 2600  # of a scene: what a quiet machine does in less than two seconds
+LESSONS = list(catalogue())
+
+
+@pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: lesson.name)
+def test_it_keeps_what_it_promises(lesson: Lesson) -> None:
+    check_lesson(lesson)
+    check_formulas(lesson)
+    report = report_of(lesson)
+    assert report.kept, "\n".join(report.lines)
+    most = MOST_TICKS if lesson.scene.compare is None else MOST_TICKS // 2  # two brains take twice as long
+    for performance in report.performances:
+        assert performance.scene_ticks <= most, f"{performance.label}: the scene takes {performance.scene_ticks} ticks"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lesson", [each for each in LESSONS if each.pair is not None], ids=lambda lesson: lesson.name)
+@pytest.mark.parametrize("seed", [301, 302])
+def test_what_two_brains_promise_holds_on_other_seeds(lesson: Lesson, seed: int) -> None:
+    report = report_of(lesson, seed)
+    assert report.kept, "\n".join(report.lines)
+
+
+@pytest.mark.parametrize("lesson", [lesson for lesson in LESSONS if lesson.sandbox], ids=lambda lesson: lesson.name)
+def test_what_it_leaves_to_be_tried_can_be_done(lesson: Lesson) -> None:
+    for each in lesson.sandbox:
+        engine = an_engine(load_world("office"))
+        engine.begin_lesson(Teaching(lesson, lesson.scene.seed, None))
+        for command in each.commands:
+            tell(engine, **command)  # ValueError when it is refused
+
+
+def test_the_square_comes_apart_when_it_is_blindfolded() -> None:
+    """What the lesson says of its thing to try."""
+    square = next(lesson for lesson in LESSONS if lesson.name == "square")
+    (blindfold, go_on) = square.sandbox[0].commands
+    assert go_on == {"type": "resume"}
+    session = perform_round(square, 2).session
+    session.set_parameter(blindfold["name"], blindfold["value"])
+    session.set_mode("explore")
+    for _ in range(round(300 / session.frame.dt)):
+        session.tick()
+    assert session.evaluation.errors(session.brain.experience_map)[0] > 2
+
+
+TYPESET = {
+    "sum", "in", "min", "max", "int", "frac", "left", "right", "quad", "leftarrow", "Delta", "Big", "neq", "leq", "bmod",
+}  # fmt: skip
+COUNTS = set("ijkabctp")  # over which is summed, or which number what has them
+
+
+def _letters(latex: str) -> set[str]:
+    latex = re.sub(r"\\(text|begin|end|mathbf){(cases|[^}]*)}", lambda m: m[2] if m[1] == "mathbf" else "", latex)
+    return (set(re.findall(r"\\([a-zA-Z]+)", latex)) - TYPESET) | set(
+        re.findall("[A-Za-z]", re.sub(r"\\[a-zA-Z]+", "", latex))
+    )
+
+
+@pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: lesson.name)
+def test_every_symbol_of_its_formulas_is_told(lesson: Lesson) -> None:
+    for formula in lesson.formulas:
+        told = set[str]().union(*(_letters(symbol.symbol) for symbol in formula.symbols))
+        assert _letters(formula.latex) - COUNTS - {"d"} <= told, formula.latex
+    assert any(symbol.parameter for formula in lesson.formulas for symbol in formula.symbols)
+
+
+def test_there_are_twenty_two_and_each_has_its_texts() -> None:
+    lessons = StoredLessons()
+    cards = lessons.cards()
+    assert len(cards) >= 22
+    assert len({card.title for card in cards}) == len(cards)
+    for card in cards:
+        text = lessons.text(card.name)
+        assert text is not None
+        assert text.watch
+        assert text.sandbox
+        assert text.formulas
+        assert 0 < card.minutes <= 15

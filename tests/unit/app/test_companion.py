@@ -1,0 +1,208 @@
+"""A second brain on the same senses: it changes nothing in the first, and is itself as it would be alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+
+from app import session_laws
+from app.config import Config, Value
+from app.config.pairs import pairs_beside
+from app.order_book import Order, carry_out
+from app.played_session import PlayedSession
+from app.recordings.playing import Player
+from app.session import Session
+from app.session_snapshot import restore_session, take_session
+from disk import encode
+
+from .made_recordings import recorded
+from .sessions import OFFICE, a_session
+
+EIGHT: dict[str, Value] = {"pose_cells.n_x": 8, "pose_cells.n_y": 8}
+BLIND: dict[str, Value] = {"local_view.enabled": False}
+Step = Callable[[Session], object]
+ORDERS: tuple[Step, ...] = (
+    lambda session: session.kidnap(),
+    lambda session: session.set_parameter("local_view.learning_rate", 0.4),
+    lambda session: session.set_parameter("robot.camera_fov_rad", 1.1),
+    lambda session: session.go_to(len(session.brain.experience_map) - 1),
+    lambda session: session.drive(0.3, 0.2),
+    lambda session: session.put_packet(4, 4),
+    lambda session: session.set_mode("explore"),
+)
+
+
+def run_for(session: Session, ticks: int) -> Session:
+    for _ in range(ticks):
+        session.tick()
+    return session
+
+
+def beside(values: dict[str, Value], ticks: int = 0, anew: bool = True, seed: int = 3) -> Session:
+    session = a_session(seed=seed)
+    session.begin_companion("one", "other", values, anew)
+    return run_for(session, ticks)
+
+
+@settings(max_examples=6, deadline=None, phases=(Phase.explicit, Phase.generate))
+@given(
+    st.sampled_from([pair.values for pair in pairs_beside(Config())]),
+    st.integers(0, 1000),
+    st.lists(st.tuples(st.integers(1, 40), st.sampled_from(ORDERS)), max_size=5),
+)
+def test_the_first_is_the_same_to_the_bit(values: dict[str, Value], seed: int, orders: list[tuple[int, Step]]) -> None:
+    alone, watched = a_session(seed=seed), beside(values, seed=seed)
+    for ticks, order in [*orders, (20, lambda _: None)]:
+        for session in (alone, watched):
+            run_for(session, ticks)
+            order(session)
+    assert alone.state_hash() == watched.state_hash()
+    watched.end_companion()
+    assert alone.state_hash() == watched.state_hash()
+    assert take_session(alone).digest() == take_session(watched).digest()  # nothing of it remains
+
+
+def test_with_the_same_parameters_it_is_the_first_again_whatever_is_told_to_both() -> None:
+    session = beside({})
+    for order in ORDERS:
+        if order is not ORDERS[5]:  # a packet by hand is put into the first only
+            run_for(session, 25)
+            order(session)
+    run_for(session, 60)
+    companion = session.companion
+    assert companion is not None
+    assert encode(companion.brain).digest() == encode(session.brain).digest()
+    assert encode(companion.evaluation).digest() == encode(session.evaluation).digest()
+    assert (companion.parting.packet, companion.parting.view, companion.parting.link) == (None, None, None)
+    assert companion.counterpart == list(range(len(session.brain.experience_map)))
+
+
+def test_it_is_the_brain_that_those_parameters_make_on_the_same_way() -> None:
+    """Where the pilot does not read the brain, a session with these parameters drives the same way."""
+    plain: dict[str, Value] = {"pilot.seek": False}
+    session = a_session(config=Config().with_values(plain))
+    session.begin_companion("64", "8", EIGHT, True)
+    other = a_session(config=Config().with_values({**plain, **EIGHT}))
+    for each in (session, other):
+        run_for(each, 300)
+    assert session.companion is not None
+    assert encode(session.companion.brain).digest() == encode(other.brain).digest()
+    assert session.companion.evaluation.errors(session.companion.brain.experience_map) == other.evaluation.errors(
+        other.brain.experience_map
+    )
+
+
+def test_a_copy_differs_from_now_on() -> None:
+    session = a_session(150)
+    session.begin_companion("with", "without", BLIND, False)
+    companion = session.companion
+    assert companion is not None
+    made = len(session.brain.experience_map)
+    assert len(companion.brain.experience_map) == made
+    assert companion.counterpart == list(range(made))
+    assert not companion.brain.params.local_view.enabled
+    assert session.brain.params.local_view.enabled
+    run_for(session, 50)
+    view = companion.parting.view
+    assert view is not None
+    assert view[0] == 151
+    assert view[3] == -1
+
+
+def test_what_is_set_for_the_first_is_set_for_both_but_for_the_difference() -> None:
+    session = beside({"local_view.learning_rate": 1.0}, 5)
+    session.set_parameters({"local_view.learning_rate": 0.3, "local_view.saturation": 0.02, "pose_cells.n_x": 32})
+    assert session.companion is not None
+    for params, rate in ((session.brain.params, 0.3), (session.companion.brain.params, 1.0)):
+        assert (params.local_view.learning_rate, params.local_view.saturation) == (rate, 0.02)
+        assert params.pose_cells.n_x == 64  # waits for the next reset
+    assert session.companion.config.pose_cells.n_x == 32
+
+
+def test_a_goal_of_the_first_is_where_the_other_was_then() -> None:
+    session = beside(EIGHT, 400)
+    assert session.companion is not None
+    at, own = session.companion.counterpart, session.companion.brain.experience_map
+    assert len(at) == len(session.brain.experience_map)
+    apart = [
+        np.hypot(
+            *np.subtract(
+                session.evaluation.made_at(k, session.brain.experience_map),
+                session.companion.evaluation.made_at(at[k], own),
+            )
+        )
+        for k in range(len(at))
+    ]
+    assert max(apart) < 1.0  # the two were at one place, whatever they call it
+
+
+@pytest.mark.parametrize(
+    ("values", "anew", "words"),
+    [
+        ({"pilot.seek": False}, True, "pilot.seek cannot differ"),
+        ({"robot.max_speed": 0.1}, False, "robot.max_speed cannot differ"),
+        ({"local_view.nothing": 1}, True, "unknown parameter"),
+        (EIGHT, False, "pose_cells.n_x, pose_cells.n_y cannot change while a brain runs"),
+        (BLIND, True, "begins together with the run"),
+    ],
+)
+def test_what_cannot_be_compared(values: dict[str, Value], anew: bool, words: str) -> None:
+    session = a_session(3)
+    told: list[Order] = []
+    session.on_order = told.append
+    with pytest.raises(ValueError, match=words):
+        session.begin_companion("one", "other", values, anew)
+    with pytest.raises(ValueError, match="no second brain"):
+        session.end_companion()
+    with pytest.raises(ValueError, match="needs a name"):
+        session.begin_companion("one", " ", {}, False)
+    assert (session.companion, told) == (None, [])
+
+
+def test_as_orders_and_from_a_file_both_go_on_as_they_did() -> None:
+    session, told = a_session(), list[Order]()
+    session.on_order = told.append
+    session.begin_companion("64", "8", EIGHT, True)
+    run_for(session, 60)
+    session.kidnap()
+    kept = restore_session(take_session(session))
+    run_for(session, 60)
+    again = a_session()
+    for order in told:
+        carry_out(run_for(again, order.tick - again.tick_count), order)
+    run_for(again, 60)
+    run_for(kept, 60)
+    for other in (again, kept):
+        assert session.companion is not None
+        assert other.companion is not None
+        assert other.state_hash() == session.state_hash()
+        assert other.companion.digest() == session.companion.digest()
+        session_laws.check(other, OFFICE)
+
+
+def test_a_spoilt_one_is_refused() -> None:
+    session = beside(EIGHT, 30)
+    assert session.companion is not None
+    session.companion.counterpart.append(99)
+    with pytest.raises(ValueError, match="counterpart"):
+        restore_session(take_session(session))
+
+
+@pytest.mark.parametrize("truth", [True, False])
+def test_beside_a_recording(truth: bool) -> None:
+    player = Player(recorded(120, truth))
+    alone, session = PlayedSession(player), PlayedSession(player)
+    session.begin_companion("one", "same", {}, True)
+    for each in (alone, session):
+        run_for(each, 100)
+    assert session.companion is not None
+    assert encode(session.companion.brain).digest() == encode(session.brain).digest()
+    assert alone.state_hash() == session.state_hash()
+    session.begin_companion("with", "without", BLIND, False)
+    run_for(session, 19)
+    assert session.companion.parting.view is not None
+    assert session.over

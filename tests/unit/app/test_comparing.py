@@ -1,0 +1,228 @@
+"""Two brains beside one another as the page commands it: from the beginning, from now on, again, in the past, to the end."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.config import Config, Value
+from app.config.pairs import NAMES, pairs_beside
+from app.config.presets import PRESETS
+from app.engine.engine import Engine
+from app.recordings.playing import Player
+from app.runs.header import beginning_of
+from app.runs.keeper import RunKeeper
+from app.runs.replay import replay
+from app.runs.run_file import open_run
+from app.session import Session
+from app.trials.trial import run_trial
+from web import messages as m
+from web.http.state import beside_fields
+
+from .engines import an_engine, tell
+from .made_recordings import recorded
+from .sessions import OFFICE, a_session
+from .trials_to_watch import short_trial
+
+
+def run_for(engine: Engine, ticks: int) -> None:
+    for _ in range(ticks):
+        engine.tick()
+
+
+def shown(engine: Engine) -> m.BesideView:
+    view = engine.snapshot().beside
+    assert view is not None
+    return view
+
+
+def digest(session: Session) -> str:
+    assert session.companion is not None
+    return session.companion.digest()
+
+
+@pytest.mark.parametrize("pair", [pair.name for pair in pairs_beside(Config())])
+def test_every_pair_begins_by_its_name_and_is_shown(pair: str) -> None:
+    engine = an_engine(OFFICE)
+    run_for(engine, 20)
+    assert tell(engine, type="compare_brains", pair=pair).startswith("two brains on the same senses: ")
+    assert engine.run.session.tick_count == 0
+    shown(engine)  # at once
+    run_for(engine, 120)
+    view = shown(engine)
+    assert view.first.experiences == len(engine.run.session.brain.experience_map)
+    assert view.first.name != view.second.name
+    assert [difference.tick for difference in view.differences] == sorted(d.tick for d in view.differences)
+    assert view.differences or pair == "rate"  # which has learnt nothing else by then
+    assert view.error_odometry_m is not None
+    assert engine.run.session.state_hash() == a_session(120).state_hash()
+
+
+FIRSTS: list[dict[str, Value]] = [
+    {},
+    *({**values} for name, values in PRESETS.items() if name.startswith("paper-")),
+    {"pose_cells.n_x": 8, "pose_cells.n_y": 8},
+    {"pose_cells.n_x": 21, "pose_cells.n_y": 21},
+    {"local_view.enabled": False, "local_view.learning_rate": 0.02},
+]
+
+
+@pytest.mark.parametrize("values", FIRSTS, ids=range(len(FIRSTS)))
+def test_whatever_the_first_is_the_page_offers_what_differs_from_it_and_no_two_alike(values: dict[str, Value]) -> None:
+    first = Config().with_values(values)
+    pairs = pairs_beside(first)
+    seconds = [first.with_values(pair.values) for pair in pairs]
+    assert first not in seconds
+    assert len(set(map(repr, seconds))) == len({pair.title for pair in pairs}) == len(pairs)
+    assert {pair.name for pair in pairs} >= set(NAMES) - {"cells-64"}
+    for pair in pairs:
+        assert pair.first != pair.second
+
+
+def test_what_is_offered_begins_by_the_names_that_were_told_and_what_differs_is_told() -> None:
+    engine = an_engine(OFFICE)
+    tell(engine, type="use_preset", name="paper-2006")
+    tell(engine, type="set_parameter", name="pose_cells.n_x", value=8)
+    tell(engine, type="set_parameter", name="pose_cells.n_y", value=8)
+    tell(engine, type="set_parameter", name="local_view.enabled", value=False)
+    offered = engine.snapshot().pairs
+    titles = {choice.name: choice.title for choice in offered if choice.since == "beginning"}
+    assert (titles["papers"], titles["cells"], titles["vision"]) == ("Ours", "64 x 64 pose cells", "With vision")
+    assert {choice.name for choice in offered if choice.since == "now"} == {"vision", "rate"}
+    for name, second in (("papers", "ours"), ("cells", "64 x 64 cells"), ("vision", "with vision")):
+        tell(engine, type="compare_brains", pair=name)
+        assert shown(engine).second.name == second
+        run_for(engine, 20)
+        assert all(changed.first != changed.second for changed in shown(engine).changed)
+        assert shown(engine).changed is shown(engine).changed
+    assert shown(engine).changed == (m.Changed("local_view.enabled", False, True),)
+    assert beside_fields(shown(engine))["changed"] == [{"name": "local_view.enabled", "first": False, "second": True}]
+
+
+def test_ending_it_leaves_its_figures_on_the_timeline() -> None:
+    engine = an_engine(OFFICE)
+    tell(engine, type="compare_brains", pair="cells")
+    run_for(engine, 100)
+    words = tell(engine, type="end_comparison")
+    number = len(engine.run.session.brain.experience_map)
+    assert words.startswith(
+        f"the comparison ends: after 10 s 64 x 64 cells: {number} experiences, 0 relocalisations, map error"
+    )
+    assert words.endswith("; different since tick 0")
+    assert engine.snapshot().beside is None
+    with pytest.raises(ValueError, match="no second brain"):
+        tell(engine, type="end_comparison")
+
+
+def test_from_now_on_and_again_from_the_beginning_after_a_restart() -> None:
+    engine = an_engine(OFFICE)
+    run_for(engine, 50)
+    tell(engine, type="compare_brains", pair="vision", since="now")
+    assert shown(engine).since_s == 5.0
+    run_for(engine, 30)
+    assert {difference.kind for difference in shown(engine).differences} >= {"view"}
+    tell(engine, type="reset", seed=4)
+    assert (engine.run.session.tick_count, shown(engine).since_s, shown(engine).second.name) == (
+        0,
+        0.0,
+        "without vision",
+    )
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({}, "either a pair or values"),
+        ({"pair": "cells", "values": {"pose_cells.n_x": 8}}, "either a pair or values"),
+        ({"pair": "cells-64"}, "the first brain is that already: nothing would differ; what would: papers, vision"),
+        ({"pair": "nobody"}, "there is no pair 'nobody'; expected one of: papers, vision"),
+        ({"values": {"pose_cells.n_x": 64}}, "nothing would differ"),
+        ({"values": {"pilot.seek": False}}, "pilot.seek cannot differ"),
+        ({"pair": "cells", "since": "now"}, "pose_cells.n_x, pose_cells.n_y cannot change while a brain runs"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_the_run_goes_on(fields: dict[str, object], words: str) -> None:
+    engine = an_engine(OFFICE)
+    run_for(engine, 5)
+    with pytest.raises(ValueError, match=words):
+        tell(engine, type="compare_brains", **fields)
+    assert (engine.run.session.tick_count, engine.snapshot().beside) == (5, None)
+
+
+def test_the_past_shows_both_as_they_were_and_a_branch_goes_on_with_both() -> None:
+    engine = an_engine(OFFICE)
+    tell(engine, type="compare_brains", pair="cells")
+    run_for(engine, 170)  # beyond a keyframe
+    tell(engine, type="kidnap", x=5.0, y=1.0, heading_rad=0.0)
+    run_for(engine, 60)
+    was = {230: digest(engine.run.session)}
+    for tick in (40, 160, 200):
+        tell(engine, type="seek", tick=tick)
+        was[tick] = digest(engine.shown.session)
+    tell(engine, type="back_to_now")
+    again = an_engine(OFFICE)
+    tell(again, type="compare_brains", pair="cells")
+    for tick in range(1, 231):
+        again.tick()
+        if tick in was:
+            assert digest(again.run.session) == was[tick], tick
+            if tick < 230:
+                tell(engine, type="seek", tick=tick)
+                there, here = shown(engine), shown(again)
+                assert there.pose_cells.path.tolist() == here.pose_cells.path.tolist()
+                assert (there.second, there.differences) == (here.second, here.differences)
+        if tick == 170:
+            tell(again, type="kidnap", x=5.0, y=1.0, heading_rad=0.0)
+    tell(engine, type="seek", tick=160)
+    tell(engine, type="go_on_from_here")
+    run_for(engine, 5)
+    assert engine.run.session.companion is not None
+
+
+def test_a_trial_that_is_watched_is_the_same_beside_another_brain() -> None:
+    trial = short_trial()
+    engine = an_engine(OFFICE)
+    engine.begin_trial(trial, "A title")
+    run_for(engine, 7)
+    tell(engine, type="compare_brains", pair="cells")
+    assert (engine.run.trial is not None, engine.run.session.tick_count) == (True, 0)
+    engine.running = True
+    while engine.trial_plays:
+        engine.tick()
+    assert engine.run.trial is not None
+    assert not engine.run.trial.altered
+    assert engine.run.session.state_hash() == run_trial(trial)[0].state_hash
+
+
+def test_two_settings_on_one_recording() -> None:
+    engine = an_engine(OFFICE)
+    engine.begin_recording(Player(recorded(60)))
+    tell(engine, type="compare_brains", values={"local_view.enabled": False}, name="blind")
+    engine.running = True
+    while engine.running:
+        engine.tick()
+    view = shown(engine)
+    assert (view.second.name, view.second.views, view.first.views > 5) == ("blind", 0, True)
+    assert "view" in [difference.kind for difference in view.differences]
+
+
+def test_a_kept_run_comes_out_with_both(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path))
+    session = a_session()
+    keeper = RunKeeper(lambda _: None)
+    keeper.start()
+    book = keeper.book(session, beginning_of(session))
+    session.on_order = book.order
+    keeper.begin(book)
+    session.begin_companion("64", "8", {"pose_cells.n_x": 8, "pose_cells.n_y": 8}, True)
+    for _ in range(110):
+        session.tick()
+        book.tick(session)
+    session.begin_companion("with", "without", {"local_view.enabled": False}, False)
+    for _ in range(10):
+        session.tick()
+        book.tick(session)
+    keeper.stop()
+    again = replay(open_run("last"))
+    assert (again.state_hash(), digest(again)) == (session.state_hash(), digest(session))

@@ -1,0 +1,105 @@
+"""Lessons with two brains on one stage: how the second begins, what is measured of it, what cannot be asked of it."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.engine.teaching import Teaching
+from app.lessons.performance import perform, rounds_of
+from app.lessons.report import report_of
+from app.lessons.schema import Lesson
+from app.lessons.second import OF_SECOND
+from app.lessons.units import MEASURED
+
+from .engines import an_engine, tell
+from .lessons_to_give import SHORT, short_lesson
+from .sessions import OFFICE
+
+SCENE, SHOW = SHORT["scene"], SHORT["show"]
+TWO = {**SCENE, "compare": "papers"}
+
+
+def from_the_beginning(**changes: object) -> Lesson:
+    words = "{experiences of ours} and {experiences of paper-2006} after {path_m}."
+    return short_lesson(scene={**SCENE, "compare": "papers"}, outcome=words, **changes)
+
+
+def from_now_on() -> Lesson:
+    words = "{views_new of with vision} and {views_new of without vision}."
+    return short_lesson(show={**SHOW, "compare": "vision"}, outcome=words)
+
+
+def test_both_begin_with_the_scene_and_the_first_runs_as_without_the_second() -> None:
+    (alone,), (one,) = perform(short_lesson()), perform(from_the_beginning())
+    assert one.session.companion is not None
+    assert (one.session.companion.since_s, one.session.companion.name) == (0.0, "paper-2006")
+    assert one.session.state_hash() == alone.session.state_hash()
+    assert one.values == alone.values
+    (second, measured), (first, values) = rounds_of([one])
+    assert (second, first, values) == ("paper-2006", "ours", one.values)
+    assert tuple(measured) == OF_SECOND
+    assert set(OF_SECOND) < set(MEASURED)
+    assert measured["experiences"] == len(one.session.companion.brain.experience_map) > 0
+
+
+def test_a_copy_begins_when_it_is_shown_and_its_measures_count_from_there() -> None:
+    (one,) = perform(from_now_on())
+    assert one.session.companion is not None
+    assert one.session.companion.since_s == pytest.approx(one.scene_ticks * 0.1)
+    (_, second), (_, first) = rounds_of([one])
+    assert second["views_new"] == 0 < first["views_new"]
+    assert first["views_before"] + first["views_new"] == first["views"]
+    assert second["views"] == first["views_before"]
+
+
+def test_the_second_brain_is_the_first_again_when_nothing_is_different_yet() -> None:
+    """What is measured of the second means the same as of the first."""
+    still = {**SHOW, "compare": "rate", "steps": [{"do": "move", "moves": [[0.0, 0.0, 0.5]]}]}
+    (one,) = perform(short_lesson(show=still, scene={**SCENE, "set": {"local_view.enabled": False}}))
+    (_, second), (_, first) = rounds_of([one])
+    assert second == {name: first[name] for name in OF_SECOND}
+
+
+def test_it_is_told_what_came_of_both() -> None:
+    report = report_of(from_the_beginning())
+    assert report.kept
+    assert [line.split(":")[0] for line in report.lines if "error_m" in line] == ["paper-2006", "ours"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"scene": TWO, "outcome": "{error_m of theirs}"}, "there is no brain 'theirs'; it must be one of: ours, paper"),
+        ({"scene": TWO, "outcome": "{snaps of paper-2006}"}, "of a second brain only error_m, "),
+        ({"scene": {**SCENE, "compare": "cells-64"}}, "nothing would differ"),
+        ({"scene": {**SCENE, "compare": "nobody"}}, "Input should be 'papers', 'vision'"),
+        ({"show": {**SHOW, "compare": "cells"}}, "'cells' changes pose_cells.n_x, which a running brain cannot"),
+        ({"scene": TWO, "show": {**SHOW, "compare": "vision"}}, "give it once"),
+        ({"scene": TWO, "rounds": [{"label": "a"}, {"label": "b"}]}, "no rounds beside it"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_compared_is_told_in_a_sentence(changes: dict[str, object], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        short_lesson(**changes)
+
+
+def test_on_the_page_both_stand_there_once_more_too_and_who_ends_it_breaks_it_off() -> None:
+    engine = an_engine(OFFICE)
+    engine.begin_lesson(Teaching(from_the_beginning(), 1, None))
+    view = engine.snapshot().beside
+    assert view is not None
+    assert (view.first.name, view.second.name) == ("ours", "paper-2006")
+    tell(engine, type="lesson_again")
+    assert engine.run.session.companion is not None
+    while engine.run.lesson is not None and engine.run.lesson.state == "scene":
+        engine.tick()
+    tell(engine, type="show_lesson")
+    engine.tick()
+    tell(engine, type="end_comparison")
+    engine.tick()
+    lesson = engine.snapshot().lesson
+    assert lesson is not None
+    assert (lesson.state, lesson.doing) == (
+        "sandbox",
+        "broken off: it cannot go on: the second brain is no longer there",
+    )

@@ -1,0 +1,52 @@
+"""Marks of lessons among the pose cells: a packet put in, where two merged, a snap, how far a packet got."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.lessons.files import find_lesson
+from app.lessons.performance import Performance, perform_round
+from web.messages import LessonMark
+
+
+def among_cells(performance: Performance) -> dict[str, LessonMark]:
+    assert performance.marks is not None
+    return {mark.words: mark for mark in performance.marks.view() if mark.plate == "cells"}
+
+
+def test_a_packet_is_marked_where_it_is_put_and_the_winner_from_where_it_was_to_where_it_ends() -> None:
+    near, far = (among_cells(perform_round(find_lesson("merge"), number)) for number in (0, 1))
+    assert set(far) == {"a packet put in", "it ended here"}
+    put, end = far["a packet put in"], far["it ended here"]
+    assert end.start is not None
+    assert put.start is None
+    assert put.x - end.start[0] == pytest.approx(20, abs=1)
+    assert set(near) == {"it ended here"}  # at once one packet with the other
+    merged = near["it ended here"]
+    assert merged.start is not None
+    assert 0.3 < merged.x - merged.start[0] < 2
+
+
+@pytest.mark.parametrize("name", ["packet", "carry"])
+def test_the_way_of_a_packet_is_as_long_as_what_is_measured(name: str) -> None:
+    performance = perform_round(find_lesson(name), 0)
+    end = among_cells(performance)["it ended here"]
+    cells = performance.session.brain.pose_cells
+    assert performance.values is not None
+    assert end.start is not None
+    way = cells.cells_apart(*end.start[:2], end.x, end.y)
+    assert way == pytest.approx(performance.values["cells_moved"], abs=0.01)
+    assert way > 1
+
+
+def test_a_snap_goes_from_packet_to_packet() -> None:
+    performance = perform_round(find_lesson("snap"), 0)
+    snap, last = among_cells(performance)["a snap"], performance.history.events.last_snap
+    assert last is not None
+    assert (snap.x, snap.y) == pytest.approx((last.end.x, last.end.y), abs=1e-3)
+    assert snap.start == pytest.approx((last.start.x, last.start.y, last.start.heading_rad), abs=1e-3)
+    assert performance.session.brain.pose_cells.cells_apart(*snap.start[:2], snap.x, snap.y) >= 3  # type: ignore[index]
+
+
+def test_a_lesson_about_something_else_has_none() -> None:
+    assert among_cells(perform_round(find_lesson("believes"), 0)) == {}

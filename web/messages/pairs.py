@@ -1,0 +1,18 @@
+"""Brains that are worth comparing with the first as it is now, as choices of the page. app/config/pairs.py makes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Since = Literal["beginning", "now"]
+
+
+@dataclass(frozen=True, slots=True)
+class PairChoice:
+    """since: the run begins anew with both, or goes on with a copy that can become such a brain while it runs."""
+
+    name: str
+    title: str
+    about: str
+    since: Since

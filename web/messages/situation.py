@@ -1,0 +1,57 @@
+"""A situation, which a link or a file carries: the run up to a moment, and from where it is looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Number = Annotated[float, Field(ge=-1e4, le=1e4, allow_inf_nan=False)]
+Vector = tuple[Number, Number, Number]
+Plate = Literal["all", "office", "pose", "map"]
+
+
+class CameraAt(BaseModel):
+    """A camera that was turned by hand, in the stage's frame, which is about 28 wide; the angle in radians."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    position: Vector
+    look_at: Vector
+    fov_rad: Annotated[float, Field(gt=0, lt=3.1, allow_inf_nan=False)]
+
+
+class Look(BaseModel):
+    """What a page shows: the plate, the open tab of the panel, and the camera unless it stands at its view."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    plate: Plate = "all"
+    tab: Annotated[str, Field(max_length=20)] | None = None
+    camera: CameraAt | None = None
+
+
+SituationState = Literal["playing", "same", "other", "stopped"]
+
+
+@dataclass(frozen=True, slots=True)
+class SituationView:
+    """How far a situation that was opened has come, and whether it came out as its link says."""
+
+    state: SituationState
+    tick: int
+    end_tick: int
+    words: str  # what is to be said about it; empty while it plays
+    state_hash: str  # the link's
+    look: Look
+
+
+@dataclass(frozen=True, slots=True)
+class ReadSituation:
+    """The answer's `result` is what leads to the moment that is shown, of the engine's own class."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OpenSituation:
+    """Begin a run that plays a situation up to its moment. situation: of the engine's own class."""
+
+    situation: object

@@ -1,0 +1,102 @@
+// The first visit: what this is, and three things to do, ticked off as they happen. Put away, it stays away; the help brings
+// it back.
+
+import { $, find } from "../elements/dom.js";
+import { setIcon } from "../elements/icons.js";
+import { FirstMinute } from "../model/first_minute.js";
+
+const KEY = "first minute";
+const STRIDE = 300; // ticks between two looks at how far it is
+
+export class FirstMinuteCard {
+  /** @param {import("../net/connection.js").Connection} link */
+  constructor(link) {
+    this.link = link;
+    this.box = $("first");
+    this.things = new FirstMinute();
+    this.tick = 0;
+    this.hurries = false;
+    $("first-explore").addEventListener("click", () => this.hurry());
+    $("first-find").addEventListener("click", () => this.link.ask({ type: "run_until", what: "found again" }));
+    $("first-close").addEventListener("click", () => this.show(false));
+    $("help-first").addEventListener("click", () => {
+      $("help-dialog").close();
+      this.things = new FirstMinute();
+      this.show(true);
+    });
+    this.show(!was(KEY));
+  }
+
+  /** @param {boolean} on */
+  show(on) {
+    this.box.hidden = !on;
+    document.body.dataset.first = String(on);
+    if (!on) remember(KEY);
+    this.draw();
+  }
+
+  /** @param {State} state @param {PageFields} page */
+  at({ tick, trial, lesson }, { recording, time }) {
+    this.tick = tick;
+    if (this.box.hidden) return;
+    this.things.at(tick);
+    this.box.classList.toggle("aside", Boolean(trial || lesson || recording || time?.past));
+    this.draw();
+  }
+
+  /** Events that have just happened. @param {TimelineEvent[]} events */
+  hear(events) {
+    this.things.hear(events);
+    this.draw();
+  }
+
+  draw() {
+    const { explored, reached, found, done } = this.things;
+    const now = [explored, reached, found].indexOf(false);
+    for (const [k, is] of [explored, reached, found].entries()) {
+      const row = this.box.querySelectorAll("li")[k];
+      row.dataset.state = is ? "done" : k === now ? "now" : "later";
+      setIcon(find(row, ".tick"), is ? "check" : "next");
+      find(row, ".gone").textContent = is ? "done: " : "";
+    }
+    $("first-explore").hidden = explored;
+    $("first-find").hidden = !this.things.searches;
+    $("first-share").hidden = !this.hurries;
+    $("first-share").value = this.tick / FirstMinute.TICKS;
+    $("first-end").hidden = !done;
+  }
+
+  /** Let it explore as fast as the machine can, and play on. */
+  async hurry() {
+    if (this.hurries) return;
+    this.hurries = true;
+    while (!this.things.explored && !this.box.hidden) {
+      const ticks = Math.min(STRIDE, FirstMinute.TICKS - this.tick);
+      if (ticks < 1 || !(await this.link.ask({ type: "step", ticks })).accepted) break;
+      this.things.at(this.tick + ticks);
+      this.tick += ticks;
+      this.draw();
+    }
+    this.hurries = false;
+    await this.link.ask({ type: "resume" });
+    this.draw();
+  }
+}
+
+/** @param {string} key */
+function was(key) {
+  try {
+    return localStorage.getItem(key) !== null;
+  } catch {
+    return false; // this browser stores nothing
+  }
+}
+
+/** @param {string} key */
+function remember(key) {
+  try {
+    localStorage.setItem(key, "seen");
+  } catch {
+    // It comes again with the next visit.
+  }
+}

@@ -1,0 +1,272 @@
+// The lesson's card beside the stage: what this is, the question, what happens, and what came of it. The server says which state
+// the lesson is in; all pages show the same.
+
+import { $ } from "../elements/dom.js";
+import { make } from "../elements/elements.js";
+import { icon } from "../elements/icons.js";
+import {
+  doingWords,
+  isBroken,
+  isWatched,
+  linked,
+  moments,
+  nextAfter,
+  placeWords,
+  showWords,
+  tabOf,
+  verdict,
+  which,
+} from "../model/lessons.js";
+import { phone } from "../viewer/viewer.js";
+import { renew, say } from "../panel/parts.js";
+import { TABS, VIEWS } from "../shared.js";
+import { formulaBox } from "./formulas.js";
+import { setDone } from "./kept.js";
+import { Invitation } from "./invitation.js";
+import { Question } from "./question.js";
+
+export class Lesson {
+  /**
+   * @param {import("../net/connection.js").Connection} link
+   * @param {import("./list.js").LessonList} list
+   * @param {{ viewer: import("../viewer/viewer.js").Viewer, panel: import("../panel/panel.js").Panel,
+   *   timeline: import("../timeline/timeline.js").Timeline }} page
+   */
+  constructor(link, list, { viewer, panel, timeline }) {
+    this.link = link;
+    this.list = list;
+    this.viewer = viewer;
+    this.panel = panel;
+    this.timeline = timeline;
+    this.box = $("lesson");
+    /** @type {LessonView | null} */
+    this.now = null;
+    /** @type {LessonText | null} */
+    this.text = null;
+    /** @type {Question | null} */
+    this.question = null;
+    /** @type {LessonCard | null} */
+    this.after = null; // the next one
+    /** @type {Pose | null} */
+    this.robot = null;
+    this.rate = 0.1; // seconds a tick
+    this.invitation = new Invitation();
+    $("lesson-show").addEventListener("click", () => this.go());
+    $("lesson-again").addEventListener("click", () => this.ask({ type: "lesson_again" }));
+    $("lesson-next").addEventListener("click", () => this.next());
+    $("lesson-leave").addEventListener("click", () => this.ask({ type: "end_lesson" }));
+    $("lesson-fold").addEventListener("click", () => this.fold(this.box.dataset.folded !== "true"));
+    document.addEventListener("presenter:next", (event) => this.present(event, 1));
+    document.addEventListener("presenter:back", (event) => this.present(event, -1));
+    window.addEventListener("hashchange", () => this.follow());
+    link.addEventListener("hello", () => this.follow());
+  }
+
+  /** Begins the lesson that the address names. */
+  follow() {
+    const name = linked(location.hash);
+    if (!name || this.link.watches) return;
+    history.replaceState(null, "", location.pathname + location.search); // loaded again, the page shows the lesson as it is
+    this.list.begin(name);
+  }
+
+  /** @param {State} state */
+  at({ lesson, tick, time_s, robot, estimate }) {
+    const before = this.now;
+    this.now = lesson;
+    this.robot = lesson?.draws === "map" ? estimate : robot;
+    if (tick > 0) this.rate = time_s / tick;
+    if (!lesson) {
+      this.box.hidden = true;
+      this.text = null;
+      return;
+    }
+    if (lesson.name !== before?.name || lesson.state !== before.state) this.entered(lesson, before);
+    this.draw();
+  }
+
+  /** @param {LessonView} lesson @param {LessonView | null} before */
+  entered(lesson, before) {
+    if (lesson.name !== before?.name || this.box.hidden) this.read(lesson.name);
+    else if (lesson.state === "showing") this.look();
+    if (lesson.state === "compared") setDone(lesson.name);
+    if (before && lesson.state !== before.state) $("lesson-body").scrollTop = 0;
+    if (phone.matches) this.fold(lesson.state === "showing");
+  }
+
+  /** All texts of the lesson, and the focus into its card. @param {string} name */
+  async read(name) {
+    this.text = null;
+    const [answer, cards] = await Promise.all([fetch(`/api/lessons/${name}`), this.list.look()]).catch(() => []);
+    if (!answer?.ok || this.now?.name !== name) return;
+    const text = /** @type {LessonText} */ (await answer.json());
+    this.text = text;
+    this.after = nextAfter(cards ?? [], name);
+    this.question = new Question(text.predict, (said) => this.ask({ type: "predict", ...said }), this.link.watches);
+    $("lesson-ask").replaceChildren(this.question.box, this.invitation.hint);
+    this.invitation.look();
+    $("lesson-formulas").replaceChildren(
+      ...text.formulas.map((formula) => formulaBox(formula, (name) => this.tune(name), this.panel.valueOf)),
+    );
+    say($("lesson-title"), text.card.title);
+    say($("lesson-text"), text.text);
+    this.fold(false);
+    this.look();
+    this.draw();
+    fitFormulas();
+    $("lesson-title").focus({ preventScroll: true });
+  }
+
+  /** The plate and the tab in which it happens. */
+  look() {
+    if (!this.text) return;
+    this.viewer.show(this.text.view);
+    const tab = tabOf(this.text.tab, TABS);
+    if (tab) this.panel.open(tab);
+  }
+
+  draw() {
+    const { now: lesson, text } = this;
+    this.box.hidden = !lesson || !text;
+    if (!lesson || !text) return;
+    this.box.dataset.state = lesson.state;
+    say($("lesson-which"), which(lesson, text.card));
+    this.question?.show(lesson, lesson.prediction, this.robot);
+    this.box.dataset.draws = String(lesson.draws !== null);
+    $("lesson-ask").hidden = lesson.state === "showing";
+    this.invitation.show(lesson);
+    $("lesson-what").hidden = !text.formulas.length;
+    $("lesson-watch").hidden = !isWatched(lesson, text);
+    renew($("lesson-watch"), text.watch, () => this.watch(text));
+    renew($("lesson-outcome"), [lesson.outcome, lesson.prediction, lesson.marks.map(({ tick }) => tick)], () =>
+      this.outcome(lesson, text),
+    );
+    const after = lesson.state === "compared" || lesson.state === "sandbox";
+    $("lesson-try").hidden = !after || !text.sandbox.length;
+    renew($("lesson-try"), text.sandbox, () => this.sandbox(text));
+    say($("lesson-doing"), doingWords(lesson));
+    $("lesson-done").hidden = lesson.progress === null;
+    $("lesson-done").value = lesson.progress ?? 0;
+    const words = showWords(lesson);
+    $("lesson-show").hidden = words === null;
+    say($("lesson-show"), words ?? "");
+    $("lesson-again").hidden = !after;
+    $("lesson-again").classList.toggle("go", isBroken(lesson));
+    $("lesson-next").hidden = !after || !this.after;
+    $("lesson-next").title = this.after ? `Next: ${this.after.title}` : "";
+  }
+
+  /** @param {LessonText} text */
+  watch({ watch }) {
+    const rows = watch.map(({ at, words }) => {
+      const button = make("button", { type: "button", textContent: placeWords(at) });
+      button.addEventListener("click", () => this.show(at));
+      return make("li", {}, button, make("span", { textContent: words }));
+    });
+    return [make("h3", { textContent: "What to watch" }), make("ul", { className: "watch" }, ...rows)];
+  }
+
+  /** @param {LessonView} lesson @param {LessonText} text */
+  outcome(lesson, text) {
+    if (!lesson.outcome) return [];
+    const { tone, head, said } = verdict(lesson, text.predict);
+    const signs = { right: "check", wrong: "close", none: "info" };
+    const rows = moments(lesson.marks, (tick) => tick * this.rate).map(({ tick, words, at }) => {
+      const button = make("button", { type: "button" }, make("time", { textContent: at }), words);
+      button.dataset.key = `${tick} ${words}`;
+      button.title = "Show this moment";
+      button.disabled = this.link.watches;
+      button.addEventListener("click", () => this.timeline.seeker.seek({ tick }));
+      return make("li", {}, button);
+    });
+    const box = make(
+      "section",
+      { className: "outcome" },
+      make("h3", {}, icon(signs[tone]), head),
+      ...(said ? [make("p", {}, make("b", { textContent: "Predicted: " }), said)] : []),
+      make("p", { className: "happened" }, make("b", { textContent: "It happened: " }), lesson.outcome.words),
+      make("p", { className: "second", textContent: lesson.outcome.because }),
+    );
+    if (text.explains) {
+      const why = make("button", { type: "button", textContent: "Inspect: why it happened" });
+      why.addEventListener("click", () => this.show("inspect"));
+      box.append(why);
+    }
+    box.dataset.tone = tone;
+    const marked = [make("h3", { textContent: "Moments" }), make("ol", { className: "moments" }, ...rows)];
+    return [box, ...(rows.length ? marked : [])];
+  }
+
+  /** @param {LessonText} text */
+  sandbox({ sandbox }) {
+    const rows = sandbox.map(({ words, button, commands }) => {
+      const row = make("li", {}, make("span", { textContent: words }));
+      if (button === null) return row;
+      const press = make("button", { type: "button", textContent: button });
+      press.addEventListener("click", async () => {
+        for (const command of commands) if (!(await this.ask(command))) return;
+      });
+      row.append(press);
+      return row;
+    });
+    return [make("h3", { textContent: "Now play with it" }), make("ul", { className: "try" }, ...rows)];
+  }
+
+  /** @param {string} at a plate, a tab, or the timeline */
+  show(at) {
+    const view = VIEWS.find((name) => name === at);
+    const tab = tabOf(at, TABS);
+    if (view) this.viewer.show(view);
+    else if (tab) {
+      this.panel.open(tab);
+      this.panel.show(true);
+    } else $("timeline").focus();
+  }
+
+  /** @param {string} parameter */
+  tune(parameter) {
+    this.panel.show(true);
+    this.panel.tune(parameter);
+  }
+
+  /** @param {Command} command */
+  async ask(command) {
+    return (await this.link.ask(command)).accepted;
+  }
+
+  go() {
+    return this.ask({ type: "show_lesson" });
+  }
+
+  next() {
+    if (this.after) this.list.begin(this.after.name);
+  }
+
+  /** A clicker's key: on is "let it happen", then the next lesson; back is "once more". @param {Event} event @param {1 | -1} step */
+  present(event, step) {
+    if (!this.now || this.box.hidden) return;
+    const { state } = this.now;
+    const over = state === "compared" || state === "sandbox";
+    if (step > 0 && state === "predict") this.go();
+    else if (step > 0 && over && this.after) this.next();
+    else if (step < 0 && over) this.ask({ type: "lesson_again" });
+    else if (state !== "scene") return;
+    event.preventDefault();
+  }
+
+  /** @param {boolean} on */
+  fold(on) {
+    this.box.dataset.folded = String(on);
+    $("lesson-fold").setAttribute("aria-expanded", String(!on));
+    $("lesson-fold").setAttribute("aria-label", on ? "Unfold the card" : "Fold the card");
+  }
+}
+
+// A formula that is wider than the card is set smaller; what is wider still can be scrolled.
+function fitFormulas() {
+  for (const math of /** @type {NodeListOf<HTMLElement>} */ ($("lesson-formulas").querySelectorAll(".math"))) {
+    math.style.fontSize = "";
+    const share = math.clientWidth / math.scrollWidth;
+    if (share < 1) math.style.fontSize = `${Math.max(0.74, 1.06 * share).toFixed(2)}em`;
+  }
+}

@@ -1,0 +1,128 @@
+"""Two brains on one stage: each has its pose cells behind and its map in front, and the office they share stands between.
+
+The plates of the second are made when they are first needed, and hidden while there is one brain only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import viser
+
+from web.messages import BesideView, MapLayer, PoseCellLayer
+from web.throttle import Throttle
+from web.viewer.camera_views import CELLS_OF_TWO, CELLS_OF_TWO_ALONE, MAPS_OF_TWO, OFFICE_OF_TWO
+from web.viewer.plates import map_plate, office_plate, pose_cell_plate
+from web.viewer.plates.map_plate import NODE_Z, MapPlate
+from web.viewer.plates.plate import point_on_plane
+from web.viewer.plates.pose_cell_plate import PoseCellPlate
+from web.viewer.primitives.palette import Palette, Rgb
+from web.viewer.scenery import Scenery
+
+BRAINS: dict[bool, tuple[Rgb, Rgb]] = {  # of the first and of the second, in the dark theme and in the light one
+    True: ((94, 226, 160), (190, 160, 255)),
+    False: ((0, 112, 74), (104, 66, 196)),
+}
+
+
+class Beside:
+    """The second brain's plates, and where all plates stand."""
+
+    def __init__(
+        self, scene: viser.SceneApi, palette: Palette, scenery: Scenery, moved: Callable[[bool], None]
+    ) -> None:
+        """moved: is told when the plates have been moved, and whether there are two brains now."""
+        self._scene, self._palette, self._scenery, self._moved = scene, palette, scenery, moved
+        self._stands: tuple[bool, bool] = (True, False)  # with an office; with two brains
+        self._names: tuple[str, str] | None = None
+        self.cells: PoseCellPlate | None = None
+        self.map: MapPlate | None = None
+        self._layers: dict[str, Throttle] = {}
+
+    def draw(self, view: BesideView | None, now_s: float, *, office: bool) -> None:
+        """office: whether there is one."""
+        if (office, view is not None) != self._stands:
+            self._arrange(office=office, two=view is not None)
+        names = None if view is None else (view.first.name, view.second.name)
+        if names != self._names:
+            self._name(names)
+        if view is None:
+            return
+        offer, cells = self._layers, view.pose_cells
+        offer["cells"].offer(now_s, cells)
+        offer["path"].offer(now_s, cells.path, cells.shape)
+        offer["glow"].offer(now_s, cells)
+        offer["map"].offer(now_s, view.map, view.map_turn_rad)
+        offer["times"].offer(now_s, view.times)
+        offer["estimate"].offer(now_s, view.estimate)
+        offer["other"].offer(now_s, view.other)
+        offer["goal"].offer(now_s, view.goal)
+
+    @property
+    def two(self) -> bool:
+        return self._stands[1]
+
+    def holds(self, origin: tuple[float, float, float], direction: tuple[float, float, float]) -> bool:
+        """Whether a ray meets the second brain's map."""
+        if self.map is None or not self.two:
+            return False
+        at = point_on_plane(np.array(origin), np.array(direction), self.map.origin, NODE_Z)
+        return at is not None and self.map.on_sheet(at)
+
+    def _arrange(self, *, office: bool, two: bool) -> None:
+        self._stands = office, two
+        first, plates = self._scenery, (office_plate, pose_cell_plate, map_plate)
+        if two:
+            self._make()
+            stands = (OFFICE_OF_TWO, (CELLS_OF_TWO if office else CELLS_OF_TWO_ALONE)[0], MAPS_OF_TWO[0])
+        else:
+            stands = tuple((plate.ORIGIN[0], plate.ORIGIN[1]) for plate in plates)
+            stands = (
+                *stands[:2],
+                stands[2] if office else (0.0, stands[2][1]),
+            )  # without an office the map is in the middle
+        for plate, (x, y) in zip((first.office, first.cells, first.map), stands, strict=True):
+            plate.stand_at(x, y)
+        if self.cells is not None and self.map is not None:
+            self.cells.frame.visible = self.map.frame.visible = two
+            self.cells.stand_at(*(CELLS_OF_TWO if office else CELLS_OF_TWO_ALONE)[1])
+            self.map.stand_at(*MAPS_OF_TWO[1])
+        self._moved(two)
+
+    def _make(self) -> None:
+        """The plates of the second brain, once."""
+        if self.cells is None:
+            self.cells = cells = PoseCellPlate(self._scene, self._palette, "pose_cells_2")
+            self.map = plate = MapPlate(self._scene, self._palette, "map_2")
+            self._layers = {  # less often than the first one's, so that two cost less than twice as much as one
+                "cells": Throttle(5, cells.set_cells),
+                "path": Throttle(2, cells.set_path),
+                "glow": Throttle(2, self._draw_glow),
+                "map": Throttle(2, self._draw_map),
+                "times": Throttle(2, plate.set_times),
+                "estimate": Throttle(10, plate.set_robot),
+                "other": Throttle(5, plate.set_other),
+                "goal": Throttle(2, plate.set_goal),
+            }
+        for layer in self._layers.values():
+            layer.forget()
+
+    def _draw_glow(self, layer: PoseCellLayer) -> None:
+        assert self.cells is not None
+        self.cells.set_glow(layer, self.cells.under)
+
+    def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
+        assert self.map is not None
+        if self.map.set_map(layer, turn_rad):
+            for name in ("times", "estimate", "other", "goal"):
+                self._layers[name].forget()
+
+    def _name(self, names: tuple[str, str] | None) -> None:
+        """Every plate of a brain bears its name and colour; None: there is one brain, which needs neither."""
+        self._names = names
+        colours = BRAINS[self._palette.dark]
+        for k, plates in enumerate(((self._scenery.cells, self._scenery.map), (self.cells, self.map))):
+            for plate in plates:
+                if plate is not None:
+                    plate.belong_to(None if names is None else (names[k], colours[k]))

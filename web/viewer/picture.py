@@ -1,0 +1,153 @@
+"""A picture of the stage as SVG, from a snapshot: what stands on the page until the viewer has drawn its first frame.
+
+The plates are seen from the very camera of the view, so that the viewer's own picture takes its place without a jump. Office, map
+and packets are drawn as lines and dots; colours come from the page, which knows its theme.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from web.messages import Pose, Snapshot
+from web.viewer.camera_views import CELLS_AT, MAP_AT, OFFICE_AT, Camera, View, camera_for, seen_by
+from web.viewer.fits.cell_fit import HEIGHT, SIDE, CellFit
+from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
+from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.marks.robot_model import ENLARGED, SMALLEST
+from web.viewer.primitives import meshes
+from web.viewer.primitives.palette import Palette
+
+Points = NDArray[np.float64]
+UNITS = 1000.0  # of the picture's height
+WALL_HIGH, MOST_WALLS, MOST_DOTS = 0.6, 1200, 900
+SHEETS = ((CELLS_AT, 9.4, 9.9, -0.75), (OFFICE_AT, 11.0, 10.0, -0.5), (MAP_AT, 11.0, 10.0, -0.5))
+
+
+def picture(snapshot: Snapshot, view: View, aspect: float, palette: Palette) -> str:
+    """The stage as it is now; aspect: width over height of the canvas."""
+    office = snapshot.world is not None
+    sketch = _Sketch(camera_for(view, aspect, office), palette)
+    map_at = MAP_AT if office else (0.0, MAP_AT[1])
+    for at, width, depth, centre_y in SHEETS:
+        if at == OFFICE_AT and not office:
+            continue
+        stands = map_at if at == MAP_AT else at
+        outline = meshes.rounded_rectangle(width, depth, 0.45, centre=(0.0, centre_y)) + stands
+        sketch.area(meshes.lifted(outline, -0.055), palette.sheet, palette.rim)
+    _cells(sketch, snapshot)
+    if office:
+        _office(sketch, snapshot)
+    _map(sketch, snapshot, map_at)
+    return sketch.text(aspect)
+
+
+class _Sketch:
+    def __init__(self, camera: Camera, palette: Palette) -> None:
+        self.camera, self.palette = camera, palette
+        self._parts: list[str] = []
+        half = float(np.linalg.norm(camera.look_at - camera.position)) * math.tan(camera.fov_rad / 2)
+        self._zoom = UNITS / 2 / half
+
+    def area(self, points: Points, fill: tuple[int, int, int], rim: tuple[int, int, int] | None = None) -> None:
+        line = "" if rim is None else f' stroke="{_hex(rim)}" stroke-width="1.5"'
+        self._parts.append(f'<path fill="{_hex(fill)}"{line} d="{self._way(points)}Z"/>')
+
+    def areas(self, quads: Points, fill: tuple[int, int, int]) -> None:
+        """(n, k, 3) of one colour, the farthest first."""
+        if len(quads):
+            order = np.argsort(-quads[:, :, 1].mean(1), kind="stable")
+            way = "".join(f"{self._way(quad)}Z" for quad in quads[order])
+            rim = _hex(self.palette.floor)
+            self._parts.append(f'<path fill="{_hex(fill)}" stroke="{rim}" stroke-width=".6" d="{way}"/>')
+
+    def lines(self, segments: Points, colour: tuple[int, int, int], width: float) -> None:
+        """(n, 2, 3)"""
+        if len(segments):
+            way = "".join(self._way(segment) for segment in segments)
+            self._parts.append(f'<path fill="none" stroke="{_hex(colour)}" stroke-width="{width}" d="{way}"/>')
+
+    def dots(self, points: Points, colours: NDArray[np.uint8], radius: float) -> None:
+        """(n, 3) with (n, 3) colours; radius: in the scene."""
+        if not len(points):
+            return
+        seen, larger = seen_by(self.camera, points)
+        for (x, y), size, colour in zip(self._placed(seen), larger, colours.tolist(), strict=True):
+            r = max(radius * float(size) * self._zoom, 1.0)
+            self._parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{r:.1f}" fill="{_hex(tuple(colour))}"/>')
+
+    def text(self, aspect: float) -> str:
+        box = f"{-UNITS * aspect / 2:.0f} {-UNITS / 2:.0f} {UNITS * aspect:.0f} {UNITS:.0f}"
+        return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}">{"".join(self._parts)}</svg>'
+
+    def _way(self, points: Points) -> str:
+        placed = self._placed(seen_by(self.camera, points)[0])
+        return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in placed)
+
+    def _placed(self, seen: Points) -> list[list[float]]:
+        return (seen * (self._zoom, -self._zoom)).tolist()
+
+
+def _office(sketch: _Sketch, snapshot: Snapshot) -> None:
+    world, palette = snapshot.world, sketch.palette
+    assert world is not None
+    fit = OfficeFit(world.bounds)
+    half = np.array(fit.size_m) * fit.scale / 2
+    floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half + OFFICE_AT
+    sketch.area(meshes.lifted(floor, -0.03), palette.floor)
+    walls = np.asarray(world.walls, np.float64)
+    lengths = np.hypot(*(walls[:, 2:] - walls[:, :2]).T)
+    walls = walls[np.argsort(-lengths, kind="stable")[:MOST_WALLS]]
+    ends = fit.to_plate(walls.reshape(-1, 2)).reshape(-1, 2, 2) + OFFICE_AT
+    low = np.concatenate([ends, np.zeros((len(ends), 2, 1))], 2)
+    high = low[:, ::-1] + (0.0, 0.0, WALL_HIGH * fit.relief)
+    sketch.areas(np.concatenate([low, high], 1), palette.wall)
+    truth = snapshot.truth
+    if truth is not None:
+        at = meshes.lifted(fit.to_plate(np.array([[truth.x, truth.y]])) + OFFICE_AT, 0.2)
+        radius = max(ENLARGED * fit.scale * world.robot_radius_m, SMALLEST)
+        sketch.dots(at, np.array([palette.robot], np.uint8), radius)
+
+
+def _map(sketch: _Sketch, snapshot: Snapshot, at: tuple[float, float]) -> None:
+    palette, layer = sketch.palette, snapshot.map
+    floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (WIDTH / 2, DEPTH / 2) + at
+    sketch.area(meshes.lifted(floor, -0.03), palette.floor)
+    if not len(layer.xy):
+        return
+    fit = refit(MapFit(), layer.xy, snapshot.map_turn_rad)
+    places = meshes.lifted(fit.to_plate(layer.xy) + at, 0.05)
+    every = -(-len(places) // MOST_DOTS)
+    sketch.lines(places[layer.links][: 2 * MOST_DOTS], palette.link, 1.0)
+    seconds = snapshot.times.seconds[: len(places)]
+    longest = float(seconds[np.isfinite(seconds)].max(initial=1.0))
+    colours = np.zeros((len(places), 3), np.uint8)
+    colours[: len(seconds)] = palette.times(seconds, longest)
+    sketch.dots(places[::every], colours[::every], 0.04)
+    sketch.area(_arrow(snapshot.estimate, fit, at), palette.robot)
+
+
+def _arrow(pose: Pose, fit: MapFit, at: tuple[float, float]) -> Points:
+    turn = pose.heading_rad + fit.turn_rad
+    c, s = math.cos(turn), math.sin(turn)
+    shape = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)]) @ np.array([[c, s], [-s, c]])
+    return meshes.lifted(shape + fit.to_plate(np.array([[pose.x, pose.y]])) + at, 0.22)
+
+
+def _cells(sketch: _Sketch, snapshot: Snapshot) -> None:
+    palette, layer = sketch.palette, snapshot.pose_cells
+    fit, stands = CellFit(layer.shape), np.array((*CELLS_AT, 0.0))
+    foot = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (SIDE / 2)
+    sketch.area(meshes.lifted(foot, -0.03) + stands, palette.floor)
+    low, high = meshes.lifted(foot, 0.0) + stands, meshes.lifted(foot, HEIGHT) + stands
+    edges = np.concatenate([meshes.closed_line(foot, z).astype(np.float64) for z in (0.0, HEIGHT)]) + stands
+    sketch.lines(np.concatenate([edges, np.stack([low, high], 1)]), palette.glass_edge, 1.5)
+    packets = layer.packets[: len(palette.packets)]
+    for packet, colour in zip(packets, palette.packets, strict=False):
+        sketch.dots(fit.packet(packet)[None] + stands, np.array([colour], np.uint8), 0.3)
+
+
+def _hex(colour: tuple[int, ...]) -> str:
+    return "#" + "".join(f"{part:02x}" for part in colour)
