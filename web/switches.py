@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 Name = Literal[
-    "occupancy", "cell_occupancy", "goal_memory", "movements", "click_inspects", "ghost", "outline", "doubt"
+    "occupancy", "cell_occupancy", "goal_memory", "movements", "click_inspects", "ghost", "outline", "doubt", "closures"
 ]  # fmt: skip
 NAMES: tuple[Name, ...] = get_args(Name)
 
@@ -79,6 +79,13 @@ SWITCHES = (
         "Truth",
         "Error and doubt on the map",
         "A line to where the robot truly is. The ellipse [ours]: two standard deviations of its own estimate.",
+        True,
+    ),
+    Switch(
+        "closures",
+        "Truth",
+        "Closed loops on the map",
+        "A ring where a loop was closed of late. A click on it plays the correction again; without rings it sets a goal.",
         True,
     ),
 )

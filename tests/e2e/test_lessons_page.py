@@ -196,7 +196,7 @@ def test_it_runs_until_something_happens_and_stops_there(school, browser) -> Non
         page.get_by_label("Which place").select_option("printer")
         page.get_by_label("How many packets").fill("3")
         page.get_by_role("button", name="packets compete:").click()
-        assert "3 packets compete" in school.wait(lambda state: state["until"] is not None)["until"]["words"]
+        assert "3 packets compete" in school.wait(lambda state: state["until"]["what"] == "packets")["until"]["words"]
         school.command("pause")
         page.click("#until-open")
         page.get_by_role("button", name="it comes to").click()

@@ -82,4 +82,4 @@ def moved(closure: Closure, share: float) -> NDArray[np.float64]:
 def _title(closure: Closure, after_s: float) -> str:
     when = f"{closure.time_s // 60:.0f}:{closure.time_s % 60:02.0f}"
     stage = "before" if after_s < BEFORE_S else "after" if after_s > BEFORE_S + MOVES_S else "being corrected"
-    return f"loop closed at {when}, again slowly - {stage}"
+    return f"loop closed at {when}: {stage}"

@@ -181,7 +181,8 @@ class Viewer:
         offer["goal"].offer(now_s, snapshot.goal)
         offer["tags"].offer(now_s, snapshot.tags)
         offer["places"].offer(now_s, snapshot.places)
-        offer["closures"].offer(now_s, snapshot.closures, snapshot.map, snapshot)
+        closures = snapshot.closures if self._switches.is_on("closures") else ()
+        offer["closures"].offer(now_s, closures, snapshot.map, snapshot)
 
     def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
         if self._scenery.map.set_map(layer, turn_rad):

@@ -98,6 +98,18 @@ def test_a_click_on_the_ring_plays_it(bench: Bench) -> None:
     bench.settle()
 
 
+def test_without_rings_a_click_there_sets_a_goal(bench: Bench) -> None:
+    ring = place_of_ring(bench)
+    bench.switch("closures", False)
+    assert not bench.visible("/map/closure_0")
+    bench.click(ring)
+    bench.show(closing(), 0.2)
+    assert not bench.viewer._replay.runs
+    assert bench.engine.commands[-1].type == "set_goal"
+    bench.switch("closures", True)
+    assert bench.visible("/map/closure_0")
+
+
 def test_a_closure_that_is_no_longer_kept_plays_nothing(bench: Bench) -> None:
     bench.viewer.replay(EVENT + 1)
     bench.show(closing(), 0.2)

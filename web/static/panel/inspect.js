@@ -23,11 +23,8 @@ export class InspectTab {
     this.nothing = note(NOTHING);
     this.report = new Report((wish) => this.look(wish), ask);
     this.inject = new InjectForm(ask);
-    const now = make(
-      "div",
-      { className: "buttons" },
-      ...["experience", "view", "nothing"].map((kind) => this.button(kind)),
-    );
+    this.buttons = ["experience", "view", "nothing"].map((kind) => this.button(kind));
+    const now = make("div", { className: "buttons" }, ...this.buttons);
     now.setAttribute("role", "group");
     now.setAttribute("aria-label", "Look at what is active now");
     this.events = make("div", { className: "choices" });
@@ -60,9 +57,9 @@ export class InspectTab {
     return { input, label };
   }
 
-  /** @param {string} kind */
+  /** What is active is known a moment after the tab has opened. @param {string} kind */
   button(kind) {
-    const button = make("button", { type: "button", textContent: kind });
+    const button = make("button", { type: "button", textContent: kind, disabled: kind !== "nothing" });
     button.addEventListener("click", () => {
       const number = kind === "view" ? this.active.view : this.active.experience;
       if (kind === "nothing") this.look({});
@@ -95,6 +92,7 @@ export class InspectTab {
       /** @param {{ experience: number, view: number, events: [number, string, string][] }} data */
       active: (data) => {
         this.active = data;
+        for (const button of this.buttons) button.disabled = false;
         renew(this.events, data.events, () => this.why(data.events));
       },
       inspected: this.inspected.bind(this),
