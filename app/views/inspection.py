@@ -9,6 +9,7 @@ from app.session import Session
 from app.views.arrays import frozen
 from app.views.brain_pictures import packet_of, present_picture, stored_picture
 from app.views.reasons import Reasons
+from app.views.senses import camera_image
 from app.views.visits import VisitLog
 from ratslam_core import Link, RatSlam
 from web.messages import (
@@ -75,7 +76,7 @@ def view_report(session: Session, visits: VisitLog, view: int) -> ViewReport:
         id=view,
         picture=stored_picture(brain, view),
         now=present_picture(brain),
-        camera=session.frame.image,
+        camera=camera_image(session),
         difference=brain.local_view.difference_to(view),
         threshold=brain.local_view.front_end.threshold(brain.params.local_view),
         active=session.estimate.recognition.view == view,

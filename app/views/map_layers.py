@@ -7,10 +7,11 @@ import time
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.views.arrays import frozen
-from ratslam_core import ExperienceMap
-from web.messages import MapLayer, TimesLayer
+from ratslam_core import CellsOnly, ExperienceMap
+from web.messages import NO_PLACES, MapLayer, TimesLayer
 
 MAP_EVERY_S = 0.5  # of wall time
 TIMES_EVERY_S = 0.25
@@ -55,4 +56,12 @@ def map_layer(experiences: ExperienceMap) -> MapLayer:
         frozen(np.ascontiguousarray(poses[:, :2])),
         frozen(np.ascontiguousarray(poses[:, 2])),
         frozen(experiences.links.astype(np.int32)),
+        _cells(experiences) if isinstance(experiences, CellsOnly) else NO_PLACES,
     )
+
+
+def _cells(cells: CellsOnly) -> NDArray[np.float32]:
+    """(4, 2) corners of the network around where the robot woke up."""
+    _, n_y, n_x = cells.shape
+    half = np.array([n_x, n_y]) * cells.cell_m / 2
+    return frozen((half * [(-1, -1), (1, -1), (1, 1), (-1, 1)]).astype(np.float32))

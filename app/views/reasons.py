@@ -10,6 +10,7 @@ import math
 from app.session import Session
 from app.views.brain_pictures import packet_of, stored_picture
 from app.views.event_log import EventLog
+from app.views.senses import camera_image
 from app.views.snap_causes import SnapCauses
 from ratslam_core import Packet, Pose2
 from web import messages as m
@@ -126,7 +127,7 @@ class Reasons:
             del self._kept[next(iter(self._kept))]
         self._kept[event.number] = m.WhyReport(
             event.number, event.time_s, event.kind, event.text, tuple(sorted(chain, key=lambda entry: entry[0])),
-            self._session.frame.image, tuple(shown[:MOST_VIEWS]), brain.pose_cells.shape,
+            camera_image(self._session), tuple(shown[:MOST_VIEWS]), brain.pose_cells.shape,
             tuple(map(packet_of, self._before)), tuple(map(packet_of, self._now)),
             experiences or (self._session.estimate.experience,), since_s, without,
         )  # fmt: skip

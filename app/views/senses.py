@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from app.session import Session
 from app.views.arrays import frozen
 from web.messages import Senses
+
+NO_PICTURE: NDArray[np.uint8] = frozen(np.zeros((0, 0, 3), np.uint8))
+
+
+def camera_image(session: Session) -> NDArray[np.uint8]:
+    """(h, w, 3) what the camera sees; without pixels while it is off."""
+    return session.frame.image if session.config.robot.camera else NO_PICTURE
 
 
 def senses_of(session: Session) -> Senses:
@@ -12,7 +22,7 @@ def senses_of(session: Session) -> Senses:
     best, front_end = recognition.best_view, local_view.front_end
     stored = local_view.stored(best) if best >= 0 else None
     return Senses(
-        camera=session.frame.image,
+        camera=camera_image(session),
         front_end=local_view.params.front_end,
         seen=frozen(front_end.picture(local_view.features).copy()),
         seen_words=front_end.words(local_view.features),

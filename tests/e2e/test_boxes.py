@@ -99,8 +99,9 @@ def presented(_program: Program, page: Page) -> None:
 
 def in_a_lesson(program: Program, page: Page) -> None:
     page.keyboard.press("z")  # ends presenting
-    program.command("begin_lesson", name="packet")
+    program.command("begin_lesson", name="snap")  # without vision, and with a loop to be played again
     expect(page.locator("#lesson")).to_have_attribute("data-state", "predict")
+    expect(page.locator("#replay")).to_be_visible()
 
 
 def in_a_lesson_before_a_class(_program: Program, page: Page) -> None:

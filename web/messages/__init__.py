@@ -2,6 +2,7 @@
 
 from web.messages.beside import BesideView, BrainFigures, Changed, Difference
 from web.messages.brain import (
+    NO_PLACES,
     Belief,
     Goal,
     GoalMemoryLayer,
@@ -131,6 +132,7 @@ from web.messages.time_orders import (
 from web.messages.trial import TrialState, TrialView
 
 __all__ = [
+    "NO_PLACES",
     "Accepted",
     "BackToNow",
     "BeginLesson",

@@ -13,6 +13,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+NO_PLACES: NDArray[np.float32] = np.zeros((0, 2), np.float32)
+NO_PLACES.setflags(write=False)
+
 
 @dataclass(frozen=True, slots=True)
 class Pose:
@@ -27,7 +30,7 @@ class Pose:
 class Senses:
     """What the robot sees now, and the stored view that is most like it."""
 
-    camera: NDArray[np.uint8]  # (h, w, 3) RGB; without pixels: the source has no camera
+    camera: NDArray[np.uint8]  # (h, w, 3) RGB; without pixels: there is no camera, or it is off
     front_end: str  # the name of the front end
     seen: NDArray[np.uint8]  # (h, w) grey or (h, w, 3) RGB: what the front end makes of the image
     seen_words: str
@@ -99,6 +102,13 @@ class MapLayer:
     xy: NDArray[np.float32]  # (n, 2)
     heading_rad: NDArray[np.float32]  # (n,)
     links: NDArray[np.int32]  # (m, 2): rows into ids
+    cells_xy: NDArray[np.float32] = field(default_factory=lambda: NO_PLACES)
+    """(4, 2) corners of the pose cells where they are all there is, as in 2004."""
+
+    @property
+    def extent_xy(self) -> NDArray[np.float32]:
+        """(k, 2) places between which all of it lies, the robot as well."""
+        return np.concatenate([self.xy, self.cells_xy])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

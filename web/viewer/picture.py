@@ -117,7 +117,7 @@ def _map(sketch: _Sketch, snapshot: Snapshot, at: tuple[float, float]) -> None:
     sketch.area(meshes.lifted(floor, -0.03), palette.floor)
     if not len(layer.xy):
         return
-    fit = refit(MapFit(), layer.xy, snapshot.map_turn_rad)
+    fit = refit(MapFit(), layer.extent_xy, snapshot.map_turn_rad)
     places = meshes.lifted(fit.to_plate(layer.xy) + at, 0.05)
     every = -(-len(places) // MOST_DOTS)
     sketch.lines(places[layer.links][: 2 * MOST_DOTS], palette.link, 1.0)

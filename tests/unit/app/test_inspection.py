@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from app.config import Config
 from app.session import Session
 from app.views.brain_pictures import present_picture, stored_picture
 from app.views.history import History
 from app.views.inspection import inspect
+from app.views.senses import senses_of
 from app.views.visits import Visits
 from sim2d import load_world
 from web.messages import CellReport, ExperienceReport, Inspect, Report, ViewReport
@@ -134,3 +136,10 @@ def test_visits_are_counted_when_something_becomes_active() -> None:
     assert (visits.of(2000).first_s, visits.of(2000).last_s, visits.of(2000).visits) == (0.0, 5.0, 3)
     assert visits.of(4).first_s is None
     assert visits.of(10**6).visits == 0
+
+
+def test_where_the_camera_is_off_no_picture_of_it_is_shown() -> None:
+    session = Session(load_world("office"), 5, Config().with_values({"robot.camera": False}))
+    session.tick()
+    assert senses_of(session).camera.size == 0
+    assert senses_of(Session(load_world("office"), 5)).camera.size > 0

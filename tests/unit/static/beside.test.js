@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { HEADS, cellsOf, changedWords, odometryWords, sinceWhen } from "../../../web/static/model/beside.js";
+import { HEADS, MEANS, cellsOf, changedWords, odometryWords, sinceWhen } from "../../../web/static/model/beside.js";
 
 const brain = {
   name: "ours",
@@ -18,6 +18,7 @@ const brain = {
 test("each figure has its head, and what is not known is a dash", () => {
   assert.deepEqual(cellsOf(brain), ["4", "5", "6", "0.20 m", "-"]);
   assert.equal(HEADS.length, cellsOf(brain).length);
+  assert.ok(Object.keys(MEANS).every((head) => HEADS.includes(head)));
 });
 
 test("a difference is a moment to go to", () => {

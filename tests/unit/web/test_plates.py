@@ -12,6 +12,7 @@ import pytest
 from tests.fake_snapshots import fake_reports, fake_snapshot
 from tests.unit.web.bench import Bench
 from web.messages import Belief, MapLayer, OccupancyPicture, Pose, TaggedPlace, TimesLayer
+from web.viewer.fits.map_fit import DEPTH, WIDTH
 from web.viewer.plates.map_plate import seconds_words
 
 
@@ -256,3 +257,16 @@ def test_what_the_robot_holds_back_is_a_pale_arrow_at_that_place(bench: Bench) -
     bench.show(replace(snapshot, belief=replace(doubt, other=None)), 5)
     bench.settle()
     assert not bench.visible("/map/other")
+
+
+def test_without_a_map_the_robot_stays_on_the_plate_wherever_its_packet_is(bench: Bench) -> None:
+    corners = np.array([(-8, -8), (8, -8), (8, 8), (-8, 8)], np.float32)
+    one = np.zeros((1, 2), np.float32)
+    only = MapLayer(np.zeros(1, np.int32), one, np.zeros(1, np.float32), np.zeros((0, 2), np.int32), corners)
+    times = TimesLayer(False, np.zeros(1, np.float32))
+    for x, y in corners.tolist():
+        bench.show(replace(fake_snapshot(430), map=only, times=times, goal=None, estimate=Pose(x, y, 0.0)), 10.0)
+        bench.settle()
+        at = bench.node("/map/arrow")["position"]
+        assert abs(at[0]) < WIDTH / 2
+        assert abs(at[1]) < DEPTH / 2

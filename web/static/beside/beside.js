@@ -2,7 +2,7 @@
 
 import { $, find } from "../elements/dom.js";
 import { make } from "../elements/elements.js";
-import { HEADS, cellsOf, changedWords, odometryWords, sinceWhen, valueWords } from "../model/beside.js";
+import { HEADS, MEANS, cellsOf, changedWords, odometryWords, sinceWhen, valueWords } from "../model/beside.js";
 import { renew } from "../panel/parts.js";
 
 export class BesideStrip {
@@ -10,7 +10,9 @@ export class BesideStrip {
   constructor(command) {
     this.command = command;
     this.told = "";
-    $("beside-heads").append(...HEADS.map((text) => make("th", { scope: "col", textContent: text })));
+    $("beside-heads").append(
+      ...HEADS.map((text) => make("th", { scope: "col", textContent: text, title: MEANS[text] ?? "" })),
+    );
     $("beside-end").addEventListener("click", () => this.command({ type: "end_comparison" }));
   }
 

@@ -7,6 +7,14 @@ const WHAT = { packet: "packet", view: "view", experience: "experience", link: "
 /** The columns of the table: its heads, and the cells of a brain. */
 export const HEADS = ["experiences", "links", "relocalised", "map error", "off by"];
 
+/** What the columns say that is not plain. @type {Record<string, string>} */
+export const MEANS = {
+  relocalised: "How often the winning packet snapped to another place.",
+  "map error": "All of the way beside the true one, after alignment.",
+  "off by":
+    "How far the robot is from where it believes itself to be beside the active experience: nothing on new ground, however bent the map is.",
+};
+
 /** @param {BrainFields} brain */
 export const cellsOf = ({ experiences, links, relocalisations, error_map_m, off_m }) => [
   String(experiences),

@@ -25,6 +25,7 @@ export class Report {
     this.picture = new Picture("the stored view");
     this.now = new Picture("what the robot makes of it");
     this.camera = new Picture("what the robot's camera sees now");
+    this.noCamera = make("p", { className: "blank", textContent: "no camera, or it is off", hidden: true });
     this.turns = new Histogram("activity by heading");
     this.aside = make("div");
     this.pair = make("div", { className: "pair" });
@@ -63,14 +64,15 @@ export class Report {
     this.picture.says(`the stored view ${data.kind === "view" ? data.id : data.view}`).show(arrays.picture);
     this.now.show(arrays.now);
     this.camera.show(arrays.camera);
+    this.noCamera.hidden = !this.camera.canvas.hidden;
     if (arrays.by_heading) this.turns.show(arrays.by_heading.values);
     if (data.kind === "cell") this.turns.box.hidden = !this.turns.path.getAttribute("d");
   }
 
   /** @param {any} data @param {boolean} seen */
   beside(data, seen) {
-    if (data.kind === "view") return [caption("camera now"), this.camera.canvas];
-    if (data.kind === "why") return [caption("camera then"), this.camera.canvas];
+    if (data.kind === "view") return [caption("camera now"), this.camera.canvas, this.noCamera];
+    if (data.kind === "why") return [caption("camera then"), this.camera.canvas, this.noCamera];
     if (data.kind === "cell") return [caption("by heading θ′"), this.turns.box];
     if (!seen)
       return [caption("view"), make("p", { className: "blank", textContent: "made where there was nothing to see" })];

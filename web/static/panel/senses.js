@@ -29,7 +29,7 @@ export class SensesTab {
     this.match = make("button", { type: "button", className: "picture", hidden: true }, this.best.canvas);
     this.match.addEventListener("click", () => inspect({ view: this.view }));
     this.none = make("p", { className: "blank", textContent: "none yet: every view is new" });
-    this.noCamera = make("p", { className: "blank", textContent: "none in this recording", hidden: true });
+    this.noCamera = make("p", { className: "blank", textContent: "no camera, or it is off", hidden: true });
     this.bar = new Bar(0.5);
     this.strip = new ViewStrip(inspect);
     this.turns = new Histogram("activity by heading");

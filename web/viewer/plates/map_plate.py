@@ -100,7 +100,7 @@ class MapPlate(Plate):
     def set_map(self, layer: MapLayer, turn_rad: float) -> bool:
         """Draws nodes and links. True when the whole map has moved on the plate, so that all else on it must follow."""
         self._layer = layer
-        before, self.fit = self.fit, refit(self.fit, layer.xy, turn_rad)
+        before, self.fit = self.fit, refit(self.fit, layer.extent_xy, turn_rad)
         places = meshes.stepped(self.fit.to_plate(layer.xy))
         self._draw(places, layer.links)
         if len(layer.xy):
@@ -152,8 +152,9 @@ class MapPlate(Plate):
         left, right, at = BAR_X - BAR[0] / 2, BAR_X + BAR[0] / 2, self.front + 0.62
         self._bar_ends[0].show(images.text("0 s", ink, 64), (left, at, TEXT_Z))
         self._bar_ends[1].show(images.text(seconds_words(longest), ink, 64), (right, at, TEXT_Z))
-        words = "time to goal" if times.to_goal else "time from robot"
-        self.set_heading("Experience map", f"what it built - colour: {words}")
+        words = "what it built - colour: " + ("time to goal" if times.to_goal else "time from robot")
+        mapped = self._layer is None or not len(self._layer.cells_xy)
+        self.set_heading("Experience map", words if mapped else "none, as in 2004: the packet's place")
 
     def set_robot(self, estimate: Pose) -> None:
         self._put(self._arrow, estimate, ARROW_Z)
