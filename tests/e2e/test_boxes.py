@@ -101,7 +101,7 @@ def in_a_lesson(program: Program, page: Page) -> None:
     page.keyboard.press("z")  # ends presenting
     program.command("begin_lesson", name="snap")  # without vision, and with a loop to be played again
     expect(page.locator("#lesson")).to_have_attribute("data-state", "predict")
-    expect(page.locator("#replay")).to_be_visible()
+    expect(page.locator("#replay")).not_to_have_attribute("hidden", "")
 
 
 def in_a_lesson_before_a_class(_program: Program, page: Page) -> None:
