@@ -21,7 +21,8 @@ SAYS = "(words) => document.getElementById('trial').innerText.includes(words)"
 TABLE = find_experiment("table")
 OPEN = """
 from pathlib import Path
-from app.cli.run import Serving, run_with_trial
+from app.cli.run import run_with_trial
+from app.cli.serving import Serving
 from app.experiments.opening import open_trial
 from app.experiments.store import Store
 with Store(Path({store!r})) as store:

@@ -11,8 +11,8 @@ from types import SimpleNamespace
 import pytest
 
 from app import engine_thread
+from app.cli import beginnings, serving
 from app.cli import command_line as cli
-from app.cli import run
 from app.config import Config
 from app.kept_brains import keeper as brain_keeper
 from app.time_machine import BUDGET_BYTES
@@ -33,7 +33,7 @@ class Doubles:
         self.made: dict[str, tuple] = {}
         self.began, self.refuse, self.compiles = threading.Event(), refuse, compiles
         self.latest = SimpleNamespace(waking="")
-        monkeypatch.setattr(run, "Compiling", partial(CompilingDouble, self))
+        monkeypatch.setattr(serving, "Compiling", partial(CompilingDouble, self))
         monkeypatch.setattr(engine_thread, "EngineThread", partial(EngineDouble, self))
         monkeypatch.setattr(server, "Dashboard", partial(DashboardDouble, self))
         monkeypatch.setattr(brain_keeper.BrainKeeper, "start", lambda _self: None)
@@ -111,7 +111,7 @@ def test_run_binds_first_then_starts_and_stops(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     doubles = Doubles(monkeypatch)
-    monkeypatch.setattr(run, "_has_screen", lambda: True)
+    monkeypatch.setattr(serving, "_has_screen", lambda: True)
     command = ["--world", "loop", "--seed", "9", "--port", "0", "--paused", "--speed", "3", "--set", "robot.light=0.8"]
     assert cli.main(command) == 0
     assert doubles.log == [
@@ -129,7 +129,7 @@ def test_run_binds_first_then_starts_and_stops(
 @pytest.mark.parametrize(("options", "screen"), [(["--no-browser"], True), ([], False)])
 def test_no_browser_opens_unasked_or_unseen(options: list[str], screen: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     doubles = Doubles(monkeypatch)
-    monkeypatch.setattr(run, "_has_screen", lambda: screen)
+    monkeypatch.setattr(serving, "_has_screen", lambda: screen)
     assert cli.main(["run", *options]) == 0
     assert not any(entry.startswith("opens") for entry in doubles.log)
 
@@ -163,7 +163,7 @@ def test_an_engine_that_cannot_begin_ends_the_program_with_a_sentence(
 ) -> None:
     """Whether or not the page is already being served."""
     world = room(start=(0.1, 0.1, 0.0))
-    monkeypatch.setattr(run, "session_of", lambda _args: (world, Config(), None))
+    monkeypatch.setattr(beginnings, "session_of", lambda _args: (world, Config(), None))
     assert cli.main(["run", "--no-browser", "--port", "0"]) == 2
     said = capsys.readouterr().err.splitlines()[-1]
     assert said.startswith("ratslam: the engine could not begin: ")
@@ -181,11 +181,11 @@ def test_a_screen(platform: str, environment: dict[str, str], screen: bool, monk
         monkeypatch.delenv(name, raising=False)
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
-    assert run._has_screen() is screen
+    assert serving._has_screen() is screen
 
 
 def test_the_memory_for_looking_back_is_said_in_megabytes(monkeypatch: pytest.MonkeyPatch, capsys) -> None:
-    assert 1e6 * run.PAST_MB == BUDGET_BYTES
+    assert 1e6 * serving.PAST_MB == BUDGET_BYTES
     doubles = Doubles(monkeypatch)
     assert cli.main(["run", "--keep-past", "50"]) == 0
     assert doubles.made["engine"][3]["keyframe_bytes"] == 50_000_000

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from app.cli import command_line as cli
-from app.cli.run import Serving, run_with_trial
+from app.cli.run import run_with_trial
+from app.cli.serving import Serving
 from app.engine.engine import Engine
 from app.trials.experiment import find_experiment
 

@@ -1,0 +1,149 @@
+"""What `ratslam run` begins with: a run of its own, one that was kept, a situation, a recording, a trial."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from app.cli.earlier import cut_off_run, kept_brain
+from app.cli.options import checked_seed, config_of, session_of
+from app.config import Config
+from app.order_book import SMALLEST_M
+from ratslam_core import RatSlam
+from sim2d import DEFAULT_WORLD, World, own_worlds, world_from_json
+from sim2d.importers import open_world
+
+if TYPE_CHECKING:
+    from app.engine.engine import Engine
+    from app.kept_brains.files import KeptBrain
+    from app.runs.run_file import KeptRun
+    from app.trials.trial import Trial
+
+_NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
+_NOT_WITH_EXPERIMENT = ("scale", "brain", "preset", "config", "set", "resume_brain")
+
+
+@dataclass(frozen=True, slots=True)
+class First:
+    """What the session begins with. begin: begins the first run otherwise. kept, cut_off: what earlier programs left, to be
+    offered on the page."""
+
+    world: World
+    seed: int
+    config: Config
+    brain: RatSlam | None = None
+    begin: Callable[[Engine], object] | None = None
+    kept: KeptBrain | None = None
+    cut_off: KeptRun | None = None
+
+
+def new_run(args: argparse.Namespace) -> First:
+    """A run of its own: of a world, with a new brain or one that was kept."""
+    for name in ("engine", "levels"):
+        if getattr(args, name) is not None:
+            raise ValueError(f"--{name} is for a trial; give --experiment NAME with it")
+    args.seed = 1 if args.seed is None else args.seed
+    own_worlds.tidy()
+    kept = kept_brain(args)
+    cut_off = None if args.resume_brain or args.brain is not None else cut_off_run()
+    world, config, brain = session_of(args)
+    return First(world, args.seed, config, brain, kept=kept, cut_off=cut_off)
+
+
+def resumed_run(args: argparse.Namespace) -> First:
+    """Go on with a run where it was left; what led there is run again first."""
+    from app.cli.progress import compile_first, with_progress
+    from app.runs.folder import is_open
+    from app.runs.replay import resumed
+    from app.runs.run_file import open_run
+
+    for name in ("seed", "recording", *_NOT_WITH_EXPERIMENT, "experiment", "engine", "levels"):
+        if getattr(args, name):
+            raise ValueError(f"--{name.replace('_', '-')} does not go with --resume: the run has its own")
+    if args.world != DEFAULT_WORLD:
+        raise ValueError(f"--world {args.world} does not go with --resume: the run has its own world")
+    kept = open_run(args.resume)
+    if is_open(kept.folder):
+        raise ValueError(f"the run {kept.name} is going on in another program")
+    compile_first()
+    session = with_progress(
+        kept.length_s, lambda tell: resumed(kept, lambda s: tell(s, "running again what led there"))
+    )
+    print(f"The run {kept.name} goes on at tick {session.tick_count}", flush=True)
+    own_worlds.tidy()
+    world = open_world(DEFAULT_WORLD) if session.recording is not None else session.world
+    return First(world, session.seed, session.config, begin=lambda engine: engine.go_on(kept, session))
+
+
+def opened_situation(args: argparse.Namespace) -> First:
+    """Play up to the moment of a situation; the page shows how far it is."""
+    from app.cli.situation import situation_in
+
+    for name in ("seed", "recording", *_NOT_WITH_EXPERIMENT, "experiment", "engine", "levels"):
+        if getattr(args, name):
+            raise ValueError(f"--{name.replace('_', '-')} does not go with --situation, which has its own")
+    if args.world != DEFAULT_WORLD:
+        raise ValueError(f"--world {args.world} does not go with --situation, which has its own world")
+    situation = situation_in(args.situation)
+    header = situation.header
+    own_worlds.tidy()
+    world = world_from_json(header.world, f"the world {header.world_name}", SMALLEST_M)
+    return First(world, header.seed, header.config, begin=lambda engine: engine.open_situation(situation))
+
+
+def played_recording(args: argparse.Namespace) -> First:
+    """A recording from its beginning."""
+    from app.recordings.opening import open_recording
+    from app.recordings.playing import Player
+
+    for name in _NOT_WITH_RECORDING:
+        if getattr(args, name):
+            raise ValueError(f"--{name.replace('_', '-')} does not go with --recording, which is no simulated world")
+    if args.world != DEFAULT_WORLD:
+        raise ValueError(f"--world {args.world} does not go with --recording, which is no simulated world")
+    seed = checked_seed(1 if args.seed is None else args.seed)
+    player = Player(open_recording(args.recording), seed, path=args.recording)
+    player.config = config_of(args, player.config)
+
+    def begin(engine: Engine) -> None:
+        engine.begin_recording(player)
+
+    own_worlds.tidy()
+    return First(open_world(DEFAULT_WORLD), seed, player.config, begin=begin)
+
+
+def chosen_experiment(args: argparse.Namespace, running: bool) -> First:
+    """A trial of an experiment from its beginning. running: as in `first_of_trial`."""
+    from app.trials.chosen import chosen_trial
+    from app.trials.experiment import find_experiment
+
+    for name in _NOT_WITH_EXPERIMENT:
+        if getattr(args, name):
+            raise ValueError(
+                f"--{name.replace('_', '-')} does not go with --experiment, which has its own world and parameters"
+            )
+    if args.world != DEFAULT_WORLD:
+        raise ValueError(f"--world {args.world} does not go with --experiment, which has its own world and parameters")
+    experiment = find_experiment(args.experiment)
+    trial = chosen_trial(experiment, args.engine, args.levels, args.seed)
+    return first_of_trial(trial, None, experiment.title, running)
+
+
+def first_of_trial(trial: Trial, moment_s: float | None, title: str, running: bool) -> First:
+    """A trial, from its beginning or run ahead to a moment. title: of its experiment. running: whether it plays at once."""
+    from app.engine.watched_trial import CHANGED
+    from app.trials.code_version import code_version
+
+    config = Config().with_values(trial.values)
+    world = open_world(trial.world, robot_radius_m=config.robot.robot_radius_m)
+
+    def begin(engine: Engine) -> None:
+        run = engine.begin_trial(trial, title, moment_s)
+        if trial.version != code_version():
+            run.event_log.note("warning", CHANGED)
+        engine.running = running or engine.runs_ahead
+
+    own_worlds.tidy()
+    return First(world, trial.seed, config, begin=begin)
