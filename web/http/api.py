@@ -24,6 +24,7 @@ from web.http.classroom import add_classroom
 from web.http.commands import READER, CommandAccepted, Declined, Malformed, Problem, check, problem, read_object, wrong
 from web.http.experiments import Gallery, add_experiments
 from web.http.export import Exports, add_exports
+from web.http.inspected_state import experience_fields
 from web.http.kept_offer import Offered, add_kept_offer
 from web.http.lessons import Lessons, add_lessons
 from web.http.pictures import add_pictures
@@ -33,7 +34,7 @@ from web.http.recordings import Opener, add_recordings
 from web.http.security import MAX_BRAIN_BYTES, Guard, Limits
 from web.http.situations import Situations, add_situations
 from web.http.stage_picture import add_stage_picture
-from web.http.state import experience_fields, title, to_json
+from web.http.state import title, to_json
 from web.http.stream import Stream
 from web.http.watching import NO, comes_from_class, looks_on
 from web.http.worlds import add_worlds

@@ -18,9 +18,10 @@ from pydantic import BaseModel
 from web.http.asking import Submit, told
 from web.http.bodies import ERRORS, json_response
 from web.http.commands import Declined, Malformed, wrong
+from web.http.run_state import recording_fields
 from web.http.security import MAX_RECORDING_BYTES, Limits
 from web.http.sent_folder import Room, SentFolder, plain
-from web.http.state import recording_fields, to_json
+from web.http.state import to_json
 from web.messages import PlayRecording, RecordingView
 
 PLAY_TIMEOUT_S = 60.0

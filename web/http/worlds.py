@@ -21,9 +21,10 @@ from sim2d.importers.empty_room import empty_room
 from web.http.asking import Submit, told, world_now
 from web.http.bodies import ERRORS, Body, Name, Title, checked_body, json_response, takes
 from web.http.commands import Declined, Malformed, Problem, wrong
+from web.http.run_state import office_fields
 from web.http.saved_worlds import add_saved_worlds, not_taken
 from web.http.security import MAX_PLAN_BYTES, PLAN_PATH, Limits
-from web.http.state import office_fields, to_json
+from web.http.state import to_json
 from web.latest import Latest
 from web.messages import OpenWorld, Snapshot
 

@@ -18,7 +18,7 @@ from app.runs.run_file import open_run
 from app.session import Session
 from app.trials.trial import run_trial
 from web import messages as m
-from web.http.state import beside_fields
+from web.http.run_state import beside_fields
 
 from .engines import an_engine, tell
 from .made_recordings import recorded
