@@ -13,7 +13,7 @@ from app.order_book import SMALLEST_M, Order, carry_out
 from app.runs.folder import BRAIN, LINES, all_runs, runs_folder
 from app.runs.header import Header, read_header
 from app.runs.lines import read_lines
-from app.runs.order_values import check_order
+from app.runs.order_check import check_order
 from app.runs.pulse import SIZE
 from app.runs.recorded import recorded
 from app.runs.world_edits import edited

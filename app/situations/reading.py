@@ -9,9 +9,9 @@ import zlib
 from app.order_book import SMALLEST_M, Order
 from app.runs.header import FORMAT as RUN
 from app.runs.header import Header
+from app.runs.order_check import check_order
 from app.runs.world_edits import edited
 from app.situations.document import FORMAT, Document, check_of, check_of_defaults, defaults, document_in
-from app.situations.order_check import check_order
 from app.situations.situation import Situation
 from app.situations.writing import KEY, text_of_ours
 from sim2d import world_from_json

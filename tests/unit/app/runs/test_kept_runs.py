@@ -13,7 +13,7 @@ from app.runs.folder import LINES, STATE, all_runs, delete, is_open, tidy
 from app.runs.journal import Journal
 from app.runs.lines import line_of, read_lines
 from app.runs.replay import ReplayError, newest_state, replay, resumed
-from app.runs.run_file import open_run
+from app.runs.run_file import KeptRun, open_run
 from app.session import Session
 from sim2d import Box, load_world
 from tests.unit.app.runs.kept import TICKS, keep_one
@@ -84,17 +84,30 @@ def test_it_goes_on_in_the_same_file(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert (whole.damage, whole.end) == ("", "")
 
 
-def test_a_run_that_differs_says_so_with_its_tick(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
-    run, _ = keep_one(tmp_path, monkeypatch)
+def _driving_at(run: KeptRun, speed: float) -> None:
+    """Another version writes this speed into its order, and signs it."""
     lines = read_lines(run.folder / LINES).values
     lines[0]["run"]["version"] = "000000000000"
     order = next(line for line in lines if line.get("order") == "drive")
-    order["values"]["speed"] = 0.9
+    order["values"]["speed"] = speed
     data, check = b"", 0
     for value in lines:
         line, check = line_of(value, check)
         data += line
     (run.folder / LINES).write_bytes(data)
+
+
+def test_an_order_that_no_session_can_be_given_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the same laws as in a link."""
+    run, _ = keep_one(tmp_path, monkeypatch)
+    _driving_at(run, 50.0)
+    with pytest.raises(ValueError, match=r"tick 75: the order drive .* again: drive: speed: input should be less"):
+        replay(open_run(run.folder))
+
+
+def test_a_run_that_differs_says_so_with_its_tick(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    run, _ = keep_one(tmp_path, monkeypatch)
+    _driving_at(run, 0.9)
     with pytest.raises(
         ReplayError, match=r"comes out differently from tick 76 on .* another version \(000000000000\)"
     ) as error:

@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.order_book import Order
+from app.runs.order_check import check_order
 from app.situations import LONGEST_LINK, Situation, file_of, link_of, read_situation
-from app.situations.order_check import check_order
 from sim2d import load_world
 
 from .made import LOOK, a_situation
@@ -134,7 +134,8 @@ def _order(name: str, **values: Any) -> Callable[[dict[str, Any]], None]:
         (_order("state_hash"), "order 1, of tick 0: 'state_hash' is no order that a session can be given"),
         (_order("__init__"), "'__init__' is no order"),
         (_order("drive", speed="fast", yaw_rate=0.0), "drive: speed: input should be a valid number"),
-        (_order("drive", speed=50.0, yaw_rate=0.0), "drive: speed: input should be less than or equal to 0.5"),
+        (_order("drive", speed=50.0, yaw_rate=0.0), "drive: speed: input should be less than or equal to 10"),
+        (_order("kidnap", x=1e300, y=0.0), "kidnap: x: it must be at most 1e[+]09, got 1e[+]300"),
         (_order("put_packet", x=1, y=2, share=1.0), "put_packet: share: input should be less than or equal to 0.95"),
         (_order("put_packet", x=-1, y=2), "put_packet: x: input should be greater than or equal to 0"),
         (_order("forget_view", view=-1), "forget_view: view: input should be greater"),

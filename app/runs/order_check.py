@@ -1,4 +1,4 @@
-"""An order that comes from elsewhere: is it one that a session can be given, with values of the right kinds?"""
+"""An order that comes from a file or a link: is it one that a session can be given, with values of the right kinds?"""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 _Size = Annotated[float, Field(ge=0.05, le=20.0)]  # as of the page's boxes
 _Byte = Annotated[int, Field(ge=0, le=255)]
 _Name = Annotated[str, Field(min_length=1, max_length=40)]
+LARGEST = 1e9  # no number of an order, be it a place, a speed or a parameter, comes near it
 
 
 class _Box(BaseModel):
@@ -32,9 +33,11 @@ class _Box(BaseModel):
 
 
 _AS_JSON: dict[Any, Any] = {World: str, Box: _Box, int: Annotated[int, Field(ge=0)]}  # how the order book writes them
-_NARROWER: dict[tuple[str, str], Any] = {  # what the page's commands allow, where a session itself allows more
-    ("drive", "speed"): Annotated[float, Field(ge=-0.5, le=0.5)],
-    ("drive", "yaw_rate"): Annotated[float, Field(ge=-1.6, le=1.6)],
+_NARROWER: dict[
+    tuple[str, str], Any
+] = {  # where a session itself allows more; an experiment may drive faster than a page
+    ("drive", "speed"): Annotated[float, Field(ge=-10, le=10)],
+    ("drive", "yaw_rate"): Annotated[float, Field(ge=-20, le=20)],
     ("put_packet", "share"): Annotated[float, Field(ge=0.01, le=0.95)],
     ("tag", "name"): _Name,
 }
@@ -51,6 +54,9 @@ def check_order(order: Order) -> None:
         first = error.errors(include_url=False)[0]
         wrong = first["msg"][0].lower() + first["msg"][1:]
         raise ValueError(f"{order.name}: {'.'.join(map(str, first['loc']))}: {wrong}") from None
+    for name, value in order.values.items():
+        if isinstance(value, float | int) and not abs(value) <= LARGEST:
+            raise ValueError(f"{order.name}: {name}: it must be at most {LARGEST:g}, got {str(value)[:40]}")
 
 
 @cache
