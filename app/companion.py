@@ -134,6 +134,10 @@ class Companion:
             self.counterpart.append(self.brain.experience_map.active)
 
 
+def digest_of(companion: Companion | None) -> str | None:
+    return None if companion is None else companion.digest()
+
+
 def _place(estimate: Estimate) -> tuple[float, float, float]:
     packet = estimate.packet
     return packet.x, packet.y, packet.heading_rad

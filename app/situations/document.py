@@ -19,6 +19,7 @@ FORMAT = "ratslam situation/1"
 MOST_TICKS = 10_000_000  # eleven days
 MOST_ORDERS = 2_000_000
 _Short = Annotated[str, Field(max_length=200)]
+_Hash = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 
 class Document(BaseModel):
@@ -39,7 +40,8 @@ class Document(BaseModel):
     defaults: int | None  # checksum of the defaults that are left out; None: nothing is left out
     orders: Annotated[list[tuple[int, str, dict[str, Any]]], Field(max_length=MOST_ORDERS)]
     tick: Annotated[int, Field(ge=0, le=MOST_TICKS)]
-    state_hash: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+    state_hash: _Hash
+    second_hash: _Hash | None = None  # of the second brain; left out where there is none, as in all earlier situations
     look: Look
     trial: _Short
     brain: str | None  # base64

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from pathlib import Path
 
+from app.companion import digest_of
 from app.order_book import Order
 from app.runs.header import Beginning, header_of
 from app.session import Session
@@ -20,12 +21,15 @@ class LedHere:
     def __init__(self, began: Beginning, brain: RatSlam | Path | None, orders: list[Order], session: Session) -> None:
         self._began, self._brain, self._orders = began, brain, orders
         self.tick, self.time_s, self.state_hash = session.tick_count, session.time_s, session.state_hash()
+        self.second_hash = digest_of(session.companion)
         self.world, self.seed = session.world.name, session.seed
 
     def situation(self, look: Look) -> Situation:
         """OSError: the brain that a kept run began with cannot be read."""
         header = header_of(self._began)
-        return Situation(header, tuple(self._orders), self.tick, self.state_hash, look, self._file())
+        return Situation(
+            header, tuple(self._orders), self.tick, self.state_hash, look, self._file(), second_hash=self.second_hash
+        )
 
     def _file(self) -> bytes | None:
         if isinstance(self._brain, Path):

@@ -29,10 +29,17 @@ def python_lines(situation: Situation, file_name: str) -> str:
     end = [
         "",
         f'assert session.state_hash() == "{situation.state_hash}", "not the same: this is another version"',
+        *_second(situation),
         f"# Made by version {situation.header.version}, Python {situation.header.python}, numpy {situation.header.numpy}, "
         f"{situation.header.platform}.",
     ]
     return "\n".join([*head, *body, *end]) + "\n"
+
+
+def _second(situation: Situation) -> list[str]:
+    if situation.second_hash is None:
+        return []
+    return [f'assert session.companion.digest() == "{situation.second_hash}", "the second brain is not the same"']
 
 
 def _from_file(file_name: str) -> list[str]:

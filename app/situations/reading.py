@@ -37,7 +37,7 @@ def read_situation(text: str) -> Situation:
     _ = header.config  # ValueError: there is no such parameter, or not such a value
     return Situation(
         header, _orders_of(document, world), document.tick, document.state_hash, document.look, _brain_of(document),
-        tuple(notes),
+        tuple(notes), document.second_hash,
     )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ import io
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from app.companion import digest_of
 from app.order_book import SMALLEST_M, Order, carry_out
 from app.runs.header import Header
 from app.session import Session
@@ -20,7 +21,8 @@ TELL_AFTER = 10  # ticks between two calls of `tell`
 @dataclass(frozen=True, slots=True, eq=False)
 class Situation:
     """header: of the program that made it. orders: all that lead to the moment, oldest first; those of the last tick, too,
-    if they had been given. state_hash: of the session then. brain: the file of the one that the run began with."""
+    if they had been given. state_hash: of the session then. second_hash: of the second brain then; None: there was none, or the
+    program that made the link did not say. brain: the file of the one that the run began with."""
 
     header: Header
     orders: tuple[Order, ...]
@@ -29,6 +31,7 @@ class Situation:
     look: Look = Look()
     brain: bytes | None = None
     notes: tuple[str, ...] = ()  # why it may come out differently here
+    second_hash: str | None = None
 
     def begin(self, brain: RatSlam | None = None) -> Session:
         """The session before its first tick. brain: its own, if that has been read already. ValueError says why it cannot
@@ -56,14 +59,19 @@ class Situation:
 
     def verdict(self, session: Session) -> tuple[bool, str]:
         """Whether the session, which has come to the moment, is the same as the one that was linked, and what to say."""
-        found = session.state_hash()
-        if found == self.state_hash:
-            return True, f"The same, bit for bit: state hash {found[:12]} at tick {self.tick}."
+        found, second = session.state_hash(), digest_of(session.companion)
+        same_second = self.second_hash is None or second == self.second_hash
+        if found == self.state_hash and same_second:
+            beside = f", and {second[:12]} of the second brain" if second is not None and self.second_hash else ""
+            not_said = " Its link says nothing of the second brain." if second is not None and not beside else ""
+            return True, f"The same, bit for bit: state hash {found[:12]}{beside} at tick {self.tick}.{not_said}"
         header = self.header
         made = f"version {header.version}, Python {header.python}, numpy {header.numpy}, {header.platform}"
         by = "this version of the program" if header.same_program else "another version of the program"
         because = "".join(f" {note}" for note in self.notes)
-        return False, (
-            f"Not the same: state hash {found[:12]} at tick {self.tick}, the link says {self.state_hash[:12]}. It was "
-            f"made by {by} ({made}).{because}"
-        )
+        if found != self.state_hash:
+            what = f"state hash {found[:12]} at tick {self.tick}, the link says {self.state_hash[:12]}"
+        else:
+            whose = "there is no second brain" if second is None else f"the second brain's hash is {second[:12]}"
+            what = f"{whose} at tick {self.tick}, the link says {(self.second_hash or '')[:12]}"
+        return False, f"Not the same: {what}. It was made by {by} ({made}).{because}"

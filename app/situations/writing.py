@@ -19,7 +19,7 @@ KEY = "run"
 def file_of(situation: Situation) -> str:
     """The text of its file, an order a line: whatever the program that reads it has as worlds and defaults, this is the
     same."""
-    document = _document(situation, short=False).model_dump(mode="json")
+    document = _document(situation, short=False).model_dump(mode="json", exclude=_left_out(situation))
     orders = ",\n  ".join(json.dumps(order) for order in document["orders"])
     lines = [f'"{key}": {json.dumps(value)}' for key, value in document.items() if key != "orders"]
     return "{" + ",\n ".join([*lines, f'"orders": [\n  {orders}]' if orders else '"orders": []']) + "}\n"
@@ -30,7 +30,7 @@ def link_of(situation: Situation) -> tuple[str | None, str]:
     if situation.brain is not None:
         size = f"{len(situation.brain) / 1e6:.1f} MB"
         return None, f"The run began with a brain of its own, {size}, which fits into no link; the file has it."
-    packed = zlib.compress(_document(situation, short=True).model_dump_json().encode(), 9)
+    packed = zlib.compress(_document(situation, short=True).model_dump_json(exclude=_left_out(situation)).encode(), 9)
     link = f"{KEY}={base64.urlsafe_b64encode(packed).decode().rstrip('=')}"
     if len(link) <= LONGEST_LINK:
         return link, ""
@@ -61,6 +61,11 @@ def changed_values(situation: Situation) -> dict[str, Any]:
     return changed
 
 
+def _left_out(situation: Situation) -> set[str]:
+    """Programs that know of no second hash read what has none."""
+    return {"second_hash"} if situation.second_hash is None else set()
+
+
 def _document(situation: Situation, *, short: bool) -> Document:
     header = situation.header
     left_out = short and is_ours(situation)
@@ -80,6 +85,7 @@ def _document(situation: Situation, *, short: bool) -> Document:
         orders=_orders(situation),
         tick=situation.tick,
         state_hash=situation.state_hash,
+        second_hash=situation.second_hash,
         look=situation.look,
         trial=header.trial,
         brain=None if situation.brain is None else base64.b64encode(situation.brain).decode(),
