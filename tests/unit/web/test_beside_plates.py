@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
@@ -17,16 +15,6 @@ from web.viewer.camera_views import VIEWS, camera_for, seen_by
 from web.viewer.plates import map_plate, office_plate, pose_cell_plate
 from web.viewer.plates.plate import Plate
 from web.viewer.pointer import Click
-
-
-@pytest.fixture
-def bench() -> Iterator[Bench]:
-    made = Bench()
-    made.show(fake_snapshot(430), 10.0)
-    made.settle()
-    yield made
-    made.viewer.stop()
-
 
 CHANGED = (Changed("local_view.enabled", True, False),)
 

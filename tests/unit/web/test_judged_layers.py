@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -19,13 +18,6 @@ from web.viewer.fits.poses import compose, into_map, placed
 from web.viewer.marks.outline import clipped
 
 FRAME = Pose(1.0, 0.5, 0.1)
-
-
-@pytest.fixture(scope="module")
-def shared() -> Iterator[Bench]:
-    bench = Bench()
-    yield bench
-    bench.viewer.stop()
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -45,15 +44,6 @@ class Asked:
 
     def snapshot(self) -> Snapshot:
         return replace(fake_snapshot(430), movements=self)
-
-
-@pytest.fixture
-def bench() -> Iterator[Bench]:
-    made = Bench()
-    made.show(fake_snapshot(430), 10.0)
-    made.settle()
-    yield made
-    made.viewer.stop()
 
 
 def there(bench: Bench) -> dict[str, int]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -20,13 +19,6 @@ from web.viewer.plates import map_plate, office_plate, pose_cell_plate
 
 KITCHEN = KnownPlace("kitchen", 2.0, 6.0, (1.5, -0.5))
 ATTIC = KnownPlace("attic", 8.0, 2.0, None)
-
-
-@pytest.fixture(scope="module")
-def shared() -> Iterator[Bench]:
-    bench = Bench()
-    yield bench
-    bench.viewer.stop()
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,13 +14,6 @@ from tests.unit.web.bench import Bench
 from web.messages import Belief, MapLayer, OccupancyPicture, Pose, TaggedPlace, TimesLayer
 from web.viewer.fits.map_fit import DEPTH, WIDTH
 from web.viewer.plates.map_plate import seconds_words
-
-
-@pytest.fixture(scope="module")
-def shared() -> Iterator[Bench]:
-    bench = Bench()
-    yield bench
-    bench.viewer.stop()
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from concurrent.futures import Future
 from dataclasses import replace
 
@@ -22,13 +21,6 @@ from web.viewer.plates.pose_cell_plate import ORIGIN as CELLS_AT
 from web.viewer.pointer import Click, Drag, ask
 
 SKY = (0.0, 0.0, 9.0)
-
-
-@pytest.fixture(scope="module")
-def shared() -> Iterator[Bench]:
-    bench = Bench()
-    yield bench
-    bench.viewer.stop()
 
 
 @pytest.fixture

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -16,13 +15,6 @@ from web.viewer.plates.map_plate import NODE_Z
 from web.viewer.replay import AFTER_S, BEFORE_S, MOVES_S, share_at
 
 EVENT = 77
-
-
-@pytest.fixture(scope="module")
-def shared() -> Iterator[Bench]:
-    bench = Bench()
-    yield bench
-    bench.viewer.stop()
 
 
 @pytest.fixture

@@ -6,7 +6,6 @@ import copy
 import re
 import threading
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -21,13 +20,6 @@ from web.messages import RecordingView, Snapshot
 from web.switches import Switches
 from web.throttle import Throttle
 from web.viewer import Viewer
-
-
-@pytest.fixture(scope="module")
-def shared() -> Iterator[Bench]:
-    bench = Bench()
-    yield bench
-    bench.viewer.stop()
 
 
 @pytest.fixture
