@@ -17,15 +17,14 @@ import numpy as np
 import viser
 
 from web.latest import Latest
-from web.messages import Accepted, Command, MapLayer, Refused, Snapshot
+from web.messages import Accepted, Command, Refused, Snapshot
 from web.switches import Switches
 from web.themes import Theme
-from web.throttle import Throttle
 from web.viewer.beside import Beside
 from web.viewer.camera_views import VIEWS, Camera
 from web.viewer.cameras import Cameras, Robots
 from web.viewer.judged_layers import JudgedLayers
-from web.viewer.occupancy_artist import OccupancyArtist
+from web.viewer.layers import Layers
 from web.viewer.pointer import Answer, Click, Drag, Pointer, ask
 from web.viewer.primitives.palette import Palette, palette_of
 from web.viewer.replay import Replay
@@ -34,7 +33,6 @@ from web.viewer.viser_server import guarded_server
 
 DragEvent = viser.SceneNodeDragEvent[viser.MeshHandle]
 FRAME_S = 1 / 30  # least time between two frames, however fast snapshots come
-ON_MAP = "times", "estimate", "other", "goal", "tags", "places", "closures"  # layers that move with it
 IDLE_S = 0.05  # longest time that a click waits
 
 
@@ -75,13 +73,13 @@ class Viewer:
         if self._thread is not None:
             self._thread.join()
             self._thread = None
-        self._artist.stop()
+        self._layers.stop()
         self.server.stop()
 
     @property
     def drawing(self) -> bool:
         """Something is being drawn in another thread."""
-        return self._artist.drawing
+        return self._layers.drawing
 
     def turned(self, client_id: int) -> Camera | None:
         """Where somebody has turned this browser's camera by hand; None if nobody has."""
@@ -127,85 +125,22 @@ class Viewer:
         self._now_s = now_s
         if snapshot is not None:
             if snapshot.sought(self._snapshot):
-                for layer in self._layers.values():
-                    layer.hurry()
+                self._layers.hurry()
             self._snapshot = snapshot
         with contextlib.suppress(queue.Empty):
             while True:
                 self._inbox.get_nowait()()
         self._cameras.fly_on(now_s)
         if self._snapshot is not None and watched:
-            self._draw(self._snapshot, now_s)
+            with self.server.atomic():
+                self._layers.draw(self._snapshot, now_s)
             self._cameras.track(self._robots(), now_s)
-
-    def _draw(self, snapshot: Snapshot, now_s: float) -> None:
-        offer, cells = self._layers, snapshot.pose_cells
-        with self.server.atomic():
-            if offer["world"].offer(now_s, snapshot.world):
-                self._forget("robot", "trail", "living", "movements", "names", "lesson")
-                self._judged.forget()
-            self._beside.draw(snapshot.beside, now_s, office=snapshot.world is not None)
-            offer["living"].offer(now_s, snapshot.living)
-            if self._pointer.dragging:
-                self._forget("robot")  # when it is let go, it goes back to its true place
-            else:
-                offer["robot"].offer(now_s, snapshot.truth, snapshot.senses)
-            tried = None if self._pointer.dragging or not self._switches.is_on("movements") else snapshot.movements
-            offer["movements"].offer(now_s, tried)
-            offer["trail"].offer(now_s, snapshot.trail)
-            offer["names"].offer(now_s, snapshot.places)
-            self._draw_overlays(snapshot, now_s)
-            offer["cells"].offer(now_s, cells)
-            offer["path"].offer(now_s, cells.path, cells.shape)
-            offer["glow"].offer(now_s, cells, self._scenery.cells.under)
-            if self._replay.draw(now_s):
-                self._forget("map", *ON_MAP)
-            if not self._replay.runs:
-                self._draw_on_map(snapshot, now_s)
-            self._judged.draw(snapshot, now_s)
-            offer["lesson"].offer(now_s, snapshot.lesson)
-            self._pointer.settle(snapshot, self._scenery.map, now_s)
 
     def _rearranged(self, two: bool) -> None:
         """The plates stand elsewhere: two brains, or an office, have come or gone."""
-        self._forget("cells")
+        self._layers.forget("cells")
         assert self._snapshot is not None
         self._cameras.give_room(office=self._snapshot.world is not None, two=two)
-
-    def _draw_on_map(self, snapshot: Snapshot, now_s: float) -> None:
-        offer = self._layers
-        offer["map"].offer(now_s, snapshot.map, snapshot.map_turn_rad)
-        offer["times"].offer(now_s, snapshot.times)
-        offer["estimate"].offer(now_s, snapshot.estimate)
-        offer["other"].offer(now_s, snapshot.belief.other if snapshot.belief else None)
-        offer["goal"].offer(now_s, snapshot.goal)
-        offer["tags"].offer(now_s, snapshot.tags)
-        offer["places"].offer(now_s, snapshot.places)
-        closures = snapshot.closures if self._switches.is_on("closures") else ()
-        offer["closures"].offer(now_s, closures, snapshot.map, snapshot)
-
-    def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
-        if self._scenery.map.set_map(layer, turn_rad):
-            self._forget("inspected", "lesson", *ON_MAP)
-            self._judged.forget()
-            self._pointer.moved(self._scenery.map)
-
-    def _draw_overlays(self, snapshot: Snapshot, now_s: float) -> None:
-        """Draws the overlays that are switched on, and removes the others."""
-        offer, is_on, cells = self._layers, self._switches.is_on, snapshot.pose_cells
-        alone = snapshot.beside is None  # of two brains, both are drawn alike
-        goal = snapshot.goal_memory if alone and is_on("goal_memory") else None
-        beneath = snapshot.occupancy if is_on("cell_occupancy") else None
-        offer["cell_floor"].offer(now_s, cells.shape, beneath, goal, snapshot.inspected)
-        offer["zone"].offer(now_s, snapshot.inspected, cells.shape)
-        offer["inspected"].offer(now_s, snapshot.inspected)
-        offer["way"].offer(now_s, cells, goal)
-        if not self._artist.drawing:
-            offer["occupancy"].offer(now_s, snapshot.occupancy if alone and is_on("occupancy") else None)
-
-    def _forget(self, *layers: str) -> None:
-        for name in layers:
-            self._layers[name].forget()
 
     # ------------------------------------------------------------ setting up
 
@@ -214,35 +149,12 @@ class Viewer:
         self._scenery = Scenery(self.server.scene, palette)
         self._beside = Beside(self.server.scene, palette, self._scenery, self._rearranged)
         self.server.gui.configure_theme(dark_mode=palette.dark, show_logo=False, show_share_button=False)
-        office, cells, map_plate = self._scenery.office, self._scenery.cells, self._scenery.map
-        self._judged = JudgedLayers(self.server.scene, palette, office, map_plate, self._switches)
+        office, map_plate = self._scenery.office, self._scenery.map
+        judged = JudgedLayers(self.server.scene, palette, office, map_plate, self._switches)
         self._replay = Replay(map_plate)
-        self._artist = OccupancyArtist(map_plate, self._switches, self._inbox.put)
-        self._layers: dict[str, Throttle] = {
-            "world": Throttle(5, office.set_world),
-            "robot": Throttle(15, office.set_robot),
-            "movements": Throttle(10, office.set_movements),
-            "trail": Throttle(2, office.set_trail),
-            "living": Throttle(12, office.set_living),
-            "cells": Throttle(6, cells.set_cells),
-            "path": Throttle(2, cells.set_path),
-            "glow": Throttle(3, cells.set_glow),
-            "map": Throttle(2, self._draw_map),
-            "times": Throttle(3, map_plate.set_times),
-            "estimate": Throttle(15, map_plate.set_robot),
-            "other": Throttle(6, map_plate.set_other),
-            "goal": Throttle(3, map_plate.set_goal),
-            "tags": Throttle(2, map_plate.set_tags),
-            "names": Throttle(2, office.set_places),
-            "places": Throttle(2, map_plate.set_places),
-            "closures": Throttle(1, map_plate.set_closures),
-            "lesson": Throttle(3, self._scenery.lesson.show),
-            "cell_floor": Throttle(2, cells.set_floor),
-            "zone": Throttle(4, cells.set_inspected),
-            "inspected": Throttle(4, map_plate.set_inspected),
-            "way": Throttle(5, cells.set_way),
-            "occupancy": Throttle(0.6, self._artist.draw),
-        }
+        self._layers = Layers(
+            self._scenery, self._beside, judged, self._replay, self._pointer, self._switches, self._inbox.put
+        )
         for part in office.robot.parts:
             part.on_drag("left")(self._dragged(False))
             part.on_drag("left", modifier="shift")(self._dragged(True))

@@ -1,0 +1,139 @@
+"""What a viewer draws, layer by layer: each is offered what is new of a snapshot, and takes it as often as it needs to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from web.messages import MapLayer, Snapshot
+from web.switches import Switches
+from web.throttle import Throttle
+from web.viewer.beside import Beside
+from web.viewer.judged_layers import JudgedLayers
+from web.viewer.occupancy_artist import OccupancyArtist
+from web.viewer.pointer import Pointer
+from web.viewer.replay import Replay
+from web.viewer.scenery import Scenery
+
+ON_MAP = "times", "estimate", "other", "goal", "tags", "places", "closures"  # layers that move with it
+
+
+class Layers:
+    """All of one viewer. To be used in its thread only."""
+
+    def __init__(
+        self,
+        scenery: Scenery,
+        beside: Beside,
+        judged: JudgedLayers,
+        replay: Replay,
+        pointer: Pointer,
+        switches: Switches,
+        post: Callable[[Callable[[], None]], None],
+    ) -> None:
+        """post: has something done in the viewer's thread."""
+        self._scenery, self._beside, self._judged, self._replay = scenery, beside, judged, replay
+        self._pointer, self._switches = pointer, switches
+        office, cells, map_plate = scenery.office, scenery.cells, scenery.map
+        self._artist = OccupancyArtist(map_plate, switches, post)
+        self._layers: dict[str, Throttle] = {
+            "world": Throttle(5, office.set_world),
+            "robot": Throttle(15, office.set_robot),
+            "movements": Throttle(10, office.set_movements),
+            "trail": Throttle(2, office.set_trail),
+            "living": Throttle(12, office.set_living),
+            "cells": Throttle(6, cells.set_cells),
+            "path": Throttle(2, cells.set_path),
+            "glow": Throttle(3, cells.set_glow),
+            "map": Throttle(2, self._draw_map),
+            "times": Throttle(3, map_plate.set_times),
+            "estimate": Throttle(15, map_plate.set_robot),
+            "other": Throttle(6, map_plate.set_other),
+            "goal": Throttle(3, map_plate.set_goal),
+            "tags": Throttle(2, map_plate.set_tags),
+            "names": Throttle(2, office.set_places),
+            "places": Throttle(2, map_plate.set_places),
+            "closures": Throttle(1, map_plate.set_closures),
+            "lesson": Throttle(3, self._scenery.lesson.show),
+            "cell_floor": Throttle(2, cells.set_floor),
+            "zone": Throttle(4, cells.set_inspected),
+            "inspected": Throttle(4, map_plate.set_inspected),
+            "way": Throttle(5, cells.set_way),
+            "occupancy": Throttle(0.6, self._artist.draw),
+        }
+
+    def stop(self) -> None:
+        self._artist.stop()
+
+    @property
+    def drawing(self) -> bool:
+        """Something is being drawn in another thread."""
+        return self._artist.drawing
+
+    def hurry(self) -> None:
+        """Whatever is offered next is due."""
+        for layer in self._layers.values():
+            layer.hurry()
+
+    def forget(self, *layers: str) -> None:
+        """What is offered to these layers next is new to them."""
+        for name in layers:
+            self._layers[name].forget()
+
+    def draw(self, snapshot: Snapshot, now_s: float) -> None:
+        """All that is new and due."""
+        offer, cells = self._layers, snapshot.pose_cells
+        if offer["world"].offer(now_s, snapshot.world):
+            self.forget("robot", "trail", "living", "movements", "names", "lesson")
+            self._judged.forget()
+        self._beside.draw(snapshot.beside, now_s, office=snapshot.world is not None)
+        offer["living"].offer(now_s, snapshot.living)
+        if self._pointer.dragging:
+            self.forget("robot")  # when it is let go, it goes back to its true place
+        else:
+            offer["robot"].offer(now_s, snapshot.truth, snapshot.senses)
+        tried = None if self._pointer.dragging or not self._switches.is_on("movements") else snapshot.movements
+        offer["movements"].offer(now_s, tried)
+        offer["trail"].offer(now_s, snapshot.trail)
+        offer["names"].offer(now_s, snapshot.places)
+        self._draw_overlays(snapshot, now_s)
+        offer["cells"].offer(now_s, cells)
+        offer["path"].offer(now_s, cells.path, cells.shape)
+        offer["glow"].offer(now_s, cells, self._scenery.cells.under)
+        if self._replay.draw(now_s):
+            self.forget("map", *ON_MAP)
+        if not self._replay.runs:
+            self._draw_on_map(snapshot, now_s)
+        self._judged.draw(snapshot, now_s)
+        offer["lesson"].offer(now_s, snapshot.lesson)
+        self._pointer.settle(snapshot, self._scenery.map, now_s)
+
+    def _draw_on_map(self, snapshot: Snapshot, now_s: float) -> None:
+        offer = self._layers
+        offer["map"].offer(now_s, snapshot.map, snapshot.map_turn_rad)
+        offer["times"].offer(now_s, snapshot.times)
+        offer["estimate"].offer(now_s, snapshot.estimate)
+        offer["other"].offer(now_s, snapshot.belief.other if snapshot.belief else None)
+        offer["goal"].offer(now_s, snapshot.goal)
+        offer["tags"].offer(now_s, snapshot.tags)
+        offer["places"].offer(now_s, snapshot.places)
+        closures = snapshot.closures if self._switches.is_on("closures") else ()
+        offer["closures"].offer(now_s, closures, snapshot.map, snapshot)
+
+    def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
+        if self._scenery.map.set_map(layer, turn_rad):
+            self.forget("inspected", "lesson", *ON_MAP)
+            self._judged.forget()
+            self._pointer.moved(self._scenery.map)
+
+    def _draw_overlays(self, snapshot: Snapshot, now_s: float) -> None:
+        """Draws the overlays that are switched on, and removes the others."""
+        offer, is_on, cells = self._layers, self._switches.is_on, snapshot.pose_cells
+        alone = snapshot.beside is None  # of two brains, both are drawn alike
+        goal = snapshot.goal_memory if alone and is_on("goal_memory") else None
+        beneath = snapshot.occupancy if is_on("cell_occupancy") else None
+        offer["cell_floor"].offer(now_s, cells.shape, beneath, goal, snapshot.inspected)
+        offer["zone"].offer(now_s, snapshot.inspected, cells.shape)
+        offer["inspected"].offer(now_s, snapshot.inspected)
+        offer["way"].offer(now_s, cells, goal)
+        if not self._artist.drawing:
+            offer["occupancy"].offer(now_s, snapshot.occupancy if alone and is_on("occupancy") else None)
