@@ -19,33 +19,23 @@ from web.messages.brain import (
     TaggedPlace,
     TimesLayer,
 )
+from web.messages.command import Finite
 from web.messages.commands import (
     BrainOrder,
     CancelGoal,
     Command,
     CompareBrains,
     Drive,
-    EditOrder,
-    EditStep,
-    EditWorld,
     EndComparison,
-    Finite,
     GoToTag,
     InjectPacket,
     Inspect,
     Kidnap,
     LookOrder,
-    OfficeList,
-    OfficeOrder,
     Pause,
-    PutBox,
-    RedoEdit,
-    RemoveBox,
     Reset,
     Resume,
-    SetDoor,
     SetGoal,
-    SetLamp,
     SetMode,
     SetParameter,
     SetSpeed,
@@ -53,9 +43,7 @@ from web.messages.commands import (
     StepStage,
     Tag,
     TagOrder,
-    UndoEdit,
     Untag,
-    UsePreset,
     WatchExperiment,
 )
 from web.messages.engine_requests import (
@@ -99,6 +87,20 @@ from web.messages.lesson_orders import (
     Vote,
 )
 from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
+from web.messages.office_orders import (
+    EditOrder,
+    EditStep,
+    EditWorld,
+    OfficeList,
+    OfficeOrder,
+    PutBox,
+    RedoEdit,
+    RemoveBox,
+    SetDoor,
+    SetLamp,
+    UndoEdit,
+    UsePreset,
+)
 from web.messages.pairs import PairChoice
 from web.messages.recording import RecordingView
 from web.messages.reports import (

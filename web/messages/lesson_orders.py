@@ -6,9 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from web.messages.command import CommandModel
+from web.messages.command import CommandModel, Finite
 
-Finite = Annotated[float, Field(allow_inf_nan=False)]
 _Label = Annotated[str, Field(max_length=64)]
 
 
