@@ -5,16 +5,15 @@ Each has its switch. Where nobody knows the truth, what needs it is not drawn.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import viser
 
 from web.messages import Ghost, Pose, Snapshot, Spread, WorldDrawing
 from web.switches import Switches
 from web.throttle import Throttle
+from web.viewer.fits.judged import error_line, judged, walls_in_map, wheels_alone, wheels_path
 from web.viewer.fits.map_fit import DEPTH, WIDTH
-from web.viewer.fits.poses import compose, into_map, on_plate, placed
+from web.viewer.fits.poses import on_plate
 from web.viewer.marks.doubt import Doubt
 from web.viewer.marks.ghost import GhostRobot
 from web.viewer.marks.outline import Outline
@@ -35,8 +34,8 @@ class JudgedLayers:
         self.outline = Outline(
             scene, f"{plate.root}/outline", palette.drawn(mix(palette.floor, palette.wall, 0.75)), HALF, OUTLINE_Z
         )
-        self.ghost = GhostRobot(scene, palette, f"{plate.root}/ghost", HALF, GHOST_RADIUS)
-        self.doubt = Doubt(scene, palette, plate.root)
+        self.ghost = GhostRobot(scene, palette, f"{plate.root}/ghost", HALF, plate.labels, GHOST_RADIUS)
+        self.doubt = Doubt(scene, palette, plate.root, plate.labels)
         self._layers = {
             "outline": Throttle(1, self._outline),
             "ghost": Throttle(6, self._ghost),
@@ -46,17 +45,12 @@ class JudgedLayers:
         }
 
     def draw(self, snapshot: Snapshot, now_s: float) -> None:
-        offer, is_on, frame = self._layers, self._switches.is_on, snapshot.map_in_office
-        world = snapshot.world if snapshot.world is not None and snapshot.world.is_office else None
-        shown = is_on("outline") and world is not None and frame is not None
-        offer["outline"].offer(now_s, world if shown else None, frame if shown else None)
-        ghost = snapshot.ghost if is_on("ghost") else None
-        offer["ghost"].offer(now_s, ghost, snapshot.truth)
-        offer["ghost_path"].offer(now_s, ghost)
-        doubted = is_on("doubt")
-        known = doubted and frame is not None and snapshot.truth is not None
-        offer["error"].offer(now_s, snapshot.estimate, snapshot.truth if known else None, frame)
-        offer["spread"].offer(now_s, snapshot.estimate, snapshot.spread if doubted else None)
+        offer, shown, frame = self._layers, judged(snapshot, self._switches.on), snapshot.map_in_office
+        offer["outline"].offer(now_s, shown.walls_of, None if shown.walls_of is None else frame)
+        offer["ghost"].offer(now_s, shown.ghost, snapshot.truth)
+        offer["ghost_path"].offer(now_s, shown.ghost)
+        offer["error"].offer(now_s, snapshot.estimate, shown.truth, frame)
+        offer["spread"].offer(now_s, snapshot.estimate, shown.spread)
 
     def forget(self) -> None:
         """The map has moved on its plate, or the office is another one."""
@@ -69,16 +63,15 @@ class JudgedLayers:
         if world is None or frame is None:
             self.outline.show(np.zeros((0, 4)))
             return
-        ends = np.asarray(world.walls, np.float64).reshape(-1, 2)
-        self.outline.show(self._plate.fit.to_plate(into_map(ends, frame)).reshape(-1, 4))
+        walls = walls_in_map(world, frame).reshape(-1, 2)
+        self.outline.show(self._plate.fit.to_plate(walls).reshape(-1, 4))
 
     def _ghost(self, ghost: Ghost | None, truth: Pose | None) -> None:
         if ghost is None or truth is None:
             self._office.ghost.hide()
             self.ghost.hide()
             return
-        office, map_ = compose(ghost.office_start, ghost.pose), compose(ghost.map_start, ghost.pose)
-        off_m = math.hypot(office.x - truth.x, office.y - truth.y)
+        office, map_, off_m = wheels_alone(ghost, truth)
         x, y = self._office.fit.to_plate(np.array([[office.x, office.y]]))[0].tolist()
         self._office.ghost.show(Pose(x, y, office.heading_rad), off_m)
         self.ghost.show(on_plate(map_, self._plate.fit), off_m)
@@ -86,18 +79,17 @@ class JudgedLayers:
     def _ghost_path(self, ghost: Ghost | None) -> None:
         if ghost is None:
             return
-        path = np.asarray(ghost.path, np.float64).reshape(-1, 2)
-        self._office.ghost.show_path(self._office.fit.to_plate(placed(path, ghost.office_start)))
-        self.ghost.show_path(self._plate.fit.to_plate(placed(path, ghost.map_start)))
+        in_office, in_map = wheels_path(ghost)
+        self._office.ghost.show_path(self._office.fit.to_plate(in_office))
+        self.ghost.show_path(self._plate.fit.to_plate(in_map))
 
     def _error(self, estimate: Pose, truth: Pose | None, frame: Pose | None) -> None:
         if truth is None or frame is None:
             self.doubt.hide_error()
             return
-        true = into_map(np.array([[truth.x, truth.y]]), frame)[0]
-        here = np.array([estimate.x, estimate.y])
-        at, there = self._plate.fit.to_plate(np.stack([here, true]))
-        self.doubt.show_error(at, there, float(np.hypot(*(true - here))))
+        line, metres = error_line(estimate, truth, frame)
+        at, there = self._plate.fit.to_plate(line)
+        self.doubt.show_error(at, there, metres)
 
     def _spread(self, estimate: Pose, spread: Spread | None) -> None:
         if spread is None:

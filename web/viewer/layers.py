@@ -8,6 +8,7 @@ from web.messages import MapLayer, Snapshot
 from web.switches import Switches
 from web.throttle import Throttle
 from web.viewer.beside import Beside
+from web.viewer.fits.judged import judged
 from web.viewer.judged_layers import JudgedLayers
 from web.viewer.occupancy_artist import OccupancyArtist
 from web.viewer.pointer import Pointer
@@ -116,8 +117,7 @@ class Layers:
         offer["goal"].offer(now_s, snapshot.goal)
         offer["tags"].offer(now_s, snapshot.tags)
         offer["places"].offer(now_s, snapshot.places)
-        closures = snapshot.closures if self._switches.is_on("closures") else ()
-        offer["closures"].offer(now_s, closures, snapshot.map, snapshot)
+        offer["closures"].offer(now_s, judged(snapshot, self._switches.on).closures, snapshot.map, snapshot)
 
     def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
         if self._scenery.map.set_map(layer, turn_rad):

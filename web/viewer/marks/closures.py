@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from web.messages import Closure
 from web.viewer.primitives import meshes
+from web.viewer.primitives.label_room import CLOSURE, LabelRoom
 from web.viewer.primitives.labels import Pill, add_mesh
 from web.viewer.primitives.palette import Palette
 
@@ -20,14 +21,14 @@ REACH = 0.3  # plate units: a click this near to a ring means it
 
 
 class ClosureMarks:
-    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
+    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str, room: LabelRoom) -> None:
         self._ink, colour = palette.sheet, palette.packets[3]
         self._rings: list[viser.FrameHandle] = []
         for k in range(MOST):
             self._rings.append(scene.add_frame(f"{name}_{k}", show_axes=False, visible=False))
             add_mesh(scene, f"{name}_{k}/casing", meshes.ring(RING, 2 * WIDTH, Z), palette.lit(palette.casing))
             add_mesh(scene, f"{name}_{k}/ring", meshes.ring(RING, WIDTH, Z + 0.02), palette.lit(colour))
-        self._label = Pill(scene, f"{name}_label", LABEL_M, colour, palette)
+        self._label = Pill(scene, f"{name}_label", LABEL_M, colour, palette, room=room, rank=CLOSURE)
         self._told = False  # whether the newest has its label
         self._shown: list[tuple[Closure, NDArray[np.float64]]] = []
 
@@ -52,13 +53,10 @@ class ClosureMarks:
         for k, (closure, (x, y)) in enumerate(reversed(self._shown)):
             if np.hypot(x - place[0], y - place[1]) <= REACH:
                 return closure
-            if (
-                k == 0
-                and self._told
-                and abs(x - place[0]) <= self._label.width / 2
-                and abs(y + ABOVE + 0.3 - place[1]) <= LABEL_M / 2
-            ):
-                return closure
+            if k == 0 and self._told:
+                x, y, _ = self._label.frame.position
+                if abs(x - place[0]) <= self._label.width / 2 and abs(y + 0.3 - place[1]) <= LABEL_M / 2:
+                    return closure
         return None
 
 

@@ -9,6 +9,7 @@ import viser
 from numpy.typing import NDArray
 
 from web.viewer.primitives import meshes
+from web.viewer.primitives.label_room import ERROR, LabelRoom
 from web.viewer.primitives.labels import Pill, add_mesh
 from web.viewer.primitives.palette import Palette
 
@@ -20,7 +21,7 @@ LABEL_M = 0.34
 
 
 class Doubt:
-    def __init__(self, scene: viser.SceneApi, palette: Palette, root: str) -> None:
+    def __init__(self, scene: viser.SceneApi, palette: Palette, root: str, room: LabelRoom) -> None:
         self._palette = palette
         self._line = scene.add_line_segments(
             f"{root}/error", meshes.NOWHERE, palette.drawn(palette.true_path), thickness=0.06
@@ -28,7 +29,7 @@ class Doubt:
         self._true = scene.add_frame(f"{root}/true_place", show_axes=False, visible=False)
         add_mesh(scene, f"{root}/true_place/ring", meshes.ring(0.17, 0.06), palette.lit(palette.true_path))
         add_mesh(scene, f"{root}/true_place/dot", meshes.disc((0.0, 0.0), 0.07, 0.0), palette.lit(palette.true_path))
-        self._label = Pill(scene, f"{root}/error_label", LABEL_M, palette.true_path, palette)
+        self._label = Pill(scene, f"{root}/error_label", LABEL_M, palette.true_path, palette, room=room, rank=ERROR)
         self._ellipse = scene.add_line_segments(
             f"{root}/doubt",
             meshes.closed_line(meshes.circle(1.0, corners=48), 0.0),
@@ -50,10 +51,10 @@ class Doubt:
         ends = meshes.stepped(np.stack([estimate, true]))
         self._line.points = meshes.lifted(ends, Z)[None].astype(np.float32)
         self._true.position = (*ends[1].tolist(), TRUE_Z)
-        if metres < WORTH_M:
+        words = words_of(metres)
+        if not words:
             self._label.hide()
             return
-        words = f"{metres:.1f} m off" if metres < 10 else f"{metres:.0f} m off"
         x, y = ends[1].tolist()
         self._label.show(words, self._palette.sheet, (x, y + 0.42, 0.4))
 
@@ -73,3 +74,9 @@ class Doubt:
 
     def hide_spread(self) -> None:
         self._ellipse.visible = False
+
+
+def words_of(metres: float) -> str:
+    if metres < WORTH_M:
+        return ""
+    return f"{metres:.1f} m off" if metres < 10 else f"{metres:.0f} m off"

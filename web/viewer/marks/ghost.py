@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from web.messages import Pose
 from web.viewer.marks.robot_model import RobotModel
 from web.viewer.marks.trail import Trail
+from web.viewer.primitives.label_room import GHOST, LabelRoom
 from web.viewer.primitives.labels import Pill
 from web.viewer.primitives.palette import Palette, Rgb, mix
 
@@ -25,14 +26,16 @@ def pale(palette: Palette, colour: Rgb, share: float = PALE) -> Rgb:
 
 class GhostRobot:
     def __init__(
-        self, scene: viser.SceneApi, palette: Palette, name: str, half: tuple[float, float], radius: float = 0.25
-    ) -> None:
+        self, scene: viser.SceneApi, palette: Palette, name: str, half: tuple[float, float], room: LabelRoom,
+        radius: float = 0.25,
+    ) -> None:  # fmt: skip
         """half: of the floor's width and depth; what leaves it is not drawn."""
         self._palette, self._half = palette, np.array(half)
         self.robot = RobotModel(scene, palette, name, plain=pale(palette, palette.robot))
         self.robot.resize(radius)
         self._trail = Trail(scene, palette, f"{name}_path", pale(palette, palette.robot, PATH_PALE), 0.05, dashed=True)
-        self._label = Pill(scene, f"{name}_label", LABEL_M, pale(palette, palette.robot, LABEL_PALE), palette)
+        fill = pale(palette, palette.robot, LABEL_PALE)
+        self._label = Pill(scene, f"{name}_label", LABEL_M, fill, palette, room=room, rank=GHOST)
 
     def show(self, pose: Pose, off_m: float) -> None:
         """pose: on the plate; off_m: how far from the robot, in metres. Beside the floor only its name is shown, at the edge."""
@@ -44,9 +47,8 @@ class GhostRobot:
         there = np.clip(at, -self._half, self._half)
         self.robot.frame.visible = bool(np.array_equal(at, there))
         self.robot.place(at, pose.heading_rad)
-        words = "wheels alone" if off_m < 1 else f"wheels alone: {off_m:.0f} m off"
-        x, y = np.clip(there, *_room(self._half, self._label.width)).tolist()
-        self._label.show(words, self._palette.sheet, (x, y - self.robot.radius - ABOVE, LABEL_Z))
+        x, y = there.tolist()
+        self._label.show(words_of(off_m), self._palette.sheet, (x, y - self.robot.radius - ABOVE, LABEL_Z))
 
     def show_path(self, path: NDArray[np.float64]) -> None:
         """(n, 2) on the plate."""
@@ -58,7 +60,5 @@ class GhostRobot:
         self._trail.hide()
 
 
-def _room(half: NDArray[np.float64], width: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where the middle of a label may be, so that all of it is on the floor."""
-    reach = np.maximum(half - (width / 2, 0.0), 0.0)
-    return -reach, reach
+def words_of(off_m: float) -> str:
+    return "wheels alone" if off_m < 1 else f"wheels alone: {off_m:.0f} m off"

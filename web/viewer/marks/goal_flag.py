@@ -8,16 +8,17 @@ import viser
 from numpy.typing import NDArray
 
 from web.viewer.primitives import meshes
+from web.viewer.primitives.label_room import LabelRoom
 from web.viewer.primitives.labels import Pill, add_mesh
 from web.viewer.primitives.palette import Palette
 
-HEIGHT = 1.5
+HEIGHT, PILL = 1.5, 0.6
 DOT, DOT_Z, DOT_CORNERS = 0.085, 0.09, 12
 
 
 class GoalFlag:
-    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
-        self._palette = palette
+    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str, room: LabelRoom) -> None:
+        self._palette, self._room = palette, room
         self._frame = scene.add_frame(name, show_axes=False, visible=False)
         self._dots = add_mesh(scene, f"{name}_places", meshes.NOTHING, palette.lit(palette.goal))
         self._dotted = b""
@@ -28,18 +29,19 @@ class GoalFlag:
         corners = np.array([(0.03, 0.0, HEIGHT), (0.03, 0.0, HEIGHT - 0.5), (0.75, 0.0, HEIGHT - 0.25)], np.float32)
         pennant = (corners, np.array([[0, 1, 2]], np.uint32))
         add_mesh(scene, f"{name}/pennant", pennant, palette.lit(palette.goal, (0.0, -1.0, 0.0)), side="double")
-        self._pill = Pill(scene, f"{name}/pill", 0.6, palette.goal, palette)
+        self._pill = Pill(scene, f"{name}/pill", PILL, palette.goal, palette)
 
     def show(self, at: NDArray[np.float64], words: str, places: NDArray[np.float64]) -> None:
         """at: (2,), places: (k, 2), on the plate."""
         self._frame.position = (float(at[0]), float(at[1]), 0.0)
         self._frame.visible = True
         self._pill.show(words, self._palette.on_goal, (0.0, 0.0, HEIGHT + 0.46))
-
+        self._room.fix(self, [((float(at[0]), float(at[1]), HEIGHT + 0.46), self._pill.width, PILL)])
         self._dot(places)
 
     def hide(self) -> None:
         self._frame.visible = False
+        self._room.fix(self, [])
         self._dot(np.zeros((0, 2)))
 
     def _dot(self, places: NDArray[np.float64]) -> None:

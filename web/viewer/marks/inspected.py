@@ -11,6 +11,7 @@ from web.messages import CellReport, ExperienceReport, MapLayer, Report, ViewRep
 from web.viewer.fits.cell_fit import HEIGHT, CellFit, broken_where_it_wraps
 from web.viewer.fits.map_fit import MapFit
 from web.viewer.primitives import meshes
+from web.viewer.primitives.label_room import TAG, LabelRoom
 from web.viewer.primitives.labels import Pill, add_mesh
 from web.viewer.primitives.palette import Palette
 
@@ -24,12 +25,12 @@ NOTHING = np.zeros((0, 2, 3), np.float32)
 class MapMark:
     """A ring and a name at the experience, with its links bright; small rings at all that belong to a view or a cell."""
 
-    def __init__(self, scene: viser.SceneApi, palette: Palette, root: str) -> None:
+    def __init__(self, scene: viser.SceneApi, palette: Palette, root: str, room: LabelRoom) -> None:
         self.frame = scene.add_frame(f"{root}/inspected", show_axes=False, visible=False)
         add_mesh(scene, f"{root}/inspected/casing", meshes.ring(0.26, 0.14, 0.08), palette.lit(palette.casing))
         add_mesh(scene, f"{root}/inspected/ring", meshes.ring(0.26, 0.07, 0.1), palette.lit(palette.text))
         self._ink = palette.sheet
-        self.pill = Pill(scene, f"{root}/inspected_name", 0.46, palette.text, palette)
+        self.pill = Pill(scene, f"{root}/inspected_name", 0.46, palette.text, palette, room=room, rank=TAG)
         self.links = scene.add_line_segments(
             f"{root}/inspected_links",
             meshes.NOWHERE,

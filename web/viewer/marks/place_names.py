@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from web.viewer.marks.pill_layout import spread
 from web.viewer.primitives import images
+from web.viewer.primitives.label_room import LabelRoom
 from web.viewer.primitives.labels import Sign
 from web.viewer.primitives.palette import Palette, mix
 
@@ -19,7 +20,8 @@ REACH = 5.4  # plate units to each side: no name leaves the plate
 class PlaceNames:
     """More signs are made when there are more names; those that are not needed are hidden."""
 
-    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
+    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str, room: LabelRoom) -> None:
+        self._room = room
         self._scene, self._palette, self._name = scene, palette, name
         self._signs: list[Sign] = []
         self._boxes: list[tuple[str, float, float, float]] = []  # name, x, y, width
@@ -46,6 +48,7 @@ class PlaceNames:
             self._boxes.append((names[k], x, y, float(widths[k])))
         for sign in self._signs[len(pictures) :]:
             sign.hide()
+        self._room.fix(self, [((x, y, Z), width, HEIGHT) for _, x, y, width in self._boxes])
 
     def at(self, place: tuple[float, float]) -> str | None:
         """The name under a point in the plane of the signs (plate units); they lean towards the eye."""

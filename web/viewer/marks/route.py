@@ -7,6 +7,7 @@ import viser
 from numpy.typing import NDArray
 
 from web.viewer.primitives import meshes
+from web.viewer.primitives.label_room import ROUTE, LabelRoom
 from web.viewer.primitives.labels import Pill, add_mesh
 from web.viewer.primitives.palette import Palette
 
@@ -18,12 +19,13 @@ PILL_M = 0.42
 
 
 class Route:
-    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
+    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str, room: LabelRoom) -> None:
         self._palette = palette
         self._casing = add_mesh(scene, f"{name}/casing", meshes.NOTHING, palette.lit(palette.casing))
         self._ribbon = add_mesh(scene, f"{name}/ribbon", meshes.NOTHING, palette.lit(palette.route))
         self._pills = [
-            Pill(scene, f"{name}/pill_{k}", PILL_M, palette.route, palette, rim=palette.casing) for k in range(PILLS)
+            Pill(scene, f"{name}/pill_{k}", PILL_M, palette.route, palette, palette.casing, room, ROUTE)
+            for k in range(PILLS)
         ]
 
     def show(self, xy: NDArray[np.float64], arrival_s: NDArray[np.float32], goal: NDArray[np.float64]) -> None:

@@ -7,6 +7,7 @@ import viser
 from numpy.typing import NDArray
 
 from web.viewer.primitives import meshes
+from web.viewer.primitives.label_room import TAG, LabelRoom
 from web.viewer.primitives.labels import Pill, add_mesh
 from web.viewer.primitives.palette import Palette
 
@@ -17,8 +18,10 @@ PILL, BELOW, PILL_Z = 0.4, 0.5, 0.2
 class TagMarks:
     """More marks are made when there are more tags; those that are not needed are hidden."""
 
-    def __init__(self, scene: viser.SceneApi, palette: Palette, name: str, pill_z: float = PILL_Z) -> None:
-        self._pill_z = pill_z
+    def __init__(
+        self, scene: viser.SceneApi, palette: Palette, name: str, room: LabelRoom, pill_z: float = PILL_Z
+    ) -> None:
+        self._pill_z, self._room = pill_z, room
         self._scene, self._palette, self._name = scene, palette, name
         self._rings: list[viser.FrameHandle] = []
         self._pills: list[Pill] = []
@@ -44,4 +47,5 @@ class TagMarks:
         name, palette = f"{self._name}_{k}", self._palette
         self._rings.append(self._scene.add_frame(name, show_axes=False, visible=False))
         add_mesh(self._scene, f"{name}/ring", meshes.ring(RING, RING_WIDTH, RING_Z), palette.lit(palette.text))
-        self._pills.append(Pill(self._scene, f"{name}_pill", PILL, palette.text, palette))
+        pill = Pill(self._scene, f"{name}_pill", PILL, palette.text, palette, room=self._room, rank=TAG)
+        self._pills.append(pill)

@@ -30,8 +30,8 @@ class LessonMarks:
     ) -> None:
         self._office, self._map, self._cells = office, map_plate, cells
         self._among_cells = CellMarks(scene, palette, f"{cells.root}/lesson")
-        self._on_office = TagMarks(scene, palette, f"{office.root}/lesson", ABOVE_WALLS)
-        self._on_map = TagMarks(scene, palette, f"{map_plate.root}/lesson")
+        self._on_office = TagMarks(scene, palette, f"{office.root}/lesson", office.labels, ABOVE_WALLS)
+        self._on_map = TagMarks(scene, palette, f"{map_plate.root}/lesson", map_plate.labels)
 
     def show(self, lesson: LessonView | None) -> None:
         self._show(self._on_office, "office", lesson)

@@ -76,11 +76,11 @@ class MapPlate(Plate):
         self._other = scene.add_frame(f"{self.root}/other", show_axes=False, visible=False)
         add_mesh(scene, f"{self.root}/other/body", _arrow(1.1, 0.0), palette.lit(palette.casing))
         add_mesh(scene, f"{self.root}/other/ring", meshes.ring(0.42, 0.06, 0.02), palette.lit(palette.robot))
-        self._route = Route(scene, palette, f"{self.root}/route")
-        self._flag = GoalFlag(scene, palette, f"{self.root}/flag")
-        self._tags = TagMarks(scene, palette, f"{self.root}/tags")
-        self.names = PlaceNames(scene, palette, f"{self.root}/name")
-        self.closures = ClosureMarks(scene, palette, f"{self.root}/closure")
+        self._route = Route(scene, palette, f"{self.root}/route", self.labels)
+        self._flag = GoalFlag(scene, palette, f"{self.root}/flag", self.labels)
+        self._tags = TagMarks(scene, palette, f"{self.root}/tags", self.labels)
+        self.names = PlaceNames(scene, palette, f"{self.root}/name", self.labels)
+        self.closures = ClosureMarks(scene, palette, f"{self.root}/closure", self.labels)
         self._clicked = scene.add_frame(f"{self.root}/clicked", show_axes=False, visible=False)
         for k, radius in enumerate((0.16, 0.34)):
             add_mesh(scene, f"{self.root}/clicked/ring_{k}", meshes.ring(radius, 0.06, 0.09), palette.lit(palette.goal))
@@ -92,7 +92,7 @@ class MapPlate(Plate):
             position=(BAR_X, self.front + 1.08, TEXT_Z),
         )
         self._bar_ends = [Sign(scene, f"{self.root}/bar_{k}", 0.34, anchor=a) for k, a in enumerate(("left", "right"))]
-        self.mark = MapMark(scene, palette, self.root)
+        self.mark = MapMark(scene, palette, self.root, self.labels)
         self._empty = Sign(scene, f"{self.root}/empty", 0.42, anchor="centre")
         self._draw_grid()
         self.set_heading("Experience map", "what it built")

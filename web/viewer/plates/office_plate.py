@@ -74,8 +74,8 @@ class OfficePlate(Plate):
             point_shading="flat",
         )
         self._trail = Trail(scene, palette, f"{self.root}/trail", palette.true_path, 0.05)
-        self.names = PlaceNames(scene, palette, f"{self.root}/name")
-        self.ghost = GhostRobot(scene, palette, f"{self.root}/ghost", (WIDTH / 2, DEPTH / 2))
+        self.names = PlaceNames(scene, palette, f"{self.root}/name", self.labels)
+        self.ghost = GhostRobot(scene, palette, f"{self.root}/ghost", (WIDTH / 2, DEPTH / 2), self.labels)
         self._room_for = scene.add_line_segments(
             f"{self.root}/room",
             meshes.closed_line(meshes.rounded_rectangle(2, 2, 1), 0.0),

@@ -11,13 +11,12 @@ from typing import Any
 import viser
 
 from web.viewer.primitives import images, meshes
+from web.viewer.primitives.label_room import LEAN_RAD, LabelRoom, Place
 from web.viewer.primitives.palette import Palette, Rgb
 
 FLAT = (1.0, 0.0, 0.0, 0.0)
-LEAN_RAD = math.radians(90 - 50)  # faces a camera 50 degrees above the horizon
 LEANING = (math.cos(LEAN_RAD / 2), math.sin(LEAN_RAD / 2), 0.0, 0.0)
 LEANING_NORMAL = (0.0, -math.sin(LEAN_RAD), math.cos(LEAN_RAD))
-Place = tuple[float, float, float]
 
 
 def add_mesh(scene: viser.SceneApi, name: str, mesh: meshes.Mesh, colour: Rgb, **options: Any) -> viser.MeshHandle:
@@ -60,12 +59,14 @@ class Sign:
 
 
 class Pill:
-    """Words on a rounded bar that leans towards the eye, centred at a place."""
+    """Words on a rounded bar that leans towards the eye, centred at a place; in a room, where it covers nothing."""
 
     def __init__(
-        self, scene: viser.SceneApi, name: str, height: float, fill: Rgb, palette: Palette, rim: Rgb | None = None
-    ) -> None:
-        self._height = height
+        self, scene: viser.SceneApi, name: str, height: float, fill: Rgb, palette: Palette, rim: Rgb | None = None,
+        room: LabelRoom | None = None, rank: int = 0,
+    ) -> None:  # fmt: skip
+        """rank: which label of the room gives way to which."""
+        self._height, self._room, self._rank = height, room, rank
         self._words: str = ""
         self.width = 0.0
         self.frame = scene.add_frame(name, show_axes=False, visible=False, wxyz=LEANING)
@@ -84,11 +85,19 @@ class Pill:
             self._bar.vertices, self._bar.faces = _bar(self.width, self._height, 0.0)
             if self._rim is not None:
                 self._rim.vertices, self._rim.faces = _bar(self.width + 0.09, self._height + 0.09, -0.012)
-        self.frame.position = at
+        if self._room is None:
+            self._move(at)
+        else:
+            self._room.put(self, self._rank, at, (self.width, self._height), self._move)
         self.frame.visible = True
 
     def hide(self) -> None:
         self.frame.visible = False
+        if self._room is not None:
+            self._room.leave(self)
+
+    def _move(self, at: Place) -> None:
+        self.frame.position = at
 
 
 def pill_width(words: str, height: float) -> float:

@@ -1,0 +1,110 @@
+"""Labels over a plate: none covers another, each is as near to where it belongs as that allows, and what is fixed stays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.fake_snapshots import fake_snapshot
+from tests.unit.web.bench import Bench
+from web.messages import Closure, Ghost, KnownPlace, Pose, Snapshot, TaggedPlace
+from web.viewer.camera_views import View, camera_for, seen_by
+from web.viewer.marks.place_names import HEIGHT, Z
+from web.viewer.primitives.label_room import ERROR, GAP, GHOST, NEAR, LabelRoom, clear_place
+
+ROOM = np.array([(-5.0, -4.0), (5.0, 4.0)])
+coordinates = st.floats(-6, 6)
+bars = st.lists(st.tuples(coordinates, coordinates, st.floats(0.2, 3), st.floats(0.2, 1)), max_size=12)
+
+
+def covered(at: np.ndarray, size: np.ndarray, taken: np.ndarray, gap: float) -> bool:
+    apart = np.abs(taken[:, :2] - at) - (taken[:, 2:] + size) / 2
+    return bool((apart < gap - 1e-6).all(1).any())
+
+
+@settings(max_examples=200)
+@given(bars, coordinates, coordinates, st.integers(0, 2**32 - 1))
+def test_the_place_is_the_nearest_that_is_free(made: list[tuple[float, ...]], x: float, y: float, seed: int) -> None:
+    taken, at, size = np.array(made).reshape(-1, 4), np.array((x, y)), np.array((1.6, 0.4))
+    place = clear_place(at, size, taken, ROOM, GAP)
+    low, high = ROOM[0] + size / 2, ROOM[1] - size / 2
+    assert (place >= low - 1e-9).all()
+    assert (place <= high + 1e-9).all()
+    others = np.random.default_rng(seed).uniform(low, high, (300, 2))
+    free = [other for other in others if not covered(other, size, taken, GAP)]
+    if covered(place, size, taken, GAP):
+        assert not free
+    elif len(made) <= NEAR:
+        best = np.clip(at, low, high)
+        assert all(np.hypot(*(other - best)) >= np.hypot(*(place - best)) - 1e-6 for other in free)
+
+
+def test_who_comes_later_gives_way_and_returns_when_there_is_room_again() -> None:
+    room = LabelRoom((5.0, 4.5))
+    places: dict[str, tuple[float, float, float]] = {}
+
+    def put(name: str, rank: int) -> None:
+        room.put(name, rank, (0.0, 0.0, 0.5), (2.0, 0.4), lambda at: places.update({name: at}))
+
+    put("ghost", GHOST)
+    assert places["ghost"] == pytest.approx((0.0, 0.0, 0.5))
+    put("error", ERROR)
+    assert abs(places["error"][1]) > 0.4
+    room.fix("names", [((0.1, 0.0, 0.5), 2.0, 0.4)])
+    assert abs(places["ghost"][1]) > 0.4
+    room.leave("ghost")
+    room.fix("names", [])
+    assert places["error"] == pytest.approx((0.0, 0.0, 0.5))
+
+
+# ---------------------------------------------------------------- on the stage
+
+
+@pytest.fixture(scope="module")
+def bench() -> Iterator[Bench]:
+    made = Bench()
+    yield made
+    made.viewer.stop()
+
+
+def crowded() -> Snapshot:
+    """Library, tag, closure and the wheels' ghost in one place of the map, a robot's width from where it is seen to be wrong."""
+    plain = fake_snapshot(430, goal=False)
+    row = len(plain.map.xy) // 2
+    x, y = (float(v) for v in plain.map.xy[row])
+    empty = np.zeros((0, 2), np.int32)
+    closure = Closure(7, plain.time_s - 1, 0, row, empty, plain.map.xy, plain.map.xy, 1.3)
+    frame = Pose(1.0, 0.5, 0.1)
+    start = Pose(0.0, 0.0, 0.0)
+    return replace(
+        plain, map_in_office=frame, closures=(closure,), estimate=Pose(x - 0.6, y, 0.0), tags=(TaggedPlace("tea", row, x, y),),
+        places=(KnownPlace("library", 2.0, 6.0, (x, y - 0.6)),),
+        ghost=Ghost(Pose(x, y, 0.0), np.zeros((0, 2), np.float32), start, start),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("view", ["all", "map"])
+def test_on_the_map_no_label_covers_another(bench: Bench, view: View) -> None:
+    bench.show(crowded(), 10.0)
+    bench.settle()
+    plate = bench.viewer._scenery.map
+    labels = {
+        "ghost": bench.viewer._layers._judged.ghost._label,
+        "closure": plate.closures._label,
+        "tag": plate._tags._pills[0],
+        "error": bench.viewer._layers._judged.doubt._label,
+    }
+    ((_, x, y, wide),) = plate.names._boxes
+    boxes = [(np.array((x, y, Z)), wide, HEIGHT)]
+    for name, label in labels.items():
+        assert label.frame.visible, name
+        boxes.append((np.array(label.frame.position), label.width, label._height))
+    middles, larger = seen_by(camera_for(view, 1.4), np.array([at for at, _, _ in boxes]) + plate.origin)
+    seen = np.column_stack([middles, np.array([size for _, *size in boxes]) * larger[:, None]])
+    for k, bar in enumerate(seen):
+        assert not covered(bar[:2], bar[2:], seen[k + 1 :], -0.01)
