@@ -98,7 +98,7 @@ def create_app(
     add_exports(app, exports, latest, submit)
     sent = add_recordings(app, opener, submit)
     add_situations(app, situations, cameras, submit)
-    add_pictures(app, latest)
+    add_pictures(app, latest, viewers.switches)
     _add_stream(app, stream)
     _add_viser(app, ViserProxy(viewers, cameras, themes))
     add_stage_picture(app, latest)

@@ -192,6 +192,8 @@ type IndexIds = {
   "keep-file": HTMLElementTagNameMap["button"];
   "keep-film": HTMLElementTagNameMap["button"];
   "keep-link": HTMLElementTagNameMap["button"];
+  "keep-map-2": HTMLElementTagNameMap["p"];
+  "keep-pose-2": HTMLElementTagNameMap["p"];
   "keep-python": HTMLElementTagNameMap["button"];
   "keep-stage": HTMLElementTagNameMap["button"];
   "kept": HTMLElementTagNameMap["section"];

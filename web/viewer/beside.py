@@ -17,13 +17,8 @@ from web.viewer.plates import map_plate, office_plate, pose_cell_plate
 from web.viewer.plates.map_plate import NODE_Z, MapPlate
 from web.viewer.plates.plate import point_on_plane
 from web.viewer.plates.pose_cell_plate import PoseCellPlate
-from web.viewer.primitives.palette import Palette, Rgb
+from web.viewer.primitives.palette import BRAINS, Palette
 from web.viewer.scenery import Scenery
-
-BRAINS: dict[bool, tuple[Rgb, Rgb]] = {  # of the first and of the second, in the dark theme and in the light one
-    True: ((94, 226, 160), (190, 160, 255)),
-    False: ((0, 112, 74), (104, 66, 196)),
-}
 
 
 class Beside:

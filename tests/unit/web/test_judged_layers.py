@@ -12,12 +12,11 @@ from hypothesis import strategies as st
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
-from web.messages import Ghost, Pose, Snapshot, Spread
+from tests.unit.web.crowded import FRAME, judged
+from web.messages import Pose
 from web.viewer.fits.map_fit import DEPTH, WIDTH
 from web.viewer.fits.poses import compose, into_map, placed
 from web.viewer.marks.outline import clipped
-
-FRAME = Pose(1.0, 0.5, 0.1)
 
 
 @pytest.fixture
@@ -27,15 +26,6 @@ def bench(shared: Bench) -> Bench:
     shared.show(judged(), 10.0)
     shared.settle()
     return shared
-
-
-def judged(**more: object) -> Snapshot:
-    """A snapshot in which people know what the robot does not."""
-    plain = fake_snapshot(430)
-    path = np.column_stack([np.linspace(0, 3, 60), np.zeros(60)]).astype(np.float32)
-    ghost = Ghost(Pose(3.0, 0.0, 0.0), path, Pose(2.0, 3.0, 0.0), Pose(0.0, 0.0, 0.0))
-    spread = Spread(0.5, 0.25, 0.3, "packet")
-    return replace(plain, map_in_office=FRAME, ghost=ghost, spread=spread, **more)
 
 
 def test_the_walls_lie_where_the_fit_puts_them(bench: Bench) -> None:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
-from web.messages import Closure, Ghost, KnownPlace, Pose, Snapshot, TaggedPlace
+from tests.unit.web.crowded import crowded
 from web.viewer.camera_views import View, camera_for, seen_by
 from web.viewer.marks.place_names import HEIGHT, Z
 from web.viewer.primitives.label_room import ERROR, GAP, GHOST, NEAR, LabelRoom, clear_place
@@ -70,22 +68,6 @@ def bench() -> Iterator[Bench]:
     made = Bench()
     yield made
     made.viewer.stop()
-
-
-def crowded() -> Snapshot:
-    """Library, tag, closure and the wheels' ghost in one place of the map, a robot's width from where it is seen to be wrong."""
-    plain = fake_snapshot(430, goal=False)
-    row = len(plain.map.xy) // 2
-    x, y = (float(v) for v in plain.map.xy[row])
-    empty = np.zeros((0, 2), np.int32)
-    closure = Closure(7, plain.time_s - 1, 0, row, empty, plain.map.xy, plain.map.xy, 1.3)
-    frame = Pose(1.0, 0.5, 0.1)
-    start = Pose(0.0, 0.0, 0.0)
-    return replace(
-        plain, map_in_office=frame, closures=(closure,), estimate=Pose(x - 0.6, y, 0.0), tags=(TaggedPlace("tea", row, x, y),),
-        places=(KnownPlace("library", 2.0, 6.0, (x, y - 0.6)),),
-        ghost=Ghost(Pose(x, y, 0.0), np.zeros((0, 2), np.float32), start, start),
-    )  # fmt: skip
 
 
 @pytest.mark.parametrize("view", ["all", "map"])

@@ -1,4 +1,4 @@
-"""The plates as SVG: whole documents, drawn from the data, in the theme's colours; and the route that gives them."""
+"""Plates as SVG: whole documents, drawn from the data, in the theme's colours, under the stage's switches; and the route."""
 
 from __future__ import annotations
 
@@ -11,20 +11,22 @@ import pytest
 from starlette.testclient import TestClient
 
 from tests.fake_snapshots import fake_snapshot
+from tests.unit.web.crowded import judged
 from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers
 from web.http.api import create_app
 from web.latest import Latest
 from web.messages import Snapshot, TaggedPlace
+from web.switches import NAMES
 from web.themes import THEMES
 from web.viewer.primitives.palette import palette_of
-from web.viewer.vector import PLATES, PlateName, vector_picture
+from web.viewer.vector import PlateName, vector_picture
 
 SVG = "{http://www.w3.org/2000/svg}"
 SNAPSHOT = fake_snapshot(900)
 
 
-def drawn(plate: PlateName, snapshot: Snapshot = SNAPSHOT, theme="dark") -> ElementTree.Element:
-    return ElementTree.fromstring(vector_picture(plate, snapshot, theme))
+def drawn(plate: PlateName, snapshot: Snapshot = SNAPSHOT, theme="dark", on=NAMES) -> ElementTree.Element:
+    return ElementTree.fromstring(vector_picture(plate, snapshot, theme, on))
 
 
 def words(picture: ElementTree.Element) -> list[str]:
@@ -32,7 +34,7 @@ def words(picture: ElementTree.Element) -> list[str]:
 
 
 @pytest.mark.parametrize("theme", THEMES)
-@pytest.mark.parametrize("plate", PLATES)
+@pytest.mark.parametrize("plate", ["office", "pose", "map"])
 def test_each_plate_in_each_theme(plate: PlateName, theme) -> None:
     picture = drawn(plate, theme=theme)
     paper = "#" + "".join(f"{part:02x}" for part in palette_of(theme).sheet)
@@ -79,18 +81,22 @@ def test_an_empty_map_and_no_office() -> None:
     empty = replace(SNAPSHOT, map=layer, times=replace(SNAPSHOT.times, seconds=nothing), goal=None)
     assert "0 experiences, 0 links" in words(drawn("map", empty))
     with pytest.raises(ValueError, match="no office to be drawn"):
-        vector_picture("office", replace(SNAPSHOT, world=None), "dark")
+        vector_picture("office", replace(SNAPSHOT, world=None), "dark", NAMES)
 
 
 def test_the_route() -> None:
-    latest = Latest[Snapshot]()
-    with TestClient(create_app(latest, StubEngine().submit, StubViewers(), PORT), base_url=ORIGIN) as client:
+    latest, viewers = Latest[Snapshot](), StubViewers()
+    with TestClient(create_app(latest, StubEngine().submit, viewers, PORT), base_url=ORIGIN) as client:
         assert client.get("/api/picture/map").status_code == 422  # before the first tick
         latest.put(SNAPSHOT)
         answer = client.get("/api/picture/map", params={"theme": "light"})
         assert answer.headers["content-type"].startswith("image/svg+xml")
-        assert answer.text == vector_picture("map", SNAPSHOT, "light")
+        assert answer.text == vector_picture("map", SNAPSHOT, "light", viewers.switches.on)
         assert client.get("/api/picture/moon").status_code == 422
         assert client.get("/api/picture/map", params={"theme": "pink"}).status_code == 422
+        assert "there is one brain only" in client.get("/api/picture/map_2").text
+        latest.put(judged())
+        viewers.switches.turn("ghost", False)
+        assert client.get("/api/picture/map").text == vector_picture("map", judged(), "dark", viewers.switches.on)
         elsewhere = {"Sec-Fetch-Site": "cross-site"}
         assert client.get("/api/picture/map", headers=elsewhere).status_code == 403

@@ -1,6 +1,6 @@
 // The menu beside the views: what can be kept of the moment that is shown, and shared. It also opens what others have shared.
 
-import { $ } from "../elements/dom.js";
+import { $, find } from "../elements/dom.js";
 import { Opening } from "./opening.js";
 import { Share } from "./share.js";
 import { StageFilm, naming } from "./stage_film.js";
@@ -38,6 +38,9 @@ export class Keeping {
   /** @param {State} state @param {PageFields} page */
   show(state, page) {
     naming(state);
+    const second = state.beside?.second.name;
+    offer("keep-pose-2", second && `Pose cells ${second}`);
+    offer("keep-map-2", second && `Experience map ${second}`);
     this.opening.show(page);
     this.film.at(state, page);
   }
@@ -56,13 +59,25 @@ export class Keeping {
   }
 }
 
+/**
+ * A plate of the second brain under its name; without one there is none.
+ * @param {"keep-pose-2" | "keep-map-2"} id @param {string | undefined} words
+ */
+function offer(id, words) {
+  const row = $(id);
+  row.hidden = !words;
+  if (!words || row.ariaLabel === words) return;
+  row.ariaLabel = find(row, "span").textContent = words;
+  for (const button of row.querySelectorAll("button")) button.ariaLabel = `${words} as ${button.textContent}`;
+}
+
 /** @param {string} plate @param {string} [kind] */
 async function savePlate(plate, kind) {
   const theme = document.documentElement.dataset.theme === "light" ? "light" : "dark";
   try {
     const answer = await fetch(`/api/picture/${plate}?theme=${theme}`);
     const save = kind === "png" ? savePng : saveSvg;
-    if (answer.ok) await save(await answer.text(), plate);
+    if (answer.ok) await save(await answer.text(), plate.replace("_", "-"));
     else toast(reasons(await answer.json()), { bad: true });
   } catch {
     toast("The connection is lost; the picture was not made.", { bad: true });

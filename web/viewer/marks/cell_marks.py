@@ -9,6 +9,7 @@ import viser
 
 from web.messages import LessonMark
 from web.viewer.fits.cell_fit import HEIGHT, SIDE, CellFit, broken_where_it_wraps
+from web.viewer.marks.tags import last_named
 from web.viewer.primitives import meshes
 from web.viewer.primitives.labels import Pill
 from web.viewer.primitives.palette import Palette
@@ -38,7 +39,7 @@ class CellMarks:
             return
         self._shown = now
         places = fit.path(np.array([(mark.x, mark.y, mark.heading_rad or 0.0) for mark in marks]).reshape(-1, 3))
-        kept = [k for k, at in enumerate(places) if not (np.linalg.norm(places[k + 1 :] - at, axis=1) < APART).any()]
+        kept = last_named(places, APART)
         for number, k in enumerate(kept):
             if number == len(self._pills):
                 self._pills.append(Pill(self._scene, f"{self._name}_{number}", PILL, self._palette.text, self._palette))

@@ -49,3 +49,8 @@ class TagMarks:
         add_mesh(self._scene, f"{name}/ring", meshes.ring(RING, RING_WIDTH, RING_Z), palette.lit(palette.text))
         pill = Pill(self._scene, f"{name}_pill", PILL, palette.text, palette, room=self._room, rank=TAG)
         self._pills.append(pill)
+
+
+def last_named(places: NDArray[np.float64], apart: float) -> list[int]:
+    """Those of (n, k) places that are named: of such as are nearer to one another than `apart` only the last."""
+    return [k for k, here in enumerate(places) if not (np.linalg.norm(places[k + 1 :] - here, axis=1) <= apart).any()]

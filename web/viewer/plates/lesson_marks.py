@@ -6,11 +6,12 @@ from typing import Literal
 
 import numpy as np
 import viser
+from numpy.typing import NDArray
 
 from web.messages import LessonView, Predict
 from web.viewer.fits.office_fit import DEPTH, WIDTH
 from web.viewer.marks.cell_marks import CellMarks
-from web.viewer.marks.tags import TagMarks
+from web.viewer.marks.tags import TagMarks, last_named
 from web.viewer.plates.map_plate import NODE_Z, MapPlate
 from web.viewer.plates.office_plate import OfficePlate
 from web.viewer.plates.plate import point_on_plane
@@ -18,8 +19,9 @@ from web.viewer.plates.pose_cell_plate import PoseCellPlate
 from web.viewer.primitives.palette import Palette
 
 Place3 = tuple[float, float, float]
+Points = NDArray[np.float64]
 ABOVE_WALLS = 0.8  # on the plate
-APART = 0.5  # on the plate; of marks that are nearer to one another only the last is named
+APART = 0.5  # on the plate
 
 
 class LessonMarks:
@@ -40,16 +42,10 @@ class LessonMarks:
         self._among_cells.show([mark for mark in marks if mark.plate == "cells"], self._cells.fit)
 
     def _show(self, marks: TagMarks, plate: Literal["office", "map"], lesson: LessonView | None) -> None:
-        pins = [] if lesson is None else _pins(lesson, plate)
-        places = np.array([(x, y) for _, x, y in pins]).reshape(-1, 2)
-        fit = self._office.fit if plate == "office" else self._map.fit
-        on_plate = fit.to_plate(places)
-        kept = [
-            k
-            for k, here in enumerate(on_plate)
-            if not len(later := on_plate[k + 1 :]) or float(np.hypot(*(later - here).T).min()) > APART
-        ]
-        marks.show([pins[k][0] for k in kept], on_plate[kept])
+        words, places = ([], np.zeros((0, 2))) if lesson is None else pins(lesson, plate)
+        on_plate = (self._office.fit if plate == "office" else self._map.fit).to_plate(places)
+        kept = last_named(on_plate, APART)
+        marks.show([words[k] for k in kept], on_plate[kept])
 
     def predicted(self, lesson: LessonView | None, origin: Place3, direction: Place3) -> Predict | None:
         """The prediction that a click on the plates is, while the lesson asks for a place there; None: it is not one."""
@@ -70,14 +66,13 @@ class LessonMarks:
         return Predict(type="predict", x=x, y=y)
 
 
-def _pins(lesson: LessonView, plate: str) -> list[tuple[str, float, float]]:
-    """Words and place of each, in their order: m, in the frame of the plate."""
-    pins = [(mark.words, mark.x, mark.y) for mark in lesson.marks if mark.plate == plate]
+def pins(lesson: LessonView, plate: Literal["office", "map"]) -> tuple[list[str], Points]:
+    """The words of each mark, in their order, and (n, 2) where they are: m, in the frame of the plate."""
+    found = [(mark.words, mark.x, mark.y) for mark in lesson.marks if mark.plate == plate]
     said, was = lesson.prediction, lesson.outcome
-    if lesson.draws != plate:
-        return pins
-    if was is not None and was.x is not None and was.y is not None:
-        pins.append(("the answer", was.x, was.y))
-    if said is not None and said.x is not None and said.y is not None:
-        pins.append(("predicted", said.x, said.y))
-    return pins
+    if lesson.draws == plate:
+        if was is not None and was.x is not None and was.y is not None:
+            found.append(("the answer", was.x, was.y))
+        if said is not None and said.x is not None and said.y is not None:
+            found.append(("predicted", said.x, said.y))
+    return [words for words, _, _ in found], np.array([(x, y) for _, x, y in found]).reshape(-1, 2)

@@ -228,6 +228,11 @@ LIGHT = Palette(
     shadow=0.22,
 )
 
+BRAINS: dict[bool, tuple[Rgb, Rgb]] = {  # of the first and of the second, in the dark theme and in the light one
+    True: ((94, 226, 160), (190, 160, 255)),
+    False: ((0, 112, 74), (104, 66, 196)),
+}
+
 _RAMPS = {palette.dark: _ramp(*palette.viridis) for palette in (DARK, LIGHT)}
 
 

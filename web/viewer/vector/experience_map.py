@@ -1,63 +1,107 @@
-"""The experience map as a vector picture: experiences in the colours of their times, links, route, goal and robot."""
+"""The experience map as a vector picture: experiences in the colours of their times, links, route, goal, robot, and all that
+people alone know of it."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from web.messages import Snapshot
+from web.viewer.fits.judged import wheels_alone, wheels_path
+from web.viewer.fits.map_fit import MapFit
+from web.viewer.fits.poses import on_plate
 from web.viewer.plates.map_plate import round_up, seconds_words
 from web.viewer.primitives.palette import Palette
-from web.viewer.vector.sheet import Sheet
-from web.viewer.vector.words import moment_words
+from web.viewer.vector import judged
+from web.viewer.vector.lesson import draw_pin, draw_pins
+from web.viewer.vector.sheet import Entry, Sheet
+from web.viewer.vector.subject import Subject
 
 ROOM_M = 0.6  # around the map
 LEAST_M = 3.0
 SHADES = 24  # of the scale
+ROBOT = 16.0  # pixels
 
 
-def draw_map(snapshot: Snapshot, palette: Palette) -> str:
+def draw_map(subject: Subject) -> str:
     """Turned as on the plate, so that it lies as the office does."""
-    layer, times, robot = snapshot.map, snapshot.times, snapshot.estimate
-    turn = snapshot.map_turn_rad
-    places = _turned(layer.xy, turn)
-    here = _turned([(robot.x, robot.y)], turn)[0]
-    seen = np.vstack([places, here])
+    snapshot, palette = subject.snapshot, subject.palette
+    layer, times = snapshot.map, snapshot.times
+    fit = MapFit(1.0, snapshot.map_turn_rad)
+    places, robot = fit.to_plate(layer.xy), on_plate(snapshot.estimate, fit)
+    seen = np.vstack([fit.to_plate(layer.extent_xy), (robot.x, robot.y)])
     middle, half = (seen.min(0) + seen.max(0)) / 2, np.maximum((seen.max(0) - seen.min(0)) / 2 + ROOM_M, LEAST_M / 2)
     low, high = middle - half, middle + half
-    told = "time to the goal" if times.to_goal else "time from the robot"
-    sheet = Sheet(palette, "Experience map", f"what it built - colour: {told}", (*low.tolist(), *high.tolist()))
+    told = "what it built - colour: " + ("time to the goal" if times.to_goal else "time from the robot")
+    if len(layer.cells_xy):
+        told = "none, as in 2004: the packet's place"
+    sheet = subject.sheet("Experience map", told, (*low.tolist(), *high.tolist()))
     _draw_grid(sheet, low, high, palette)
+    legend = judged.draw_walls(sheet, subject, fit)
+    ghost, truth = subject.judged.ghost, snapshot.truth
+    if ghost is not None:
+        judged.draw_path(sheet, palette, fit.to_plate(wheels_path(ghost)[1]))
     sheet.lines(places[layer.links].reshape(-1, 2, 2), palette.link, 1.6)
     seconds = times.seconds[: len(places)]
     longest = round_up(float(seconds[np.isfinite(seconds)].max(initial=1.0)))
     for place, colour in zip(places.tolist(), palette.times(seconds, longest).tolist(), strict=False):
         sheet.dot(place, 5, tuple(colour))
-    _draw_goal(sheet, snapshot, palette)
-    for tag in snapshot.tags:
-        sheet.label(_turned([(tag.x, tag.y)], turn)[0].tolist(), tag.name, palette.text, up=16)
-    sheet.arrow(float(here[0]), float(here[1]), robot.heading_rad + turn, palette.robot, 16)
+    sheet.avoid((robot.x, robot.y), ROBOT)
+    _draw_goal(sheet, subject, fit)
+    legend += judged.draw_spread(sheet, subject, fit)
+    _draw_names(sheet, subject, fit)
+    legend += judged.draw_closures(sheet, subject, places)
+    if ghost is not None and truth is not None:
+        _, there, off_m = wheels_alone(ghost, truth)
+        judged.draw_ghost(sheet, palette, on_plate(there, fit), off_m, ROBOT)
+    legend += judged.ghost_entry(ghost, palette)
+    legend += judged.draw_error(sheet, subject, fit)
+    legend += _draw_other(sheet, subject, fit)
+    sheet.arrow(robot.x, robot.y, robot.heading_rad, palette.robot, ROBOT)
     sheet.scale_bar(palette.ramp[:: max(1, len(palette.ramp) // SHADES)], "0 s", seconds_words(longest))
-    right = f"{len(places)} experiences, {len(layer.links)} links"
-    sheet.foot(moment_words(snapshot), right)
+    sheet.foot(subject.moment, f"{len(places)} experiences, {len(layer.links)} links")
+    sheet.legend(legend)
     return sheet.svg()
 
 
-def _draw_goal(sheet: Sheet, snapshot: Snapshot, palette: Palette) -> None:
-    goal, turn = snapshot.goal, snapshot.map_turn_rad
+def _draw_goal(sheet: Sheet, subject: Subject, fit: MapFit) -> None:
+    goal, palette = subject.snapshot.goal, subject.palette
     if goal is None:
         return
-    route = _turned(goal.route_xy, turn)
+    route = fit.to_plate(goal.route_xy)
     sheet.line(route, palette.casing, 7)
     sheet.line(route, palette.route, 3.5)
-    at = _turned([(goal.x, goal.y)], turn)[0].tolist()
-    for place in _turned(goal.places_xy, turn).tolist():
+    at = fit.to_plate(np.array([[goal.x, goal.y]]))[0].tolist()
+    for place in fit.to_plate(goal.places_xy).tolist():
         sheet.dot(place, 9, None, palette.goal)
     sheet.dot(at, 9, palette.goal, palette.casing)
+    sheet.avoid(at, 10)
     arrives = goal.eta_s is not None and math.isfinite(goal.eta_s)
-    sheet.label(at, seconds_words(goal.eta_s or 0.0) if arrives else goal.state, palette.goal, up=22)
+    words = seconds_words(goal.eta_s or 0.0) if arrives else goal.state
+    sheet.label(at, words, palette.on_goal, up=26, fill=palette.goal)
+
+
+def _draw_names(sheet: Sheet, subject: Subject, fit: MapFit) -> None:
+    """Places of the office that the map knows, tagged places, and what a lesson marks."""
+    snapshot = subject.snapshot
+    for place in snapshot.places:
+        if place.map_xy is not None:
+            sheet.label(fit.to_plate(np.array([place.map_xy]))[0].tolist(), place.name, subject.palette.text)
+    for tag in snapshot.tags:
+        draw_pin(sheet, subject, fit.to_plate(np.array([[tag.x, tag.y]]))[0].tolist(), tag.name)
+    draw_pins(sheet, subject, "map", fit)
+
+
+def _draw_other(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
+    """A pale arrow in a ring."""
+    if subject.other is None:
+        return []
+    other = on_plate(subject.other, fit)
+    sheet.arrow(other.x, other.y, other.heading_rad, subject.palette.casing, 0.9 * ROBOT)
+    sheet.dot((other.x, other.y), 1.5 * ROBOT, None, subject.palette.robot)
+    sheet.avoid((other.x, other.y), 1.5 * ROBOT)
+    return [("ring", subject.palette.robot, "where it would be by looks that it does not believe yet")]
 
 
 def _draw_grid(sheet: Sheet, low: NDArray[np.float64], high: NDArray[np.float64], palette: Palette) -> None:
@@ -67,8 +111,3 @@ def _draw_grid(sheet: Sheet, low: NDArray[np.float64], high: NDArray[np.float64]
         sheet.lines([[(k * step, low[1]), (k * step, high[1])]], palette.grid, 1.2)
     for k in range(math.ceil(low[1] / step), math.floor(high[1] / step) + 1):
         sheet.lines([[(low[0], k * step), (high[0], k * step)]], palette.grid, 1.2)
-
-
-def _turned(points: ArrayLike, turn_rad: float) -> NDArray[np.float64]:
-    c, s = math.cos(turn_rad), math.sin(turn_rad)
-    return np.asarray(points, np.float64).reshape(-1, 2) @ np.array([(c, s), (-s, c)])

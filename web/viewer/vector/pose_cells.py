@@ -7,39 +7,45 @@ import math
 import numpy as np
 
 from web.cell_owners import owners
-from web.messages import PoseCellLayer, Snap, Snapshot
-from web.viewer.primitives.palette import Palette, mix
-from web.viewer.vector.sheet import Sheet
-from web.viewer.vector.words import moment_words
+from web.messages import PoseCellLayer, Snap
+from web.viewer.primitives.palette import Palette
+from web.viewer.vector.lesson import draw_cell_marks
+from web.viewer.vector.sheet import Entry, Sheet
+from web.viewer.vector.subject import Subject
 
 LEAST_SHARE = 0.005  # a packet with less would show as 0 %
 FAINTEST = 0.08
 GRID = 16  # lines each way
 
 
-def draw_pose_cells(snapshot: Snapshot, palette: Palette) -> str:
-    layer = snapshot.pose_cells
+def draw_pose_cells(subject: Subject) -> str:
+    layer, palette = subject.snapshot.pose_cells, subject.palette
     n_theta, n_y, n_x = layer.shape
     words = f"where the network believes the robot is: {n_x} x {n_y} places, {n_theta} headings, seen from above"
-    sheet = Sheet(palette, "Pose cells", words, (-0.5, -0.5, n_x - 0.5, n_y - 0.5))
+    sheet = subject.sheet("Pose cells", words, (-0.5, -0.5, n_x - 0.5, n_y - 0.5))
     for k in range(1, GRID):
         x, y = n_x * k / GRID - 0.5, n_y * k / GRID - 0.5
         sheet.lines([[(x, -0.5), (x, n_y - 0.5)], [(-0.5, y), (n_x - 0.5, y)]], palette.grid, 1.0)
     _draw_activity(sheet, layer, palette)
     _draw_path(sheet, layer, palette)
-    if layer.last_snap is not None:
-        _draw_snap(sheet, layer.last_snap, palette)
-    for k, packet in enumerate(layer.packets[:4]):
+    legend: list[Entry] = [("line", palette.packet_path, "where the strongest packet was in the last two minutes")]
+    for packet in layer.packets[:4]:
         if packet.mass >= LEAST_SHARE:
-            colour = palette.packets[k]
+            sheet.avoid((packet.x, packet.y), 13)
             sheet.dot((packet.x, packet.y), 13, None, palette.text)
             reach = 26 / sheet.scale
             tip = packet.x + reach * math.cos(packet.heading_rad), packet.y + reach * math.sin(packet.heading_rad)
             sheet.line([(packet.x, packet.y), tip], palette.text, 3)
-            sheet.label(
-                (packet.x, packet.y), f"{packet.id}: {packet.mass:.0%}", mix(colour, palette.text, 0.4), size=18, up=40
-            )
-    sheet.foot(moment_words(snapshot), f"{layer.active_cells} cells are active; a cell is {layer.cell_m:g} m wide")
+    if layer.last_snap is not None:
+        _draw_snap(sheet, layer.last_snap, palette)
+        legend.append(("dashes", palette.goal, "from S to F: the last snap"))
+    for k, packet in enumerate(layer.packets[:4]):
+        if packet.mass >= LEAST_SHARE:
+            words = f"{packet.id}: {packet.mass:.0%}"
+            sheet.label((packet.x, packet.y), words, palette.on_packet, size=18, up=40, fill=palette.packets[k])
+    draw_cell_marks(sheet, subject)
+    sheet.foot(subject.moment, f"{layer.active_cells} cells are active; a cell is {layer.cell_m:g} m wide")
+    sheet.legend(legend)
     return sheet.svg()
 
 
@@ -74,4 +80,5 @@ def _draw_snap(sheet: Sheet, snap: Snap, palette: Palette) -> None:
     sheet.line([start, end], palette.goal, 2.5, dash="7 6")
     for place, letter in ((start, "S"), (end, "F")):
         sheet.dot(place, 10, palette.goal)
-        sheet.label(place, letter, palette.goal, up=-22)
+        sheet.avoid(place, 10)
+        sheet.label(place, letter, palette.on_goal, up=-26, fill=palette.goal)

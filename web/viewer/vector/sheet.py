@@ -3,34 +3,57 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from web.viewer.marks.outline import clipped
 from web.viewer.primitives.palette import Palette, Rgb
+from web.viewer.vector.labels import Label, laid_out, line_to, plain, width_of
 
 WIDTH, TOP, EDGE, FOOT = 1000.0, 78.0, 24.0, 54.0  # pixels
 TALLEST = 1400.0  # of the field
+HEADING = WIDTH - 2 * EDGE - 230  # beside it may be a scale
+Mark = Literal["line", "dashes", "ring", "oval", "area"]
+Entry = tuple[Mark, Rgb, str]  # of a legend
 _FONT = 'font-family="DejaVu Sans, Segoe UI, Roboto, Helvetica, Arial, sans-serif"'
 
 
 class Sheet:
-    """What is drawn later lies on top. Points are (n, 2) in the frame whose box is given; y goes up."""
+    """What is drawn later lies on top, labels over all else. Points are (n, 2) in the frame whose box is given; y goes up."""
 
-    def __init__(self, palette: Palette, title: str, words: str, box: tuple[float, float, float, float]) -> None:
-        """box: least x, least y, greatest x, greatest y of what is to be seen."""
-        self.palette = palette
+    def __init__(
+        self, palette: Palette, title: str, words: str, box: tuple[float, float, float, float], ink: Rgb | None = None
+    ) -> None:
+        """box: least x, least y, greatest x, greatest y of what is to be seen. ink: of the title."""
+        self.palette, self.box = palette, box
         x1, y1, x2, y2 = box
         self.scale = min((WIDTH - 2 * EDGE) / max(x2 - x1, 1e-6), TALLEST / max(y2 - y1, 1e-6))  # pixels a unit
         self._left = (WIDTH - (x2 - x1) * self.scale) / 2 - x1 * self.scale
         self._bottom = TOP + y2 * self.scale
         self.height = TOP + (y2 - y1) * self.scale + FOOT
-        self._parts: list[str] = []
-        self._clip = (x1, y1, x2, y2)
+        self._parts: list[str] = []  # in the field
+        self._around: list[str] = []
+        self._labels: list[Label] = []
+        self._avoided: list[tuple[float, float, float]] = []
         self.polygon([(x1, y1), (x2, y1), (x2, y2), (x1, y2)], palette.floor, stroke=palette.rim)
-        self._words(EDGE, 40, title, 28, palette.text, bold=True)
-        self._words(EDGE, 64, words, 16, palette.text_2)
+        self._words(EDGE, 40, title, _fitting(title, 28, HEADING, bold=True), ink or palette.text, bold=True)
+        self._words(EDGE, 64, words, _fitting(words, 16, HEADING), palette.text_2)
+
+    def inside(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """(n,) which of the points are in the field."""
+        x1, y1, x2, y2 = self.box
+        xy = np.asarray(points, np.float64).reshape(-1, 2)
+        return np.all((xy >= (x1, y1)) & (xy <= (x2, y2)), axis=1)
+
+    def within(self, segments: ArrayLike) -> NDArray[np.float64]:
+        """(m, 2, 2) what of (n, 2, 2) segments is in the field."""
+        x1, y1, x2, y2 = self.box
+        middle = np.array([(x1 + x2) / 2, (y1 + y2) / 2])
+        moved = (np.asarray(segments, np.float64).reshape(-1, 2) - middle).reshape(-1, 4)
+        return clipped(moved, ((x2 - x1) / 2, (y2 - y1) / 2)).reshape(-1, 2, 2) + middle
 
     def pixels(self, points: ArrayLike) -> NDArray[np.float64]:
         xy = np.asarray(points, np.float64).reshape(-1, 2)
@@ -62,12 +85,14 @@ class Sheet:
             f'<path d="{_path(self.pixels(points))}Z" fill="{_hex(fill)}"{edge}{_see_through(opacity)}/>'
         )
 
-    def dot(self, place: Sequence[float], radius: float, fill: Rgb | None, stroke: Rgb | None = None) -> None:
-        """radius: pixels."""
+    def dot(
+        self, place: Sequence[float], radius: float, fill: Rgb | None, stroke: Rgb | None = None, *, edge: float = 2.5
+    ) -> None:
+        """radius, and how wide its edge is: pixels."""
         x, y = self.pixels([place])[0]
-        edge = "" if stroke is None else f' stroke="{_hex(stroke)}" stroke-width="2.5"'
+        rim = "" if stroke is None else f' stroke="{_hex(stroke)}" stroke-width="{edge:g}"'
         inside = "none" if fill is None else _hex(fill)
-        self._parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:g}" fill="{inside}"{edge}/>')
+        self._parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:g}" fill="{inside}"{rim}/>')
 
     def arrow(self, x: float, y: float, heading_rad: float, fill: Rgb, size: float) -> None:
         """A robot: an arrowhead of this size, pixels."""
@@ -75,19 +100,48 @@ class Sheet:
         c, s = np.cos(heading_rad), np.sin(heading_rad)
         self.polygon(outline @ np.array([(c, s), (-s, c)]) + (x, y), fill, stroke=self.palette.casing)
 
-    def label(self, place: Sequence[float], words: str, colour: Rgb, *, size: float = 15, up: float = 0.0) -> None:
-        """Words in the middle of a place, or so many pixels above it."""
-        x, y = self.pixels([place])[0]
-        half = 0.3 * size * len(words)
-        x = float(np.clip(x, EDGE + half, max(EDGE + half, WIDTH - EDGE - half)))
-        self._words(x, y - up + size / 3, words, size, colour, anchor="middle", casing=True)
+    def label(
+        self,
+        place: Sequence[float],
+        words: str,
+        colour: Rgb,
+        *,
+        size: float = 15,
+        up: float = 0.0,
+        fill: Rgb | None = None,
+    ) -> None:
+        """Words in the middle of a place or so many pixels above it, or beside that where labels that came before are.
+
+        fill: of a bar below them; a place beside the field is named at its edge."""
+        x1, y1, x2, y2 = self.box
+        x, y = self.pixels([np.clip(place, (x1, y1), (x2, y2))])[0].tolist()
+        self._labels.append(Label((x, y), up, plain(words), colour, size, fill))
+
+    def avoid(self, place: Sequence[float], radius: float) -> None:
+        """No label is to lie here. radius: pixels."""
+        if self.inside(place)[0]:
+            x, y = self.pixels([place])[0].tolist()
+            self._avoided.append((x, y, radius))
 
     def foot(self, words: str, right: str = "") -> None:
         """Words below the field."""
-        y = self.height - FOOT + 32
-        self._words(EDGE, y, words, 15, self.palette.text_2)
+        y = self.height - FOOT + 30
+        room = WIDTH - 2 * EDGE - (width_of(right, 15) + 24 if right else 0)
+        self._words(EDGE, y, words, _fitting(words, 15, room), self.palette.text_2)
         if right:
             self._words(WIDTH - EDGE, y, right, 15, self.palette.text_2, anchor="end")
+
+    def legend(self, entries: Sequence[Entry]) -> None:
+        """What the marks mean, in lines below the foot."""
+        x = EDGE
+        for k, (mark, colour, words) in enumerate(entries):
+            wide = 40 + width_of(words, 14)
+            if k == 0 or x + wide > WIDTH - EDGE:
+                x, self.height = EDGE, self.height + 24
+            y = self.height - 24
+            self._around.append(_sample(mark, colour, x, y))
+            self._words(x + 34, y + 5, words, 14, self.palette.text_2)
+            x += wide + 22
 
     def scale_bar(self, colours: NDArray[np.uint8], low: str, high: str) -> None:
         """Colours, (n, 3), with what their ends mean, at the right of the heading."""
@@ -96,7 +150,7 @@ class Sheet:
             f'<stop offset="{k / (len(colours) - 1):.3f}" stop-color="{_hex(tuple(colour))}"/>'
             for k, colour in enumerate(colours.tolist())
         )
-        self._parts.append(
+        self._around.append(
             f'<linearGradient id="times">{stops}</linearGradient><rect x="{x:g}" y="{y:g}" width="{width:g}" '
             f'height="{height:g}" fill="url(#times)"/>'
         )
@@ -104,9 +158,34 @@ class Sheet:
         self._words(x + width, y + 32, high, 14, self.palette.text_2, anchor="end")
 
     def svg(self) -> str:
+        (x1, y2), (x2, y1) = self.pixels([self.box[:2], self.box[2:]]).tolist()
+        field = f'<clipPath id="field"><path d="M{x1:.1f} {y1:.1f}H{x2:.1f}V{y2:.1f}H{x1:.1f}Z"/></clipPath>'
+        drawn = f'{field}<g clip-path="url(#field)">{"".join(self._parts)}</g>'
+        self._name(np.array([(x1, y1), (x2, y2)]))
         size = f'width="{WIDTH:g}" height="{self.height:.0f}" viewBox="0 0 {WIDTH:g} {self.height:.0f}"'
         paper = f'<rect width="100%" height="100%" fill="{_hex(self.palette.sheet)}"/>'
-        return f'<svg xmlns="http://www.w3.org/2000/svg" {size} {_FONT}>{paper}{"".join(self._parts)}</svg>\n'
+        around = "".join(self._around)
+        return f'<svg xmlns="http://www.w3.org/2000/svg" {size} {_FONT}>{paper}{drawn}{around}</svg>\n'
+
+    def _name(self, field: NDArray[np.float64]) -> None:
+        """Draws the labels, lines first."""
+        places = laid_out(self._labels, self._avoided, field)
+        for label, place in zip(self._labels, places, strict=True):
+            end = line_to(label, place)
+            if end is not None:
+                way = f'd="{_path(np.array([label.at, end]))}" stroke="{_hex(label.fill or label.ink)}"'
+                self._around.append(f'<path {way} stroke-width="1.5" stroke-linecap="round"/>')
+        for label, (x, y) in zip(self._labels, places, strict=True):
+            if label.fill is not None:
+                width, height = label.bar.tolist()
+                self._around.append(
+                    f'<rect x="{x - width / 2:.1f}" y="{y - height / 2:.1f}" width="{width:.1f}" height="{height:.1f}" '
+                    f'rx="{height / 2:.1f}" fill="{_hex(label.fill)}"/>'
+                )
+            bar = label.fill is not None
+            self._words(
+                x, y + 0.36 * label.size, label.words, label.size, label.ink, anchor="middle", bold=bar, casing=not bar
+            )
 
     def _words(
         self, x: float, y: float, words: str, size: float, colour: Rgb, *, anchor: str = "start", bold: bool = False,
@@ -114,10 +193,28 @@ class Sheet:
     ) -> None:  # fmt: skip
         weight = ' font-weight="700"' if bold else ""
         around = f' stroke="{_hex(self.palette.floor)}" stroke-width="4" paint-order="stroke"' if casing else ""
-        self._parts.append(
+        self._around.append(
             f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size:g}" fill="{_hex(colour)}" text-anchor={quoteattr(anchor)}'
-            f"{weight}{around}>{escape(_plain(words))}</text>"
+            f"{weight}{around}>{escape(plain(words))}</text>"
         )
+
+
+def _fitting(words: str, size: float, room: float, *, bold: bool = False) -> float:
+    """The size at which words need no more than the room."""
+    return size * min(1.0, room / max(width_of(words, size, bold=bold), 1e-6))
+
+
+def _sample(mark: Mark, colour: Rgb, x: float, y: float) -> str:
+    """What a mark looks like, 26 pixels wide from x on, about y."""
+    ink = f'fill="none" stroke="{_hex(colour)}" stroke-width="2.5"'
+    middle = x + 13
+    return {
+        "line": f'<path d="M{x:.1f} {y:.1f}h26" {ink}/>',
+        "dashes": f'<path d="M{x:.1f} {y:.1f}h26" {ink} stroke-dasharray="6 4"/>',
+        "ring": f'<circle cx="{middle:.1f}" cy="{y:.1f}" r="7" {ink}/>',
+        "oval": f'<ellipse cx="{middle:.1f}" cy="{y:.1f}" rx="12" ry="7" {ink}/>',
+        "area": f'<rect x="{x:.1f}" y="{y - 7:.1f}" width="26" height="14" rx="3" fill="{_hex(colour)}"/>',
+    }[mark]
 
 
 def _path(points: NDArray[np.float64]) -> str:
@@ -130,7 +227,3 @@ def _hex(colour: Sequence[int]) -> str:
 
 def _see_through(opacity: float) -> str:
     return f' opacity="{opacity:.2f}"' if opacity < 1 else ""
-
-
-def _plain(words: str) -> str:
-    return "".join(c for c in words if c.isprintable())  # control characters are no XML

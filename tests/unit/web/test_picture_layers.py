@@ -1,0 +1,266 @@
+"""What the stage shows beside the map itself is in its pictures too: laid where the same fits put it, while its switch is on."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.unit.web.crowded import FRAME, crowded, judged, taught, two_brains
+from web.messages import KnownPlace, Snapshot, TaggedPlace
+from web.switches import NAMES, Name
+from web.themes import THEMES, Theme
+from web.viewer.fits.map_fit import MapFit
+from web.viewer.fits.poses import compose, into_map, placed
+from web.viewer.marks.ghost import PALE, PATH_PALE, pale
+from web.viewer.marks.outline import clipped
+from web.viewer.primitives.palette import BRAINS, DARK, Rgb, mix
+from web.viewer.vector import PlateName, vector_picture
+from web.viewer.vector.experience_map import ROOM_M
+from web.viewer.vector.labels import Label, laid_out, width_of
+from web.viewer.vector.sheet import EDGE, TOP, WIDTH
+
+SVG = "{http://www.w3.org/2000/svg}"
+Picture = ElementTree.Element
+
+
+def drawn(plate: PlateName, snapshot: Snapshot, on: tuple[Name, ...] = NAMES, theme: Theme = "dark") -> Picture:
+    return ElementTree.fromstring(vector_picture(plate, snapshot, theme, on))
+
+
+def words(picture: Picture) -> list[str]:
+    return [text.text or "" for text in picture.iter(f"{SVG}text")]
+
+
+def ink(colour: Rgb) -> str:
+    return "#" + "".join(f"{part:02x}" for part in colour)
+
+
+def strokes(picture: Picture, colour: Rgb) -> list[np.ndarray]:
+    """In the field: the corners of each line of a colour, pixels."""
+    field = next(group for group in picture if group.get("clip-path"))
+    paths = [path.get("d", "") for path in field.iter(f"{SVG}path") if path.get("stroke") == ink(colour)]
+    ways = [way for path in paths for way in path.split("M")[1:]]
+    return [np.array(re.findall(r"-?\d+\.\d+", way), float).reshape(-1, 2) for way in ways]
+
+
+def circles(picture: Picture, colour: Rgb) -> np.ndarray:
+    """Middles of the rings of a colour in the field."""
+    field = next(group for group in picture if group.get("clip-path"))
+    found = [c for c in field.iter(f"{SVG}circle") if c.get("stroke") == ink(colour)]
+    return np.array([(float(c.get("cx", 0)), float(c.get("cy", 0))) for c in found]).reshape(-1, 2)
+
+
+def on_map(snapshot: Snapshot, points: np.ndarray) -> tuple[np.ndarray, tuple[float, float]]:
+    """(n, 2) points of the map in pixels, and the field's size in pixels: what the sheet has to do, written once more."""
+    fit = MapFit(1.0, snapshot.map_turn_rad)
+    seen = fit.to_plate(np.vstack([snapshot.map.extent_xy, (snapshot.estimate.x, snapshot.estimate.y)]))
+    low, high = seen.min(0) - ROOM_M, seen.max(0) + ROOM_M
+    scale = (WIDTH - 2 * EDGE) / (high - low)[0]
+    pixels = (fit.to_plate(points) - (low[0], high[1])) * (scale, -scale) + (EDGE, TOP)
+    return pixels, (WIDTH - 2 * EDGE, float((high - low)[1]) * scale)
+
+
+WALLS = mix(DARK.floor, DARK.wall, 0.75)
+
+
+def test_the_outline_is_the_true_walls_by_the_fit_cut_off_at_the_field() -> None:
+    snapshot = judged()
+    assert snapshot.world is not None
+    ends, (width, height) = on_map(snapshot, into_map(snapshot.world.walls.reshape(-1, 2).astype(float), FRAME))
+    middle = np.array((EDGE + width / 2, TOP + height / 2))
+    wanted = clipped((ends - middle).reshape(-1, 4), (width / 2, height / 2)).reshape(-1, 2, 2) + middle
+    found = np.array(strokes(drawn("map", snapshot), WALLS))
+    assert found.shape == wanted.shape
+    assert 10 < len(found) < len(snapshot.world.walls) + 1
+    assert np.abs(found - wanted).max() < 0.11
+
+
+def test_the_ghost_is_at_its_place_with_its_way_and_how_far_off_it_is() -> None:
+    snapshot = judged()
+    assert snapshot.ghost is not None
+    assert snapshot.truth is not None
+    picture = drawn("map", snapshot)
+    path = placed(np.asarray(snapshot.ghost.path, float), snapshot.ghost.map_start)
+    way, _ = on_map(snapshot, path)
+    points = np.vstack(strokes(picture, pale(DARK, DARK.robot, PATH_PALE)))
+    assert np.abs(points[0] - way[0]).max() < 0.11
+    assert np.abs(points[-1] - way[-1]).max() < 8
+    body = next(p for p in picture.iter(f"{SVG}path") if p.get("fill") == ink(pale(DARK, DARK.robot, PALE)))
+    corners = np.array(re.findall(r"-?\d+\.\d+", body.get("d", "")), float).reshape(-1, 2)
+    assert np.hypot(*(corners.mean(0) - way[-1])) < 8
+    office = compose(snapshot.ghost.office_start, snapshot.ghost.pose)
+    off_m = np.hypot(office.x - snapshot.truth.x, office.y - snapshot.truth.y)
+    for plate in ("map", "office"):
+        assert f"wheels alone: {off_m:.0f} m off" in words(drawn(plate, snapshot))
+
+
+def test_a_ghost_beside_the_field_leaves_its_name_at_the_edge() -> None:
+    picture = drawn("map", judged(off_m=500.0))
+    assert not any(path.get("fill") == ink(pale(DARK, DARK.robot, PALE)) for path in picture.iter(f"{SVG}path"))
+    assert any(re.fullmatch(r"wheels alone: \d+ m off", text) for text in words(picture))
+
+
+def test_error_and_doubt() -> None:
+    snapshot = judged()
+    here, truth, spread = snapshot.estimate, snapshot.truth, snapshot.spread
+    assert truth is not None
+    assert spread is not None
+    true = into_map(np.array([[truth.x, truth.y]]), FRAME)[0]
+    ends, _ = on_map(snapshot, np.array([(here.x, here.y), true]))
+    picture = drawn("map", snapshot)
+    assert any(line.shape == (2, 2) and np.abs(line - ends).max() < 0.11 for line in strokes(picture, DARK.true_path))
+    assert f"{np.hypot(*(true - (here.x, here.y))):.1f} m off" in words(picture)
+    (oval,) = [line for line in strokes(picture, DARK.robot) if len(line) > 40]
+    along = np.array([np.cos(spread.turn_rad), np.sin(spread.turn_rad)])
+    tips = np.array([(here.x, here.y)]) + 2 * np.array([spread.along_m, -spread.along_m])[:, None] * along
+    wanted, _ = on_map(snapshot, tips)
+    for tip in wanted:
+        assert np.hypot(*(oval - tip).T).min() < 0.2
+    far = np.hypot(*(oval - ends[0]).T)
+    assert far.max() / far.min() == pytest.approx(spread.along_m / spread.across_m, rel=0.02)
+
+
+def test_a_ring_at_each_closed_loop_and_the_newest_says_what_it_did() -> None:
+    snapshot = judged()
+    rows = [closure.end for closure in snapshot.closures]
+    wanted, _ = on_map(snapshot, snapshot.map.xy[rows])
+    picture = drawn("map", snapshot)
+    assert circles(picture, DARK.packets[3]) == pytest.approx(wanted, abs=0.11)
+    assert [text for text in words(picture) if text.startswith("loop closed")] == [
+        "loop closed: moved the map by 0.4 m"
+    ]
+    late = drawn("map", replace(snapshot, time_s=snapshot.time_s + 60))
+    assert len(circles(late, DARK.packets[3])) == 2
+    assert not any(text.startswith("loop closed") for text in words(late))
+
+
+def test_each_is_absent_while_its_switch_is_off() -> None:
+    marks = {
+        "outline": lambda picture: len(strokes(picture, WALLS)),
+        "ghost": lambda picture: any("wheels alone" in text for text in words(picture)),
+        "doubt": lambda picture: any(len(line) > 40 for line in strokes(picture, DARK.robot)),
+        "closures": lambda picture: len(circles(picture, DARK.packets[3])),
+    }
+    for name in marks:
+        picture = drawn("map", judged(), tuple(other for other in NAMES if other != name))
+        assert [bool(found(picture)) for found in marks.values()] == [other != name for other in marks]
+    plain = drawn("office", judged(), ())
+    assert not any("wheels alone" in text for text in words(plain))
+    nobody = judged(truth=None, world=None)
+    for theme in THEMES:
+        assert len(strokes(drawn("map", nobody, theme=theme), WALLS)) == 0
+
+
+def test_a_lesson_marks_what_happened_and_what_was_predicted_on_each_plate() -> None:
+    snapshot = taught()
+    assert "put down here" in words(drawn("office", snapshot))
+    told = words(drawn("map", snapshot))
+    assert {"felt lost", "the answer", "predicted"} <= set(told)
+    rings = circles(drawn("map", snapshot), DARK.text)
+    wanted, _ = on_map(snapshot, np.array([(2.0, 2.0), (1.0, -0.5), (0.0, 0.8)]))
+    assert rings == pytest.approx(wanted, abs=0.11)
+    cells = drawn("pose", snapshot)
+    assert "a snap" in words(cells)
+    ways = np.vstack([way for way in strokes(cells, DARK.text) if len(way) == 2 and np.ptp(way, axis=0).max() < 8])
+    assert ways[:, 0].min() < 100  # round the torus: it comes in on the left,
+    assert ways[:, 0].max() > WIDTH - 130  # and went out on the right
+    assert not ((ways[:, 0] > 200) & (ways[:, 0] < 800)).any()
+
+
+# ---------------------------------------------------------------- two brains
+
+
+@pytest.mark.parametrize(("plate", "second"), [("pose", "pose_2"), ("map", "map_2")])
+def test_each_of_two_brains_has_its_own_plates_under_its_name(plate: PlateName, second: PlateName) -> None:
+    snapshot = two_brains()
+    assert snapshot.beside is not None
+    one, other = drawn(plate, snapshot), drawn(second, snapshot)
+    for k, (picture, figures) in enumerate(((one, snapshot.beside.first), (other, snapshot.beside.second))):
+        title = next(picture.iter(f"{SVG}text"))
+        assert title.text == figures.name
+        assert title.get("fill") == ink(BRAINS[True][k])
+    alone = replace(snapshot, beside=None, ghost=None, closures=(), map_in_office=None, spread=None)
+    theirs = replace(
+        alone, pose_cells=snapshot.beside.pose_cells, map=snapshot.beside.map, times=snapshot.beside.times,
+        estimate=snapshot.beside.estimate, goal=snapshot.beside.goal, map_turn_rad=snapshot.beside.map_turn_rad,
+    )  # fmt: skip
+    field, wanted = (next(g for g in picture if g.get("clip-path")) for picture in (other, drawn(plate, theirs)))
+    assert ElementTree.tostring(field) == ElementTree.tostring(
+        wanted
+    )  # all of the second brain, and nothing of the first
+    assert ElementTree.tostring(field) != ElementTree.tostring(next(g for g in one if g.get("clip-path")))
+
+
+def test_of_one_brain_there_is_no_second_plate() -> None:
+    with pytest.raises(ValueError, match="there is one brain only"):
+        vector_picture("map_2", judged(), "dark", NAMES)
+
+
+# ---------------------------------------------------------------- words
+
+
+def boxes(picture: Picture) -> list[tuple[float, float, float, float]]:
+    """Left, top, right and bottom of all words, by the metrics of the widest font that may be taken."""
+    found = []
+    for text in picture.iter(f"{SVG}text"):
+        size = float(text.get("font-size", 0))
+        wide = width_of(text.text or "", size, bold=text.get("font-weight") == "700")
+        share = {"start": 0.0, "middle": 0.5, "end": 1.0}[text.get("text-anchor", "start")]
+        left, base = float(text.get("x", 0)) - share * wide, float(text.get("y", 0))
+        found.append((left, base - 0.75 * size, left + wide, base + 0.2 * size))
+    return found
+
+
+LONG = "the place where the coffee machine was before they moved it"
+
+
+@pytest.mark.parametrize(
+    ("plate", "snapshot"),
+    [
+        (plate, made)
+        for plate in ("office", "pose", "map")
+        for made in (judged(), judged(off_m=40.0), crowded(), taught())
+    ]
+    + [(plate, two_brains()) for plate in ("pose", "map", "pose_2", "map_2")]
+    + [("map", replace(crowded(), tags=tuple(TaggedPlace(f"{LONG} {k}", 1, 0.1 * k, 0.0) for k in range(5))))],
+)
+def test_no_words_cover_others_or_are_cut_off(plate: PlateName, snapshot: Snapshot) -> None:
+    picture = drawn(plate, snapshot)
+    height = float(picture.get("height", 0))
+    found = boxes(picture)
+    for left, top, right, bottom in found:
+        assert left >= EDGE - 0.5
+        assert right <= WIDTH - EDGE + 0.5
+        assert top >= 0
+        assert bottom <= height
+    for (l1, t1, r1, b1), (l2, t2, r2, b2) in itertools.combinations(found, 2):
+        assert r1 <= l2 + 0.5 or r2 <= l1 + 0.5 or b1 <= t2 + 0.5 or b2 <= t1 + 0.5
+
+
+@settings(max_examples=60)
+@given(st.lists(st.tuples(st.floats(0, 1000), st.floats(0, 700), st.text(max_size=20)), max_size=10))
+def test_labels_lie_apart_wherever_their_places_are(made: list[tuple[float, float, str]]) -> None:
+    labels = [Label((x, y), 20.0, name, DARK.text, 15, DARK.goal) for x, y, name in made]
+    places = laid_out(labels, [], np.array([(0.0, 0.0), (1000.0, 700.0)]))
+    for (a, first), (b, second) in itertools.combinations(list(zip(places, labels, strict=True)), 2):
+        assert (np.abs(np.subtract(a, b)) >= (first.bar + second.bar) / 2 - 1e-6).any()
+    for (x, y), label in zip(places, labels, strict=True):
+        wide, high = label.bar
+        assert wide / 2 - 1e-6 <= x <= 1000 - wide / 2 + 1e-6
+        assert high / 2 - 1e-6 <= y <= 700 - high / 2 + 1e-6
+
+
+def test_a_known_place_has_its_name_on_the_map_and_a_label_that_went_aside_a_line() -> None:
+    snapshot = replace(judged(), places=(KnownPlace("kitchen", 2, 2, (0.5, 0.5)), KnownPlace("attic", 2, 2, None)))
+    told = words(drawn("map", snapshot))
+    assert "kitchen" in told
+    assert "attic" not in told
+    lines = [path for path in drawn("map", crowded()) if path.tag == f"{SVG}path"]
+    assert lines
