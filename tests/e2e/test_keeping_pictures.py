@@ -55,6 +55,26 @@ def test_plates_as_vectors(driven: Program, browser: Browser, tmp_path: Path) ->
             assert len(list(picture.iter())) > 30
 
 
+def test_of_two_brains_each_has_its_plates(driven: Program, browser: Browser, tmp_path: Path) -> None:
+    with open_page(browser, driven.url, stage=False) as page:
+        page.click("#keep summary")
+        expect(page.get_by_role("button", name="Experience map as SVG")).to_be_visible()
+        expect(page.locator("#keep-map-2")).to_be_hidden()
+        page.keyboard.press("Escape")
+        driven.command("compare_brains", values={"local_view.enabled": False}, name="eyes shut", since="now")
+        driven.command("step", ticks=20)
+        for what, plate in (("Pose cells", "pose-2"), ("Experience map", "map-2")):
+            page.click("#keep summary")
+            button = page.get_by_role("button", name=f"{what}: eyes shut as SVG")
+            expect(button).to_be_visible()
+            file = saved(page, tmp_path, button.click)
+            assert file.name.endswith(f"s-{plate}.svg")
+            assert next(ElementTree.parse(file).getroot().iter(f"{SVG}text")).text == "eyes shut"
+        driven.command("end_comparison")
+        page.click("#keep summary")
+        expect(page.locator("#keep-map-2")).to_be_hidden()
+
+
 def test_plots_as_vectors_and_pixels(driven: Program, browser: Browser, tmp_path: Path) -> None:
     with open_page(browser, driven.url, stage=False) as page:
         page.get_by_role("tab", name="Truth").click()

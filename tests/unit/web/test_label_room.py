@@ -13,7 +13,7 @@ from tests.unit.web.bench import Bench
 from tests.unit.web.crowded import crowded
 from web.viewer.camera_views import View, camera_for, seen_by
 from web.viewer.marks.place_names import HEIGHT, Z
-from web.viewer.primitives.label_room import ERROR, GAP, GHOST, NEAR, LabelRoom, clear_place
+from web.viewer.primitives.label_room import ERROR, GAP, GHOST, LEAN_RAD, NEAR, ROBOT, ROUTE, LabelRoom, clear_place
 
 ROOM = np.array([(-5.0, -4.0), (5.0, 4.0)])
 coordinates = st.floats(-6, 6)
@@ -58,6 +58,21 @@ def test_who_comes_later_gives_way_and_returns_when_there_is_room_again() -> Non
     room.leave("ghost")
     room.fix("names", [])
     assert places["error"] == pytest.approx((0.0, 0.0, 0.5))
+
+
+def test_no_label_lies_on_what_comes_before_it_and_none_moves_without_need() -> None:
+    room, moves = LabelRoom((5.0, 4.5)), []
+    for k in range(6):
+        room.put(k, ROUTE, (0.5 * k, 0.0, 0.3), (1.0, 0.4), lambda at: moves.append(at))
+    room.fix("robot", [((0.0, 0.0, 0.2), 1.0, 1.0)], ROBOT)
+    assert len(moves) == 6  # the robot drives under what belongs to its route,
+    room.put("ghost", GHOST, (0.0, 0.0, 0.5), (2.0, 0.4), lambda at: moves.append(at))
+    assert len(moves) == 7  # and the ghost's name keeps clear of both
+    bars = np.array([(x, y * np.cos(LEAN_RAD) + z * np.sin(LEAN_RAD)) for x, y, z in moves])
+    sizes = np.array([(1.0, 0.4)] * 6 + [(2.0, 0.4)])
+    for k in range(7):
+        assert not covered(bars[k], sizes[k], np.hstack([bars[:k], sizes[:k]]), GAP)
+    assert not covered(bars[6], sizes[6], np.array([(0.0, 0.2 * np.sin(LEAN_RAD), 1.0, 1.0)]), GAP)
 
 
 # ---------------------------------------------------------------- on the stage

@@ -39,8 +39,8 @@ export class Keeping {
   show(state, page) {
     naming(state);
     const second = state.beside?.second.name;
-    offer("keep-pose-2", second && `Pose cells ${second}`);
-    offer("keep-map-2", second && `Experience map ${second}`);
+    offer("keep-pose-2", second && `Pose cells: ${second}`);
+    offer("keep-map-2", second && `Experience map: ${second}`);
     this.opening.show(page);
     this.film.at(state, page);
   }

@@ -32,6 +32,7 @@ from web.viewer.marks.tags import TagMarks
 from web.viewer.plates.overlays import map_floor
 from web.viewer.plates.plate import FLOOR_Z, TEXT_Z, Plate
 from web.viewer.primitives import images, meshes
+from web.viewer.primitives.label_room import ROBOT
 from web.viewer.primitives.labels import Sign, add_mesh, add_picture
 from web.viewer.primitives.palette import Palette
 
@@ -39,6 +40,7 @@ ORIGIN = (5.85, -2.2, 0.0)
 SHEET = (11.0, 10.0, -0.5, 0.45)
 NODE_Z, LINK_Z, OTHER_Z, ARROW_Z = 0.05, 0.03, 0.19, 0.22
 ARROW = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)])
+ROBOT_SIZE = (0.9, 0.7)  # as it is seen, whatever its heading
 BAR = (2.7, 0.26)
 BAR_X = 3.65
 GRID_LINES = 48
@@ -158,6 +160,8 @@ class MapPlate(Plate):
 
     def set_robot(self, estimate: Pose) -> None:
         self._put(self._arrow, estimate, ARROW_Z)
+        x, y, z = self._arrow.position.tolist()
+        self.labels.fix(self, [((x, y, z), *ROBOT_SIZE)], ROBOT)
 
     def set_other(self, other: Pose | None) -> None:
         """Shows, as a pale arrow in a ring, where the robot would be by the looks that it does not believe yet."""

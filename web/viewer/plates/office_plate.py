@@ -20,6 +20,7 @@ from web.viewer.plates.furniture import add_floor, add_furniture
 from web.viewer.plates.plate import FLOOR_Z, Plate
 from web.viewer.plates.sight import fan_of_view
 from web.viewer.primitives import meshes
+from web.viewer.primitives.label_room import ROBOT
 from web.viewer.primitives.labels import add_mesh
 from web.viewer.primitives.palette import Palette, mix
 
@@ -120,7 +121,9 @@ class OfficePlate(Plate):
         """Shows the robot at its true pose, with its field of view and the sonars' echoes; without walls the robot alone."""
         if self.world is None or truth is None:
             return
-        self.robot.place(self.fit.to_plate(np.array([[truth.x, truth.y]]))[0], truth.heading_rad)
+        x, y = self.fit.to_plate(np.array([[truth.x, truth.y]]))[0].tolist()
+        self.robot.place(np.array([x, y]), truth.heading_rad)
+        self.labels.fix(self, [((x, y, self.robot.radius), 2 * self.robot.radius, 2 * self.robot.radius)], ROBOT)
         if not self.world.is_office:
             return
         self._draw_view(truth, self.world.camera_fov_rad)

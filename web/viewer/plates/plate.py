@@ -33,7 +33,7 @@ class Plate:
         self.scene, self.palette, self.root, self.origin = scene, palette, f"/{name}", origin
         self.frame = scene.add_frame(self.root, show_axes=False, position=origin)
         width, depth, centre_y, radius = sheet
-        self.labels = LabelRoom((width / 2 - 0.1, depth / 2 - abs(centre_y)))
+        self.labels = LabelRoom((width / 2 - 0.5, depth / 2 - abs(centre_y)))
         self.left, self.front = -width / 2 + 0.5, centre_y - depth / 2
         outline = meshes.rounded_rectangle(width, depth, radius, centre=(0.0, centre_y))
         add_mesh(scene, f"{self.root}/slab", meshes.sides(outline, -0.32, -0.06), palette.lit(palette.slab))

@@ -13,6 +13,7 @@ from web.viewer.primitives.palette import Rgb
 
 GAP = 4.0  # pixels
 ASIDE = 0.7  # of its height: a label that has gone farther has a line
+CLEAR = 11.0  # pixels around what it names, in which there is no line
 Array = NDArray[np.float64]
 
 
@@ -56,10 +57,11 @@ def laid_out(labels: list[Label], avoided: list[tuple[float, float, float]], fie
     return places
 
 
-def line_to(label: Label, place: tuple[float, float]) -> tuple[float, float] | None:
-    """Where on its bar the line from what it names ends; None: it needs no line."""
-    half, middle = label.bar / 2, np.array(place)
-    if np.hypot(*(middle - label.at + (0.0, label.up))) <= ASIDE * 2 * half[1]:
+def line_to(label: Label, place: tuple[float, float]) -> Array | None:
+    """(2, 2) from beside what it names to its bar; None: it needs no line."""
+    half, middle, at = label.bar / 2, np.array(place), np.array(label.at)
+    end = np.clip(at, middle - half, middle + half)
+    far = float(np.hypot(*(end - at)))
+    if far <= CLEAR or np.hypot(*(middle - at + (0.0, label.up))) <= ASIDE * 2 * half[1]:
         return None
-    x, y = np.clip(np.array(label.at), middle - half, middle + half).tolist()
-    return x, y
+    return np.stack([at + (end - at) * CLEAR / far, end])

@@ -171,10 +171,12 @@ class Sheet:
         """Draws the labels, lines first."""
         places = laid_out(self._labels, self._avoided, field)
         for label, place in zip(self._labels, places, strict=True):
-            end = line_to(label, place)
-            if end is not None:
-                way = f'd="{_path(np.array([label.at, end]))}" stroke="{_hex(label.fill or label.ink)}"'
-                self._around.append(f'<path {way} stroke-width="1.5" stroke-linecap="round"/>')
+            line = line_to(label, place)
+            if line is not None:
+                ink = _hex(label.fill or label.ink)
+                self._around.append(
+                    f'<path d="{_path(line)}" stroke="{ink}" stroke-width="1.5" stroke-linecap="round"/>'
+                )
         for label, (x, y) in zip(self._labels, places, strict=True):
             if label.fill is not None:
                 width, height = label.bar.tolist()
