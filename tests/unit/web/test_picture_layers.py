@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.unit.web.crowded import FRAME, crowded, judged, taught, two_brains
-from web.messages import KnownPlace, Snapshot, TaggedPlace
+from web.messages import KnownPlace, Pose, Snapshot, TaggedPlace
 from web.switches import NAMES, Name
 from web.themes import THEMES, Theme
 from web.viewer.fits.map_fit import MapFit
@@ -125,6 +125,28 @@ def test_error_and_doubt() -> None:
         assert np.hypot(*(oval - tip).T).min() < 0.2
     far = np.hypot(*(oval - ends[0]).T)
     assert far.max() / far.min() == pytest.approx(spread.along_m / spread.across_m, rel=0.02)
+
+
+def test_an_error_that_leaves_the_field_is_told_where_it_does() -> None:
+    """Also with a ring there, on which no words lie."""
+    snapshot = judged(truth=Pose(400.0, 300.0, 0.0))
+    true = into_map(np.array([[400.0, 300.0]]), FRAME)[0]
+    here = np.array((snapshot.estimate.x, snapshot.estimate.y))
+    (start, end), (width, height) = on_map(snapshot, np.stack([here, true]))
+    picture = drawn("map", snapshot)
+    (text,) = [text for text in picture.iter(f"{SVG}text") if re.fullmatch(r"[\d.]+ m off", text.text or "")]
+    share = min(
+        (edge - at) / along
+        for at, along, low, high in zip(start, end - start, (EDGE, TOP), (EDGE + width, TOP + height), strict=True)
+        for edge in (low, high)
+        if (edge - at) / along > 0
+    )
+    leaves = start + share * (end - start)
+    assert np.hypot(float(text.get("x", 0)) - leaves[0], float(text.get("y", 0)) - leaves[1]) < 90
+    rings = circles(picture, DARK.packets[3])
+    for left, top, right, bottom in boxes(picture):
+        near = np.clip(rings, (left, top), (right, bottom))
+        assert (np.hypot(*(near - rings).T) > 9).all()
 
 
 def test_a_ring_at_each_closed_loop_and_the_newest_says_what_it_did() -> None:

@@ -80,9 +80,10 @@ def draw_error(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
     sheet.dot(line[1].tolist(), RING, None, palette.true_path)
     sheet.dot(line[1].tolist(), 3.5, palette.true_path)
     sheet.avoid(line[1].tolist(), RING)
-    if words := doubt.words_of(metres):
-        sheet.label(line[1].tolist(), words, palette.sheet, up=27, fill=palette.true_path)
-    return [("ring", palette.true_path, "where it truly is")]
+    seen = sheet.within(line)
+    if (words := doubt.words_of(metres)) and len(seen):  # where the line ends, or leaves the field
+        sheet.label(seen[0, 1].tolist(), words, palette.sheet, up=27, fill=palette.true_path)
+    return [("line", palette.true_path, "to where it truly is")]
 
 
 def draw_spread(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
@@ -108,6 +109,7 @@ def draw_closures(sheet: Sheet, subject: Subject, places: Points) -> list[Entry]
         at = places[closure.end].tolist()
         sheet.dot(at, RING + 2, None, palette.casing, edge=6.5)
         sheet.dot(at, RING + 2, None, colour, edge=3.5)
+        sheet.avoid(at, RING + 4)
     if last and subject.snapshot.time_s - last[-1].time_s <= closures.TOLD_S:
         sheet.label(places[last[-1].end].tolist(), closures.words_of(last[-1]), palette.sheet, up=30, fill=colour)
     return [("ring", colour, "where a loop was closed")] if last else []
