@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import fields
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any, get_args
 
 from pydantic import BaseModel
 
+from ratslam_core.params import RatSlamParams
+from ratslam_core.params.additions import ADDITIONS, Addition
 from sim2d.world.world_schema import LISTS, WorldFile
 from web.http.commands import MODELS
 from web.http.watching import LOOKS
@@ -41,6 +44,10 @@ def names_text() -> str:
         "OFFICE_LISTS": get_args(OfficeList),
         "SCRIPT_ACTIONS": world["_EventItem"]["properties"]["do"]["enum"],
         "WALL_KINDS": world["_WallItem"]["properties"]["kind"]["enum"],
+        "ADDITIONS": [
+            {"name": addition.name, "adds": addition.adds, "why": addition.why, "live": _live(addition)}
+            for addition in ADDITIONS
+        ],
     }
     rows = [f"export const {name} = /** @type {{const}} */ ({json.dumps(value)});\n" for name, value in values.items()]
     limits = {name: _limits(model.model_json_schema()) for name, model in LISTS.items()}
@@ -61,6 +68,17 @@ def types_text() -> str:
         rows = "".join(f"  {json.dumps(key)}: {kind};\n" for key, kind in sorted(ids.found.items()))
         parts.append(f"type {name}Ids = {{\n{rows}}};\n")
     return "".join(parts)
+
+
+def _live(addition: Addition) -> bool:
+    """Whether it can be switched while a brain runs."""
+    params = RatSlamParams()
+    known = {
+        f"{section.name}.{item.name}": item
+        for section in fields(params)
+        for item in fields(getattr(params, section.name))
+    }
+    return all(known[dotted].metadata["live"] for dotted in addition.off)
 
 
 class _Ids(HTMLParser):

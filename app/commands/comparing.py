@@ -80,14 +80,16 @@ def _begin(engine: Engine, since: str, first: str, second: str, values: Mapping[
 
 
 def _restart(engine: Engine) -> None:
-    """The same again: a trial that is watched, a recording, or a run in the same world with the same seed."""
+    """The same again: a trial that is watched, a recording, or a run in the same world with the same seed and parameters."""
     run = engine.run
     if run.trial is not None and run.trial.state == "running":
         engine.begin_trial(run.trial.trial, run.trial.title)
     elif isinstance(run.session, PlayedSession):
         engine.begin_recording(run.session.player)
     else:
-        engine.begin(engine.world, run.session.seed, engine.next_config)
+        before = None if run.trial is not None else run.config_before
+        engine.begin(engine.world, run.session.seed, engine.config_to_begin)
+        engine.run.config_before = before  # what a lesson has set goes with the runs that begin from it
 
 
 def _give(engine: Engine, first: str, second: str, values: Mapping[str, Value], *, anew: bool) -> None:

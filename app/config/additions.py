@@ -16,7 +16,8 @@ Made by `ratslam config --additions`. The papers' engine runs by itself: `--pres
 *preset* in the *Office* tab. What is ours is on by default (`ours`); each addition has a switch and a plain twin. With all of
 them off whole runs are, tick by tick, those of a literal twin written from the equations (`test_papers.py`). What each is worth
 is measured by `ratslam experiment additions`: [results](results.md#what-each-of-our-additions-is-worth), read in
-[findings](findings.md#what-each-addition-is-worth).
+[findings](findings.md#what-each-addition-is-worth). On the page, *Compare* puts a brain without one beside a brain
+with it ([two brains](time.md#two-brains-on-the-same-senses)).
 
 | addition | what it adds | why | off with |
 |---|---|---|---|

@@ -1,4 +1,5 @@
-"""Brains that are worth comparing with a first one, by name. What the second is depends on the first, so that they differ."""
+"""Brains that are worth comparing with a first one, by name, and one of our additions by its name: what the second is depends
+on the first, so that they differ."""
 
 from __future__ import annotations
 
@@ -6,11 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from app.config.tree import Config, Value
+from ratslam_core.params.additions import ADDITIONS, Addition
 from ratslam_core.params.presets import PRESETS as ENGINES
 
 NAMES = "papers", "vision", "cells", "cells-64", "rate", "no-map"
 FEW, MANY = 8, 64  # cells along x' and y'
 SLOW, USUAL = 0.02, 0.15
+_ADDITIONS = {addition.name: addition for addition in ADDITIONS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,13 +43,40 @@ def pairs_beside(config: Config) -> tuple[Pair, ...]:
 
 
 def pair_of(name: str, config: Config) -> Pair:
-    """A pair by name. ValueError: there is none of this name, or nothing would differ."""
-    if name not in NAMES:
-        raise ValueError(f"there is no pair {name!r}; expected one of: {', '.join(NAMES)}")
+    """A pair by name, which may be that of an addition. ValueError: there is none of this name, or nothing would differ."""
+    if name in _ADDITIONS:
+        return _addition(_ADDITIONS[name], config)
+    require_pair(name)
     found = {pair.name: pair for pair in pairs_beside(config)}
     if name not in found:
         raise ValueError(f"the first brain is that already: nothing would differ; what would: {', '.join(found)}")
     return found[name]
+
+
+def require_pair(name: str) -> str:
+    """The name itself. ValueError: it is neither that of a pair nor that of an addition."""
+    if name not in NAMES and name not in _ADDITIONS:
+        ours = ", ".join(_ADDITIONS)
+        raise ValueError(f"there is no pair {name!r}; expected one of: {', '.join(NAMES)}; or an addition: {ours}")
+    return name
+
+
+def without(addition: Addition, config: Config) -> bool:
+    """Whether a brain with this config lacks the addition, or a part of it."""
+    ours = ENGINES["ours"]
+    values = {name: value for name, _, value in config.items() if name in addition.off}
+    return any(
+        value != ours[name] if isinstance(value, str) else value == addition.off[name] for name, value in values.items()
+    )
+
+
+def _addition(addition: Addition, config: Config) -> Pair:
+    """The same brain without it; with it, if it is off."""
+    name, values = addition.name, dict(addition.off)
+    second = f"without {name}"
+    if without(addition, config):
+        second, values = f"with {name}", {dotted: ENGINES["ours"][dotted] for dotted in values}
+    return Pair(name, engine_of(config), second, second.capitalize(), f"{addition.adds}: {addition.why}", values)
 
 
 def _pairs(config: Config) -> Iterator[Pair]:

@@ -84,9 +84,8 @@ class CurrentRun:
 
     @property
     def config_to_begin(self) -> Config:
-        """That of a run that begins again as this one: a trial or a recording keeps its own."""
-        run = self.run
-        return run.session.config if self.trial_plays or run.session.recording is not None else self.next_config
+        """That of a run that begins again as this one: what a trial has set goes with it when it is over."""
+        return self.run.session.config if self.run.trial is None or self.trial_plays else self.next_config
 
     @property
     def trial_plays(self) -> bool:

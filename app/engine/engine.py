@@ -137,5 +137,5 @@ class Engine(OtherRuns):
         snapshots.lesson = None if run.lesson is None else run.lesson.view()
         snapshots.until = None if run.until is None else run.until.view()
         snapshots.time = self.time.view(self.slices.work)
-        snapshots.pairs = self._pairs.of(self.config_to_begin, run.session.config)
+        snapshots.pairs, snapshots.additions_off = self._pairs.of(self.config_to_begin, run.session.config)
         return snapshots.build(running=self.running, speed=speed, real_time_factor=self.pace.factor, fault=self.fault)

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
 from app.config import Config
-from app.config.pairs import Pair, pair_of
+from app.config.pairs import Pair, pair_of, require_pair
 from app.config.presets import values_of
 from app.lessons.conditions import Until
 from app.lessons.findings import Finding
@@ -20,7 +20,7 @@ from web.messages import Command
 
 Plate = Literal["office", "map"]  # where something is marked or drawn; frames: the simulator's own, the map's own
 MarkKind = Literal["closure", "snap", "lost", "recovered", "kidnap", "arrived", "false", "packet", "link", "reached"]
-PairName = Literal["papers", "vision", "cells", "cells-64", "rate", "no-map"]  # of app/config/pairs.py
+PairName = Annotated[str, AfterValidator(require_pair)]
 Text = Annotated[str, Field(min_length=1, max_length=700)]
 Line = Annotated[str, Field(min_length=1, max_length=160)]
 _COMMAND: TypeAdapter[Command] = TypeAdapter(Command)

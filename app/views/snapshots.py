@@ -28,6 +28,7 @@ from app.views.tick_stages import Walk
 from app.views.world_drawing import DrawnWorld
 from ratslam_core import Pose2
 from web.messages import (
+    AdditionsOff,
     BesideView,
     Inspect,
     LessonView,
@@ -62,6 +63,7 @@ class Snapshots:
         self.time: TimeView | None = None
         self.situation: SituationView | None = None
         self.pairs: tuple[PairChoice, ...] = ()
+        self.additions_off = AdditionsOff()
         self.inspected = Inspect(type="inspect")  # at first nothing
         self.walk: Walk | None = None  # through the stages of the last tick
         self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), ParameterRows()
@@ -157,6 +159,7 @@ class Snapshots:
             situation=self.situation,
             beside=self.beside(),
             pairs=self.pairs,
+            additions_off=self.additions_off,
             no_room=session.simulator.fit.refusal if recorded is None else no_room,
             recording=recorded and recording_view(recorded, session.over),
             map_in_office=self._fit(),

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from ratslam_core.params.additions import ADDITIONS
 from tests.e2e.browser import box_of, calm, eye_of, open_page, show, told, turn_theme
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
@@ -79,6 +80,43 @@ def test_the_menu_names_what_would_really_begin(program: Program, browser: Brows
     program.command("use_preset", name="ours")
     for axis in ("x", "y"):
         program.command("set_parameter", name=f"pose_cells.n_{axis}", value=64)
+    program.command("reset", seed=5)
+
+
+def test_one_addition_is_chosen_by_its_name_and_the_strip_tells_what_differs(
+    program: Program, browser: Browser
+) -> None:
+    with open_page(browser, program.url, stage=False) as page:
+        page.get_by_label("Compare brains").click()
+        chosen = page.get_by_label("Or switch one of our additions in the second:")
+        expect(chosen.locator("option")).to_have_count(len(ADDITIONS))
+        begin, go_on = page.locator("#brains-addition-anew"), page.locator("#brains-addition-now")
+        chosen.select_option("exact solver")
+        expect(page.locator("#brains-about")).to_contain_text(": sweeps alone lag behind a growing map.")
+        expect(go_on).to_be_hidden()
+        chosen.select_option("carry")
+        expect(go_on).to_have_text("From now on without it")
+        expect(begin).to_have_text("Begin again without it")
+        begin.click()
+        told(page, "Two brains, the same senses")
+        expect(page.locator("#beside-first")).to_contain_text("ours")
+        expect(page.locator("#beside-second")).to_contain_text("without carry")
+        differing = page.locator("#beside-changed")
+        differing.locator("summary").click()
+        expect(differing.locator("thead")).to_contain_text("without carry")
+        expect(differing.locator("tbody tr")).to_have_text("pose_cells.carryonoff")
+        page.keyboard.press("Escape")
+        program.command("end_comparison")
+        program.command("set_parameter", name="pose_cells.carry", value=False)
+        page.get_by_label("Compare brains").click()
+        expect(chosen).to_have_value("carry")
+        expect(chosen.locator("optgroup").last.locator("option")).to_have_text(["carry"])
+        expect(go_on).to_have_text("From now on with it")
+        go_on.click()
+        expect(page.locator("#beside-second")).to_contain_text("with carry")
+        expect(differing.locator("summary")).to_have_attribute("title", "pose_cells.carry: off → on")
+    program.command("end_comparison")
+    program.command("set_parameter", name="pose_cells.carry", value=True)
     program.command("reset", seed=5)
 
 

@@ -12,6 +12,7 @@ from app.lessons.files import catalogue, check_lesson
 from app.lessons.performance import perform_round
 from app.lessons.report import report_of
 from app.lessons.schema import Lesson
+from ratslam_core.params.additions import ADDITIONS
 from sim2d import load_world
 from tests.unit.app.engines import an_engine, tell
 
@@ -60,6 +61,12 @@ def test_the_square_comes_apart_when_it_is_blindfolded() -> None:
     assert session.evaluation.errors(session.brain.experience_map)[0] > 2
 
 
+def test_the_lesson_on_additions_counts_them() -> None:
+    lesson = next(lesson for lesson in LESSONS if lesson.name == "additions")
+    assert len(ADDITIONS) == 31
+    assert "Thirty-one" in lesson.text
+
+
 TYPESET = {
     "sum", "in", "min", "max", "int", "frac", "left", "right", "quad", "leftarrow", "Delta", "Big", "neq", "leq", "bmod",
 }  # fmt: skip
@@ -81,10 +88,10 @@ def test_every_symbol_of_its_formulas_is_told(lesson: Lesson) -> None:
     assert any(symbol.parameter for formula in lesson.formulas for symbol in formula.symbols)
 
 
-def test_there_are_twenty_two_and_each_has_its_texts() -> None:
+def test_there_are_twenty_three_and_each_has_its_texts() -> None:
     lessons = StoredLessons()
     cards = lessons.cards()
-    assert len(cards) >= 22
+    assert len(cards) >= 23
     assert len({card.title for card in cards}) == len(cards)
     for card in cards:
         text = lessons.text(card.name)

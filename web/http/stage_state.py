@@ -18,4 +18,9 @@ def stage_fields(snapshot: Snapshot) -> dict[str, Any]:
     last = None
     if seen:
         last = {"event": seen[-1].event, "time_s": seen[-1].time_s, "moved_m": round(seen[-1].moved_m, 2)}
-    return {"vision": bool(seeing), "closure": last, "pairs": [asdict(pair) for pair in snapshot.pairs]}
+    return {
+        "vision": bool(seeing),
+        "closure": last,
+        "pairs": [asdict(pair) for pair in snapshot.pairs],
+        "additions_off": asdict(snapshot.additions_off),
+    }

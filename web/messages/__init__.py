@@ -101,7 +101,7 @@ from web.messages.office_orders import (
     UndoEdit,
     UsePreset,
 )
-from web.messages.pairs import PairChoice
+from web.messages.pairs import AdditionsOff, PairChoice
 from web.messages.recording import RecordingView
 from web.messages.reports import (
     CellReport,
@@ -136,6 +136,7 @@ from web.messages.trial import TrialState, TrialView
 __all__ = [
     "NO_PLACES",
     "Accepted",
+    "AdditionsOff",
     "BackToNow",
     "BeginLesson",
     "Belief",

@@ -178,7 +178,9 @@ class CompareBrains(CommandModel):
     """Give a second brain the same senses, and show both. It differs from the first in the parameters of a named pair, or in
     `values`, and changes nothing in the first.
 
-    since: "beginning" begins the run anew with both, "now" goes on with a copy of the first.
+    pair: papers, vision, cells, cells-64, rate, no-map; or one of our additions by its name, such as "exact solver": the
+    second does without it, or has it if the first does without. since: "beginning" begins the run anew with both, "now"
+    goes on with a copy of the first.
     """
 
     type: Literal["compare_brains"]

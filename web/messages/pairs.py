@@ -16,3 +16,11 @@ class PairChoice:
     title: str
     about: str
     since: Since
+
+
+@dataclass(frozen=True, slots=True)
+class AdditionsOff:
+    """Our additions that the first brain lacks, by name: if it began again, and as it runs."""
+
+    beginning: tuple[str, ...] = ()
+    now: tuple[str, ...] = ()

@@ -31,7 +31,7 @@ from web.messages.brain import (
 from web.messages.judged import Closure, Ghost, KnownPlace, Spread
 from web.messages.lesson import LessonView, UntilView
 from web.messages.office import LivingLayer, Movements, OfficeEdition, WorldDrawing
-from web.messages.pairs import PairChoice
+from web.messages.pairs import AdditionsOff, PairChoice
 from web.messages.recording import RecordingView
 from web.messages.reports import Report
 from web.messages.situation import SituationView
@@ -143,6 +143,7 @@ class Snapshot:
     time: TimeView | None = None  # None: nothing of this run can be gone back to
     beside: BesideView | None = None  # None: one brain only
     pairs: tuple[PairChoice, ...] = ()  # brains that could be compared with the first
+    additions_off: AdditionsOff = AdditionsOff()
     map_turn_rad: float = 0.0  # turns the map, for the eye only, so that it lies as the office does
     map_in_office: Pose | None = (
         None  # the map's frame by the fit after which `error_map_m` is measured; None without truth

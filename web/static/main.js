@@ -100,7 +100,7 @@ link.on("state", (/** @type {{ state: State, page: PageFields }} */ detail) => {
   timeline.at(state, detail.page.time);
   lesson.at(state);
   runUntil.at(state, detail.page.places);
-  beside.show(state.beside, detail.page.pairs);
+  beside.show(state.beside, detail.page.pairs, detail.page.additions_off);
   first.at(state, detail.page);
   office = detail.page.office;
   if (source.lacks && editor.open) editor.toggle(false);

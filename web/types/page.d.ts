@@ -167,7 +167,10 @@ type PageFields = {
   closure: { event: number; time_s: number; moved_m: number } | null;
   situation: SituationFields | null;
   pairs: PairChoice[];
+  additions_off: AdditionsOff;
 };
+/** By name: if the run began again, and as it is. */
+type AdditionsOff = { beginning: string[]; now: string[] };
 type PairChoice = { name: string; title: string; about: string; since: "beginning" | "now" };
 type BrainFields = {
   name: string;

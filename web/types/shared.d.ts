@@ -90,6 +90,10 @@ type IndexIds = {
   "brain-load": HTMLElementTagNameMap["button"];
   "brain-save": HTMLElementTagNameMap["a"];
   "brains": HTMLElementTagNameMap["details"];
+  "brains-about": HTMLElementTagNameMap["small"];
+  "brains-addition": HTMLElementTagNameMap["select"];
+  "brains-addition-anew": HTMLElementTagNameMap["button"];
+  "brains-addition-now": HTMLElementTagNameMap["button"];
   "brains-anew": HTMLElementTagNameMap["div"];
   "brains-now": HTMLElementTagNameMap["div"];
   "branches": HTMLElementTagNameMap["span"];

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from app.comparing import LONGEST_NAME
 from app.config import Config, Value
-from app.config.pairs import NAMES, pairs_beside
+from app.config.pairs import NAMES, pair_of, pairs_beside, without
 from app.config.presets import PRESETS
 from app.engine.engine import Engine
 from app.recordings.playing import Player
@@ -17,6 +18,7 @@ from app.runs.replay import replay
 from app.runs.run_file import open_run
 from app.session import Session
 from app.trials.trial import run_trial
+from ratslam_core.params.additions import ADDITIONS
 from web import messages as m
 from web.http.run_state import beside_fields
 
@@ -80,6 +82,49 @@ def test_whatever_the_first_is_the_page_offers_what_differs_from_it_and_no_two_a
         assert pair.first != pair.second
 
 
+@pytest.mark.parametrize("values", FIRSTS, ids=range(len(FIRSTS)))
+def test_each_addition_is_a_pair_by_its_name_and_turning_it_twice_is_what_there_was(values: dict[str, Value]) -> None:
+    first = Config().with_values(values)
+    for addition in ADDITIONS:
+        pair = pair_of(addition.name, first)
+        second = first.with_values(pair.values)
+        assert second != first
+        assert pair.second == f"{'with' if without(addition, first) else 'without'} {addition.name}"
+        assert without(addition, second) != without(addition, first)
+        assert set(pair.values) == set(addition.off)
+        assert 0 < len(pair.second) <= LONGEST_NAME
+    assert not set(NAMES) & {addition.name for addition in ADDITIONS}
+
+
+def test_ours_has_every_addition_and_the_papers_lack_each_at_least_in_part() -> None:
+    assert [addition.name for addition in ADDITIONS if without(addition, Config())] == []
+    papers = [Config().with_values(values) for name, values in PRESETS.items() if name.startswith("paper-")]
+    assert all(without(addition, paper) for addition in ADDITIONS for paper in papers)
+    assert pair_of("exact solver", papers[-1]).second == "with exact solver"  # though it sweeps by experience, as ours
+
+
+def test_an_addition_begins_by_its_name_and_the_page_is_told_which_are_off() -> None:
+    engine = an_engine(OFFICE)
+    assert engine.snapshot().additions_off == m.AdditionsOff()
+    tell(engine, type="compare_brains", pair="exact solver")
+    run_for(engine, 20)
+    view = shown(engine)
+    assert (view.first.name, view.second.name) == ("ours", "without exact solver")
+    assert {(changed.name, changed.first, changed.second) for changed in view.changed} == {
+        ("solver.enabled", True, False),
+        ("experience_map.solve_every", 50, 0),
+        ("experience_map.sweep", "by experience", "by link"),
+    }
+    tell(engine, type="compare_brains", pair="islands", since="now")
+    assert (shown(engine).second.name, shown(engine).since_s) == ("without islands", 2.0)
+    tell(engine, type="set_parameter", name="pose_cells.carry", value=False)
+    tell(engine, type="set_parameter", name="memory.familiar", value=False)
+    off = ("carry", "familiar ground")
+    assert engine.snapshot().additions_off == m.AdditionsOff(off, off)
+    tell(engine, type="compare_brains", pair="familiar ground")
+    assert (shown(engine).first.name, shown(engine).second.name) == ("as set", "with familiar ground")
+
+
 def test_what_is_offered_begins_by_the_names_that_were_told_and_what_differs_is_told() -> None:
     engine = an_engine(OFFICE)
     tell(engine, type="use_preset", name="paper-2006")
@@ -137,6 +182,8 @@ def test_from_now_on_and_again_from_the_beginning_after_a_restart() -> None:
         ({"pair": "cells", "values": {"pose_cells.n_x": 8}}, "either a pair or values"),
         ({"pair": "cells-64"}, "the first brain is that already: nothing would differ; what would: papers, vision"),
         ({"pair": "nobody"}, "there is no pair 'nobody'; expected one of: papers, vision"),
+        ({"pair": "exact"}, "no-map; or an addition: order of the stages, carry, "),
+        ({"pair": "exact solver", "since": "now"}, "solver.enabled cannot change while a brain runs"),
         ({"values": {"pose_cells.n_x": 64}}, "nothing would differ"),
         ({"values": {"pilot.seek": False}}, "pilot.seek cannot differ"),
         ({"pair": "cells", "since": "now"}, "pose_cells.n_x, pose_cells.n_y cannot change while a brain runs"),

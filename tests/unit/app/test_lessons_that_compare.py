@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from app.config import Config
 from app.engine.teaching import Teaching
 from app.lessons.performance import perform, rounds_of
 from app.lessons.report import report_of
@@ -60,6 +61,14 @@ def test_the_second_brain_is_the_first_again_when_nothing_is_different_yet() -> 
     assert second == {name: first[name] for name in OF_SECOND}
 
 
+def test_one_addition_can_be_missing_by_its_name() -> None:
+    words = "{error_m of ours} and {error_m of without carry} after {path_m}."
+    (one,) = perform(short_lesson(show={**SHOW, "compare": "carry"}, outcome=words))
+    assert one.session.companion is not None
+    assert one.session.companion.values == {"pose_cells.carry": False}
+    assert [label for label, _ in rounds_of([one])] == ["without carry", "ours"]
+
+
 def test_it_is_told_what_came_of_both() -> None:
     report = report_of(from_the_beginning())
     assert report.kept
@@ -72,7 +81,7 @@ def test_it_is_told_what_came_of_both() -> None:
         ({"scene": TWO, "outcome": "{error_m of theirs}"}, "there is no brain 'theirs'; it must be one of: ours, paper"),
         ({"scene": TWO, "outcome": "{snaps of paper-2006}"}, "of a second brain only error_m, "),
         ({"scene": {**SCENE, "compare": "cells-64"}}, "nothing would differ"),
-        ({"scene": {**SCENE, "compare": "nobody"}}, "Input should be 'papers', 'vision'"),
+        ({"scene": {**SCENE, "compare": "nobody"}}, "there is no pair 'nobody'; expected one of: papers"),
         ({"show": {**SHOW, "compare": "cells"}}, "'cells' changes pose_cells.n_x, which a running brain cannot"),
         ({"scene": TWO, "show": {**SHOW, "compare": "vision"}}, "give it once"),
         ({"scene": TWO, "rounds": [{"label": "a"}, {"label": "b"}]}, "no rounds beside it"),
@@ -81,6 +90,21 @@ def test_it_is_told_what_came_of_both() -> None:
 def test_what_cannot_be_compared_is_told_in_a_sentence(changes: dict[str, object], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         short_lesson(**changes)
+
+
+def test_what_is_compared_from_a_lesson_begins_as_the_lesson_did_and_takes_its_settings_along() -> None:
+    lesson = short_lesson(scene={**SCENE, "seed": 9, "set": {"robot.gyro_bias": 0.02}})
+    engine = an_engine(OFFICE)
+    engine.begin_lesson(Teaching(lesson, 9, engine.next_config))
+    for pair in ("carry", "islands"):  # the second begins from what is no longer the lesson's own run
+        tell(engine, type="compare_brains", pair=pair)
+        session = engine.run.session
+        assert (engine.run.lesson, session.seed, session.tick_count) == (None, 9, 0)
+        assert session.config.robot.gyro_bias == 0.02
+    assert engine.next_config == Config()
+    tell(engine, type="set_parameter", name="pose_cells.carry", value=False)
+    tell(engine, type="reset")
+    assert engine.run.session.config == Config().with_value("pose_cells.carry", False)
 
 
 def test_on_the_page_both_stand_there_once_more_too_and_who_ends_it_breaks_it_off() -> None:

@@ -4,12 +4,14 @@ import { $, find } from "../elements/dom.js";
 import { make } from "../elements/elements.js";
 import { HEADS, MEANS, cellsOf, changedWords, odometryWords, sinceWhen, valueWords } from "../model/beside.js";
 import { renew } from "../panel/parts.js";
+import { AdditionChoice } from "./additions.js";
 
 export class BesideStrip {
   /** @param {(wish: Command, done?: string) => Promise<boolean>} command */
   constructor(command) {
     this.command = command;
     this.told = "";
+    this.additions = new AdditionChoice((pair, since) => this.begin(pair, since));
     $("beside-heads").append(
       ...HEADS.map((text) => make("th", { scope: "col", textContent: text, title: MEANS[text] ?? "" })),
     );
@@ -21,15 +23,23 @@ export class BesideStrip {
     const small = since === "beginning" ? [make("small", { textContent: about })] : [];
     const button = make("button", { type: "button" }, make("span", { textContent: title }), ...small);
     button.dataset.key = name;
-    button.addEventListener("click", () => {
-      $("brains").open = false;
-      this.command({ type: "compare_brains", pair: name, since }, "Two brains, the same senses. The first one drives.");
-    });
+    button.addEventListener("click", () => this.begin(name, since));
     return button;
   }
 
-  /** @param {BesideFields | null} beside @param {PairChoice[]} pairs what could be compared with the first brain */
-  show(beside, pairs) {
+  /** @param {string} pair @param {"beginning" | "now"} since */
+  begin(pair, since) {
+    $("brains").open = false;
+    this.command({ type: "compare_brains", pair, since }, "Two brains, the same senses. The first one drives.");
+  }
+
+  /**
+   * @param {BesideFields | null} beside
+   * @param {PairChoice[]} pairs what could be compared with the first brain
+   * @param {AdditionsOff} off our additions that it lacks
+   */
+  show(beside, pairs, off) {
+    this.additions.show(off);
     for (const [since, id] of /** @type {const} */ ([
       ["beginning", "brains-anew"],
       ["now", "brains-now"],

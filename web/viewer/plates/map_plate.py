@@ -50,7 +50,7 @@ NEAR = 0.5
 
 class MapPlate(Plate):
     def __init__(self, scene: viser.SceneApi, palette: Palette, name: str = "map") -> None:
-        super().__init__(scene, palette, name, ORIGIN, SHEET)
+        super().__init__(scene, palette, name, ORIGIN, SHEET, beside_title=BAR[0] + 0.3)
         self.fit = MapFit()
         self._layer: MapLayer | None = None
         floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (WIDTH / 2, DEPTH / 2)

@@ -29,6 +29,7 @@ class Plate:
         name: str,
         origin: tuple[float, float, float],
         sheet: tuple[float, float, float, float],  # width, depth, centre y, corner radius
+        beside_title: float = 0.0,  # room that the title leaves at its right
     ) -> None:
         self.scene, self.palette, self.root, self.origin = scene, palette, f"/{name}", origin
         self.frame = scene.add_frame(self.root, show_axes=False, position=origin)
@@ -45,7 +46,7 @@ class Plate:
         )
         self._heading_words = ("", "")
         self._brain: tuple[str, Rgb] | None = None
-        self._title = Sign(scene, f"{self.root}/title", TITLE_M)
+        self._title = Sign(scene, f"{self.root}/title", TITLE_M, most=width - 1.0 - beside_title)
         self._subtitle = Sign(scene, f"{self.root}/subtitle", SUBTITLE_M)
 
     def stand_at(self, x: float, y: float) -> None:

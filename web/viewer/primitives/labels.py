@@ -33,12 +33,21 @@ def add_picture(
 
 
 class Sign:
-    """Words in a line `height` high; `anchor` says which end of them is at the place."""
+    """Words in a line `height` high, smaller if they were longer than `most`; `anchor` says which end of them is at the
+    place."""
 
     def __init__(
-        self, scene: viser.SceneApi, name: str, height: float, *, anchor: str = "left", leaning: bool = False
+        self,
+        scene: viser.SceneApi,
+        name: str,
+        height: float,
+        *,
+        anchor: str = "left",
+        leaning: bool = False,
+        most: float = math.inf,
     ) -> None:
-        self._height, self._anchor = height * 1.3, {"left": 0.5, "centre": 0.0, "right": -0.5}[anchor]
+        self._height, self._most = height * 1.3, most
+        self._anchor = {"left": 0.5, "centre": 0.0, "right": -0.5}[anchor]
         self._image = images.text(" ", (0, 0, 0), 16)
         self.handle = add_picture(
             scene, name, self._image, 0.1, self._height, visible=False, wxyz=LEANING if leaning else FLAT
@@ -46,11 +55,13 @@ class Sign:
 
     def show(self, image: images.Pixels, at: Place) -> None:
         """`image` comes from `images.text`, which hands out the same object for the same words."""
-        width = self._height * image.shape[1] / image.shape[0]
+        ratio = image.shape[1] / image.shape[0]
+        height = min(self._height, self._most / ratio)
+        width = height * ratio
         if image is not self._image:
             self._image = image
             self.handle.image = images.upright(image)
-            self.handle.render_width, self.handle.render_height = width, self._height
+            self.handle.render_width, self.handle.render_height = width, height
         self.handle.position = (at[0] + width * self._anchor, at[1], at[2])
         self.handle.visible = True
 
