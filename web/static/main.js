@@ -73,7 +73,7 @@ const kept = new KeptBrain(async (world) => world === state?.world || mayLeave()
 const gallery = new Gallery(link, mayLeave);
 const lessons = new LessonList(link, mayLeave);
 const lesson = new Lesson(link, lessons, { viewer, panel, timeline });
-const runUntil = new RunUntilMenu(command);
+const runUntil = new RunUntilMenu(command, () => first.finds);
 const beside = new BesideStrip(command);
 const watched = new Watched({
   here: () => command({ type: "resume" }),
@@ -86,6 +86,9 @@ viewer.addEventListener("inside", () => {
   const inside = viewer.frame.contentWindow;
   if (inside) watching ? takeNoFiles(inside) : files.catchDrops(inside);
 });
+viewer.addEventListener("slow", () =>
+  first.afterwards(() => toast("No graphics card in use: the plates move slowly.", { notice: true })),
+);
 
 // ---------------------------------------------------------------- what arrives
 
@@ -119,7 +122,7 @@ link.on("events", (/** @type {{ fresh: boolean, events: TimelineEvent[] }} */ de
     speaker.hear(detail.events);
     first.hear(detail.events);
   }
-  const told = detail.fresh ? ["warning"] : ["warning", "unreachable"];
+  const told = detail.fresh || first.searches ? ["warning"] : ["warning", "unreachable"];
   for (const event of detail.events.slice(-20))
     if (told.includes(event.kind)) toast(sentence(event.text), { bad: true });
 });

@@ -172,6 +172,7 @@ type IndexIds = {
   "first-end": HTMLElementTagNameMap["p"];
   "first-explore": HTMLElementTagNameMap["button"];
   "first-find": HTMLElementTagNameMap["button"];
+  "first-search": HTMLElementTagNameMap["progress"];
   "first-share": HTMLElementTagNameMap["progress"];
   "follow": HTMLElementTagNameMap["button"];
   "gallery-all": HTMLElementTagNameMap["div"];

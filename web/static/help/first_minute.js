@@ -16,8 +16,13 @@ export class FirstMinuteCard {
     this.things = new FirstMinute();
     this.tick = 0;
     this.hurries = false;
+    this.hastens = false; // runs quickly until it is found again
+    /** @type {UntilView["state"] | null} */
+    this.until = null;
+    /** @type {(() => void)[]} */
+    this.later = [];
     $("first-explore").addEventListener("click", () => this.hurry());
-    $("first-find").addEventListener("click", () => this.link.ask({ type: "run_until", what: "found again" }));
+    $("first-find").addEventListener("click", () => this.find());
     $("first-close").addEventListener("click", () => this.show(false));
     $("help-first").addEventListener("click", () => {
       $("help-dialog").close();
@@ -31,14 +36,40 @@ export class FirstMinuteCard {
   show(on) {
     this.box.hidden = !on;
     document.body.dataset.first = String(on);
-    if (!on) remember(KEY);
+    if (!on) {
+      remember(KEY);
+      for (const say of this.later.splice(0)) say();
+    }
     this.draw();
   }
 
+  /** Whether it tells to watch the robot find itself. No way to any goal is known meanwhile, which need not be said. */
+  get searches() {
+    return this.things.searches && this.box.checkVisibility();
+  }
+
+  /** Whether it shows that this runs quickly, so that nobody else need show it, nor say what comes of it. */
+  get finds() {
+    return this.hastens && this.box.checkVisibility();
+  }
+
+  /** Says what can wait until the card is put away: a newcomer has enough to read. @param {() => void} say */
+  afterwards(say) {
+    if (this.box.hidden) say();
+    else this.later.push(say);
+  }
+
   /** @param {State} state @param {PageFields} page */
-  at({ tick, trial, lesson }, { recording, time }) {
+  at({ tick, trial, lesson, until }, { recording, time }) {
     this.tick = tick;
+    const ended = until?.state !== "running" && (this.until === "running" || this.things.found);
+    if (this.hastens && ended) {
+      if (this.finds && until?.state === "met") this.link.ask({ type: "resume" });
+      this.hastens = false;
+    }
+    this.until = until?.state ?? null;
     if (this.box.hidden) return;
+    $("first-search").value = until?.progress ?? 0;
     this.things.at(tick);
     this.box.classList.toggle("aside", Boolean(trial || lesson || recording || time?.past));
     this.draw();
@@ -60,10 +91,19 @@ export class FirstMinuteCard {
       find(row, ".gone").textContent = is ? "done: " : "";
     }
     $("first-explore").hidden = explored;
-    $("first-find").hidden = !this.things.searches;
+    $("first-find").hidden = !this.things.searches || this.hastens;
+    $("first-search").hidden = !this.hastens;
     $("first-share").hidden = !this.hurries;
     $("first-share").value = this.tick / FirstMinute.TICKS;
     $("first-end").hidden = !done;
+  }
+
+  /** Let it run as fast as the machine can until it is found again, and play on. */
+  async find() {
+    this.hastens = true;
+    this.draw();
+    if (!(await this.link.ask({ type: "run_until", what: "found again" })).accepted) this.hastens = false;
+    this.draw();
   }
 
   /** Let it explore as fast as the machine can, and play on. */

@@ -9,8 +9,12 @@ import { renew, say } from "../panel/parts.js";
 /** @typedef {Omit<RunUntil, "type">} Wish */
 
 export class RunUntilMenu {
-  /** @param {(wish: Command) => Promise<boolean>} command */
-  constructor(command) {
+  /**
+   * @param {(wish: Command) => Promise<boolean>} command
+   * @param {() => boolean} shownElsewhere whether somebody else shows that it runs, and says what comes of it
+   */
+  constructor(command, shownElsewhere) {
+    this.shownElsewhere = shownElsewhere;
     /** @type {UntilView["state"] | null} */
     this.state = null;
     this.command = command;
@@ -59,12 +63,12 @@ export class RunUntilMenu {
     renew(this.place, names, () => names.map((name) => make("option", { value: name, textContent: name })));
     const before = this.state;
     this.state = until?.state ?? null;
-    $("until").hidden = until?.state !== "running";
+    $("until").hidden = until?.state !== "running" || this.shownElsewhere();
     if (!until) return;
     say($("until-words"), until.words);
     $("until-done").value = until.progress;
     const end = before === "running" ? ending(until) : null;
-    if (end) toast(end, { notice: true });
+    if (end && !this.shownElsewhere()) toast(end, { notice: true });
   }
 
   /** @param {boolean} on */

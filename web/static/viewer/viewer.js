@@ -3,7 +3,6 @@
 import { $ } from "../elements/dom.js";
 import { freeFingers } from "./fingers.js";
 import { spareSoftware } from "./software.js";
-import { toast } from "../elements/toasts.js";
 import { fadeDrawing, firstFrame } from "./waking.js";
 
 export const phone = window.matchMedia("(max-width: 760px)");
@@ -80,7 +79,11 @@ export class Viewer extends EventTarget {
     this.frame.classList.add("awake");
     fadeDrawing();
     let looks = 20;
-    const timer = setInterval(() => (dismissSlowNotice(paper) || --looks === 0) && clearInterval(timer), 250);
+    const timer = setInterval(() => {
+      const slow = dismissSlowNotice(paper);
+      if (slow) this.dispatchEvent(new Event("slow"));
+      if (slow || --looks === 0) clearInterval(timer);
+    }, 250);
   }
 }
 
@@ -113,7 +116,6 @@ function dismissSlowNotice(paper) {
   for (const title of paper.querySelectorAll(".mantine-Notification-title")) {
     if (!(title.textContent ?? "").startsWith("Software WebGL")) continue;
     title.closest(".mantine-Notification-root, .mantine-Notifications-notification")?.querySelector("button")?.click();
-    toast("No graphics card in use: the plates move slowly.", { notice: true });
     return true;
   }
   return false;
