@@ -49,15 +49,19 @@ def open_page(
     forbidden: bool = False,
     stage: bool = True,
     first: bool = False,
+    touched: bool = False,
 ) -> Iterator[Page]:
     """The page, awake and alive. Afterwards its console must have no error, and no request may have left its origin.
 
     gone: the server goes away meanwhile, so connections may be refused. refused: the server has a reason to refuse an
     upload, which Chromium logs. forbidden: the same of what only the main page may do. stage: without the viewer the page
-    is there in a tenth of the time, to test what is around it. first: as on a first visit, which is welcomed.
+    is there in a tenth of the time, to test what is around it. first: as on a first visit, which is welcomed. touched: by
+    fingers, as a page narrower than 500 pixels is anyway.
     """
     context = browser.new_context(
-        viewport={"width": width, "height": height}, color_scheme="light" if light else "dark", has_touch=width < 500
+        viewport={"width": width, "height": height},
+        color_scheme="light" if light else "dark",
+        has_touch=touched or width < 500,
     )
     context.set_default_timeout(PATIENCE_MS)
     context.add_init_script(KEEP_TOASTS)

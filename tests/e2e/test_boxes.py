@@ -11,8 +11,9 @@ from playwright.sync_api import Browser, Page, expect
 from tests.e2e.browser import calm, open_page
 from tests.e2e.program import Program
 
-# 683 x 384 is 1366 x 768 enlarged twice; below 500 pixels the page is touched.
-SIZES = [(1024, 768), (1280, 720), (1366, 768), (1920, 1080), (683, 384), (390, 844), (820, 1180)]
+# 683 x 384 is 1366 x 768 enlarged twice.
+SIZES = [(1024, 768), (1280, 720), (1366, 768), (1920, 1080), (683, 384), (820, 1180)]
+TOUCHED = [(390, 844), (820, 1180), (1024, 768), (1366, 1024)]  # phones and tablets
 # Each of these stands alone; what lies in one of them may not cover its neighbours there either.
 PARTS = """header, footer, .views, .aids, .hints, #panel, #panel-show, #beside, #lesson, #trial, #first, #situation, #film,
     #walk, #kept, #presenter-bar, .toast"""
@@ -121,17 +122,66 @@ STATES: list[Callable[[Program, Page], None]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_nothing_is_covered_cut_or_too_small(program: Program, browser: Browser, size: tuple[int, int]) -> None:
+@pytest.mark.parametrize(("size", "touched"), [*((size, False) for size in SIZES), *((size, True) for size in TOUCHED)])
+def test_nothing_is_covered_cut_or_too_small(
+    program: Program, browser: Browser, size: tuple[int, int], touched: bool
+) -> None:
     program.command("reset", world="office", seed=5)
     program.command("step", ticks=300)
-    with open_page(browser, program.url, *size, stage=False) as page:
+    with open_page(browser, program.url, *size, stage=False, touched=touched) as page:
         page.evaluate("() => document.querySelectorAll('.toast').forEach((toast) => toast.remove())")
         wrong: list[str] = []
         for state in STATES:
             state(program, page)
             calm(page)
-            wrong += [
-                f"{state.__name__}: {each}" for each in page.evaluate(WRONG, [PARTS, 44 if size[0] < 500 else 24])
-            ]
+            wrong += [f"{state.__name__}: {each}" for each in page.evaluate(WRONG, [PARTS, 44 if touched else 24])]
         assert not wrong, "\n".join(wrong)
+
+
+SMALL = """() => [...document.querySelectorAll("button, select, summary, [role=tab], label.check, .pop a, .option")]
+    .filter((part) => part.checkVisibility({ visibilityProperty: true }) && !part.closest(".gone"))
+    .map((part) => [part, part.getBoundingClientRect()])
+    .filter(([part, { width, height }]) => Math.min(width, height) < 43.5 || part.scrollWidth > part.clientWidth + 1
+        && getComputedStyle(part).overflow !== "visible" && getComputedStyle(part).textOverflow !== "ellipsis")
+    .map(([part, { width, height }]) => `${part.id || part.textContent || part.ariaLabel}: ${width} x ${height}`)"""
+
+
+@pytest.mark.parametrize("size", [(390, 844), (1024, 768)])
+def test_all_that_opens_is_large_enough_for_fingers(program: Program, browser: Browser, size: tuple[int, int]) -> None:
+    program.command("reset", world="office", seed=5)
+    program.command("step", ticks=300)
+    program.command("tag", name="the printer")
+    with open_page(browser, program.url, *size, stage=False, touched=True) as page:
+        wrong: dict[str, str] = {}
+
+        def look(where: str) -> None:
+            calm(page)
+            for each in page.evaluate(SMALL):
+                wrong.setdefault(each, where)
+
+        if size[0] < 500:
+            page.click("#panels")
+        for tab in page.locator("#panel [role=tab]").all():
+            tab.click()
+            look(tab.inner_text())
+        page.evaluate("() => document.querySelectorAll('#panel details').forEach((part) => (part.open = true))")
+        look("all that the panel can unfold")
+        if size[0] < 500:
+            page.click("#panels")
+        for key in "?", "c", "g", "/":
+            page.keyboard.press(key)
+            expect(page.locator("dialog[open]")).to_have_count(1)
+            look(key)
+            page.click("dialog[open] .dialog-head [aria-label=Close]")
+            expect(page.locator("dialog[open]")).to_have_count(0)
+        page.keyboard.press("o")
+        page.wait_for_selector("#plan .body")
+        page.click("#edit-time")
+        look("editor")
+        page.click("#edit-close")
+        page.click("#keep summary")
+        look("what can be kept")
+        page.click("#bookmark")
+        expect(page.locator("#bookmark-list input")).to_be_visible()
+        look("events and bookmarks")
+        assert not wrong, "\n".join(f"{where}: {each}" for each, where in wrong.items())
