@@ -57,8 +57,18 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     whole("the island", map_.islands.current, 0, map_.islands.begun)
     whole("the first experience of the latest island", map_.islands.landed, 0, n)
     whole("joined islands", map_.islands.joined, 0, map_.islands.begun)
+    _foreign_views(map_, views)
     pose("the robot at the latest sight", gate._robot)
     pose("where it was put", gate._other)
+
+
+def _foreign_views(map_: ExperienceMap, views: int) -> None:
+    known = map_._foreign_views
+    true(isinstance(known, tuple) and len(known) == 3, "what is known of other islands must have three parts")
+    begun, joined, foreign = known
+    whole("the islands when their views were gathered", begun)
+    whole("the joined islands when their views were gathered", joined)
+    within("a view of another island", array("views of other islands", foreign, np.int64, (np.size(foreign),)), 0, views - 1)
 
 
 def _ground(ground: FamiliarGround, n: int, views: int) -> None:
