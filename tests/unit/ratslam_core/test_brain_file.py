@@ -109,6 +109,12 @@ def reshape(path: str, how: Any) -> Any:
     return change
 
 
+def see_elsewhere(tree: Any, arrays: list[np.ndarray]) -> None:
+    """The views of other islands have one that nobody has seen."""
+    holder, name = at(tree, f"{MAP}._foreign_views")
+    arrays[holder[name]["tuple"][2]["array"]] = np.array([2**62])
+
+
 MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "experience_map._experiences"
 
 
@@ -151,6 +157,7 @@ MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "exper
         (write(f"{MAP}._temporal_map", {"same": 0}), "must be a TemporalMap, got a RatSlam"),
         (put("goal_memory._place", 3, 1), "the plane must be empty"),
         (reshape("goal_memory._keys", lambda a: a[:-1]), "times must have shape"),
+        (see_elsewhere, "a view of another island must be from 0 to"),
         (write("goal_memory._used", 4096), "the number of links must be a whole number from 0 to 2048"),
         (reshape("map_grid._scans", lambda a: a[:, :2]), "scans must have shape"),
         (put("map_grid._count", 255, 1), "may have scans"),
