@@ -38,10 +38,10 @@ def make_run(world: str, hours: float, budget_bytes: int) -> TimeMachine:
         if tick % TELL_AFTER == 0:
             ticks = np.diff([frame.tick for frame in machine.live.keyframes])
             print(
-                f"{tick / HOUR_TICKS:4.1f} h: {time.monotonic() - began_s:.0f} s on the clock, {time.process_time() - cpu_s:.0f} s "
-                f"of the processor, {1e3 * keeping_s / tick:.2f} ms a tick for keyframes; {len(ticks) + 1} of them with "
-                f"{machine.nbytes / 1e6:.0f} MB, {np.median(ticks) / 10:.0f} s apart, {ticks.max() / 10:.0f} s at most; "
-                f"{len(session.brain.experience_map)} experiences",
+                f"{tick / HOUR_TICKS:4.1f} h: {time.monotonic() - began_s:.0f} s on the clock, "
+                f"{time.process_time() - cpu_s:.0f} s of the processor, {1e3 * keeping_s / tick:.2f} ms a tick for "
+                f"keyframes; {len(ticks) + 1} of them with {machine.nbytes / 1e6:.0f} MB, {np.median(ticks) / 10:.0f} s "
+                f"apart, {ticks.max() / 10:.0f} s at most; {len(session.brain.experience_map)} experiences",
                 flush=True,
             )
     return machine

@@ -25,9 +25,9 @@ _PACK, _UNPACK = zstandard.ZstdCompressor(level=1), zstandard.ZstdDecompressor()
 Bytes = NDArray[np.uint8]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(slots=True, eq=False)
 class Chunk:
-    """base: what the content was XORed with, its bytes then sorted by their place in a number."""
+    """base: what the content was XORed with. itemsize: of the numbers by whose places the bytes were then sorted."""
 
     packed: bytes
     base: Chunk | None = None
@@ -35,9 +35,14 @@ class Chunk:
 
     def content(self) -> Bytes:
         raw = np.frombuffer(_UNPACK.decompress(self.packed), np.uint8)
-        if self.base is None:
-            return raw
-        return raw.reshape(self.itemsize, -1).T.reshape(-1) ^ self.base.content()
+        if self.itemsize > 1:
+            raw = raw.reshape(self.itemsize, -1).T.reshape(-1)
+        return raw if self.base is None else raw ^ self.base.content()
+
+    def pack_whole(self, whole: Bytes, dtype: np.dtype[Any]) -> None:
+        """Keep the content without a base. Whole numbers are mostly small ones: their bytes pack better sorted."""
+        self.base, self.itemsize = None, dtype.itemsize if dtype.kind in "iu" else 1
+        self.packed = _PACK.compress(_sorted(whole, self.itemsize))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,6 +78,7 @@ class Chunks:
     def __init__(self) -> None:
         self.nbytes = 0  # of all states that are kept, without the copy
         self._held: Counter[int] = Counter()  # how many arrays and other chunks hold a chunk, by its id
+        self._based: dict[int, list[tuple[Chunk, np.dtype[Any]]]] = {}  # the other chunks that hold one, by its id
         self._uses: Counter[int] = Counter()  # how many states hold an array, by its id
         self._last: dict[str, tuple[Bytes, KeptArray]] = {}  # by its place in the tree
 
@@ -94,7 +100,7 @@ class Chunks:
             self._uses[id(array)] += 1
             if self._uses[id(array)] == 1:
                 for chunk in array.chunks:
-                    self._hold(chunk)
+                    self._hold(chunk, array.dtype)
         return made
 
     def drop(self, state: KeptState) -> None:
@@ -107,20 +113,33 @@ class Chunks:
                 for chunk in array.chunks:
                     self._let_go(chunk)
 
-    def _hold(self, chunk: Chunk) -> None:
+    def _hold(self, chunk: Chunk, dtype: np.dtype[Any]) -> None:
         self._held[id(chunk)] += 1
         if self._held[id(chunk)] == 1:
             self.nbytes += len(chunk.packed) + ENTRY
             if chunk.base is not None:
-                self._hold(chunk.base)
+                self._based.setdefault(id(chunk.base), []).append((chunk, dtype))
+                self._hold(chunk.base, dtype)
 
     def _let_go(self, chunk: Chunk) -> None:
         self._held[id(chunk)] -= 1
         if self._held[id(chunk)] == 0:
             del self._held[id(chunk)]
+            self._based.pop(id(chunk), None)
             self.nbytes -= len(chunk.packed) + ENTRY
             if chunk.base is not None:
+                others = self._based[id(chunk.base)]
+                others[:] = [other for other in others if other[0] is not chunk]
                 self._let_go(chunk.base)
+        elif self._held[id(chunk)] == 1 and len(others := self._based.get(id(chunk), [])) == 1:
+            self._free(chunk, *others.pop())
+
+    def _free(self, base: Chunk, chunk: Chunk, dtype: np.dtype[Any]) -> None:
+        """Only this chunk needs its base any more: as a whole it takes less than both."""
+        self.nbytes -= len(chunk.packed)
+        chunk.pack_whole(chunk.content(), dtype)
+        self.nbytes += len(chunk.packed)
+        self._let_go(base)
 
 
 def _kept(array: NDArray[Any], before: tuple[Bytes, KeptArray] | None) -> tuple[Bytes, KeptArray]:
@@ -137,7 +156,7 @@ def _kept(array: NDArray[Any], before: tuple[Bytes, KeptArray] | None) -> tuple[
     for number in numbers:
         part = slice(*parts[number])
         copy[part] = raw[part]
-        chunks[number] = _chunk(raw[part], array.itemsize, chunks[number])
+        chunks[number] = _chunk(raw[part], array.dtype, chunks[number])
     return copy, KeptArray(array.dtype, array.shape, tuple(chunks), old.starts)
 
 
@@ -153,7 +172,7 @@ def _kept_anew(array: NDArray[Any], raw: Bytes, before: tuple[Bytes, KeptArray] 
     for start, end in _parts(starts, len(raw)):
         content = raw[start:end].tobytes()
         if content not in known:
-            known[content] = Chunk(_PACK.compress(content))
+            known[content] = _whole(raw[start:end], array.dtype)
         chunks.append(known[content])
     return KeptArray(array.dtype, array.shape, tuple(chunks), starts)
 
@@ -177,15 +196,25 @@ def _parts(starts: NDArray[np.int64], size: int) -> list[tuple[int, int]]:
     return list(zip(begins, [*begins[1:], size], strict=True)) if begins else []
 
 
-def _chunk(raw: Bytes, itemsize: int, before: Chunk | None) -> Chunk:
-    base = before if before is None or before.base is None else before.base
-    if base is not None:
-        content = base.content()
-        if len(content) == len(raw):
-            packed = _PACK.compress((raw ^ content).reshape(-1, itemsize).T.tobytes())
-            if len(packed) < WORTH * len(base.packed):
-                return Chunk(packed, base, itemsize)
-    return Chunk(_PACK.compress(raw.data))
+def _chunk(raw: Bytes, dtype: np.dtype[Any], before: Chunk) -> Chunk:
+    base = before.base or before
+    content = base.content()
+    if len(content) == len(raw):
+        packed = _PACK.compress(_sorted(raw ^ content, dtype.itemsize))
+        if len(packed) < WORTH * len(base.packed):
+            return Chunk(packed, base, dtype.itemsize)
+    return _whole(raw, dtype)
+
+
+def _whole(raw: Bytes, dtype: np.dtype[Any]) -> Chunk:
+    chunk = Chunk(b"")
+    chunk.pack_whole(raw, dtype)
+    return chunk
+
+
+def _sorted(raw: Bytes, itemsize: int) -> bytes:
+    """By the place of each byte in its number."""
+    return raw.reshape(-1, itemsize).T.tobytes()
 
 
 def _changed(before: Bytes, now: Bytes, starts: NDArray[np.int64]) -> NDArray[np.int64]:

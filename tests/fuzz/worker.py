@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import re
 import resource
@@ -23,6 +24,7 @@ ALL = {name: work for name, (work, _) in KINDS.items()} | MESSAGES
 def processed(kind: str, seed: int) -> dict[str, object]:
     """What became of one input: accepted, refused in a sentence, or a traceback."""
     if FORGET.exists():
+        ctypes.CDLL(None).malloc_trim(0)  # what earlier inputs needed may be free, and yet not given back
         FORGET.write_text("5")  # the most memory so far
     began = time.process_time()  # however busy the machine is
     try:
@@ -37,7 +39,8 @@ def processed(kind: str, seed: int) -> dict[str, object]:
 
 
 def peak_mib() -> int:
-    """The most memory that this process has used, on Linux for this input. What `getrusage` says on Linux includes the process that started this one."""
+    """The most memory that this process has used, on Linux for this input alone. What `getrusage` says there includes the
+    process that started this one."""
     if STATUS.exists():
         return int(re.search(r"VmHWM:\s+(\d+) kB", STATUS.read_text())[1]) >> 10  # type: ignore[index]
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> 10
