@@ -68,7 +68,8 @@ def _foreign_views(map_: ExperienceMap, views: int) -> None:
     begun, joined, foreign = known
     whole("the islands when their views were gathered", begun)
     whole("the joined islands when their views were gathered", joined)
-    within("a view of another island", array("views of other islands", foreign, np.int64, (np.size(foreign),)), 0, views - 1)
+    seen = array("views of other islands", foreign, np.int64, (np.size(foreign),))
+    within("a view of another island", seen, 0, views - 1)
 
 
 def _ground(ground: FamiliarGround, n: int, views: int) -> None:

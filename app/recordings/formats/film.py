@@ -38,7 +38,7 @@ class Film:
         self.jumps = True  # whether every frame after a jump was the right one so far
 
     def frames(self, problems: Problems) -> Iterator[Sensed]:
-        """In order. Those of a film that was read once are unpacked when they are asked for, the first one also before."""
+        """In order. Those of a film that was read once are only unpacked when they are asked for."""
         if not self._whole:
             yield from self._anew(problems)
             return
@@ -74,11 +74,10 @@ class Film:
                 time = told(video)
                 if time <= last:  # formats without times of their own
                     time = last + step_ns if number else 0
-                good, frame = video.retrieve()  # at once: when it is asked for, the next one may be there already
-                good = good and frame.ndim == 3
+                frame = _retrieved(video)  # at once: when it is asked for, the next one may be there already
                 self._times.append(time)
-                self._sums.append(_sum(frame) if good else BROKEN)
-                yield Sensed(time, self._where(number), partial(_unpacked, frame if good else None))
+                self._sums.append(BROKEN if frame is None else _sum(frame))
+                yield Sensed(time, self._where(number), partial(_unpacked, frame))
                 number, last = number + 1, time
         except cv2.error as error:
             problems.add("the rest of the video", self._path.name, f"left out: {error.err}")
@@ -130,10 +129,9 @@ class _Reading:
                 if not video.grab():
                     return None
                 self._next += 1
-            good, frame = video.retrieve()
+            return _retrieved(video)
         except cv2.error:
             return None
-        return frame if good and frame.ndim == 3 else None
 
     def _begin(self) -> cv2.VideoCapture:
         self._video, self._next, self._jumped = opened(self._path), 0, False
@@ -158,7 +156,13 @@ def opened(path: Path) -> cv2.VideoCapture:
 def told(video: cv2.VideoCapture) -> int:
     """The time of the frame that was grabbed last, as the file has it, ns; -1: it has none."""
     ms = video.get(cv2.CAP_PROP_POS_MSEC)
-    return round(ms * 1e6) if abs(ms) < 1e14 else -1
+    return round(ms * 1e6) if abs(ms) < 5e12 else -1  # in 64 bits
+
+
+def _retrieved(video: cv2.VideoCapture) -> NDArray[np.uint8] | None:
+    """The frame that was grabbed last; None: it cannot be unpacked."""
+    good, frame = video.retrieve()
+    return np.asarray(frame, np.uint8) if good and frame.ndim == 3 else None
 
 
 def _sum(frame: NDArray[np.uint8]) -> int:

@@ -66,7 +66,7 @@ def image(moment: Moment) -> NDArray[np.uint8]:
 
 
 def test_any_frame_is_that_of_playing_from_the_beginning(recording: Recording) -> None:
-    straight = [moment.image for moment in recording.moments()]
+    straight = [image(moment) for moment in recording.moments()]
     assert len(straight) >= FRAMES - 1
     reel, rng = Reel(recording, budget_bytes=0), random.Random(1)
     for _ in range(25):
@@ -88,7 +88,7 @@ def test_a_jump_that_lands_elsewhere_is_not_believed(
     lands: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recording = open_recording(written(tmp_path / "v.mp4", "mp4v"))
-    straight, really = [moment.image for moment in recording.moments()], film.opened
+    straight, really = [image(moment) for moment in recording.moments()], film.opened
 
     class Elsewhere:
         """A video whose frames after a jump are not those that their times tell of."""
