@@ -136,7 +136,7 @@ class FakeViewer:
     def turned(self, _client_id: int) -> Camera | None:
         return None
 
-    def of(self, _theme: Theme) -> FakeViewer:
+    def of(self, _theme: Theme, _large: bool = False) -> FakeViewer:
         return self
 
 

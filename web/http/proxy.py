@@ -1,4 +1,4 @@
-"""viser's client and websocket through our own port, to the viewer of each page's theme, and which viser client is whose.
+"""viser's client and websocket through our own port, to the viewer of each page's look, and which viser client is whose.
 
 viser listens on loopback on a port of its own and admits only who knows its secret, so everything reaches it through
 here, after the guard. Its client is a single page. Only this one path of it is served, so there is nothing to traverse.
@@ -54,9 +54,11 @@ class ViewerLike(Protocol):
 
 
 class ViewersLike(Protocol):
-    """A viewer for each theme."""
+    """A viewer for each look."""
 
-    def of(self, theme: Theme) -> ViewerLike: ...  # may take a second; raises ConnectionError after `stop`
+    def of(
+        self, theme: Theme, large: bool = False
+    ) -> ViewerLike: ...  # may take a second; raises ConnectionError after `stop`
     def start(self) -> None: ...
     def stop(self) -> None: ...
     @property
@@ -200,15 +202,15 @@ class ViserProxy:
         return Response(body, headers=headers, media_type="text/html")
 
     async def relay(self, browser: WebSocket, page: str, watches: bool = False) -> None:
-        """Relay both directions until one side ends or the page chooses the other theme; its browser then reconnects at once.
+        """Relay both directions until one side ends or the page wants another look; its browser then reconnects at once.
 
         watches: it only looks on; viser hears where its camera stands, and no click or drag. The guard has checked Host
         and Origin before this.
         """
         self._open += 1
         try:
-            with self._themes.shown(page) as (theme, turned):
-                viewer = await asyncio.to_thread(self._viewers.of, theme)
+            with self._themes.shown(page) as (look, turned):
+                viewer = await asyncio.to_thread(self._viewers.of, *look)
                 await self._relay(browser, page, viewer, turned, watches)
         except (
             OSError,

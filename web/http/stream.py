@@ -115,6 +115,7 @@ class Stream:
             presenting = any(other.presents for other in self._clients)
             if client.watches and presenting != presented:
                 presented = presenting
+                self._themes.enlarge(client.page, presenting)
                 await client.send(_text({"type": "presenting", "on": presenting}))
             _, snapshot = self._latest.get()
             if snapshot is None:
@@ -194,6 +195,7 @@ class Stream:
             await self._confirm(client, identity)
         elif kind == "present":
             client.presents = _flag(document)
+            self._themes.enlarge(client.page, client.presents)
             self._wake()
             await self._confirm(client, identity)
         elif kind == "switch":

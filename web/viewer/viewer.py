@@ -1,4 +1,4 @@
-"""A viewer in one theme: one viser server on the loopback, and one thread that draws snapshots and handles the pointer.
+"""A viewer in one look: one viser server on the loopback, and one thread that draws snapshots and handles the pointer.
 
 viser's callbacks only post to `_inbox`; everything that touches handles happens in that one thread.
 """
@@ -45,6 +45,7 @@ class Viewer:
         submit: Callable[[Command], Future[Accepted | Refused]],
         switches: Switches,
         theme: Theme = "dark",
+        large: bool = False,
     ) -> None:
         self.on_connect: Callable[[int], None] | None = None
         self.on_complaint: Callable[[int, str], None] | None = None
@@ -58,7 +59,7 @@ class Viewer:
         self._cameras = Cameras(self.server, self._inbox.put)
         self._pointer = Pointer(self._send, self._complain)
         self._now_s = 0.0
-        self._set_up(palette_of(theme))
+        self._set_up(palette_of(theme, large))
         self._listen()
 
     # ------------------------------------------------------------ from any thread

@@ -85,7 +85,7 @@ class StubViewers:
         self.switches = Switches()
         self.calls: list[str] = []
 
-    def of(self, theme: str) -> StubViewer:
+    def of(self, theme: str, _large: bool = False) -> StubViewer:
         return {"dark": self.dark, "light": self.light}[theme]
 
     def start(self) -> None:

@@ -1,4 +1,4 @@
-"""A viewer for each theme: built when first needed, with the same switches on, idle when nobody looks."""
+"""A viewer for each look: built when first needed, with the same switches on, idle when nobody looks."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import threading
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 from viser import _messages
 from websockets.sync.client import ClientConnection, connect
@@ -16,7 +17,10 @@ from tests.unit.web.doubles import StubEngine
 from tests.unit.web.test_viser_server import PROTOCOL, camera
 from web.latest import Latest
 from web.messages import Snapshot
+from web.themes import Look, Themes
 from web.viewer import Viewer, Viewers
+from web.viewer.marks.route import APART, pill_stops
+from web.viewer.primitives.palette import LARGE
 from web.viewer.viser_server import SECRET_HEADER
 
 
@@ -63,6 +67,42 @@ def test_each_shows_its_own_theme(both: Both) -> None:
         assert theme.dark_mode is dark
     skies = [told(viewer, _messages.BackgroundImageMessage)[0].rgb_data for viewer in (both.dark, both.light)]
     assert skies[0] != skies[1]
+
+
+def test_who_presents_is_shown_larger_words_in_a_viewer_of_their_own(both: Both) -> None:
+    large = both.viewers.of("dark", True)
+    assert large is both.viewers.of("dark", True) is not both.dark
+    assert told(large, _messages.ThemeConfigurationMessage)[0].dark_mode is True
+
+    def heights(viewer: Viewer) -> dict[str, float]:
+        """How high the titles and the number on an axis are, by node."""
+        pictures = {one.name: one.props.render_height for one in told(viewer, _messages.ImageMessage)}
+        return {name: height for name, height in pictures.items() if name.endswith(("/title", "/tick_x0"))}
+
+    usual, larger = heights(both.dark), heights(large)
+    assert len(usual) == 4
+    assert {name: larger[name] / usual[name] for name in usual} == pytest.approx(dict.fromkeys(usual, LARGE))
+
+
+def test_a_page_that_presents_wants_another_look_and_keeps_its_theme() -> None:
+    themes = Themes()
+    themes.choose("page", "light")
+    with themes.shown("page") as (look, turned):
+        assert look == Look("light", large=False)
+        themes.enlarge("page", False)
+        assert not turned.is_set()
+        themes.enlarge("page", True)
+        assert turned.is_set()
+    assert themes.of("page") == Look("light", large=True)
+    assert themes.of("another") == Look()
+
+
+def test_larger_pills_on_a_route_are_fewer() -> None:
+    way = np.column_stack([np.linspace(0.0, 9.0, 90), np.zeros(90)])
+    arrival_s, goal = np.linspace(0.0, 60.0, 90), np.array([9.0, 0.0])
+    usual, larger = pill_stops(way, arrival_s, goal), pill_stops(way, arrival_s, goal, LARGE)
+    assert len(larger) < len(usual)
+    assert np.diff([x for _, x, _ in larger]).min() >= APART * LARGE
 
 
 def test_what_is_switched_off_is_off_at_both(both: Both) -> None:

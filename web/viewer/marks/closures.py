@@ -23,6 +23,7 @@ REACH = 0.3  # plate units: a click this near to a ring means it
 class ClosureMarks:
     def __init__(self, scene: viser.SceneApi, palette: Palette, name: str, room: LabelRoom) -> None:
         self._ink, colour = palette.sheet, palette.packets[3]
+        self._label_m = LABEL_M * palette.letters
         self._rings: list[viser.FrameHandle] = []
         for k in range(MOST):
             self._rings.append(scene.add_frame(f"{name}_{k}", show_axes=False, visible=False))
@@ -55,7 +56,7 @@ class ClosureMarks:
                 return closure
             if k == 0 and self._told:
                 x, y, _ = self._label.frame.position
-                if abs(x - place[0]) <= self._label.width / 2 and abs(y + 0.3 - place[1]) <= LABEL_M / 2:
+                if abs(x - place[0]) <= self._label.width / 2 and abs(y + 0.3 - place[1]) <= self._label_m / 2:
                     return closure
         return None
 

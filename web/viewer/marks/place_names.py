@@ -12,7 +12,7 @@ from web.viewer.primitives.label_room import LabelRoom
 from web.viewer.primitives.labels import Sign
 from web.viewer.primitives.palette import Palette, mix
 
-HEIGHT, Z = 0.4, 0.72  # plate units, in worlds of any size; above the walls
+HEIGHT, Z = 0.4, 0.72  # plate units, in worlds of any size, of usual letters; above the walls
 MOST = 40
 REACH = 5.4  # plate units to each side: no name leaves the plate
 
@@ -23,6 +23,7 @@ class PlaceNames:
     def __init__(self, scene: viser.SceneApi, palette: Palette, name: str, room: LabelRoom) -> None:
         self._room = room
         self._scene, self._palette, self._name = scene, palette, name
+        self._height = HEIGHT * palette.letters
         self._signs: list[Sign] = []
         self._boxes: list[tuple[str, float, float, float]] = []  # name, x, y, width
         self._shown: tuple[object, ...] = ()
@@ -35,14 +36,16 @@ class PlaceNames:
             return
         self._shown = now
         pictures = [self._picture(name, bright) for name, bright in zip(names, known, strict=True)]
-        widths = np.array([HEIGHT * p.shape[1] / p.shape[0] for p in pictures])
-        middles = spread(places, widths, HEIGHT) if len(names) else places
+        widths = np.array([self._height * p.shape[1] / p.shape[0] for p in pictures])
+        middles = spread(places, widths, self._height) if len(names) else places
         room = np.maximum(REACH - widths / 2, 0.0)
         middles[:, 0] = np.clip(middles[:, 0], -room, room)
         self._boxes = []
         for k, picture in enumerate(pictures):
             if k == len(self._signs):
-                self._signs.append(Sign(self._scene, f"{self._name}_{k}", HEIGHT / 1.3, anchor="centre", leaning=True))
+                self._signs.append(
+                    Sign(self._scene, f"{self._name}_{k}", self._height / 1.3, anchor="centre", leaning=True)
+                )
             x, y = middles[k].tolist()
             self._signs[k].show(picture, (x, y, Z))
             self._boxes.append((names[k], x, y, float(widths[k])))
@@ -53,7 +56,7 @@ class PlaceNames:
     def at(self, place: tuple[float, float]) -> str | None:
         """The name under a point in the plane of the signs (plate units); they lean towards the eye."""
         for name, x, y, width in self._boxes:
-            if abs(place[0] - x) <= width / 2 and abs(place[1] - y) <= 0.7 * HEIGHT:
+            if abs(place[0] - x) <= width / 2 and abs(place[1] - y) <= 0.7 * self._height:
                 return name
         return None
 

@@ -36,7 +36,7 @@ class Route:
         line = meshes.smoothed(xy, 0.12)
         self._casing.vertices, self._casing.faces = meshes.ribbon(line, CASING, 0.14)
         self._ribbon.vertices, self._ribbon.faces = meshes.ribbon(line, RIBBON, 0.165)
-        stops = pill_stops(xy, np.asarray(arrival_s, np.float64), goal)
+        stops = pill_stops(xy, np.asarray(arrival_s, np.float64), goal, self._palette.letters)
         for k, pill in enumerate(self._pills):
             if k < len(stops):
                 seconds, x, y = stops[k]
@@ -52,7 +52,7 @@ class Route:
 
 
 def pill_stops(
-    xy: NDArray[np.float64], arrival_s: NDArray[np.float64], goal: NDArray[np.float64]
+    xy: NDArray[np.float64], arrival_s: NDArray[np.float64], goal: NDArray[np.float64], letters: float = 1.0
 ) -> list[tuple[float, float, float]]:
     """(seconds, x, y) at regular times, without those that are too near to another, to the robot or to the flag."""
     stops: list[tuple[float, float, float]] = []
@@ -61,8 +61,11 @@ def pill_stops(
         step *= 2
     for seconds in np.arange(step, float(arrival_s[-1]), step):
         x, y = (float(np.interp(seconds, arrival_s, xy[:, k])) for k in (0, 1))
-        apart = all(np.hypot(x - a, y - b) >= APART for _, a, b in stops)
-        clear = np.hypot(*(goal - (x, y))) >= CLEAR_OF_FLAG and np.hypot(*(xy[0] - (x, y))) >= CLEAR_OF_ROBOT
+        apart = all(np.hypot(x - a, y - b) >= APART * letters for _, a, b in stops)
+        clear = (
+            np.hypot(*(goal - (x, y))) >= CLEAR_OF_FLAG * letters
+            and np.hypot(*(xy[0] - (x, y))) >= CLEAR_OF_ROBOT * letters
+        )
         if apart and clear and len(stops) < PILLS:
             stops.append((float(seconds), x, y))
     return stops

@@ -39,9 +39,11 @@ class GlassBox:
             *((f"y{k}", 0.40, "left") for k in range(3)),
             *((f"t{k}", 0.40, "right") for k in range(3)),
         ):
-            self._labels[name] = Sign(scene, f"{root}/tick_{name}", height, anchor=anchor, leaning=True)
+            self._labels[name] = Sign(
+                scene, f"{root}/tick_{name}", height * palette.letters, anchor=anchor, leaning=True
+            )
         for name, anchor in (("x", "centre"), ("y", "left"), ("t", "right")):
-            self._labels[name] = Sign(scene, f"{root}/axis_{name}", 0.46, anchor=anchor, leaning=True)
+            self._labels[name] = Sign(scene, f"{root}/axis_{name}", 0.46 * palette.letters, anchor=anchor, leaning=True)
 
     def set_extent(self, width_m: float, depth_m: float) -> None:
         """Writes the numbers on the axes."""

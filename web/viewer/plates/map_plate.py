@@ -93,9 +93,12 @@ class MapPlate(Plate):
             *BAR,
             position=(BAR_X, self.front + 1.08, TEXT_Z),
         )
-        self._bar_ends = [Sign(scene, f"{self.root}/bar_{k}", 0.34, anchor=a) for k, a in enumerate(("left", "right"))]
+        self._bar_ends = [
+            Sign(scene, f"{self.root}/bar_{k}", 0.34 * palette.letters, anchor=a)
+            for k, a in enumerate(("left", "right"))
+        ]
         self.mark = MapMark(scene, palette, self.root, self.labels)
-        self._empty = Sign(scene, f"{self.root}/empty", 0.42, anchor="centre")
+        self._empty = Sign(scene, f"{self.root}/empty", 0.42 * palette.letters, anchor="centre")
         self._draw_grid()
         self.set_heading("Experience map", "what it built")
 

@@ -46,8 +46,8 @@ class Plate:
         )
         self._heading_words = ("", "")
         self._brain: tuple[str, Rgb] | None = None
-        self._title = Sign(scene, f"{self.root}/title", TITLE_M, most=width - 1.0 - beside_title)
-        self._subtitle = Sign(scene, f"{self.root}/subtitle", SUBTITLE_M)
+        self._title = Sign(scene, f"{self.root}/title", TITLE_M * palette.letters, most=width - 1.0 - beside_title)
+        self._subtitle = Sign(scene, f"{self.root}/subtitle", SUBTITLE_M * palette.letters, most=width - 1.0)
 
     def stand_at(self, x: float, y: float) -> None:
         """Moves the plate over the floor, with all that stands on it."""

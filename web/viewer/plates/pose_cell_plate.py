@@ -77,7 +77,7 @@ class PoseCellPlate(Plate):
             Pill(scene, f"{self.root}/packet_{k}", PILL_M, colour, palette) for k, colour in enumerate(palette.packets)
         ]
         self._ends = [Pill(scene, f"{self.root}/snap_{letter}", 0.4, palette.goal, palette) for letter in "SF"]
-        self._empty = Sign(scene, f"{self.root}/empty", 0.4, anchor="centre", leaning=True)
+        self._empty = Sign(scene, f"{self.root}/empty", 0.4 * palette.letters, anchor="centre", leaning=True)
         self.mark = CellMark(scene, palette, self.root)
         self._way = scene.add_frame(f"{self.root}/way", show_axes=False, visible=False)
         add_mesh(scene, f"{self.root}/way/casing", way_arrow(0.05), palette.lit(palette.casing), position=(0, 0, 0.02))
@@ -149,7 +149,8 @@ class PoseCellPlate(Plate):
         packets = [packet for packet in layer.packets[:PACKETS] if packet.mass >= LEAST_SHARE]
         tops = np.array([self._fit.packet(p) for p in packets]).reshape(-1, 3)
         words = [f"{packet.id}   {packet.mass:.0%}".replace("%", " %") for packet in packets]
-        places = pill_places(tops, np.array([pill_width(w, PILL_M) for w in words]), self.origin)
+        height = PILL_M * self.palette.letters
+        places = pill_places(tops, np.array([pill_width(w, height) for w in words]), self.origin, height)
         for k, pill in enumerate(self._pills):
             self._rings[k].visible = k < len(packets)
             if k >= len(packets):
@@ -245,12 +246,14 @@ def way_arrow(rim: float) -> meshes.Mesh:
     return meshes.joined(meshes.flat_polygon(shaft, 0.0), meshes.flat_polygon(head, 0.0))
 
 
-def pill_places(tops: np.ndarray, widths: np.ndarray, at: tuple[float, float, float] = ORIGIN) -> np.ndarray:
+def pill_places(
+    tops: np.ndarray, widths: np.ndarray, at: tuple[float, float, float] = ORIGIN, pill_m: float = PILL_M
+) -> np.ndarray:
     """(n, 3) places for pills above packets at `tops` (n, 3) on a plate that stands at `at`, so that none covers another in
     the view of all plates."""
     raised = tops + np.array([0.0, 0.0, 0.95])
     seen, larger = seen_by(camera_for("all", 1.2), raised + np.array(at))
-    height = PILL_M * float(larger.max(initial=1.0))
+    height = pill_m * float(larger.max(initial=1.0))
     shift = (spread(seen, widths * larger, height) - seen) / larger[:, None]
     return raised + np.column_stack([shift[:, 0], shift[:, 1] * math.cos(LEAN_RAD), shift[:, 1] * math.sin(LEAN_RAD)])
 

@@ -76,8 +76,8 @@ class Pill:
         self, scene: viser.SceneApi, name: str, height: float, fill: Rgb, palette: Palette, rim: Rgb | None = None,
         room: LabelRoom | None = None, rank: int = 0,
     ) -> None:  # fmt: skip
-        """rank: which label of the room gives way to which."""
-        self._height, self._room, self._rank = height, room, rank
+        """height: with usual letters; rank: which label of the room gives way to which."""
+        self._height, self._room, self._rank = height * palette.letters, room, rank
         self._words: str = ""
         self.width = 0.0
         self.frame = scene.add_frame(name, show_axes=False, visible=False, wxyz=LEANING)

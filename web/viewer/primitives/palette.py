@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,6 +43,7 @@ WHITE: Rgb = (255, 255, 255)
 KEY_AT, RIM_AT = (-8.0, -14.0, 20.0), (12.0, 10.0, 6.0)
 RIM_LIGHT, RIM_TINT = 1.2, (170, 200, 255)
 UP = (0.0, 0.0, 1.0)
+LARGE = 1.4  # letters for the last row, against the usual ones
 
 
 def rgb(colour: str) -> Rgb:
@@ -57,7 +58,7 @@ def mix(a: Rgb, b: Rgb, share: float) -> Rgb:
 
 @dataclass(frozen=True)
 class Palette:
-    """Every colour of one theme."""
+    """Every colour of one theme, and how large its letters are."""
 
     dark: bool
     sky_top: Rgb
@@ -99,6 +100,7 @@ class Palette:
     ambient: float
     key: float
     shadow: float
+    letters: float = 1.0
 
     def times(self, seconds: NDArray[np.float32], longest_s: float) -> NDArray[np.uint8]:
         """(n, 3) colours: bright at 0 s, deep at `longest_s`, `unknown` where no way is known."""
@@ -236,5 +238,6 @@ BRAINS: dict[bool, tuple[Rgb, Rgb]] = {  # of the first and of the second, in th
 _RAMPS = {palette.dark: _ramp(*palette.viridis) for palette in (DARK, LIGHT)}
 
 
-def palette_of(theme: Theme) -> Palette:
-    return {"dark": DARK, "light": LIGHT}[theme]
+def palette_of(theme: Theme, large: bool = False) -> Palette:
+    palette = {"dark": DARK, "light": LIGHT}[theme]
+    return replace(palette, letters=LARGE) if large else palette
