@@ -51,7 +51,7 @@ class PlaceNames:
             self._boxes.append((names[k], x, y, float(widths[k])))
         for sign in self._signs[len(pictures) :]:
             sign.hide()
-        self._room.fix(self, [((x, y, Z), width, HEIGHT) for _, x, y, width in self._boxes])
+        self._room.fix(self, [((x, y, Z), width, self._height) for _, x, y, width in self._boxes])
 
     def at(self, place: tuple[float, float]) -> str | None:
         """The name under a point in the plane of the signs (plate units); they lean towards the eye."""
