@@ -82,6 +82,10 @@ class Program:
         with urllib.request.urlopen(f"{self.url}api/state" + ("?map=1" if full else ""), timeout=PATIENCE_S) as answer:
             return orjson.loads(answer.read())
 
+    def places(self) -> dict[str, Any]:
+        with urllib.request.urlopen(f"{self.url}api/places", timeout=PATIENCE_S) as answer:
+            return orjson.loads(answer.read())
+
     def command(self, kind: str, **fields: Any) -> dict[str, Any]:
         body = orjson.dumps({"type": kind, **fields})
         request = urllib.request.Request(f"{self.url}api/commands", body, {"Content-Type": "application/json"})

@@ -1,16 +1,25 @@
-"""A world of more walls than SVG can carry, in the real program and a real browser."""
+"""Large worlds in the real program and a real browser: more walls than SVG can carry; a robot and names that stay readable."""
 
 from __future__ import annotations
 
+import io
+import math
 from pathlib import Path
 
+import numpy as np
 import pytest
-from playwright.sync_api import Browser
+from numpy.typing import NDArray
+from PIL import Image
+from playwright.sync_api import Browser, Page
 
 from benchmarks.office import rooms
-from sim2d import world_to_json
+from sim2d import load_world, world_to_json
+from tests import patience
+from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.marks.place_names import Z
+from web.viewer.plates.office_plate import ORIGIN
 
-from .browser import open_page, until
+from .browser import eye_of, on_screen, open_page, show, until
 from .program import Program
 
 INK = """() => {
@@ -49,3 +58,58 @@ def test_thousands_of_walls_are_drawn_and_edited_while_it_runs(large: Program, b
         until(page, f"() => ({INK})() < {all_of_it // 2}")  # what is out of sight is not painted
         tick = large.state()["tick"]
         large.wait(lambda state: state["tick"] > tick + 10)
+
+
+TICKS = 2400
+
+
+@pytest.fixture(scope="module")
+def campus():
+    """Four minutes in a world 45 m long, on a plate of ten units."""
+    program = Program("--port", "0", "--seed", "5", "--world", "campus", "--paused")
+    program.command("step", ticks=1000)
+    program.command("step", ticks=1000)
+    program.command("step", ticks=TICKS - 2000)
+    program.wait(lambda state: state["tick"] >= TICKS)
+    yield program
+    assert program.stop() == 0
+
+
+def around(page: Page, at: tuple[float, float], half: float) -> NDArray[np.int16]:
+    """(h, w, 3) the pixels around a place of the page."""
+    x, y = at
+    clip = {"x": x - half, "y": y - half, "width": 2 * half, "height": 2 * half}
+    return np.asarray(Image.open(io.BytesIO(page.screenshot(clip=clip))).convert("RGB"), np.int16)  # type: ignore[arg-type]
+
+
+def test_in_a_large_world_robot_and_names_can_be_seen_clicked_and_followed(campus: Program, browser: Browser) -> None:
+    world = load_world("campus")
+    fit = OfficeFit(world.bounds)
+
+    def on_plate(x: float, y: float, z: float) -> tuple[float, float, float]:
+        px, py = fit.to_plate(np.array([[x, y]]))[0] + ORIGIN[:2]
+        return float(px), float(py), ORIGIN[2] + z
+
+    robot = campus.state()["robot"]
+    known = next(place for place in campus.places()["named"] if place["why"] is None)
+    with open_page(browser, campus.url, 1280, 800) as page:
+        show(page, "office")
+        red, green, blue = np.moveaxis(
+            around(page, on_screen(page, "office", on_plate(robot["x"], robot["y"], 0.1)), 20), -1, 0
+        )
+        orange = (red > green + 60) & (red > blue + 60)
+        assert orange.sum() >= 60  # to scale the robot would be five pixels wide
+
+        place = next(place for place in world.places if place.name == known["name"])
+        page.mouse.click(*on_screen(page, "office", on_plate(place.x, place.y, Z)))
+        goal = campus.wait(lambda state: state["goal"] is not None)["goal"]
+        assert math.dist((goal["x"], goal["y"]), (known["x"], known["y"])) < 1.0
+        until(page, "() => !document.getElementById('goal').hidden")
+
+        whole = eye_of(page)
+        at = np.array(on_plate(robot["x"], robot["y"], 0.0))
+        page.click("#follow")
+        patience.until(
+            lambda: page.wait_for_timeout(50) or abs(eye_of(page)[0] - at[0]) < 0.3, "the camera at the robot"
+        )
+        assert math.dist(eye_of(page), at) < 0.5 * math.dist(whole, at)  # so near that the rooms around it can be seen
