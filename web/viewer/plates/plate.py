@@ -11,6 +11,7 @@ from web.viewer.primitives.labels import Sign, add_mesh
 from web.viewer.primitives.palette import Palette, Rgb
 
 TITLE_M, SUBTITLE_M = 0.62, 0.36
+MOST_LARGE = 1.2  # a larger subtitle has no room between title and edge; the title is large as it is
 BEHIND = (
     0.0,
     30.0,
@@ -46,8 +47,9 @@ class Plate:
         )
         self._heading_words = ("", "")
         self._brain: tuple[str, Rgb] | None = None
-        self._title = Sign(scene, f"{self.root}/title", TITLE_M * palette.letters, most=width - 1.0 - beside_title)
-        self._subtitle = Sign(scene, f"{self.root}/subtitle", SUBTITLE_M * palette.letters, most=width - 1.0)
+        self._title = Sign(scene, f"{self.root}/title", TITLE_M, most=width - 1.0 - beside_title)
+        height = SUBTITLE_M * min(palette.letters, MOST_LARGE)
+        self._subtitle = Sign(scene, f"{self.root}/subtitle", height, most=width - 1.0 - beside_title)
 
     def stand_at(self, x: float, y: float) -> None:
         """Moves the plate over the floor, with all that stands on it."""

@@ -77,7 +77,8 @@ class Pill:
         room: LabelRoom | None = None, rank: int = 0,
     ) -> None:  # fmt: skip
         """height: with usual letters; rank: which label of the room gives way to which."""
-        self._height, self._room, self._rank = height * palette.letters, room, rank
+        height *= palette.letters
+        self._height, self._room, self._rank = height, room, rank
         self._words: str = ""
         self.width = 0.0
         self.frame = scene.add_frame(name, show_axes=False, visible=False, wxyz=LEANING)
