@@ -56,9 +56,7 @@ class ViewerLike(Protocol):
 class ViewersLike(Protocol):
     """A viewer for each look."""
 
-    def of(
-        self, theme: Theme, large: bool = False
-    ) -> ViewerLike: ...  # may take a second; raises ConnectionError after `stop`
+    def of(self, theme: Theme, large: bool = False) -> ViewerLike: ...  # takes a second; ConnectionError after `stop`
     def start(self) -> None: ...
     def stop(self) -> None: ...
     @property
