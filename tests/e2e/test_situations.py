@@ -30,7 +30,9 @@ def test_axe_finds_nothing_and_nothing_sticks_out(program: Program, browser: Bro
             assert findings(page) == []
             page.click("#keep summary")
             assert findings(page) == []
-            for box in map(box_of, page.locator("#keep .pop button").all()):
+            for box in map(
+                box_of, page.locator("#keep .pop button:visible").all()
+            ):  # without a second brain, none of its
                 assert box["x"] >= 0
                 assert box["x"] + box["width"] <= size[0]
                 assert box["height"] >= (44 if size[0] < 500 else 24)

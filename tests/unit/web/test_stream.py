@@ -43,6 +43,7 @@ def test_greets_then_tells_the_state_and_the_events(server):
             "walk",
             "vision",
             "pairs",
+            "additions_off",
             "closure",
             "moving",
             "time",
