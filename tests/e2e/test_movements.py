@@ -10,6 +10,7 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from sim2d import load_world
+from tests import patience
 from tests.e2e.browser import on_screen, open_page, show
 from tests.e2e.program import Program
 from web.viewer.fits.office_fit import OfficeFit
@@ -27,7 +28,6 @@ def office() -> Iterator[Program]:
 
 def around(page: Page, robot: dict[str, float]) -> np.ndarray:
     """The picture around the robot, (h, w, 3)."""
-    page.wait_for_timeout(700)  # the plates have drawn what was switched
     shot = cv2.imdecode(np.frombuffer(page.screenshot(), np.uint8), cv2.IMREAD_COLOR)
     assert shot is not None
     x, y = OfficeFit(load_world().bounds).to_plate(np.array([[robot["x"], robot["y"]]]))[0]
@@ -50,11 +50,17 @@ def test_the_candidate_movements_are_drawn_around_the_robot_while_they_are_switc
         show(page, "office")
         page.get_by_role("tab", name="Memory").click()
         switch = page.get_by_label("Candidate movements")
-        bare = around(page, robot)
+        seen = [around(page, robot)]
+
+        def differs() -> int:
+            return int((np.abs(around(page, robot) - seen[-1]).max(2) > 60).sum())
+
+        def stands_still() -> bool:
+            seen.append(around(page, robot))
+            return differs() == 0
+
+        patience.until(stands_still, "the stage stands still")
         switch.check()
-        shown = around(page, robot)
+        patience.until(lambda: differs() > 300, "the movements are drawn")
         switch.uncheck()
-        again = around(page, robot)
-    changed, left = (np.abs(picture - bare).max(2) > 60 for picture in (shown, again))
-    assert changed.sum() > 300
-    assert left.sum() < 0.1 * changed.sum()
+        patience.until(lambda: differs() < 30, "they are gone")

@@ -10,7 +10,7 @@ from __future__ import annotations
 import websockets.http11
 from uvicorn._types import ASGISendEvent
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
-from websockets.exceptions import SecurityError
+from websockets.exceptions import InvalidState, SecurityError
 
 from web.http.commands import problem
 
@@ -21,8 +21,15 @@ websockets.http11.MAX_LINE_LENGTH = MAX_HEADER_BYTES  # read anew for each reque
 class WebSocketProtocol(WebSocketsSansIOProtocol):
     """uvicorn's protocol, with an answer to what websockets does not accept as a request.
 
-    It also completes a refusal: uvicorn takes a request that was answered with a sentence for one that was forgotten.
+    It also completes a refusal: uvicorn takes a request that was answered with a sentence for one that was forgotten. And the
+    program may end while a browser is closing a connection.
     """
+
+    def shutdown(self) -> None:
+        try:
+            super().shutdown()
+        except InvalidState:  # the browser's farewell was there first
+            self.transport.close()
 
     async def send(self, message: ASGISendEvent) -> None:
         await super().send(message)
