@@ -20,6 +20,7 @@ from web.messages import Snapshot
 from web.themes import Look, Themes
 from web.viewer import Viewer, Viewers
 from web.viewer.marks.route import APART, pill_stops
+from web.viewer.plates.plate import MOST_LARGE
 from web.viewer.primitives.palette import LARGE
 from web.viewer.viser_server import SECRET_HEADER
 
@@ -75,13 +76,16 @@ def test_who_presents_is_shown_larger_words_in_a_viewer_of_their_own(both: Both)
     assert told(large, _messages.ThemeConfigurationMessage)[0].dark_mode is True
 
     def heights(viewer: Viewer) -> dict[str, float]:
-        """How high the titles and the number on an axis are, by node."""
+        """How high the words are on plates, axes, bars and pills, by node."""
         pictures = {one.name: one.props.render_height for one in told(viewer, _messages.ImageMessage)}
-        return {name: height for name, height in pictures.items() if name.endswith(("/title", "/tick_x0"))}
+        ends = ("/title", "/subtitle", "/tick_x0", "/bar_0", "/words")
+        return {name: height for name, height in pictures.items() if name.endswith(ends)}
 
     usual, larger = heights(both.dark), heights(large)
-    assert len(usual) == 4
-    assert {name: larger[name] / usual[name] for name in usual} == pytest.approx(dict.fromkeys(usual, LARGE))
+    assert sum(name.endswith("/words") for name in usual) >= 10
+    for name, height in usual.items():
+        times = 1.0 if name.endswith("/title") else MOST_LARGE if name.endswith("/subtitle") else LARGE
+        assert larger[name] == pytest.approx(times * height), name
 
 
 def test_a_page_that_presents_wants_another_look_and_keeps_its_theme() -> None:
