@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 _NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
 _NOT_WITH_EXPERIMENT = ("scale", "brain", "preset", "config", "set", "resume_brain")
+_NOT_WITH_A_RUN = ("seed", "recording", *_NOT_WITH_EXPERIMENT, "experiment", "engine", "levels")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +53,15 @@ def new_run(args: argparse.Namespace) -> First:
     return First(world, args.seed, config, brain, kept=kept, cut_off=cut_off)
 
 
+def _refuse(args: argparse.Namespace, names: tuple[str, ...], option: str) -> None:
+    """ValueError if one of these options, or a world, is given beside `option`, which ends with the reason."""
+    for name in names:
+        if (given := getattr(args, name)) is not None and given is not False and given != []:  # seed 0 is given
+            raise ValueError(f"--{name.replace('_', '-')} does not go with {option}")
+    if args.world != DEFAULT_WORLD:
+        raise ValueError(f"--world {args.world} does not go with {option}")
+
+
 def resumed_run(args: argparse.Namespace) -> First:
     """Go on with a run where it was left; what led there is run again first."""
     from app.cli.progress import compile_first, with_progress
@@ -59,11 +69,7 @@ def resumed_run(args: argparse.Namespace) -> First:
     from app.runs.replay import resumed
     from app.runs.run_file import open_run
 
-    for name in ("seed", "recording", *_NOT_WITH_EXPERIMENT, "experiment", "engine", "levels"):
-        if getattr(args, name):
-            raise ValueError(f"--{name.replace('_', '-')} does not go with --resume: the run has its own")
-    if args.world != DEFAULT_WORLD:
-        raise ValueError(f"--world {args.world} does not go with --resume: the run has its own world")
+    _refuse(args, _NOT_WITH_A_RUN, "--resume: the run has its own")
     kept = open_run(args.resume)
     if is_open(kept.folder):
         raise ValueError(f"the run {kept.name} is going on in another program")
@@ -81,11 +87,7 @@ def opened_situation(args: argparse.Namespace) -> First:
     """Play up to the moment of a situation; the page shows how far it is."""
     from app.cli.situation import situation_in
 
-    for name in ("seed", "recording", *_NOT_WITH_EXPERIMENT, "experiment", "engine", "levels"):
-        if getattr(args, name):
-            raise ValueError(f"--{name.replace('_', '-')} does not go with --situation, which has its own")
-    if args.world != DEFAULT_WORLD:
-        raise ValueError(f"--world {args.world} does not go with --situation, which has its own world")
+    _refuse(args, _NOT_WITH_A_RUN, "--situation, which has its own")
     situation = situation_in(args.situation)
     header = situation.header
     own_worlds.tidy()
@@ -98,11 +100,7 @@ def played_recording(args: argparse.Namespace) -> First:
     from app.recordings.opening import open_recording
     from app.recordings.playing import Player
 
-    for name in _NOT_WITH_RECORDING:
-        if getattr(args, name):
-            raise ValueError(f"--{name.replace('_', '-')} does not go with --recording, which is no simulated world")
-    if args.world != DEFAULT_WORLD:
-        raise ValueError(f"--world {args.world} does not go with --recording, which is no simulated world")
+    _refuse(args, _NOT_WITH_RECORDING, "--recording, which is no simulated world")
     seed = checked_seed(1 if args.seed is None else args.seed)
     player = Player(open_recording(args.recording), seed, path=args.recording)
     player.config = config_of(args, player.config)
@@ -119,13 +117,7 @@ def chosen_experiment(args: argparse.Namespace, running: bool) -> First:
     from app.trials.chosen import chosen_trial
     from app.trials.experiment import find_experiment
 
-    for name in _NOT_WITH_EXPERIMENT:
-        if getattr(args, name):
-            raise ValueError(
-                f"--{name.replace('_', '-')} does not go with --experiment, which has its own world and parameters"
-            )
-    if args.world != DEFAULT_WORLD:
-        raise ValueError(f"--world {args.world} does not go with --experiment, which has its own world and parameters")
+    _refuse(args, _NOT_WITH_EXPERIMENT, "--experiment, which has its own world and parameters")
     experiment = find_experiment(args.experiment)
     trial = chosen_trial(experiment, args.engine, args.levels, args.seed)
     return first_of_trial(trial, None, experiment.title, running)

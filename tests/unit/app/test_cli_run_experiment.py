@@ -88,6 +88,9 @@ def test_a_trial_of_another_version_is_told(monkeypatch: pytest.MonkeyPatch) -> 
         (["--experiment", "table", "--resume-brain"], "--resume-brain does not go with --experiment"),
         (["--experiment", "table", "--world", "loop"], "--world loop does not go with --experiment"),
         (["--engine", "paper"], "--engine is for a trial; give --experiment NAME with it"),
+        (["--situation", "moment.json", "--seed", "0"], "--seed does not go with --situation, which has its own"),
+        (["--resume", "last", "--seed", "0"], "--seed does not go with --resume: the run has its own"),
+        (["--recording", "drive.mcap", "--world", "loop"], "--world loop does not go with --recording, which is no"),
     ],
 )
 def test_what_does_not_go_together_is_a_sentence(
