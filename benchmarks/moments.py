@@ -13,8 +13,10 @@ import time
 
 import numpy as np
 
+from app.cli.serving import PAST_DISK_MB, PAST_MB
+from app.runs.folder import runs_folder
 from app.session import Session
-from app.time_machine import BUDGET_BYTES, Moment, TimeMachine
+from app.time_machine import Moment, PastRoom, TimeMachine
 from app.views.history import History
 from sim2d import load_world
 
@@ -22,11 +24,11 @@ HOUR_TICKS, TELL_AFTER = 36_000, 18_000
 LONG_HOURS, BAR_S, LONG_BAR_S = 1.0, 0.3, 1.0  # longer runs than this have another bar
 
 
-def make_run(world: str, hours: float, budget_bytes: int) -> TimeMachine:
+def make_run(world: str, hours: float, room: PastRoom) -> TimeMachine:
     """Run for so long, as fast as possible. Tells how it goes now and then."""
     session = Session(load_world(world), 1)
     history = History(session)
-    machine = TimeMachine(session, history, budget_bytes)
+    machine = TimeMachine(session, history, room)
     session.on_order = machine.told
     began_s, cpu_s, keeping_s = time.monotonic(), time.process_time(), 0.0
     for tick in range(1, round(HOUR_TICKS * hours) + 1):
@@ -40,8 +42,9 @@ def make_run(world: str, hours: float, budget_bytes: int) -> TimeMachine:
             print(
                 f"{tick / HOUR_TICKS:4.1f} h: {time.monotonic() - began_s:.0f} s on the clock, "
                 f"{time.process_time() - cpu_s:.0f} s of the processor, {1e3 * keeping_s / tick:.2f} ms a tick for "
-                f"keyframes; {len(ticks) + 1} of them with {machine.nbytes / 1e6:.0f} MB, {np.median(ticks) / 10:.0f} s "
-                f"apart, {ticks.max() / 10:.0f} s at most; {len(session.brain.experience_map)} experiences",
+                f"keyframes; {len(ticks) + 1} of them with {machine.nbytes / 1e6:.0f} MB and "
+                f"{machine.disk_nbytes / 1e6:.0f} MB on the disk, {np.median(ticks) / 10:.0f} s apart, "
+                f"{ticks.max() / 10:.0f} s at most; {len(session.brain.experience_map)} experiences",
                 flush=True,
             )
     return machine
@@ -61,9 +64,13 @@ def main() -> int:
     parser.add_argument("--hours", type=float, default=1.0, help="of simulated time (default 1)")
     parser.add_argument("--count", type=int, default=100, help="of moments (default 100)")
     parser.add_argument("--world", default="office")
-    parser.add_argument("--keep-past", type=float, default=BUDGET_BYTES / 1e6, help="megabytes (default 200)")
+    parser.add_argument("--keep-past", type=float, default=PAST_MB, help=f"megabytes (default {PAST_MB:g})")
+    parser.add_argument(
+        "--keep-past-disk", type=float, default=PAST_DISK_MB, help=f"the same (default {PAST_DISK_MB:g})"
+    )
     options = parser.parse_args()
-    machine, rng = make_run(options.world, options.hours, round(1e6 * options.keep_past)), random.Random(1)
+    room = PastRoom(round(1e6 * options.keep_past), round(1e6 * options.keep_past_disk), runs_folder())
+    machine, rng = make_run(options.world, options.hours, room), random.Random(1)
     found = [seek(machine, rng.randrange(machine.live.end_tick)) for _ in range(options.count)]
     p95 = 0.0
     for name, times in zip(("on the clock", "processor", "of it, restored"), zip(*found, strict=True), strict=True):

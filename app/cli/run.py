@@ -18,7 +18,7 @@ from app.cli.beginnings import (
 )
 from app.cli.for_class import add_class_options, for_class
 from app.cli.options import Verbs, add_session_options
-from app.cli.serving import PAST_MB, Serving, serve
+from app.cli.serving import PAST_DISK_MB, PAST_MB, Serving, serve
 from app.runs.folder import BUDGET_MB
 
 if TYPE_CHECKING:
@@ -52,8 +52,12 @@ def add_run(commands: Verbs) -> None:
     )  # fmt: skip
     run.add_argument(
         "--keep-past", type=float, default=PAST_MB, metavar="MB",
-        help=f"memory for going back in time; when it is full, what is older is kept at fewer moments, and going there "
-        f"takes longer (default {PAST_MB:g}, at least {LEAST_PAST_MB:g})",
+        help=f"memory for going back in time (default {PAST_MB:g}, at least {LEAST_PAST_MB:g})",
+    )  # fmt: skip
+    run.add_argument(
+        "--keep-past-disk", type=float, default=PAST_DISK_MB, metavar="MB",
+        help=f"room on the disk for what that memory does not hold; when both are full, what is older is kept at fewer "
+        f"moments, and going there takes longer (default {PAST_DISK_MB:g}, 0 = none)",
     )  # fmt: skip
     run.add_argument(
         "--recording", type=Path, metavar="PATH", help="play a recording of a robot: MCAP, bag, video, pictures, ..."
@@ -80,9 +84,12 @@ def _run(args: argparse.Namespace) -> int:
         raise ValueError(f"--keep-runs must be megabytes from 0 on, got {args.keep_runs:g}")
     if not LEAST_PAST_MB <= args.keep_past < math.inf:
         raise ValueError(f"--keep-past must be megabytes from {LEAST_PAST_MB:g} on, got {args.keep_past:g}")
+    if not 0 <= args.keep_past_disk < math.inf:
+        raise ValueError(f"--keep-past-disk must be megabytes from 0 on, got {args.keep_past_disk:g}")
     serving = Serving(
-        args.port, not args.no_browser, args.speed, not args.paused, args.keep_runs, args.keep_past, for_class(args)
-    )
+        args.port, not args.no_browser, args.speed, not args.paused, args.keep_runs, args.keep_past,
+        args.keep_past_disk, for_class(args),
+    )  # fmt: skip
     return serve(serving, _first(args, serving))
 
 

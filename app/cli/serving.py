@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING
 
 from app.cli.earlier import going_on
 from app.cli.for_class import class_words
-from app.runs.folder import BUDGET_MB
+from app.runs.folder import BUDGET_MB, runs_folder
 from app.startup.compiling import Compiling
 from app.startup.waking import Waking
 from ratslam_core import load_brain
 
 if TYPE_CHECKING:
     from app.cli.beginnings import First
+    from app.time_machine import PastRoom
     from web.http.server import Dashboard, ForClass
 
-PAST_MB = 200.0
+PAST_MB, PAST_DISK_MB = 200.0, 1000.0
 ENGINE_PATIENCE_S = 2.0  # how long leaving waits for a tick that hangs
 
 
@@ -34,7 +35,8 @@ class Serving:
     speed: float = 1.0
     running: bool = True
     keep_mb: float = BUDGET_MB  # room for runs that are kept
-    past_mb: float = PAST_MB  # memory for looking back
+    past_mb: float = PAST_MB  # memory for looking back ...
+    past_disk_mb: float = PAST_DISK_MB  # ... and room on the disk for what it does not hold
     for_class: ForClass | None = None  # where a class votes and looks on
 
 
@@ -45,6 +47,16 @@ def serve(serving: Serving, first: First) -> int:
         return _serve(serving, first, compiling)
     finally:
         compiling.stop()
+
+
+def _past_room(serving: Serving) -> PastRoom:
+    from app.time_machine import PastRoom
+
+    try:
+        folder = runs_folder()
+    except ValueError:  # no home directory
+        folder = None
+    return PastRoom(round(1e6 * serving.past_mb), round(1e6 * serving.past_disk_mb), folder)
 
 
 def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
@@ -67,7 +79,7 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     runs = RunKeeper(warn, serving.keep_mb) if serving.keep_mb > 0 else None
     engine = EngineThread(
         first.world, first.seed, first.config, speed=serving.speed, running=serving.running, brain=first.brain,
-        first=first.begin, keeper=runs, keyframe_bytes=round(1e6 * serving.past_mb),
+        first=first.begin, keeper=runs, past_room=_past_room(serving),
     )  # fmt: skip
     viewers = Viewers(engine.latest, engine.submit)
     kept, cut_off = first.kept, first.cut_off

@@ -19,7 +19,7 @@ from app.runs.header import Beginning
 from app.runs.keeper import RunKeeper
 from app.runs.run_file import KeptRun
 from app.session import Session
-from app.time_machine import BUDGET_BYTES
+from app.time_machine import PastRoom
 from app.views.pair_choices import PairChoices
 from app.world_editor import WorldEditor
 from ratslam_core import RatSlam
@@ -39,11 +39,11 @@ class CurrentRun:
         running: bool,
         answer: Callable[[m.Request, m.Accepted | m.Refused], None],
         keeper: RunKeeper | None = None,
-        keyframe_bytes: int = BUDGET_BYTES,
+        past_room: PastRoom | None = None,
     ) -> None:
         """answer: is called for each request whose ticks are done or were broken off. keeper: keeps each run on disk.
 
-        keyframe_bytes: room for what looking back takes.
+        past_room: for what looking back takes.
         """
         self.library, self.editor = Library(world), WorldEditor(world)
         self.pace, self.steps, self._pairs = pace, Steps(), PairChoices()
@@ -53,7 +53,7 @@ class CurrentRun:
         self._run: Run | None = None
         self._time: TimeTravel | None = None
         self._watchdog, self._answer, self._keeper = watchdog, answer, keeper
-        self._keyframe_bytes = keyframe_bytes
+        self._past_room = past_room
 
     @property
     def run(self) -> Run:
@@ -139,7 +139,7 @@ class CurrentRun:
         return self._time.last_number + 1 if self._time else 1
 
     def _change_to(self, run: Run, world: World) -> Run:
-        self._time = TimeTravel(run, self._keyframe_bytes)
+        self._time = TimeTravel(run, self._past_room)
         return self._go_on_with(run, world)
 
     def _go_on_with(self, run: Run, world: World) -> Run:

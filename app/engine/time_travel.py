@@ -7,7 +7,7 @@ from collections.abc import Generator
 from app.engine.run import Run
 from app.engine.work import Work
 from app.order_book import Order
-from app.time_machine import BUDGET_BYTES, Branch, Moment, TimeMachine, first_difference, side_of
+from app.time_machine import Branch, Moment, PastRoom, TimeMachine, first_difference, side_of
 from app.views.tick_stages import TickRecorder
 from web.messages import BranchView, Side, TimeView
 
@@ -15,9 +15,9 @@ from web.messages import BranchView, Side, TimeView
 class TimeTravel:
     """One for each run from reset to reset, with all its branches. The live session is never touched by looking back."""
 
-    def __init__(self, run: Run, budget_bytes: int = BUDGET_BYTES) -> None:
-        """budget_bytes: for all keyframes."""
-        self._machine = TimeMachine(run.session, run.history, budget_bytes)
+    def __init__(self, run: Run, room: PastRoom | None = None) -> None:
+        """room: for all keyframes."""
+        self._machine = TimeMachine(run.session, run.history, room)
         self._runs = {self._machine.live.number: run}
         self._moment: Moment | None = None
         self.past: Run | None = None  # the moment of the past that is shown; None: the present

@@ -22,7 +22,7 @@ from app.engine.watchdog import Watchdog
 from app.engine_thread.inbox import Inbox
 from app.runs.keeper import RunKeeper
 from app.session import Session
-from app.time_machine import BUDGET_BYTES
+from app.time_machine import PastRoom
 from ratslam_core import RatSlam
 from sim2d import World
 from web import messages as m
@@ -38,12 +38,12 @@ class EngineThread:
     def __init__(
         self, world: World, seed: int, config: Config, *, speed: float = 1.0, running: bool = True,
         brain: RatSlam | None = None, first: Callable[[Engine], object] | None = None, stall_s: float = STALL_S,
-        keeper: RunKeeper | None = None, keyframe_bytes: int = BUDGET_BYTES,
+        keeper: RunKeeper | None = None, past_room: PastRoom | None = None,
     ) -> None:  # fmt: skip
         """brain: one that already knows places. first: begins the first run, instead of one in this world with this seed.
 
         stall_s: a tick that takes longer than this is shown as a fault. keeper: keeps each run on disk.
-        keyframe_bytes: room for what looking back takes.
+        past_room: for what looking back takes.
         """
         self.latest: Latest[m.Snapshot] = Latest()
         self.stillborn: str | None = None  # why the engine could not begin; then the thread has ended ...
@@ -56,7 +56,7 @@ class EngineThread:
         self._watchdog = Watchdog(stall_s, self._tell_stall)
         self._engine = Engine(
             world, self.pace, self._watchdog, running=running, answer=self._inbox.answer, keeper=keeper,
-            keyframe_bytes=keyframe_bytes,
+            past_room=past_room,
         )  # fmt: skip
         self._engine.slices.first_s = FIRST_SLICE_S
         self._stopping = False

@@ -2,7 +2,7 @@
 
 from app.time_machine.branch import Branch
 from app.time_machine.comparison import first_difference, side_of
-from app.time_machine.machine import BUDGET_BYTES, TimeMachine
+from app.time_machine.machine import PastRoom, TimeMachine
 from app.time_machine.moment import Moment
 
-__all__ = ["BUDGET_BYTES", "Branch", "Moment", "TimeMachine", "first_difference", "side_of"]
+__all__ = ["Branch", "Moment", "PastRoom", "TimeMachine", "first_difference", "side_of"]

@@ -7,35 +7,57 @@ tests/unit/app/test_time_machine.py.
 from __future__ import annotations
 
 from bisect import bisect_right
+from dataclasses import dataclass
+from pathlib import Path
 
 from app.order_book import Order
 from app.session import Session
 from app.time_machine.branch import Branch, Keyframe
 from app.time_machine.chunks import Chunks
 from app.time_machine.moment import Moment
+from app.time_machine.shelf import Shelf
 from app.views.history import History
 from disk import encode
 
 EVERY_TICKS = 150  # between two keyframes, until there are too many
 AGAIN_MS, LOOK_AFTER = 200.0, 10  # the moments of some recordings take long: so much is run again at most
-BUDGET_BYTES = 200_000_000
+BUDGET_BYTES, DISK_BYTES = 200_000_000, 1_000_000_000
+IN_MEMORY = 0.8  # of the budget: from here on the oldest goes to the disk, and has time to get there
 MOST_BRANCHES = 12
+
+
+@dataclass(frozen=True, slots=True)
+class PastRoom:
+    """What keyframes may take. folder: for those that memory has no room for; None: they are thinned instead."""
+
+    memory_bytes: int = BUDGET_BYTES
+    disk_bytes: int = DISK_BYTES
+    folder: Path | None = None
+
+    def shelf(self) -> Shelf | None:
+        return None if self.folder is None else Shelf(self.folder, self.disk_bytes)
 
 
 class TimeMachine:
     """Call `ticked` after each tick of the live session, and `told` for each order that it was given."""
 
-    def __init__(self, session: Session, history: History, budget_bytes: int = BUDGET_BYTES) -> None:
+    def __init__(self, session: Session, history: History, room: PastRoom | None = None) -> None:
         """The session must be at the beginning of what can be gone back to."""
-        self._chunks, self._budget_bytes = Chunks(), budget_bytes
+        room = room or PastRoom()
+        self._chunks, self._budget_bytes = Chunks(room.shelf()), room.memory_bytes
         self.live = Branch(1, session, history, from_tick=session.tick_count)
         self.branches = [self.live]
         self._keep()
 
     @property
     def nbytes(self) -> int:
-        """Of all keyframes."""
+        """Of all keyframes, in memory."""
         return self._chunks.nbytes + self._chunks.copy_nbytes
+
+    @property
+    def disk_nbytes(self) -> int:
+        """Of what memory had no room for."""
+        return self._chunks.shelf_nbytes
 
     def told(self, order: Order) -> None:
         self.live.orders.append(order)
@@ -117,6 +139,7 @@ class TimeMachine:
         kept = self._chunks.keep(encode((live.session, live.history)))
         session, frame, snap = live.session, live.session.frame, live.history.events.last_snap
         live.keyframes.append(Keyframe(frame.tick, frame.time_s, frame.dt, kept, session.worlds, snap))
+        self._chunks.make_room(int(IN_MEMORY * self._budget_bytes) - self._chunks.copy_nbytes)
         while self.nbytes > self._budget_bytes and self._thin():
             pass
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.time_machine.chunks import ENTRY, Chunk, Chunks, KeptState
+from app.time_machine.chunks import ENTRY, LINK, Chunk, Chunks, KeptArray, KeptState
 from disk import State
 
 
@@ -40,15 +40,18 @@ def same(kept: KeptState, state: State) -> bool:
 
 
 def bytes_of(kept: list[KeptState]) -> int:
-    """What these states take, each chunk once, with those that others are differences from."""
+    """What these states take, each array and chunk once, with those that others are differences from."""
     chunks: dict[int, Chunk] = {}
+    arrays: dict[int, KeptArray] = {}
     for state in kept:
         for array in state.arrays:
+            arrays[id(array)] = array
             for chunk in array.chunks:
                 chunks[id(chunk)] = chunk
                 if chunk.base is not None:
                     chunks[id(chunk.base)] = chunk.base
-    return sum(len(state.tree) for state in kept) + sum(len(chunk.packed) + ENTRY for chunk in chunks.values())
+    trees, links = sum(len(state.tree) for state in kept), sum(len(array.chunks) for array in arrays.values())
+    return trees + LINK * links + sum(len(chunk.packed) + ENTRY for chunk in chunks.values())
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -15,7 +15,8 @@ from app.cli import beginnings, serving
 from app.cli import command_line as cli
 from app.config import Config
 from app.kept_brains import keeper as brain_keeper
-from app.time_machine import BUDGET_BYTES
+from app.runs.folder import runs_folder
+from app.time_machine import PastRoom
 from sim2d import World
 from tests.patience import PATIENCE_S
 from web.http import server
@@ -119,7 +120,7 @@ def test_run_binds_first_then_starts_and_stops(
     ]  # fmt: skip
     name, seed, config, options = doubles.made["engine"]
     assert options.pop("keeper") is not None
-    assert options.pop("keyframe_bytes") == 200_000_000
+    assert options.pop("past_room") == PastRoom(folder=runs_folder())
     assert (name, seed, options) == ("loop", 9, {"speed": 3.0, "running": False, "brain": None, "first": None})
     assert config == Config().with_value("robot.light", 0.8)
     assert doubles.made["dashboard"][1:] == ("submit", "viewers", 0)
@@ -185,10 +186,14 @@ def test_a_screen(platform: str, environment: dict[str, str], screen: bool, monk
 
 
 def test_the_memory_for_looking_back_is_said_in_megabytes(monkeypatch: pytest.MonkeyPatch, capsys) -> None:
-    assert 1e6 * serving.PAST_MB == BUDGET_BYTES
+    usual = PastRoom()
+    assert (usual.memory_bytes, usual.disk_bytes) == (1e6 * serving.PAST_MB, 1e6 * serving.PAST_DISK_MB)
     doubles = Doubles(monkeypatch)
-    assert cli.main(["run", "--keep-past", "50"]) == 0
-    assert doubles.made["engine"][3]["keyframe_bytes"] == 50_000_000
+    assert cli.main(["run", "--keep-past", "50", "--keep-past-disk", "0"]) == 0
+    room = doubles.made["engine"][3]["past_room"]
+    assert (room.memory_bytes, room.disk_bytes) == (50_000_000, 0)
+    assert cli.main(["run", "--keep-past-disk", "-1"]) != 0
+    assert "--keep-past-disk must be megabytes from 0 on, got -1" in capsys.readouterr().err
     assert cli.main(["run", "--keep-past", "3"]) != 0
     assert "--keep-past must be megabytes from 20 on, got 3" in capsys.readouterr().err
 

@@ -12,7 +12,7 @@ from app.engine import work
 from app.engine.engine import Engine
 from app.engine_thread import EngineThread
 from app.session import Session
-from app.time_machine import TimeMachine
+from app.time_machine import PastRoom, TimeMachine
 from app.views.history import History
 from sim2d import load_world
 from tests.patience import PATIENCE_S
@@ -79,7 +79,7 @@ def test_any_moment_is_as_it_was(world: str) -> None:
 def test_keyframes_stay_under_their_budget_and_the_first_is_never_dropped() -> None:
     session = Session(OFFICE, 5)
     history = History(session)
-    machine = TimeMachine(session, history, budget_bytes=8_000_000)
+    machine = TimeMachine(session, history, PastRoom(8_000_000))
     hashes = {}
     for tick in range(2500):
         if tick % 190 == 7:

@@ -1,0 +1,137 @@
+"""What memory has no room for: on the disk it is the same, until then it stays in memory, and a full disk loses nothing."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import random
+import shutil
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from app.time_machine import shelf as shelf_file
+from app.time_machine.chunks import Chunks, KeptState
+from app.time_machine.shelf import UNIT, Place, Shelf
+from disk import State
+from tests.patience import PATIENCE_S
+from tests.unit.app.test_chunks import same, states
+
+PLENTY = 100_000_000
+
+
+def all_written(shelf: Shelf, count: int) -> list[Place]:
+    places, end = list[Place](), time.monotonic() + PATIENCE_S
+    while len(places) < count:
+        assert time.monotonic() < end
+        places += shelf.written()
+        time.sleep(0.001)
+    return places
+
+
+@pytest.fixture(autouse=True)
+def _a_disk_with_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shelf_file, "LEAVES_FREE", 0)
+
+
+def test_contents_come_back_and_a_place_that_is_free_is_used_again(tmp_path: Path) -> None:
+    shelf, rng = Shelf(tmp_path, PLENTY), random.Random(1)
+    held: dict[Place, bytes] = {}
+    for _ in range(400):
+        content = rng.randbytes(rng.randrange(1, 3000))
+        place = shelf.put(content)
+        assert place is not None
+        held[place] = content
+        if len(held) > 50:
+            gone = rng.choice(list(held))
+            shelf.give_back(gone)
+            del held[gone]
+    all_written(shelf, 400)
+    assert all(place.read() == content for place, content in held.items())
+    assert shelf.nbytes == sum(-(-len(content) // UNIT) * UNIT for content in held.values())
+    assert os.fstat(next(iter(held)).file).st_size < 70 * 3072  # 51 places at most at a time, in six sizes
+    assert list(tmp_path.iterdir()) == []  # the file has no name
+
+
+def test_over_its_budget_it_has_no_room(tmp_path: Path) -> None:
+    shelf = Shelf(tmp_path, 4 * UNIT)
+    places = [shelf.put(b"x" * (UNIT + 1)) for _ in range(3)]
+    assert [place is None for place in places] == [False, False, True]
+    assert places[0] is not None
+    shelf.give_back(places[0])
+    assert shelf.put(b"y") is not None
+    assert Shelf(tmp_path, 0).put(b"x") is None
+
+
+def test_where_it_cannot_be_made_it_has_no_room(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    shelf = Shelf(tmp_path / "file" / "folder", PLENTY)
+    assert shelf.put(b"x") is None
+    assert not shelf.has_room
+
+
+def test_its_file_is_closed_with_it(tmp_path: Path) -> None:
+    shelf = Shelf(tmp_path, PLENTY)
+    place = shelf.put(b"x")
+    assert place is not None
+    all_written(shelf, 1)
+    del shelf
+    end, is_open = time.monotonic() + PATIENCE_S, True
+    while is_open:  # until its thread has let go of it
+        assert time.monotonic() < end
+        with contextlib.suppress(OSError):
+            os.fstat(place.file)
+            continue
+        is_open = False
+
+
+def kept_with(shelf: Shelf, seed: int, most_bytes: int) -> tuple[Chunks, list[tuple[State, KeptState]]]:
+    """Thirty states, of which some are dropped, with as little as possible in memory."""
+    chunks, rng, kept = Chunks(shelf), random.Random(seed), list[tuple[State, KeptState]]()
+    for state in states(seed, 30):
+        kept.append((state, chunks.keep(state)))
+        chunks.make_room(most_bytes)
+        if len(kept) > 12:
+            chunks.drop(kept.pop(rng.randrange(1, len(kept) - 1))[1])
+    return chunks, kept
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_each_state_is_as_it_was_from_memory_or_disk(seed: int, tmp_path: Path) -> None:
+    plain, _ = kept_with(Shelf(tmp_path, 0), seed, 0)
+    shelf = Shelf(tmp_path, PLENTY)
+    chunks, kept = kept_with(shelf, seed, 0)
+    all_came = time.monotonic() + PATIENCE_S
+    while chunks._on_way:
+        assert time.monotonic() < all_came
+        chunks.make_room(PLENTY)
+    assert chunks.nbytes + shelf.nbytes > plain.nbytes > chunks.nbytes
+    assert chunks.shelf_nbytes == shelf.nbytes > 0
+    for state, each in kept:
+        assert same(each, state)
+    for _, each in kept:
+        chunks.drop(each)
+    assert (chunks.nbytes, shelf.nbytes, chunks._on_way_bytes) == (0, 0, 0)
+
+
+@pytest.mark.parametrize("why", ["the disk is full", "too little is free", "the disk hangs"])
+def test_what_the_disk_does_not_take_stays_in_memory(why: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    hangs = threading.Event()
+
+    def write(*_: object) -> int:
+        if why == "the disk hangs":
+            hangs.wait(PATIENCE_S)
+        raise OSError(28, "No space left on device")
+
+    if why == "too little is free":
+        monkeypatch.setattr(shelf_file, "LEAVES_FREE", 2 * shutil.disk_usage(tmp_path).total)
+    else:
+        monkeypatch.setattr(os, "pwrite", write)
+    chunks, kept = kept_with(Shelf(tmp_path, PLENTY), 5, 0)
+    for state, each in kept:
+        assert same(each, state)
+    hangs.set()
+    plain, _ = kept_with(Shelf(tmp_path, 0), 5, 0)
+    assert chunks.nbytes >= plain.nbytes  # nothing was counted as gone
