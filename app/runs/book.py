@@ -20,7 +20,7 @@ from ratslam_core import RatSlam
 from web.messages import Bookmark
 
 COPY_EVERY_S = 10.0  # simulated time between two copies of the state, at least
-COPY_SHARE = 0.005  # of the time may go into copies and their hashes; both grow dearer as the map grows
+COPY_SHARE = 0.0025  # of the time may go into copies and their hashes; both grow dearer as the map grows
 LOOK_AFTER = 10  # ticks between two looks whether a copy is due
 
 

@@ -14,7 +14,7 @@ from app.session_snapshot import save_copy
 
 SAVE_EVERY_S = 60.0  # simulated time ...
 SAVE_PAUSE_S = 10.0  # ... and wall time between two files of states, at least
-SAVE_SHARE = 0.005  # of the time may go into such files
+SAVE_SHARE = 0.0025  # of the time may go into such files
 
 
 class States:
@@ -24,7 +24,7 @@ class States:
         """hashed: is given tick, hash, number of experiences, and the computing time of the hash in seconds, from the thread.
         The newest state lies in the folder."""
         self._folder, self._hashed = folder, hashed
-        self._saved_s, self._saved_at, self._pause_s = 0.0, -SAVE_PAUSE_S, SAVE_PAUSE_S
+        self._saved_s, self._saved_at, self._pause_s = 0.0, time.monotonic(), SAVE_PAUSE_S
         self._thread: threading.Thread | None = None
 
     def take(self, copy: Copy) -> None:

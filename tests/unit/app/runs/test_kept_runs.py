@@ -34,6 +34,7 @@ def test_it_comes_out_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 
 def test_it_goes_on_from_its_newest_state(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.runs.states.SAVE_EVERY_S", 1.0)
+    monkeypatch.setattr("app.runs.states.SAVE_PAUSE_S", 0.0)
     run, end = keep_one(tmp_path, monkeypatch)
     state = newest_state(run)
     assert state is not None
