@@ -15,7 +15,7 @@ import numpy as np
 from playwright.sync_api import Browser, FloatRect, Locator, Page, Playwright, WebSocket, expect
 
 from tests.patience import PATIENCE_S
-from web.viewer.camera_views import View, camera_for
+from web.viewer.camera_views import Camera, View, camera_for
 
 # As without a graphics card: SwiftShader draws the plates, Chromium the page itself. Were SwiftShader to compose the page as
 # well, a page in which something moves would keep most of a core busy.
@@ -142,9 +142,15 @@ def show(page: Page, view: View) -> None:
     page.wait_for_timeout(300)
 
 
+def camera_of(page: Page) -> Camera:
+    """The camera of the page's viewer, as it was last."""
+    told = _told_camera[page]
+    return Camera(np.array(told["position"]), np.array(told["look_at"]), told["fov"])
+
+
 def eye_of(page: Page) -> np.ndarray:
-    """Where the camera of the page's viewer was last."""
-    return np.array(_told_camera[page]["position"])
+    """Where that is."""
+    return camera_of(page).position
 
 
 def _stands_at(page: Page, view: View) -> bool:
@@ -173,10 +179,10 @@ def turn_theme(page: Page) -> None:
     calm(page)
 
 
-def on_screen(page: Page, view: View, at: tuple[float, float, float]) -> tuple[float, float]:
-    """Where a point of the scene is on the page when the camera is at a view."""
+def on_screen(page: Page, view: View | Camera, at: tuple[float, float, float]) -> tuple[float, float]:
+    """Where a point of the scene is on the page when the camera is at a view, or has been turned from there."""
     canvas = box_of(page.frame_locator("#stage").locator("canvas").first)
-    camera = camera_for(view, canvas["width"] / canvas["height"])
+    camera = view if isinstance(view, Camera) else camera_for(view, canvas["width"] / canvas["height"])
     forward = camera.look_at - camera.position
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, [0.0, 0.0, 1.0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.resources
 
 import pytest
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 
 from tests.e2e.browser import NO_STAGE, PATIENCE_MS, calm, open_page, turn_theme, until
 
@@ -96,3 +96,16 @@ def test_the_keyboard_reaches_every_control(program, browser):
                 return part.id || part.getAttribute("aria-label") || part.textContent; }""")
             )
         assert wanted - reached == set()
+
+
+def test_a_key_right_after_a_dialog_has_its_meaning(program, browser):
+    """Until the next frame the focus is still where it was in the closed dialog."""
+    pressed = """() => document.activeElement.dispatchEvent(
+        new KeyboardEvent("keydown", { key: "c", code: "KeyC", bubbles: true }))"""
+    with open_page(browser, program.url, stage=False) as page:
+        page.keyboard.press("/")
+        expect(page.locator("#places-typed")).to_be_focused()
+        page.evaluate(pressed)  # a letter of what is looked for
+        expect(page.locator("#lessons-dialog")).to_be_hidden()
+        page.evaluate(f"() => {{ document.getElementById('places-dialog').close(); ({pressed})(); }}")
+        expect(page.locator("#lessons-dialog")).to_be_visible()

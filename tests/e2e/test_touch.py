@@ -11,10 +11,10 @@ import pytest
 from playwright.sync_api import Page
 
 from sim2d import load_world
-from tests.e2e.browser import box_of, eye_of, on_screen, open_page, show, until
+from tests.e2e.browser import box_of, camera_of, on_screen, open_page, show, until
+from tests.e2e.program import Program
 from tests.e2e.test_dashboard import robot_on_stage
 from tests.patience import PATIENCE_S
-from web.viewer.camera_views import camera_for
 from web.viewer.fits.map_fit import MapFit, refit
 from web.viewer.plates.map_plate import NODE_Z, ORIGIN
 
@@ -64,38 +64,58 @@ def await_(page: Page, condition: Callable[[], bool]) -> None:
     raise AssertionError("it does not come to pass")
 
 
-def test_a_tap_on_the_map_sets_a_goal(driven, touched):
-    page = touched
+def dot(driven: Program) -> tuple[np.ndarray, tuple[float, float, float]]:
+    """Where one of the dots is in the map, and in the scene."""
     whole = driven.state(full=True)["map"]
     nodes = np.array(whole["xy"])
     node = nodes[len(nodes) // 2]
     x, y = refit(MapFit(), nodes, whole["turn_rad"]).to_plate(node)[0]
-    page.touchscreen.tap(*on_screen(page, "map", (ORIGIN[0] + x, ORIGIN[1] + y, ORIGIN[2] + NODE_Z)))
+    return node, (ORIGIN[0] + x, ORIGIN[1] + y, ORIGIN[2] + NODE_Z)
+
+
+def test_a_tap_on_the_map_sets_a_goal(driven, touched):
+    page = touched
+    node, at = dot(driven)
+    page.touchscreen.tap(*on_screen(page, "map", at))
     goal = driven.wait(lambda state: state["goal"] is not None)["goal"]
     assert math.dist((goal["x"], goal["y"]), node) < 0.4
     page.wait_for_selector("#goal:not([hidden])")
     driven.command("cancel_goal")
 
 
-def test_a_drag_looks_around_and_a_pinch_comes_nearer_and_neither_sets_a_goal(driven, touched):
+def test_a_pinch_comes_nearer_to_what_is_between_the_fingers_and_sets_no_goal(driven, touched):
     page = touched
-    before = eye_of(page)
-    x, y = middle_of(page)
-    drag(page, ((x, y), (x + 90, y + 10)))
-    await_(page, lambda: bool(np.linalg.norm(eye_of(page) - before) > 1.0))
-    whole = away(page)  # a turn keeps it
-    drag(page, ((x - 30, y), (x - 120, y)), ((x + 30, y), (x + 120, y)))
-    await_(page, lambda: away(page) < 0.95 * whole)
-    near = away(page)
-    drag(page, ((x - 120, y), (x - 40, y)), ((x + 120, y), (x + 40, y)))
-    await_(page, lambda: away(page) > 1.03 * near)
+    _, at = dot(driven)
+    thumb, (x, y), whole = on_screen(page, "map", at), middle_of(page), away(page)
+    outwards = math.copysign(1.0, x - thumb[0])
+    finger = [(thumb[0] + outwards * pixels, thumb[1]) for pixels in (50, 200)]
+    drag(page, (thumb, thumb), (finger[0], finger[1]))  # four times as far apart, the thumb on a dot of the map
+    await_(page, lambda: math.isclose(away(page), whole / 4, rel_tol=0.01))
+    assert math.dist(on_screen(page, camera_of(page), at), thumb) < 3
+    drag(page, (thumb, thumb), (finger[1], finger[0]))
+    await_(page, lambda: math.isclose(away(page), whole, rel_tol=0.01))
+    before = camera_of(page).position
+    drag(page, ((x, y), (x + 90, y + 10)))  # one finger turns the camera, also after two have
+    await_(page, lambda: bool(np.linalg.norm(camera_of(page).position - before) > 1.0))
+    assert math.isclose(away(page), whole, rel_tol=0.01)
     assert driven.state()["goal"] is None
 
 
 def away(page: Page) -> float:
-    """How far the camera is from what it looks at while nobody has touched it."""
-    canvas = box_of(page.frame_locator("#stage").locator("canvas").first)
-    return math.dist(eye_of(page), camera_for("map", canvas["width"] / canvas["height"]).look_at)
+    """How far the camera is from what it looks at."""
+    camera = camera_of(page)
+    return math.dist(camera.position, camera.look_at)
+
+
+def test_two_fingers_on_the_robot_carry_it_nowhere(driven, touched):
+    page = touched
+    show(page, "office")
+    state = driven.state()
+    x, y = on_screen(page, "office", robot_on_stage(state, state["robot"]["x"], state["robot"]["y"]))
+    whole = away(page)
+    drag(page, ((x, y), (x + 40, y + 40)), ((x + 60, y), (x + 80, y - 40)))
+    await_(page, lambda: away(page) < 0.9 * whole)
+    assert driven.state()["robot"] == state["robot"]
 
 
 def test_a_finger_carries_the_robot_away(driven, touched):

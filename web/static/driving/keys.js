@@ -34,7 +34,8 @@ export class Keys {
 
   /** @param {KeyboardEvent} event */
   down(event) {
-    const is = (/** @type {string} */ kind) => within(event, kind) !== null;
+    // A dialog that was just closed keeps the focus until the next frame is drawn, but takes no keys any more.
+    const is = (/** @type {string} */ kind) => within(event, kind)?.checkVisibility() ?? false;
     const dialog = document.querySelector("dialog[open]") !== null;
     const meaning = meaningOf(event, { typing: is(TYPING), arrows: is(ARROWS), pressing: is(PRESSING), dialog });
     if (!meaning) return;

@@ -2,6 +2,7 @@
 
 import { $ } from "../elements/dom.js";
 import { freeFingers } from "./fingers.js";
+import { takePinches } from "./pinch.js";
 import { spareSoftware } from "./software.js";
 import { fadeDrawing, firstFrame } from "./waking.js";
 
@@ -56,6 +57,7 @@ export class Viewer extends EventTarget {
     paper.hasFocus = () => !document.hidden;
     restBeneathTheEditor(inside);
     spareSoftware(inside);
+    takePinches(inside);
     freeFingers(inside);
     this.keys.listen(inside);
     this.dispatchEvent(new Event("inside"));
