@@ -159,7 +159,7 @@ class MapPlate(Plate):
         self._bar_ends[0].show(images.text("0 s", ink, 64), (left, at, TEXT_Z))
         self._bar_ends[1].show(images.text(seconds_words(longest), ink, 64), (right, at, TEXT_Z))
         words = "what it built - colour: " + ("time to goal" if times.to_goal else "time from robot")
-        mapped = self._layer is None or not len(self._layer.cells_xy)
+        mapped = self._layer is None or not len(self._layer.visited_xy)
         self.set_heading("Experience map", words if mapped else "none, as in 2004: the packet's place")
 
     def set_robot(self, estimate: Pose) -> None:

@@ -34,7 +34,7 @@ def draw_map(subject: Subject) -> str:
     room = BESIDE * max(WIDTH, 2 * float(np.abs(here).max()))
     low, high = np.minimum(-HALF, here - room), np.maximum(HALF, here + room)
     told = "what it built - colour: " + ("time to the goal" if times.to_goal else "time from the robot")
-    if len(layer.cells_xy):
+    if len(layer.visited_xy):
         told = "none, as in 2004: the packet's place"
     sheet = subject.sheet("Experience map", told, (*low.tolist(), *high.tolist()))
     legend = draw_occupancy(sheet, subject, fit)
