@@ -46,7 +46,8 @@ class BesideDrawn:
         brain, map_ = companion.brain, companion.brain.experience_map
         if self._of is not companion or self._map is None or self._goal is None:
             self._goal = Slow(GOAL_EVERY_S, lambda: _goal(session, companion))
-            self._of, self._map = companion, MapLayers(lambda: map_, lambda: goals_of(session, companion))
+            self._of = companion
+            self._map = MapLayers(lambda: map_, lambda: companion.evaluation, lambda: goals_of(session, companion))
         layer, times = self._map.layers()
         other = map_.gate.hypothesis(map_.robot)
         series = self._history.series

@@ -69,7 +69,9 @@ class Snapshots:
         self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), ParameterRows()
         self._floor = TruthFloor()
         self._fitted: tuple[Pose2 | None, Pose | None] = None, None
-        self._map = MapLayers(lambda: session.brain.experience_map, lambda: session.pilot.goals)
+        self._map = MapLayers(
+            lambda: session.brain.experience_map, lambda: session.evaluation, lambda: session.pilot.goals
+        )
         self._beside = BesideDrawn(session, history)
         self._occupancy = Slow(OCCUPANCY_EVERY_S, lambda: occupancy_layer(session))
         self._inspection = Slow(INSPECT_EVERY_S, self._inspect)

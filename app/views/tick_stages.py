@@ -79,7 +79,10 @@ class TickRecorder:
             map_ = self._session.brain.experience_map
             self._poses, self._residual = map_.poses.copy(), map_.residual
             robot = map_.robot
-            self._map = {"map": map_layer(map_), "estimate": Pose(robot.x, robot.y, robot.heading_rad)}
+            self._map = {
+                "map": map_layer(map_, self._session.evaluation),
+                "estimate": Pose(robot.x, robot.y, robot.heading_rad),
+            }
 
     def walk(self, after: dict[str, Any]) -> Walk:
         """A walk through the recorded tick. after: the same parts as `before`, at the end of the tick."""

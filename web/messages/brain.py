@@ -102,13 +102,13 @@ class MapLayer:
     xy: NDArray[np.float32]  # (n, 2)
     heading_rad: NDArray[np.float32]  # (n,)
     links: NDArray[np.int32]  # (m, 2): rows into ids
-    cells_xy: NDArray[np.float32] = field(default_factory=lambda: NO_PLACES)
-    """(4, 2) corners of the pose cells where they are all there is, as in 2004."""
+    visited_xy: NDArray[np.float32] = field(default_factory=lambda: NO_PLACES)
+    """(4, 2) corners of where the robot has believed to be, where there are only the pose cells, as in 2004."""
 
     @property
     def extent_xy(self) -> NDArray[np.float32]:
         """(k, 2) places between which all of it lies, the robot as well."""
-        return np.concatenate([self.xy, self.cells_xy])
+        return np.concatenate([self.xy, self.visited_xy])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

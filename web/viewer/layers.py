@@ -9,6 +9,7 @@ from web.switches import Switches
 from web.throttle import Throttle
 from web.viewer.beside import Beside
 from web.viewer.fits.judged import judged
+from web.viewer.fits.overlaid import Overlaid, overlaid
 from web.viewer.judged_layers import JudgedLayers
 from web.viewer.occupancy_artist import OccupancyArtist
 from web.viewer.pointer import Pointer
@@ -82,7 +83,7 @@ class Layers:
 
     def draw(self, snapshot: Snapshot, now_s: float) -> None:
         """All that is new and due."""
-        offer, cells = self._layers, snapshot.pose_cells
+        offer, cells, laid = self._layers, snapshot.pose_cells, overlaid(snapshot, self._switches.on)
         if offer["world"].offer(now_s, snapshot.world):
             self.forget("robot", "trail", "living", "movements", "names", "lesson")
             self._judged.forget()
@@ -92,11 +93,10 @@ class Layers:
             self.forget("robot")  # when it is let go, it goes back to its true place
         else:
             offer["robot"].offer(now_s, snapshot.truth, snapshot.senses)
-        tried = None if self._pointer.dragging or not self._switches.is_on("movements") else snapshot.movements
-        offer["movements"].offer(now_s, tried)
+        offer["movements"].offer(now_s, None if self._pointer.dragging else laid.movements)
         offer["trail"].offer(now_s, snapshot.trail)
         offer["names"].offer(now_s, snapshot.places)
-        self._draw_overlays(snapshot, now_s)
+        self._draw_overlays(snapshot, laid, now_s)
         offer["cells"].offer(now_s, cells)
         offer["path"].offer(now_s, cells.path, cells.shape)
         offer["glow"].offer(now_s, cells, self._scenery.cells.under)
@@ -125,15 +125,12 @@ class Layers:
             self._judged.forget()
             self._pointer.moved(self._scenery.map)
 
-    def _draw_overlays(self, snapshot: Snapshot, now_s: float) -> None:
+    def _draw_overlays(self, snapshot: Snapshot, laid: Overlaid, now_s: float) -> None:
         """Draws the overlays that are switched on, and removes the others."""
-        offer, is_on, cells = self._layers, self._switches.is_on, snapshot.pose_cells
-        alone = snapshot.beside is None  # of two brains, both are drawn alike
-        goal = snapshot.goal_memory if alone and is_on("goal_memory") else None
-        beneath = snapshot.occupancy if is_on("cell_occupancy") else None
-        offer["cell_floor"].offer(now_s, cells.shape, beneath, goal, snapshot.inspected)
-        offer["zone"].offer(now_s, snapshot.inspected, cells.shape)
-        offer["inspected"].offer(now_s, snapshot.inspected)
-        offer["way"].offer(now_s, cells, goal)
+        offer, cells = self._layers, snapshot.pose_cells
+        offer["cell_floor"].offer(now_s, cells.shape, laid.beneath, laid.goal_memory, laid.inspected)
+        offer["zone"].offer(now_s, laid.inspected, cells.shape)
+        offer["inspected"].offer(now_s, laid.inspected)
+        offer["way"].offer(now_s, cells, laid.goal_memory)
         if not self._artist.drawing:
-            offer["occupancy"].offer(now_s, snapshot.occupancy if alone and is_on("occupancy") else None)
+            offer["occupancy"].offer(now_s, laid.occupancy)

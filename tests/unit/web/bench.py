@@ -83,9 +83,9 @@ class Bench:
     def node(self, name: str) -> dict[str, Any]:
         return self.nodes()[name]
 
-    def visible(self, name: str) -> bool:
-        """Whether a node and all its parents are shown."""
-        nodes, parts = self.nodes(), name.strip("/").split("/")
+    def visible(self, name: str, nodes: dict[str, dict[str, Any]] | None = None) -> bool:
+        """Whether a node and all its parents are shown. nodes: all, for whoever asks of many."""
+        nodes, parts = nodes or self.nodes(), name.strip("/").split("/")
         above = ["/" + "/".join(parts[: k + 1]) for k in range(len(parts))]
         return all(nodes[one]["visible"] for one in above if one in nodes)
 

@@ -1,13 +1,16 @@
-"""Benches for the tests of the viewer."""
+"""Benches for the tests of the viewer, and a server for those of routes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
+from starlette.testclient import TestClient
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
+from tests.unit.web.doubles import House, StubEngine, house
 
 
 @pytest.fixture(scope="module")
@@ -26,3 +29,25 @@ def bench() -> Iterator[Bench]:
     made.settle()
     yield made
     made.viewer.stop()
+
+
+@pytest.fixture
+def parts() -> dict[str, Any]:
+    """What app hands over to the server, for a file of tests to say."""
+    return {}
+
+
+@pytest.fixture
+def served(parts: dict[str, Any]) -> Iterator[House]:
+    with house(**parts) as made:
+        yield made
+
+
+@pytest.fixture
+def engine(served: House) -> StubEngine:
+    return served.engine
+
+
+@pytest.fixture
+def client(served: House) -> TestClient:
+    return served.client

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tests.fake_snapshots import fake_snapshot
+from tests.fake_snapshots.experience_map import NODES
 from web.messages import (
     BesideView,
     BrainFigures,
@@ -28,9 +29,9 @@ FRAME = Pose(1.0, 0.5, 0.1)
 NO_LINKS = np.zeros((0, 2), np.int32)
 
 
-def judged(tick: int = 430, off_m: float = 0.0, **more: object) -> Snapshot:
+def judged(tick: int = 430, off_m: float = 0.0, nodes: int = NODES, **more: object) -> Snapshot:
     """Ghost, true walls, error, doubt and two closures. off_m: how far the ghost is beside the map."""
-    plain = fake_snapshot(tick)
+    plain = fake_snapshot(tick, nodes=nodes)
     path = np.column_stack([np.linspace(0, 3 + off_m, 60), np.zeros(60)]).astype(np.float32)
     xy, count = plain.map.xy, len(plain.map.xy)
     closures = tuple(

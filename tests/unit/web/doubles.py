@@ -116,12 +116,15 @@ class House:
 
 
 @contextlib.contextmanager
-def house(*, empty: bool = False, stage: StubViewer | None = None, light: StubViewer | None = None) -> Iterator[House]:
+def house(
+    *, empty: bool = False, stage: StubViewer | None = None, light: StubViewer | None = None, **parts: Any
+) -> Iterator[House]:
+    """parts: what app hands over, as `create_app` takes it."""
     engine, stage, latest = StubEngine(), stage or StubViewer(), Latest[Snapshot]()
     if not empty:
         latest.put(fake_snapshot(12))
     viewers = StubViewers(stage, light)
-    app = create_app(latest, engine.submit, viewers, PORT)
+    app = create_app(latest, engine.submit, viewers, PORT, **parts)
     with TestClient(app, base_url=ORIGIN) as client:
         yield House(engine, stage, latest, client, viewers.switches)
 

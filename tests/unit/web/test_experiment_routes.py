@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from starlette.testclient import TestClient
 
-from tests.fake_snapshots import fake_snapshot
-from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers, house
-from web.http.api import create_app
+from tests.unit.web.doubles import house
 from web.http.experiments import Axis, Card, Cell, Detail, Dot, Plan, Results
-from web.latest import Latest
-from web.messages import Refused, Snapshot, WatchExperiment
+from web.messages import Refused, WatchExperiment
 
 PLAN = Plan(width=2, depth=1, left=0, bottom=0, walls="M0 0L2 0", way="", places=[(1.0, 0.5)])
 CARD = Card(
@@ -41,14 +38,10 @@ class GalleryDouble:
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
+def parts(tmp_path: Path) -> dict[str, Any]:
     picture = tmp_path / "table-1-curves.svg"
     picture.write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
-    latest = Latest[Snapshot]()
-    latest.put(fake_snapshot(12))
-    app = create_app(latest, StubEngine().submit, StubViewers(), PORT, experiments=GalleryDouble(picture))
-    with TestClient(app, base_url=ORIGIN) as made:
-        yield made
+    return {"experiments": GalleryDouble(picture)}
 
 
 def test_all_experiments_and_one_with_its_trials(client: TestClient) -> None:

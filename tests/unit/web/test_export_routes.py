@@ -5,20 +5,17 @@ from __future__ import annotations
 import io
 import threading
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import pytest
 from starlette.testclient import TestClient
 
-from tests.fake_snapshots import fake_snapshot
-from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers
-from web.http.api import create_app
+from tests.unit.web.doubles import house
 from web.http.asking import Submit
 from web.http.export import Offer, Wish
-from web.latest import Latest
-from web.messages import Snapshot
 
 
 class FewExports:
@@ -52,12 +49,8 @@ def exports() -> FewExports:
 
 
 @pytest.fixture
-def client(exports: FewExports) -> Iterator[TestClient]:
-    latest = Latest[Snapshot]()
-    latest.put(fake_snapshot(12))
-    app = create_app(latest, StubEngine().submit, StubViewers(), PORT, exports=exports)
-    with TestClient(app, base_url=ORIGIN) as client:
-        yield client
+def parts(exports: FewExports) -> dict[str, Any]:
+    return {"exports": exports}
 
 
 def test_a_file_or_several_in_one(client: TestClient, exports: FewExports) -> None:
@@ -111,10 +104,9 @@ def test_one_at_a_time(client: TestClient, exports: FewExports) -> None:
 
 
 def test_without_formats_there_is_nothing() -> None:
-    app = create_app(Latest[Snapshot](), StubEngine().submit, StubViewers(), PORT)
-    with TestClient(app, base_url=ORIGIN) as client:
-        assert client.get("/api/exports").json() == []
-        assert client.get("/api/export?to=one").status_code == 422
+    with house(empty=True) as server:
+        assert server.client.get("/api/exports").json() == []
+        assert server.client.get("/api/export?to=one").status_code == 422
 
 
 def test_another_site_gets_no_export(client: TestClient) -> None:

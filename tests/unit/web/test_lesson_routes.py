@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from starlette.testclient import TestClient
 
 from app.gallery.lessons import StoredLessons
-from tests.fake_snapshots import fake_snapshot
-from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers
-from web.http.api import create_app
-from web.latest import Latest
-from web.messages import BeginLesson, Predict, Snapshot
+from tests.unit.web.doubles import ORIGIN, StubEngine, house
+from web.messages import BeginLesson, Predict
 
 
 @pytest.fixture
-def engine() -> StubEngine:
-    return StubEngine()
-
-
-@pytest.fixture
-def client(engine: StubEngine) -> Iterator[TestClient]:
-    latest = Latest[Snapshot]()
-    latest.put(fake_snapshot(12))
-    app = create_app(latest, engine.submit, StubViewers(), PORT, lessons=StoredLessons())
-    with TestClient(app, base_url=ORIGIN) as made:
-        yield made
+def parts() -> dict[str, Any]:
+    return {"lessons": StoredLessons()}
 
 
 def test_all_lessons_in_short(client: TestClient) -> None:
@@ -63,7 +51,5 @@ def test_the_commands(client: TestClient, engine: StubEngine) -> None:
 
 
 def test_no_lessons_without_a_folder_of_them() -> None:
-    latest = Latest[Snapshot]()
-    latest.put(fake_snapshot(12))
-    with TestClient(create_app(latest, StubEngine().submit, StubViewers(), PORT), base_url=ORIGIN) as client:
-        assert client.get("/api/lessons").json() == []
+    with house() as server:
+        assert server.client.get("/api/lessons").json() == []

@@ -9,27 +9,13 @@ import pytest
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
+from tests.unit.web.office_moments import tried
 from web.messages import Movements, Snapshot
 from web.viewer.fits.office_fit import OfficeFit
 from web.viewer.marks.movements import ENLARGED, arc_on_plate
 
 AT = "/office/movements"
 FIT = OfficeFit(fake_snapshot(430).world.bounds)
-
-
-def tried(chosen: int = 1) -> Movements:
-    """Four arcs from (5, 4): two at full speed, of which one is blocked, a slow one, and a turn on the spot."""
-    ends = np.array([(0.4, 0.1), (0.4, 0.0), (0.1, 0.0), (0.0, 0.0)])
-    paths = np.linspace(0, 1, 9)[None, :, None] * ends[:, None] + (5.0, 4.0)
-    return Movements(
-        paths.astype(np.float32),
-        np.array([0.4, 0.4, 0.1, 0.0], np.float32),
-        np.array([0.5, 0.0, 0.0, 0.6], np.float32),
-        0.0,
-        np.array([True, True, True, False]),
-        np.array([False, True, True, True]),
-        chosen,
-    )
 
 
 class Asked:

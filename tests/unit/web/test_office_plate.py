@@ -11,6 +11,7 @@ import pytest
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
+from tests.unit.web.office_moments import living
 from web.messages import LivingLayer, Parameter, Refused, SetDoor, TaggedPlace
 from web.panel.office import MOST, tags
 from web.panel.office import office as office_tab
@@ -20,26 +21,6 @@ from web.viewer.pointer import DOOR_Z
 
 PEOPLE = Parameter("office.people", True, True, "", "", None, None, "people walk", "ours", True)
 SEED = Parameter("office.seed", 0, 0, "", "", 0, 99, "of people", "ours", False)
-
-
-def living(**changes: Any) -> LivingLayer:
-    layer = LivingLayer(
-        door_names=("lab", "hall"),
-        doors=np.array([(2.0, 4.0, 3.0, 4.0), (8.0, 4.0, 8.0, 5.0)], np.float32),
-        door_wanted=np.array([False, True]),
-        door_opening=np.array([0.0, 1.0], np.float32),
-        box_names=("crate",),
-        boxes=np.array([(5.0, 7.0, 0.5, 0.4, 0.6, 0.3)], np.float32),
-        box_rgb=np.array([(176, 137, 86)], np.uint8),
-        person_names=("ann", "bob"),
-        people=np.array([(1.0, 1.0, 0.0, 0.22, 1.7), (6.0, 1.0, 1.0, 0.22, 1.8)], np.float32),
-        people_rgb=np.array([(86, 110, 150), (150, 60, 50)], np.uint8),
-        lamp_names=("sun",),
-        lamps=np.array([(5.0, 4.0, 3.0, 1.0)], np.float32),
-        lamp_on=np.array([True]),
-        daylight=1.0,
-    )
-    return replace(layer, **changes)
 
 
 class Office(Bench):

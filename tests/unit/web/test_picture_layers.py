@@ -16,13 +16,14 @@ from tests.unit.web.crowded import FRAME, crowded, judged, taught, two_brains
 from web.messages import KnownPlace, Pose, Snapshot, TaggedPlace
 from web.switches import NAMES, Name
 from web.themes import THEMES, Theme
-from web.viewer.fits.map_fit import MapFit
+from web.viewer.fits.map_fit import DEPTH as FLOOR_DEPTH
+from web.viewer.fits.map_fit import WIDTH as FLOOR_WIDTH
+from web.viewer.fits.map_fit import MapFit, refit
 from web.viewer.fits.poses import compose, into_map, placed
 from web.viewer.marks.ghost import PALE, PATH_PALE, pale
 from web.viewer.marks.outline import clipped
 from web.viewer.primitives.palette import BRAINS, DARK, Rgb, mix
 from web.viewer.vector import PlateName, vector_picture
-from web.viewer.vector.experience_map import ROOM_M
 from web.viewer.vector.labels import Label, laid_out, width_of
 from web.viewer.vector.sheet import EDGE, TOP, WIDTH
 
@@ -58,13 +59,11 @@ def circles(picture: Picture, colour: Rgb) -> np.ndarray:
 
 
 def on_map(snapshot: Snapshot, points: np.ndarray) -> tuple[np.ndarray, tuple[float, float]]:
-    """(n, 2) points of the map in pixels, and the field's size in pixels: what the sheet has to do, written once more."""
-    fit = MapFit(1.0, snapshot.map_turn_rad)
-    seen = fit.to_plate(np.vstack([snapshot.map.extent_xy, (snapshot.estimate.x, snapshot.estimate.y)]))
-    low, high = seen.min(0) - ROOM_M, seen.max(0) + ROOM_M
-    scale = (WIDTH - 2 * EDGE) / (high - low)[0]
-    pixels = (fit.to_plate(points) - (low[0], high[1])) * (scale, -scale) + (EDGE, TOP)
-    return pixels, (WIDTH - 2 * EDGE, float((high - low)[1]) * scale)
+    """(n, 2) points of the map in pixels, and the field's size: they lie as on the plate, whose floor fills the field."""
+    fit = refit(MapFit(), snapshot.map.extent_xy, snapshot.map_turn_rad)
+    scale = (WIDTH - 2 * EDGE) / FLOOR_WIDTH
+    pixels = (fit.to_plate(points) - (-FLOOR_WIDTH / 2, FLOOR_DEPTH / 2)) * (scale, -scale) + (EDGE, TOP)
+    return pixels, (WIDTH - 2 * EDGE, FLOOR_DEPTH * scale)
 
 
 WALLS = mix(DARK.floor, DARK.wall, 0.75)
@@ -208,7 +207,8 @@ def test_each_of_two_brains_has_its_own_plates_under_its_name(plate: PlateName, 
         title = next(picture.iter(f"{SVG}text"))
         assert title.text == figures.name
         assert title.get("fill") == ink(BRAINS[True][k])
-    alone = replace(snapshot, beside=None, ghost=None, closures=(), map_in_office=None, spread=None)
+    nothing = dict.fromkeys(("beside", "ghost", "map_in_office", "spread", "occupancy", "goal_memory"))
+    alone = replace(snapshot, closures=(), **nothing)
     theirs = replace(
         alone, pose_cells=snapshot.beside.pose_cells, map=snapshot.beside.map, times=snapshot.beside.times,
         estimate=snapshot.beside.estimate, goal=snapshot.beside.goal, map_turn_rad=snapshot.beside.map_turn_rad,

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import pytest
 from starlette.testclient import TestClient
 
-from tests.fake_snapshots import fake_snapshot
-from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers
-from web.http.api import create_app
+from tests.unit.web.doubles import StubEngine
 from web.http.security import MAX_BODY_BYTES
 from web.http.situations import Made
-from web.latest import Latest
-from web.messages import Accepted, Look, OpenSituation, ReadSituation, Refused, Snapshot
+from web.messages import Accepted, Look, OpenSituation, ReadSituation, Refused
 
 
 @dataclass(frozen=True)
@@ -43,17 +39,8 @@ class FewSituations:
 
 
 @pytest.fixture
-def engine() -> StubEngine:
-    return StubEngine()
-
-
-@pytest.fixture
-def client(engine: StubEngine) -> Iterator[TestClient]:
-    latest = Latest[Snapshot]()
-    latest.put(fake_snapshot(12))
-    app = create_app(latest, engine.submit, StubViewers(), PORT, situations=FewSituations())
-    with TestClient(app, base_url=ORIGIN) as client:
-        yield client
+def parts() -> dict[str, Any]:
+    return {"situations": FewSituations()}
 
 
 def reason(answer: Any) -> str:

@@ -49,7 +49,7 @@ def test_each_plate_in_each_theme(plate: PlateName, theme) -> None:
 
 def test_the_map_has_every_experience_and_every_link() -> None:
     picture = drawn("map")
-    dots = [circle for circle in picture.iter(f"{SVG}circle") if circle.get("r") == "5"]
+    dots = [circle for circle in picture.iter(f"{SVG}circle") if circle.get("r") == "4"]
     assert len(dots) == len(SNAPSHOT.map.xy)
     links = max((path.get("d", "") for path in picture.iter(f"{SVG}path")), key=lambda d: d.count("M"))
     assert links.count("M") == len(SNAPSHOT.map.links)
@@ -58,7 +58,7 @@ def test_the_map_has_every_experience_and_every_link() -> None:
 def test_it_lies_as_on_the_plate() -> None:
     """A place farther to the right is farther to the right in the picture, and one farther up is higher."""
     straight = replace(SNAPSHOT, map_turn_rad=0.0, goal=None)
-    dots = [circle for circle in drawn("map", straight).iter(f"{SVG}circle") if circle.get("r") == "5"]
+    dots = [circle for circle in drawn("map", straight).iter(f"{SVG}circle") if circle.get("r") == "4"]
     places = np.array([(float(dot.get("cx", 0)), float(dot.get("cy", 0))) for dot in dots])
     for axis, sign in ((0, 1), (1, -1)):
         order = np.argsort(SNAPSHOT.map.xy[:, axis])

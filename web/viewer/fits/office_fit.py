@@ -17,6 +17,7 @@ class OfficeFit:
         self.scale = min(WIDTH / self.size_m[0], DEPTH / self.size_m[1])
         low = min(0.3, 140 * self.scale**2)  # in worlds beyond 200 m, higher walls would hide the rooms between them
         self.relief = min(1.0, max(1.5 * self.scale, low))  # scales heights and thicknesses: low where rooms are small
+        self.grid_step_m = 1.0 if self.scale > 0.35 else 5.0  # between the lines of the floor
         self._centre = self.low + np.array(self.size_m) / 2
 
     def to_plate(self, xy: NDArray[np.floating]) -> NDArray[np.float64]:

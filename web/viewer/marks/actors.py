@@ -23,6 +23,8 @@ from web.viewer.primitives.palette import Palette, Rgb, mix
 LEAF_THICK, LEAF_HIGH, LAMP_Z = 0.07, 2.05 * METRE_HIGH, 0.74
 LAMP_RADIUS = 0.09
 LIT: Rgb = (255, 236, 170)
+NIGHT: Rgb = (4, 8, 20)  # laid over the floor
+SHINE, POOL, DARKEST = 0.16, 0.6, 0.75  # opacity of a lamp's light; its share of the lamp's reach; opacity of the night
 POOL_Z, DARK_Z = 0.026, 0.022  # just above the floor
 LATE = np.array(
     (0.0, -20.0, 16.0), np.float32
@@ -39,13 +41,13 @@ class LivingThings:
         self._handles: dict[str, list[_Thing]] = {"door": [], "box": [], "lamp": []}
         self._crowd = Crowd(scene, palette, f"{root}/people")
         self._pools = add_mesh(
-            scene, f"{root}/pools", meshes.NOTHING, LIT, opacity=0.16, position=tuple(LATE.tolist()), visible=False
+            scene, f"{root}/pools", meshes.NOTHING, LIT, opacity=SHINE, position=tuple(LATE.tolist()), visible=False
         )
         self._dark = add_mesh(
             scene,
             f"{root}/dark",
             meshes.NOTHING,
-            (4, 8, 20),
+            NIGHT,
             opacity=0.5,
             position=tuple(LATE.tolist()),
             visible=False,
@@ -65,7 +67,7 @@ class LivingThings:
         for i, box in enumerate(boxes):
             self._box(self._handle("box", i, _rgb(layer.box_rgb[i]) if layer else DOOR_RGB), box, fit)
         for i, (x, y, _, on) in enumerate(lamps):
-            handle = self._handle("lamp", i, LIT if on else mix(self._palette.slab, self._palette.text_2, 0.3))
+            handle = self._handle("lamp", i, LIT if on else unlit(self._palette))
             self._move(handle, fit, float(x), float(y), LAMP_Z * fit.relief, 0.0, (LAMP_RADIUS, LAMP_RADIUS, 0.02))
         for kind, count in zip(self._handles, map(len, (doors, boxes, lamps)), strict=True):
             for thing in self._handles[kind][count:]:
@@ -84,7 +86,7 @@ class LivingThings:
         if len(shining):
             middles = fit.to_plate(shining[:, :2])
             discs = [
-                meshes.disc((float(x), float(y)), 0.6 * float(reach) * fit.scale, POOL_Z, 36)
+                meshes.disc((float(x), float(y)), POOL * float(reach) * fit.scale, POOL_Z, 36)
                 for (x, y), reach in zip(middles, shining[:, 2], strict=True)
             ]
             vertices, self._pools.faces = meshes.joined(*discs)
@@ -101,7 +103,7 @@ class LivingThings:
             half_x, half_y = (0.5 * side * fit.scale for side in fit.size_m)
             vertices, self._dark.faces = meshes.flat_polygon(2 * _SQUARE * (half_x, half_y), DARK_Z)
             self._dark.vertices = vertices - LATE
-            self._dark.opacity = 0.75 * (1.0 - now[0])
+            self._dark.opacity = DARKEST * (1.0 - now[0])
 
     def door_at(self, place: tuple[float, float], fit: OfficeFit) -> tuple[str, bool] | None:
         """The door whose leaf a click (plate units) has hit, and whether the click opens it."""
@@ -164,6 +166,11 @@ class _Thing:
     handle: viser.MeshHandle
     paint: Rgb
     shown: tuple[Any, ...] | None = None  # where it stands now; None: hidden
+
+
+def unlit(palette: Palette) -> Rgb:
+    """The colour of a lamp that does not shine."""
+    return mix(palette.slab, palette.text_2, 0.3)
 
 
 def _rgb(row: NDArray[np.uint8]) -> Rgb:

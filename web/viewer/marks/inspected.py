@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import viser
+from numpy.typing import NDArray
 
 from web.messages import CellReport, ExperienceReport, MapLayer, Report, ViewReport, WhyReport
 from web.viewer.fits.cell_fit import HEIGHT, CellFit, broken_where_it_wraps
@@ -42,11 +43,10 @@ class MapMark:
         segments, at = NOTHING, None
         if layer is not None and isinstance(report, ExperienceReport):
             at = fit.to_plate(np.array([[report.pose.x, report.pose.y]]))[0].tolist()
-            ends = np.array([(link.start, link.end) for link in report.links], np.int64).reshape(-1, 2)[:LINKS]
-            ends = ends[(ends < len(layer.xy)).all(1)]
+            ends = links_of(report, len(layer.xy))
             segments = meshes.lifted(fit.to_plate(layer.xy), 0.07)[ends].astype(np.float32).reshape(-1, 2, 3)
         elif layer is not None and isinstance(report, ViewReport | CellReport | WhyReport):
-            rows = [row for row in report.experiences if row < len(layer.xy)][:SPOTS]
+            rows = spots_of(report, len(layer.xy))
             spots = [meshes.circle(0.16, (x, y), SPOT_CORNERS) for x, y in fit.to_plate(layer.xy[rows]).tolist()]
             segments = np.concatenate([NOTHING, *(meshes.closed_line(spot, 0.09) for spot in spots)])
         self.frame.visible = at is not None
@@ -74,11 +74,8 @@ class CellMark:
             self._shape, self.cells = shape, self._add_cells(fit)
         positions, scales = np.full((CELLS, 3), -50.0, np.float32), np.full(CELLS, 1e-3, np.float32)
         if isinstance(report, ExperienceReport | ViewReport):
-            links = report.hebbian
-            count = min(len(links.cells), CELLS)
-            positions[:count] = fit.cells(links.cells[:count])
-            strength = np.minimum(links.strength[:count] / max(links.saturation, 1e-9), 1.0)
-            scales[:count] = 0.25 + 0.5 * np.sqrt(strength)
+            cells, sizes = linked_cells(report)
+            positions[: len(cells)], scales[: len(cells)] = fit.cells(cells), sizes
         lines = NOTHING
         if isinstance(report, ExperienceReport):
             lines = zone_lines(report, fit)
@@ -101,6 +98,24 @@ class CellMark:
             cast_shadow=False,
             receive_shadow=False,
         )
+
+
+def links_of(report: ExperienceReport, count: int) -> NDArray[np.int64]:
+    """(n, 2) the experiences between which its links go; count: of all that are shown."""
+    ends = np.array([(link.start, link.end) for link in report.links], np.int64).reshape(-1, 2)[:LINKS]
+    return ends[(ends < count).all(1)]
+
+
+def spots_of(report: ViewReport | CellReport | WhyReport, count: int) -> list[int]:
+    """The experiences that belong to it; count: of all that are shown."""
+    return [row for row in report.experiences if row < count][:SPOTS]
+
+
+def linked_cells(report: ExperienceReport | ViewReport) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """(k, 3) the cells that its view is linked to, strongest first, and (k,) how large each is drawn: 1 fills the cell."""
+    links = report.hebbian
+    strength = np.minimum(links.strength[:CELLS] / max(links.saturation, 1e-9), 1.0)
+    return links.cells[:CELLS], 0.25 + 0.5 * np.sqrt(strength)
 
 
 def zone_lines(report: ExperienceReport, fit: CellFit) -> np.ndarray:

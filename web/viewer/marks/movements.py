@@ -7,10 +7,11 @@ import viser
 from numpy.typing import NDArray
 
 from web.messages import Movements
+from web.viewer.fits.map_fit import MapFit
 from web.viewer.fits.office_fit import OfficeFit
 from web.viewer.primitives import meshes
 from web.viewer.primitives.labels import add_mesh
-from web.viewer.primitives.palette import Palette, mix
+from web.viewer.primitives.palette import Palette, Rgb, mix
 
 ENLARGED = 2.5  # arcs of a second at the robot's pace would end beneath its drawn body
 SPOT_STEPS = 12  # points on the arc of a turn on the spot
@@ -20,8 +21,7 @@ FAR = -50.0
 
 class MovementArcs:
     def __init__(self, scene: viser.SceneApi, palette: Palette, name: str) -> None:
-        self._bright = mix(palette.text, palette.floor, 0.1)
-        self._grey = mix(palette.text_2, palette.floor, 0.1)
+        self._bright, self._grey = shades(palette)
         self._free = scene.add_line_segments(
             f"{name}/free", meshes.NOWHERE, palette.drawn(self._bright), thickness=0.014
         )
@@ -45,9 +45,8 @@ class MovementArcs:
         radius: of the robot as it is drawn, plate units; a turn on the spot is an arc around it.
         """
         ways = [arc_on_plate(tried, k, fit, radius) for k in range(len(tried.free))]
-        full = tried.length_m > 0.99 * tried.length_m.max()
         lines: dict[bool, list[NDArray[np.float32]]] = {True: [meshes.NOWHERE[:0]], False: [meshes.NOWHERE[:0]]}
-        for k in np.flatnonzero(full & tried.drives):
+        for k in drawn_along(tried):
             free = bool(tried.free[k])
             line = meshes.open_line(meshes.lifted(ways[k], 0.05))
             lines[free].append(line if free else line[1::2])
@@ -66,7 +65,17 @@ class MovementArcs:
             mesh.vertices, mesh.faces = meshes.NOTHING
 
 
-def arc_on_plate(tried: Movements, k: int, fit: OfficeFit, radius: float) -> NDArray[np.float64]:
+def shades(palette: Palette) -> tuple[Rgb, Rgb]:
+    """The colours of those that are free, and of those that are blocked."""
+    return mix(palette.text, palette.floor, 0.1), mix(palette.text_2, palette.floor, 0.1)
+
+
+def drawn_along(tried: Movements) -> list[int]:
+    """Those that are drawn along their way: at full speed."""
+    return np.flatnonzero((tried.length_m > 0.99 * tried.length_m.max()) & tried.drives).tolist()
+
+
+def arc_on_plate(tried: Movements, k: int, fit: OfficeFit | MapFit, radius: float) -> NDArray[np.float64]:
     """(n, 2): the k-th arc; that of a turn on the spot lies around the robot, from ahead to where it would then face."""
     path = fit.to_plate(tried.paths[k])
     if tried.drives[k]:

@@ -30,7 +30,7 @@ def add_floor(
 ) -> None:
     """The floor image: metre grid and contact shadows."""
     px = FLOOR_PX_PER_UNIT * fit.scale
-    floor = images.gridded_floor(fit.size_m, px, palette.floor, palette.grid, 1.0 if fit.scale > 0.35 else 5.0)
+    floor = images.gridded_floor(fit.size_m, px, palette.floor, palette.grid, fit.grid_step_m)
     height = floor.shape[0]
 
     def pixels(xy: Array) -> Array:

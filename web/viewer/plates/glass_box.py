@@ -50,8 +50,8 @@ class GlassBox:
         ink, faint = self._palette.text, self._palette.text_2
         for k, share in enumerate((0.0, 0.5, 1.0)):
             along = -HALF + share * SIDE
-            self._write(f"x{k}", _metres(share * width_m, k == 2), faint, (along, -HALF - 0.42, 0.1))
-            self._write(f"y{k}", _metres(share * depth_m, k == 2), faint, (HALF + 0.22, along + 0.1, 0.12))
+            self._write(f"x{k}", metres_words(share * width_m, k == 2), faint, (along, -HALF - 0.42, 0.1))
+            self._write(f"y{k}", metres_words(share * depth_m, k == 2), faint, (HALF + 0.22, along + 0.1, 0.12))
             self._write(f"t{k}", f"{round(share * 360)}°", faint, (-HALF - 0.2, -HALF, 0.16 + share * (HEIGHT - 0.16)))
         self._write("x", "x′", ink, (HALF * 0.5, -HALF - 0.42, 0.14))
         self._write("y", "y′", ink, (HALF + 0.22, HALF * 0.5, 0.16))
@@ -62,7 +62,7 @@ class GlassBox:
         self._labels[name].show(images.text(words, colour, 64, bold), at)
 
 
-def _metres(value: float, unit: bool) -> str:
+def metres_words(value: float, unit: bool) -> str:
     return f"{value:.3g} m" if unit else f"{value:.3g}"
 
 

@@ -46,6 +46,7 @@ BAR_X = 3.65
 GRID_LINES = 48
 TIME_STEPS = 64  # shades of the map: a dot whose time changes by less than one is not sent again
 NEAR = 0.5
+NO_MAP = "no map yet: the robot has not moved"
 
 
 class MapPlate(Plate):
@@ -111,7 +112,7 @@ class MapPlate(Plate):
         if len(layer.xy):
             self._empty.hide()
         else:
-            self._empty.show(images.text("no map yet: the robot has not moved", self.palette.text_2, 64), (0, 0, 0))
+            self._empty.show(images.text(NO_MAP, self.palette.text_2, 64), (0, 0, 0))
         if self.fit.scale != before.scale:
             self._draw_grid()
         if self.fit is not before and self._picture is not None:
@@ -132,7 +133,7 @@ class MapPlate(Plate):
 
     def _draw_grid(self) -> None:
         """Draws a line per metre of the map (per five in large ones), from the middle of the plate."""
-        step = self.fit.scale * (1 if self.fit.scale > 0.35 else 5 if self.fit.scale > 0.08 else 25)
+        step = self.fit.scale * grid_step_m(self.fit.scale)
         lines: list[list[list[float]]] = []
         for half, reach, flip in ((WIDTH / 2, DEPTH / 2, False), (DEPTH / 2, WIDTH / 2, True)):
             count = int(half / step)
@@ -158,7 +159,7 @@ class MapPlate(Plate):
         self._bar_ends[0].show(images.text("0 s", ink, 64), (left, at, TEXT_Z))
         self._bar_ends[1].show(images.text(seconds_words(longest), ink, 64), (right, at, TEXT_Z))
         words = "what it built - colour: " + ("time to goal" if times.to_goal else "time from robot")
-        mapped = self._layer is None or not len(self._layer.cells_xy)
+        mapped = self._layer is None or not len(self._layer.visited_xy)
         self.set_heading("Experience map", words if mapped else "none, as in 2004: the packet's place")
 
     def set_robot(self, estimate: Pose) -> None:
@@ -186,7 +187,7 @@ class MapPlate(Plate):
             self._flag.hide()
             return
         at = self.fit.to_plate(np.array([[goal.x, goal.y]]))[0]
-        self._flag.show(at, _promise(goal), meshes.stepped(self.fit.to_plate(goal.places_xy)))
+        self._flag.show(at, promise(goal), meshes.stepped(self.fit.to_plate(goal.places_xy)))
         self._route.show(self.fit.to_plate(goal.route_xy), goal.route_arrival_s, at)
 
     def set_tags(self, tags: tuple[TaggedPlace, ...]) -> None:
@@ -232,6 +233,11 @@ class MapPlate(Plate):
         return abs(plate_xy[0]) <= width / 2 and abs(plate_xy[1] - centre_y) <= depth / 2
 
 
+def grid_step_m(scale: float) -> int:
+    """Metres between the lines of the grid: fewer in large maps. scale: plate units a metre."""
+    return 1 if scale > 0.35 else 5 if scale > 0.08 else 25
+
+
 def seconds_words(seconds: float) -> str:
     return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
 
@@ -240,7 +246,8 @@ def _in_steps(seconds: NDArray[np.float32], longest: float) -> NDArray[np.float3
     return np.asarray(np.rint(seconds * (TIME_STEPS / longest)) * (longest / TIME_STEPS), np.float32)
 
 
-def _promise(goal: Goal) -> str:
+def promise(goal: Goal) -> str:
+    """When it will be there, or why not."""
     if goal.state in ("arrived", "unreachable") or goal.eta_s is None or not math.isfinite(goal.eta_s):
         return {"arrived": "arrived", "unreachable": "no way known"}.get(goal.state, "? s")
     return seconds_words(goal.eta_s)

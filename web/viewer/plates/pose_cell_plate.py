@@ -32,6 +32,7 @@ DASHES = 48
 FLOOR_PX = 288
 PILL_M = 0.62
 BELIEVES = "where the network believes the robot is"
+NO_ACTIVITY = "no activity yet"
 SNAPPED = "where it believes it is - S to F: the last snap"
 LEAST_SHARE = 0.005  # a packet with less would show as 0 %
 WEAKEST = 0.02  # share of the strongest cell
@@ -116,7 +117,7 @@ class PoseCellPlate(Plate):
         if len(layer.cells):
             self._empty.hide()
         else:
-            self._empty.show(images.text("no activity yet", self.palette.text_2, 64), (0.0, 0.0, 1.0))
+            self._empty.show(images.text(NO_ACTIVITY, self.palette.text_2, 64), (0.0, 0.0, 1.0))
 
     def _set_shape(self, layer: PoseCellLayer) -> None:
         if layer.shape == self._shape:

@@ -5,6 +5,7 @@ Arrays are (height, width, 3 or 4) uint8 with the first row at the top; `upright
 
 from __future__ import annotations
 
+import io
 from functools import lru_cache
 from pathlib import Path
 
@@ -21,6 +22,13 @@ _FONTS = Path(__file__).parent / "fonts"
 def upright(image: Pixels) -> Pixels:
     """The image as `scene.add_image` needs it, since our camera shows images upside down."""
     return np.ascontiguousarray(image[::-1])
+
+
+def png(image: Pixels) -> bytes:
+    """The image as a file."""
+    file = io.BytesIO()
+    Image.fromarray(image).save(file, "png")
+    return file.getvalue()
 
 
 @lru_cache(maxsize=16)

@@ -3,53 +3,57 @@ people alone know of it."""
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from web.viewer.fits.judged import wheels_alone, wheels_path
-from web.viewer.fits.map_fit import MapFit
+from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.fits.poses import on_plate
-from web.viewer.plates.map_plate import round_up, seconds_words
-from web.viewer.primitives.palette import Palette
+from web.viewer.marks.route import pill_stops
+from web.viewer.plates.map_plate import NO_MAP, grid_step_m, promise, round_up, seconds_words
 from web.viewer.vector import judged
+from web.viewer.vector.ground import draw_occupancy
+from web.viewer.vector.inspected import mark_on_map
 from web.viewer.vector.lesson import draw_pin, draw_pins
 from web.viewer.vector.sheet import Entry, Sheet
 from web.viewer.vector.subject import Subject
 
-ROOM_M = 0.6  # around the map
-LEAST_M = 3.0
+HALF = np.array([WIDTH, DEPTH]) / 2
+BESIDE = 0.03  # of the field: room around a robot that has left the floor
 SHADES = 24  # of the scale
-ROBOT = 16.0  # pixels
+DOT, ROBOT = 4.0, 16.0  # pixels
 
 
 def draw_map(subject: Subject) -> str:
-    """Turned as on the plate, so that it lies as the office does."""
+    """All of the plate's floor, with the map placed and turned as on the plate."""
     snapshot, palette = subject.snapshot, subject.palette
     layer, times = snapshot.map, snapshot.times
-    fit = MapFit(1.0, snapshot.map_turn_rad)
+    fit = refit(MapFit(), layer.extent_xy, snapshot.map_turn_rad)
     places, robot = fit.to_plate(layer.xy), on_plate(snapshot.estimate, fit)
-    seen = np.vstack([fit.to_plate(layer.extent_xy), (robot.x, robot.y)])
-    middle, half = (seen.min(0) + seen.max(0)) / 2, np.maximum((seen.max(0) - seen.min(0)) / 2 + ROOM_M, LEAST_M / 2)
-    low, high = middle - half, middle + half
+    here = np.array([robot.x, robot.y])
+    room = BESIDE * max(WIDTH, 2 * float(np.abs(here).max()))
+    low, high = np.minimum(-HALF, here - room), np.maximum(HALF, here + room)
     told = "what it built - colour: " + ("time to the goal" if times.to_goal else "time from the robot")
-    if len(layer.cells_xy):
+    if len(layer.visited_xy):
         told = "none, as in 2004: the packet's place"
     sheet = subject.sheet("Experience map", told, (*low.tolist(), *high.tolist()))
-    _draw_grid(sheet, low, high, palette)
-    legend = judged.draw_walls(sheet, subject, fit)
+    legend = draw_occupancy(sheet, subject, fit)
+    _draw_grid(sheet, low, high, fit.scale)
+    legend += judged.draw_walls(sheet, subject, fit)
     ghost, truth = subject.judged.ghost, snapshot.truth
     if ghost is not None:
         judged.draw_path(sheet, palette, fit.to_plate(wheels_path(ghost)[1]))
-    sheet.lines(places[layer.links].reshape(-1, 2, 2), palette.link, 1.6)
+    sheet.lines(places[layer.links].reshape(-1, 2, 2), palette.link, 1.4)
     seconds = times.seconds[: len(places)]
     longest = round_up(float(seconds[np.isfinite(seconds)].max(initial=1.0)))
     for place, colour in zip(places.tolist(), palette.times(seconds, longest).tolist(), strict=False):
-        sheet.dot(place, 5, tuple(colour))
-    sheet.avoid((robot.x, robot.y), ROBOT)
+        sheet.dot(place, DOT, tuple(colour))
+    if not len(places):
+        sheet.label(((low + high) / 2).tolist(), NO_MAP, palette.text_2)
+    sheet.avoid(here.tolist(), ROBOT)
     _draw_goal(sheet, subject, fit)
     legend += judged.draw_spread(sheet, subject, fit)
+    legend += mark_on_map(sheet, subject, fit, places)
     _draw_names(sheet, subject, fit)
     legend += judged.draw_closures(sheet, subject, places)
     if ghost is not None and truth is not None:
@@ -69,17 +73,17 @@ def _draw_goal(sheet: Sheet, subject: Subject, fit: MapFit) -> None:
     goal, palette = subject.snapshot.goal, subject.palette
     if goal is None:
         return
-    route = fit.to_plate(goal.route_xy)
+    route, at = fit.to_plate(goal.route_xy), fit.to_plate(np.array([[goal.x, goal.y]]))[0]
     sheet.line(route, palette.casing, 7)
     sheet.line(route, palette.route, 3.5)
-    at = fit.to_plate(np.array([[goal.x, goal.y]]))[0].tolist()
     for place in fit.to_plate(goal.places_xy).tolist():
-        sheet.dot(place, 9, None, palette.goal)
-    sheet.dot(at, 9, palette.goal, palette.casing)
-    sheet.avoid(at, 10)
-    arrives = goal.eta_s is not None and math.isfinite(goal.eta_s)
-    words = seconds_words(goal.eta_s or 0.0) if arrives else goal.state
-    sheet.label(at, words, palette.on_goal, up=26, fill=palette.goal)
+        sheet.dot(place, 2 * DOT, None, palette.goal)
+    sheet.dot(at.tolist(), 9, palette.goal, palette.casing)
+    sheet.avoid(at.tolist(), 10)
+    sheet.label(at.tolist(), promise(goal), palette.on_goal, up=26, fill=palette.goal)
+    if len(route) > 1:
+        for seconds, x, y in pill_stops(route, np.asarray(goal.route_arrival_s, np.float64), at):
+            sheet.label((x, y), f"{seconds:.0f} s", palette.casing, size=12, fill=palette.route)
 
 
 def _draw_names(sheet: Sheet, subject: Subject, fit: MapFit) -> None:
@@ -104,10 +108,11 @@ def _draw_other(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
     return [("ring", subject.palette.robot, "where it would be by looks that it does not believe yet")]
 
 
-def _draw_grid(sheet: Sheet, low: NDArray[np.float64], high: NDArray[np.float64], palette: Palette) -> None:
-    """A line per metre, per five or per 25 in large maps."""
-    step = 1.0 if sheet.scale > 35 else 5.0 if sheet.scale > 8 else 25.0
-    for k in range(math.ceil(low[0] / step), math.floor(high[0] / step) + 1):
-        sheet.lines([[(k * step, low[1]), (k * step, high[1])]], palette.grid, 1.2)
-    for k in range(math.ceil(low[1] / step), math.floor(high[1] / step) + 1):
-        sheet.lines([[(low[0], k * step), (high[0], k * step)]], palette.grid, 1.2)
+def _draw_grid(sheet: Sheet, low: NDArray[np.float64], high: NDArray[np.float64], scale: float) -> None:
+    """A line per metre, per five or per 25 in large maps, from the middle of the plate."""
+    step = scale * grid_step_m(scale)
+    first, last = np.ceil(low / step).astype(int), np.floor(high / step).astype(int)
+    for k in range(first[0], last[0] + 1):
+        sheet.lines([[(k * step, low[1]), (k * step, high[1])]], sheet.palette.grid, 1.2)
+    for k in range(first[1], last[1] + 1):
+        sheet.lines([[(low[0], k * step), (high[0], k * step)]], sheet.palette.grid, 1.2)

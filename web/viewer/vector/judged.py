@@ -74,7 +74,7 @@ def draw_error(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
         return []
     line, metres = error_line(subject.snapshot.estimate, truth, frame)
     line = fit.to_plate(line)
-    if sheet.scale * metres < LEAST_PX:
+    if sheet.scale * fit.scale * metres < LEAST_PX:
         return []
     sheet.line(line, palette.true_path, 4)
     sheet.dot(line[1].tolist(), RING, None, palette.true_path)
@@ -92,7 +92,7 @@ def draw_spread(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
         return []
     here, turn = subject.snapshot.estimate, spread.turn_rad + fit.turn_rad
     c, s = math.cos(turn), math.sin(turn)
-    axes = np.array([spread.along_m, spread.across_m]) * doubt.SIGMAS
+    axes = np.array([spread.along_m, spread.across_m]) * doubt.SIGMAS * fit.scale
     around = meshes.circle(1.0, corners=48) * axes @ np.array([(c, s), (-s, c)]) + fit.to_plate(
         np.array([[here.x, here.y]])
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Sequence
 from typing import Literal
 from xml.sax.saxutils import escape, quoteattr
@@ -10,11 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from web.viewer.marks.outline import clipped
+from web.viewer.primitives import images
 from web.viewer.primitives.palette import Palette, Rgb
 from web.viewer.vector.labels import Label, laid_out, line_to, plain, width_of
 
 WIDTH, TOP, EDGE, FOOT = 1000.0, 78.0, 24.0, 54.0  # pixels
 TALLEST = 1400.0  # of the field
+SHARP = 4  # a pixel of an image is so many wide: programs that smooth what they enlarge blur less of it
 HEADING = WIDTH - 2 * EDGE - 230  # beside it may be a scale
 Mark = Literal["line", "dashes", "ring", "oval", "area"]
 Entry = tuple[Mark, Rgb, str]  # of a legend
@@ -94,11 +97,37 @@ class Sheet:
         inside = "none" if fill is None else _hex(fill)
         self._parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:g}" fill="{inside}"{rim}/>')
 
+    def image(self, pixels: images.Pixels, corners: ArrayLike) -> None:
+        """RGB or RGBA. corners: (3, 2) of the frame where its upper left, upper right and lower left ones are."""
+        large = pixels.repeat(SHARP, 0).repeat(SHARP, 1)
+        height, width = large.shape[:2]
+        (left, top), right, bottom = self.pixels(corners).tolist()
+        turned = (
+            (right[0] - left) / width,
+            (right[1] - top) / width,
+            (bottom[0] - left) / height,
+            (bottom[1] - top) / height,
+        )
+        matrix = " ".join(f"{part:.6g}" for part in (*turned, left, top))
+        png = base64.b64encode(images.png(large)).decode()
+        self._parts.append(
+            f'<image width="{width}" height="{height}" transform="matrix({matrix})" preserveAspectRatio="none" '
+            f'style="image-rendering:pixelated" xlink:href="data:image/png;base64,{png}"/>'
+        )
+
     def arrow(self, x: float, y: float, heading_rad: float, fill: Rgb, size: float) -> None:
         """A robot: an arrowhead of this size, pixels."""
         outline = np.array([(1.0, 0.0), (-0.8, 0.62), (-0.4, 0.0), (-0.8, -0.62)]) * size / self.scale
         c, s = np.cos(heading_rad), np.sin(heading_rad)
         self.polygon(outline @ np.array([(c, s), (-s, c)]) + (x, y), fill, stroke=self.palette.casing)
+
+    def way(self, points: ArrayLike, colour: Rgb, width: float) -> None:
+        """A line in a casing, with a head at its end."""
+        xy = np.asarray(points, np.float64)
+        ahead = xy[-1] - xy[-2]
+        self.line(xy, self.palette.casing, 1.6 * width)
+        self.line(xy, colour, width)
+        self.arrow(xy[-1, 0], xy[-1, 1], float(np.arctan2(ahead[1], ahead[0])), colour, 2.4 * width)
 
     def label(
         self,
@@ -116,6 +145,14 @@ class Sheet:
         x1, y1, x2, y2 = self.box
         x, y = self.pixels([np.clip(place, (x1, y1), (x2, y2))])[0].tolist()
         self._labels.append(Label((x, y), up, plain(words), colour, size, fill))
+
+    def note(self, place: Sequence[float], words: str, *, anchor: str, up: float, bold: bool = False) -> None:
+        """Words that stay where they are, so many pixels above a place, as numbers on an axis do; labels give way."""
+        (x, y), size = self.pixels([place])[0].tolist(), 14
+        colour = self.palette.text if bold else self.palette.text_2
+        self._words(x, y - up, words, size, colour, anchor=anchor, bold=bold, casing=True)
+        half = width_of(words, size, bold=bold) / 2
+        self._avoided.append((x + {"start": half, "middle": 0.0, "end": -half}[anchor], y - up - 0.36 * size, half))
 
     def avoid(self, place: Sequence[float], radius: float) -> None:
         """No label is to lie here. radius: pixels."""
@@ -139,7 +176,7 @@ class Sheet:
             if k == 0 or x + wide > WIDTH - EDGE:
                 x, self.height = EDGE, self.height + 24
             y = self.height - 24
-            self._around.append(_sample(mark, colour, x, y))
+            self._around.append(_sample(mark, colour, x, y, self.palette.rim))
             self._words(x + 34, y + 5, words, 14, self.palette.text_2)
             x += wide + 22
 
@@ -165,7 +202,8 @@ class Sheet:
         size = f'width="{WIDTH:g}" height="{self.height:.0f}" viewBox="0 0 {WIDTH:g} {self.height:.0f}"'
         paper = f'<rect width="100%" height="100%" fill="{_hex(self.palette.sheet)}"/>'
         around = "".join(self._around)
-        return f'<svg xmlns="http://www.w3.org/2000/svg" {size} {_FONT}>{paper}{drawn}{around}</svg>\n'
+        names = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
+        return f"<svg {names} {size} {_FONT}>{paper}{drawn}{around}</svg>\n"
 
     def _name(self, field: NDArray[np.float64]) -> None:
         """Draws the labels, lines first."""
@@ -206,7 +244,7 @@ def _fitting(words: str, size: float, room: float, *, bold: bool = False) -> flo
     return size * min(1.0, room / max(width_of(words, size, bold=bold), 1e-6))
 
 
-def _sample(mark: Mark, colour: Rgb, x: float, y: float) -> str:
+def _sample(mark: Mark, colour: Rgb, x: float, y: float, rim: Rgb) -> str:
     """What a mark looks like, 26 pixels wide from x on, about y."""
     ink = f'fill="none" stroke="{_hex(colour)}" stroke-width="2.5"'
     middle = x + 13
@@ -215,7 +253,8 @@ def _sample(mark: Mark, colour: Rgb, x: float, y: float) -> str:
         "dashes": f'<path d="M{x:.1f} {y:.1f}h26" {ink} stroke-dasharray="6 4"/>',
         "ring": f'<circle cx="{middle:.1f}" cy="{y:.1f}" r="7" {ink}/>',
         "oval": f'<ellipse cx="{middle:.1f}" cy="{y:.1f}" rx="12" ry="7" {ink}/>',
-        "area": f'<rect x="{x:.1f}" y="{y - 7:.1f}" width="26" height="14" rx="3" fill="{_hex(colour)}"/>',
+        "area": f'<rect x="{x:.1f}" y="{y - 7:.1f}" width="26" height="14" rx="3" fill="{_hex(colour)}" '
+        f'stroke="{_hex(rim)}"/>',
     }[mark]
 
 

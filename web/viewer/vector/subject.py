@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from web.messages import BesideView, Pose, Snapshot
 from web.switches import Name
 from web.viewer.fits.judged import Judged, judged
+from web.viewer.fits.overlaid import Overlaid, overlaid
 from web.viewer.primitives.palette import BRAINS, Palette, Rgb
 from web.viewer.vector.sheet import Sheet
 
@@ -17,6 +18,7 @@ class Subject:
     snapshot: Snapshot
     palette: Palette
     judged: Judged
+    overlaid: Overlaid
     brain: tuple[str, Rgb] | None  # one of two; None: there is one only
     other: Pose | None  # where the robot would be by the looks that this brain holds back
 
@@ -40,7 +42,7 @@ def first_of(snapshot: Snapshot, palette: Palette, on: Collection[Name]) -> Subj
     """on: the switches that are on."""
     beside, other = snapshot.beside, snapshot.belief.other if snapshot.belief else None
     brain = None if beside is None else (beside.first.name, BRAINS[palette.dark][0])
-    return Subject(snapshot, palette, judged(snapshot, on), brain, other)
+    return Subject(snapshot, palette, judged(snapshot, on), overlaid(snapshot, on), brain, other)
 
 
 def second_of(snapshot: Snapshot, palette: Palette) -> Subject:
@@ -49,11 +51,12 @@ def second_of(snapshot: Snapshot, palette: Palette) -> Subject:
     if beside is None:
         raise ValueError("there is one brain only; compare_brains begins a second one")
     brain = beside.second.name, BRAINS[palette.dark][1]
-    return Subject(_with(snapshot, beside), palette, judged(snapshot, ()), brain, beside.other)
+    theirs = _with(snapshot, beside)
+    return Subject(theirs, palette, judged(theirs, ()), overlaid(theirs, ()), brain, beside.other)
 
 
 def _with(snapshot: Snapshot, beside: BesideView) -> Snapshot:
     return replace(
         snapshot, pose_cells=beside.pose_cells, map=beside.map, times=beside.times, estimate=beside.estimate,
-        goal=beside.goal, map_turn_rad=beside.map_turn_rad, map_in_office=None, places=(), tags=(), lesson=None,
+        goal=beside.goal, map_turn_rad=beside.map_turn_rad, map_in_office=None, places=(), tags=(), lesson=None, inspected=None,
     )  # fmt: skip

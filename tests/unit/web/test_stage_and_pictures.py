@@ -1,0 +1,126 @@
+"""What a moment has on a plate of the stage, it has in the picture of that plate, and what has no part there has none in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.fake_snapshots import fake_reports
+from tests.unit.web.bench import Bench
+from tests.unit.web.crowded import crowded, judged, taught, two_brains
+from tests.unit.web.office_moments import living, tried
+from web.messages import Belief, Pose, Snapshot, TaggedPlace
+from web.switches import NAMES, Name
+from web.viewer.vector import PlateName, vector_picture
+
+ROOTS: dict[PlateName, str] = {"office": "/office", "pose": "/pose_cells", "map": "/map"}
+PLAIN = judged(830, nodes=200, movements=tried)  # 3 s after a snap, so that all is there
+REPORTS = fake_reports()
+
+
+@pytest.fixture(scope="module")
+def stage() -> Iterator[Bench]:
+    bench = Bench()
+    yield bench
+    bench.viewer.stop()
+
+
+def on_stage(bench: Bench, snapshot: Snapshot) -> dict[PlateName, dict[str, str]]:
+    bench.show(snapshot, 100.0)
+    bench.settle()
+    nodes = bench.nodes()
+    return {
+        plate: {
+            name: repr(
+                {key: value.tobytes() if isinstance(value, np.ndarray) else value for key, value in props.items()}
+            )
+            for name, props in nodes.items()
+            if name.startswith(f"{root}/") and bench.visible(name, nodes)
+        }
+        for plate, root in ROOTS.items()
+    }
+
+
+def in_pictures(bench: Bench, snapshot: Snapshot) -> dict[PlateName, str]:
+    shown = {plate: vector_picture(plate, snapshot, "dark", bench.switches.on) for plate in ROOTS}
+    return {plate: svg.replace(f"tick {snapshot.tick}", "") for plate, svg in shown.items()}
+
+
+def differing(one: dict[PlateName, Any], other: dict[PlateName, Any]) -> set[PlateName]:
+    return {plate for plate in ROOTS if one[plate] != other[plate]}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_switch_changes_the_pictures_of_the_plates_that_it_changes(stage: Bench, name: Name) -> None:
+    stage.switch(name, True)
+    lit = on_stage(stage, PLAIN), in_pictures(stage, PLAIN)
+    stage.switch(name, False)
+    dark = on_stage(stage, PLAIN), in_pictures(stage, PLAIN)
+    changed = differing(lit[0], dark[0])
+    assert differing(lit[1], dark[1]) == changed
+    assert bool(changed) == (name != "click_inspects")
+    stage.switch(name, True)
+
+
+CELLS = PLAIN.pose_cells
+MOMENTS: dict[str, tuple[Snapshot, set[PlateName]]] = {
+    "an experience": (replace(PLAIN, inspected=REPORTS["experience"]), {"pose", "map"}),
+    "a view": (replace(PLAIN, inspected=REPORTS["view"]), {"pose", "map"}),
+    "a cell": (replace(PLAIN, inspected=REPORTS["cell"]), {"pose", "map"}),
+    "why": (replace(PLAIN, inspected=REPORTS["why"]), {"map"}),
+    "no goal": (replace(PLAIN, goal=None, goal_memory=None), {"pose", "map"}),
+    "it has arrived": (replace(PLAIN, goal=replace(PLAIN.goal, eta_s=None, state="arrived")), {"map"}),  # type: ignore[type-var]
+    "no snap": (replace(PLAIN, pose_cells=replace(CELLS, last_snap=None)), {"pose"}),
+    "no activity": (
+        replace(PLAIN, pose_cells=replace(CELLS, cells=CELLS.cells[:0], activity=CELLS.activity[:0], packets=())), {"pose"}
+    ),
+    "no echoes": (
+        replace(PLAIN, senses=replace(PLAIN.senses, ranges_m=np.full(8, np.inf, np.float32))), {"office"}
+    ),
+    "no trail": (replace(PLAIN, trail=PLAIN.trail[:0]), {"office"}),
+    "lamps, doors, boxes, people": (replace(PLAIN, living=living()), {"office"}),
+    "a tag": (replace(PLAIN, tags=(TaggedPlace("tea", 1, 0.0, 0.0),)), {"map"}),
+    "a look held back": (
+        replace(PLAIN, belief=Belief(0.2, Pose(1.0, 1.0, 0.0), 2, 5, 0, 0, 0, 0, 0, 0)), {"map"}
+    ),
+    "a lesson's marks": (replace(PLAIN, lesson=taught().lesson), {"office", "pose", "map"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", MOMENTS)
+def test_what_changes_a_plate_changes_its_picture_and_no_other(stage: Bench, what: str) -> None:
+    other, plates = MOMENTS[what]
+    for found in (on_stage, in_pictures):
+        assert differing(found(stage, PLAIN), found(stage, other)) == plates
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [(living(), living(daylight=0.4)), (living(), living(lamps=np.array([(5.0, 4.0, 3.0, 0.0)], np.float32)))],
+)
+def test_light_is_seen_on_both(stage: Bench, one: Any, other: Any) -> None:
+    for found in (on_stage, in_pictures):
+        first, second = (found(stage, replace(PLAIN, living=layer)) for layer in (one, other))
+        assert differing(first, second) == {"office"}
+
+
+def test_of_two_brains_neither_has_what_is_laid_over_one(stage: Bench) -> None:
+    """And what is inspected is the first one's."""
+    two = two_brains()
+    bare = replace(two, occupancy=None, goal_memory=None)
+    for found in (on_stage, in_pictures):
+        assert not differing(found(stage, two), found(stage, bare)) - {"pose"}  # there it may lie below the cells
+    told = replace(two, inspected=REPORTS["experience"])
+    for plate in ("pose_2", "map_2"):
+        assert vector_picture(plate, told, "dark", NAMES) == vector_picture(plate, two, "dark", NAMES)
+    assert vector_picture("map", told, "dark", NAMES) != vector_picture("map", two, "dark", NAMES)
+
+
+def test_names_of_known_places_are_on_both(stage: Bench) -> None:
+    known = crowded()
+    for found in (on_stage, in_pictures):
+        assert "map" in differing(found(stage, known), found(stage, replace(known, places=())))
