@@ -55,7 +55,7 @@ class _Look:
 
 _BESIDE = 0.015  # share of the canvas that is left free around
 _LOOKS: dict[View, _Look] = {
-    "all": _Look((42, 54), (50, 72), (0, 0), 29, (0.06, 0.082)),
+    "all": _Look((42, 54), (50, 72), (0, 0), 29, (0.095, 0.07)),
     "office": _Look((46, 58), (56, 74), (0, 0), 30, (0.11, _BESIDE)),
     "pose": _Look((38, 46), (42, 50), (-22, -10), 30, (0.09, _BESIDE)),
     "map": _Look((46, 58), (56, 74), (0, 0), 30, (0.11, _BESIDE)),
