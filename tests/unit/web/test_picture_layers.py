@@ -106,6 +106,17 @@ def test_a_ghost_beside_the_field_leaves_its_name_at_the_edge() -> None:
     assert any(re.fullmatch(r"wheels alone: \d+ m off", text) for text in words(picture))
 
 
+def test_a_ghost_beside_the_walls_is_there_as_far_as_the_plate_s_floor_goes() -> None:
+    snapshot = judged()
+    assert snapshot.world is not None
+    narrow = replace(snapshot, world=replace(snapshot.world, bounds=(0.0, 0.0, 4.0, 8.0)))  # the ghost is at x = 5 m
+    for off_m, there in ((0.0, True), (20.0, False)):
+        way = replace(judged(off_m=off_m), world=narrow.world)
+        picture = drawn("office", way)
+        body = [p for p in picture.iter(f"{SVG}path") if p.get("fill") == ink(pale(DARK, DARK.robot, PALE))]
+        assert bool(body) == there
+
+
 def test_error_and_doubt() -> None:
     snapshot = judged()
     here, truth, spread = snapshot.estimate, snapshot.truth, snapshot.spread

@@ -13,7 +13,7 @@ from web.viewer.plates.pose_cell_plate import BELIEVES, LEAST_SHARE, NO_ACTIVITY
 from web.viewer.primitives.palette import Palette
 from web.viewer.vector.ground import draw_beneath
 from web.viewer.vector.inspected import mark_among_cells
-from web.viewer.vector.lesson import draw_cell_marks
+from web.viewer.vector.names import draw_cell_marks
 from web.viewer.vector.sheet import Entry, Sheet
 from web.viewer.vector.subject import Subject
 
