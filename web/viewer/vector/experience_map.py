@@ -51,6 +51,8 @@ def draw_map(subject: Subject) -> str:
     longest = round_up(float(seconds[np.isfinite(seconds)].max(initial=1.0)))
     for place, colour in zip(places.tolist(), palette.times(seconds, longest).tolist(), strict=False):
         sheet.dot(place, DOT, tuple(colour))
+    if not np.isfinite(seconds).all():
+        legend.append(("area", palette.unknown, "no way there is known"))
     if not len(places):
         sheet.label(((low + high) / 2).tolist(), NO_MAP, palette.text_2)
     sheet.avoid(here.tolist(), ROBOT)

@@ -24,7 +24,8 @@ def draw_name(sheet: Sheet, place: Sequence[float], name: str, *, known: bool) -
     """Of a place of the office. known: by the map."""
     palette = sheet.palette
     fill = mix(palette.slab, palette.sheet, 0.0 if known else 0.6)
-    sheet.label(place, name, palette.text if known else palette.text_2, fill=fill)
+    ink = palette.text if known else palette.text_2
+    sheet.label(place, name, ink, fill=fill, rim=ink)
 
 
 def draw_pins(sheet: Sheet, subject: Subject, plate: Literal["office", "map"], fit: MapFit) -> None:

@@ -145,13 +145,14 @@ class Sheet:
         size: float = 15,
         up: float = 0.0,
         fill: Rgb | None = None,
+        rim: Rgb | None = None,
     ) -> None:
         """Words in the middle of a place or so many pixels above it, or beside that where labels that came before are.
 
-        fill: of a bar below them; a place beside the field is named at its edge."""
+        fill, rim: of a bar below them; a place beside the field is named at its edge."""
         x1, y1, x2, y2 = self.box
         x, y = self.pixels([np.clip(place, (x1, y1), (x2, y2))])[0].tolist()
-        self._labels.append(Label((x, y), up, plain(words), colour, size, fill))
+        self._labels.append(Label((x, y), up, plain(words), colour, size, fill, rim))
 
     def note(self, place: Sequence[float], words: str, *, anchor: str, up: float, bold: bool = False) -> None:
         """Words that stay where they are, so many pixels above a place, as numbers on an axis do; labels give way."""
@@ -227,9 +228,10 @@ class Sheet:
         for label, (x, y) in zip(self._labels, places, strict=True):
             if label.fill is not None:
                 width, height = label.bar.tolist()
+                rim = "" if label.rim is None else f' stroke="{_hex(label.rim)}" stroke-width="1.2"'
                 self._around.append(
                     f'<rect x="{x - width / 2:.1f}" y="{y - height / 2:.1f}" width="{width:.1f}" height="{height:.1f}" '
-                    f'rx="{height / 2:.1f}" fill="{_hex(label.fill)}"/>'
+                    f'rx="{height / 2:.1f}" fill="{_hex(label.fill)}"{rim}/>'
                 )
             bar = label.fill is not None
             self._words(
