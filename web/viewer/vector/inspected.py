@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from textwrap import shorten
+
 import numpy as np
 
 from web.messages import CellReport, ExperienceReport, ViewReport, WhyReport
@@ -12,6 +14,7 @@ from web.viewer.vector.sheet import Entry, Sheet
 from web.viewer.vector.subject import Subject
 
 RING, SPOT = 16.0, 10.0  # pixels
+MOST_LETTERS = 72  # in the legend
 Points = np.ndarray
 
 
@@ -44,7 +47,7 @@ def _words(report: ViewReport | CellReport | WhyReport) -> str:
         case CellReport():
             return f"their zones hold the cells at {report.x}, {report.y}"
         case WhyReport():
-            return f"why: {report.text}"
+            return shorten(f"why: {report.text}", MOST_LETTERS, placeholder=" ...")
 
 
 def mark_among_cells(sheet: Sheet, subject: Subject) -> list[Entry]:

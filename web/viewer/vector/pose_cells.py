@@ -114,6 +114,7 @@ def _draw_way(sheet: Sheet, layer: PoseCellLayer, goal: GoalMemoryLayer, palette
         ahead = np.array([math.cos(goal.direction_rad), math.sin(goal.direction_rad)])
         way = here + np.array([[TIP + 4], [WAY - 14]]) / sheet.scale * ahead
         sheet.way(way, palette.goal, 5.0)
+        sheet.avoid(way[1].tolist(), PACKET)
     return legend
 
 
