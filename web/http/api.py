@@ -101,7 +101,7 @@ def create_app(
     add_pictures(app, latest, viewers.switches)
     _add_stream(app, stream)
     _add_viser(app, ViserProxy(viewers, cameras, themes))
-    add_stage_picture(app, latest)
+    add_stage_picture(app, latest, viewers.switches)
     _add_pages(app)
     _add_errors(app)
     return Guard(app, port)

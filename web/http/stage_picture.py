@@ -12,15 +12,14 @@ from web.http.security import Limits
 from web.http.watching import comes_from_class
 from web.latest import Latest
 from web.messages import Snapshot
-from web.themes import Theme
-from web.viewer.camera_views import View
+from web.switches import Switches
 from web.viewer.picture import picture
 from web.viewer.primitives.palette import palette_of
 
 LEAST_ASPECT, MOST_ASPECT = 0.2, 6.0
 
 
-def add_stage_picture(app: FastAPI, latest: Latest[Snapshot]) -> None:
+def add_stage_picture(app: FastAPI, latest: Latest[Snapshot], switches: Switches) -> None:
     limits, of_class = Limits(), Limits()
 
     @app.get("/api/stage.svg", include_in_schema=False)
@@ -35,9 +34,5 @@ def add_stage_picture(app: FastAPI, latest: Latest[Snapshot]) -> None:
         _, snapshot = latest.get()
         if snapshot is None:
             return Response(status_code=204)
-        text = await asyncio.to_thread(_drawn, snapshot, view, aspect, theme)
+        text = await asyncio.to_thread(picture, snapshot, view, round(aspect, 2), palette_of(theme), switches.on)
         return Response(text, media_type="image/svg+xml", headers={"Cache-Control": "no-store"})
-
-
-def _drawn(snapshot: Snapshot, view: View, aspect: float, theme: Theme) -> str:
-    return picture(snapshot, view, round(aspect, 2), palette_of(theme))

@@ -1,33 +1,40 @@
 """A picture of the stage as SVG, from a snapshot: what stands on the page until the viewer has drawn its first frame.
 
 The plates are seen from the very camera of the view, so that the viewer's own picture takes its place without a jump. Office, map
-and packets are drawn as lines and dots; colours come from the page, which knows its theme.
+and packets are drawn as lines and dots, what lies on the floors as areas; colours come from the page, which knows its theme.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Collection
 
 import numpy as np
 from numpy.typing import NDArray
 
-from web.messages import Pose, Snapshot
+from web.messages import ExperienceReport, Pose, Snapshot
+from web.switches import Name
 from web.viewer.camera_views import CELLS_AT, MAP_AT, OFFICE_AT, Camera, View, camera_for, seen_by
 from web.viewer.fits.cell_fit import HEIGHT, SIDE, CellFit
 from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.fits.overlaid import Overlaid, overlaid
+from web.viewer.marks.inspected import links_of, spots_of
 from web.viewer.marks.robot_model import ENLARGED, SMALLEST
 from web.viewer.primitives import meshes
-from web.viewer.primitives.palette import Palette
+from web.viewer.primitives.palette import Palette, Rgb, mix
 
 Points = NDArray[np.float64]
 UNITS = 1000.0  # of the picture's height
 WALL_HIGH, MOST_WALLS, MOST_DOTS = 0.6, 1200, 900
+SURE = 0.15  # how far from one half a probability is shown
+TIMES = 12  # shades of the goal memory
+Shades = tuple[NDArray[np.int64], list[Rgb]]  # (n_y, n_x) which of the colours each cell has, -1: none
 SHEETS = ((CELLS_AT, 9.4, 9.9, -0.75), (OFFICE_AT, 11.0, 10.0, -0.5), (MAP_AT, 11.0, 10.0, -0.5))
 
 
-def picture(snapshot: Snapshot, view: View, aspect: float, palette: Palette) -> str:
-    """The stage as it is now; aspect: width over height of the canvas."""
+def picture(snapshot: Snapshot, view: View, aspect: float, palette: Palette, on: Collection[Name]) -> str:
+    """The stage as it is now; aspect: width over height of the canvas; on: the switches that are on."""
     office = snapshot.world is not None
     sketch = _Sketch(camera_for(view, aspect, office), palette)
     map_at = MAP_AT if office else (0.0, MAP_AT[1])
@@ -37,10 +44,11 @@ def picture(snapshot: Snapshot, view: View, aspect: float, palette: Palette) -> 
         stands = map_at if at == MAP_AT else at
         outline = meshes.rounded_rectangle(width, depth, 0.45, centre=(0.0, centre_y)) + stands
         sketch.area(meshes.lifted(outline, -0.055), palette.sheet, palette.rim)
-    _cells(sketch, snapshot)
+    laid = overlaid(snapshot, on)
+    _cells(sketch, snapshot, laid)
     if office:
         _office(sketch, snapshot)
-    _map(sketch, snapshot, map_at)
+    _map(sketch, snapshot, map_at, laid)
     return sketch.text(aspect)
 
 
@@ -55,13 +63,12 @@ class _Sketch:
         line = "" if rim is None else f' stroke="{_hex(rim)}" stroke-width="1.5"'
         self._parts.append(f'<path fill="{_hex(fill)}"{line} d="{self._way(points)}Z"/>')
 
-    def areas(self, quads: Points, fill: tuple[int, int, int]) -> None:
+    def areas(self, quads: Points, fill: tuple[int, int, int], rim: tuple[int, int, int]) -> None:
         """(n, k, 3) of one colour, the farthest first."""
         if len(quads):
             order = np.argsort(-quads[:, :, 1].mean(1), kind="stable")
             way = "".join(f"{self._way(quad)}Z" for quad in quads[order])
-            rim = _hex(self.palette.floor)
-            self._parts.append(f'<path fill="{_hex(fill)}" stroke="{rim}" stroke-width=".6" d="{way}"/>')
+            self._parts.append(f'<path fill="{_hex(fill)}" stroke="{_hex(rim)}" stroke-width=".6" d="{way}"/>')
 
     def lines(self, segments: Points, colour: tuple[int, int, int], width: float) -> None:
         """(n, 2, 3)"""
@@ -103,7 +110,7 @@ def _office(sketch: _Sketch, snapshot: Snapshot) -> None:
     ends = fit.to_plate(walls.reshape(-1, 2)).reshape(-1, 2, 2) + OFFICE_AT
     low = np.concatenate([ends, np.zeros((len(ends), 2, 1))], 2)
     high = low[:, ::-1] + (0.0, 0.0, WALL_HIGH * fit.relief)
-    sketch.areas(np.concatenate([low, high], 1), palette.wall)
+    sketch.areas(np.concatenate([low, high], 1), palette.wall, palette.floor)
     truth = snapshot.truth
     if truth is not None:
         at = meshes.lifted(fit.to_plate(np.array([[truth.x, truth.y]])) + OFFICE_AT, 0.2)
@@ -111,7 +118,7 @@ def _office(sketch: _Sketch, snapshot: Snapshot) -> None:
         sketch.dots(at, np.array([palette.robot], np.uint8), radius)
 
 
-def _map(sketch: _Sketch, snapshot: Snapshot, at: tuple[float, float]) -> None:
+def _map(sketch: _Sketch, snapshot: Snapshot, at: tuple[float, float], laid: Overlaid) -> None:
     palette, layer = sketch.palette, snapshot.map
     floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (WIDTH / 2, DEPTH / 2) + at
     sketch.area(meshes.lifted(floor, -0.03), palette.floor)
@@ -119,6 +126,10 @@ def _map(sketch: _Sketch, snapshot: Snapshot, at: tuple[float, float]) -> None:
         return
     fit = refit(MapFit(), layer.extent_xy, snapshot.map_turn_rad)
     places = meshes.lifted(fit.to_plate(layer.xy) + at, 0.05)
+    if laid.occupancy is not None:
+        met = laid.occupancy.draw_map()
+        low = np.array(met.origin_xy_m) - met.cell_m / 2
+        _floor(sketch, _met(met.probability, palette), lambda xy: fit.to_plate(xy * met.cell_m + low) + at)
     every = -(-len(places) // MOST_DOTS)
     sketch.lines(places[layer.links][: 2 * MOST_DOTS], palette.link, 1.0)
     seconds = snapshot.times.seconds[: len(places)]
@@ -126,6 +137,12 @@ def _map(sketch: _Sketch, snapshot: Snapshot, at: tuple[float, float]) -> None:
     colours = np.zeros((len(places), 3), np.uint8)
     colours[: len(seconds)] = palette.times(seconds, longest)
     sketch.dots(places[::every], colours[::every], 0.04)
+    if snapshot.goal is not None:
+        route = meshes.lifted(fit.to_plate(snapshot.goal.route_xy) + at, 0.16)
+        sketch.lines(np.stack([route[:-1], route[1:]], 1), palette.route, 4.0)
+        flag = meshes.lifted(fit.to_plate(np.array([[snapshot.goal.x, snapshot.goal.y]])) + at, 0.2)
+        sketch.dots(flag, np.array([palette.goal], np.uint8), 0.3)
+    _inspected(sketch, laid, places)
     sketch.area(_arrow(snapshot.estimate, fit, at), palette.robot)
 
 
@@ -136,17 +153,66 @@ def _arrow(pose: Pose, fit: MapFit, at: tuple[float, float]) -> Points:
     return meshes.lifted(shape + fit.to_plate(np.array([[pose.x, pose.y]])) + at, 0.22)
 
 
-def _cells(sketch: _Sketch, snapshot: Snapshot) -> None:
+def _inspected(sketch: _Sketch, laid: Overlaid, places: Points) -> None:
+    """Rings, and the links of an experience. places: (n, 3) of all."""
+    report, ink = laid.inspected, sketch.palette.text
+    if report is None:
+        return
+    if isinstance(report, ExperienceReport):
+        sketch.lines(places[links_of(report, len(places))], ink, 2.5)
+        rows = [report.id] if report.id < len(places) else []
+    else:
+        rows = spots_of(report, len(places))
+    for place in places[rows]:
+        sketch.lines(meshes.closed_line(meshes.circle(0.26, place[:2].tolist()), 0.1).astype(np.float64), ink, 2.5)
+
+
+def _floor(sketch: _Sketch, shades: Shades, placed: Callable[[Points], Points]) -> None:
+    """Areas, cell by cell, but those of one shade beside one another at once. placed: from cells to the floor."""
+    shade, colours = shades
+    for k, colour in enumerate(colours):
+        runs: list[Points] = []
+        for y, row in enumerate(shade == k):
+            edges = np.flatnonzero(np.diff(np.concatenate([[0], row, [0]]).astype(np.int8))).reshape(-1, 2)
+            runs += [np.array([(a, y), (b, y), (b, y + 1), (a, y + 1)], np.float64) for a, b in edges.tolist()]
+        if runs:
+            quads = placed(np.concatenate(runs))
+            sketch.areas(meshes.lifted(quads, -0.02).reshape(-1, 4, 3), colour, colour)
+
+
+def _met(probability: NDArray[np.float32], palette: Palette) -> Shades:
+    """Where the sonars found the floor free, and where they met something."""
+    sure = np.digitize(probability, (0.5 - SURE, 0.5 + SURE))
+    return np.where(sure == 1, -1, sure // 2), [
+        mix(palette.floor, colour, 0.9) for colour in (palette.free, palette.occupied)
+    ]
+
+
+def _cells(sketch: _Sketch, snapshot: Snapshot, laid: Overlaid) -> None:
     palette, layer = sketch.palette, snapshot.pose_cells
     fit, stands = CellFit(layer.shape), np.array((*CELLS_AT, 0.0))
     foot = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (SIDE / 2)
     sketch.area(meshes.lifted(foot, -0.03) + stands, palette.floor)
+    size = np.array(layer.shape[:0:-1]) / SIDE
+    if laid.beneath is not None:
+        _floor(sketch, _met(laid.beneath.cells, palette), lambda xy: xy / size - SIDE / 2 + CELLS_AT)
+    if laid.goal_memory is not None and laid.goal_memory.seconds is not None:
+        _floor(sketch, _timed(laid.goal_memory.seconds, palette), lambda xy: xy / size - SIDE / 2 + CELLS_AT)
     low, high = meshes.lifted(foot, 0.0) + stands, meshes.lifted(foot, HEIGHT) + stands
     edges = np.concatenate([meshes.closed_line(foot, z).astype(np.float64) for z in (0.0, HEIGHT)]) + stands
     sketch.lines(np.concatenate([edges, np.stack([low, high], 1)]), palette.glass_edge, 1.5)
     packets = layer.packets[: len(palette.packets)]
     for packet, colour in zip(packets, palette.packets, strict=False):
         sketch.dots(fit.packet(packet)[None] + stands, np.array([colour], np.uint8), 0.3)
+
+
+def _timed(seconds: NDArray[np.float32], palette: Palette) -> Shades:
+    """The goal memory's times in steps, bright near the goal."""
+    known = np.isfinite(seconds)
+    share = np.where(known, seconds, 0.0) / max(float(seconds[known].max(initial=0.0)), 1e-6)
+    colours = palette.times(np.linspace(0, 1, TIMES, dtype=np.float32), 1.0)
+    shade = np.where(known, np.rint(share * (TIMES - 1)).astype(np.int64), -1)
+    return shade, [mix(palette.floor, tuple(colour), 0.85) for colour in colours.tolist()]
 
 
 def _hex(colour: tuple[int, ...]) -> str:

@@ -38,6 +38,22 @@ test("a line has all its points and breaks where one is missing", () => {
   assert.ok(!/NaN|Infinity/.test(svg));
 });
 
+test("round numbers around all values, and round times", () => {
+  const columns = [
+    [0, 150, 300],
+    [0.1, 3.4, 2],
+    [0, 1, -0.3],
+  ];
+  const svg = plotSvg("Errors", "office, seed 5", columns, lines, inks);
+  const words = [...svg.matchAll(/<text[^>]*>([^<]*)</g)].map((m) => m[1]);
+  for (const tick of ["-1", "0", "4", "0:00", "1:00", "4:00"]) assert.ok(words.includes(tick), tick);
+  assert.ok(words.includes("time (min:s)") && words.includes("office, seed 5"));
+  const tops = [...svg.matchAll(/stroke="#(?:4cc9f0|ff7a3d)"/g)].length;
+  const ys = [...svg.matchAll(/[ML][\d.]+ ([\d.]+)/g)].map((m) => Number(m[1]));
+  assert.equal(tops, 4);
+  assert.ok(Math.min(...ys) >= 56);
+});
+
 test("a plot without values is a plot", () => {
   for (const columns of [[[]], [[], [], []], [[1], [NaN], [NaN]]])
     assert.ok(!/NaN|Infinity/.test(plotSvg("Errors", "run", columns, lines, inks)));

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.fake_snapshots import fake_reports
 from tests.unit.web.crowded import FRAME, crowded, judged, taught, two_brains
 from web.messages import KnownPlace, Pose, Snapshot, TaggedPlace
 from web.switches import NAMES, Name
@@ -27,6 +28,7 @@ from web.viewer.vector import PlateName, vector_picture
 from web.viewer.vector.labels import Label, laid_out, width_of
 from web.viewer.vector.sheet import EDGE, TOP, WIDTH
 
+REPORTS = fake_reports()
 SVG = "{http://www.w3.org/2000/svg}"
 Picture = ElementTree.Element
 
@@ -104,6 +106,17 @@ def test_a_ghost_beside_the_field_leaves_its_name_at_the_edge() -> None:
     picture = drawn("map", judged(off_m=500.0))
     assert not any(path.get("fill") == ink(pale(DARK, DARK.robot, PALE)) for path in picture.iter(f"{SVG}path"))
     assert any(re.fullmatch(r"wheels alone: \d+ m off", text) for text in words(picture))
+
+
+def test_a_ghost_beside_the_walls_is_there_as_far_as_the_plate_s_floor_goes() -> None:
+    snapshot = judged()
+    assert snapshot.world is not None
+    narrow = replace(snapshot, world=replace(snapshot.world, bounds=(0.0, 0.0, 4.0, 8.0)))  # the ghost is at x = 5 m
+    for off_m, there in ((0.0, True), (20.0, False)):
+        way = replace(judged(off_m=off_m), world=narrow.world)
+        picture = drawn("office", way)
+        body = [p for p in picture.iter(f"{SVG}path") if p.get("fill") == ink(pale(DARK, DARK.robot, PALE))]
+        assert bool(body) == there
 
 
 def test_error_and_doubt() -> None:
@@ -251,6 +264,7 @@ LONG = "the place where the coffee machine was before they moved it"
         for made in (judged(), judged(off_m=40.0), crowded(), taught())
     ]
     + [(plate, two_brains()) for plate in ("pose", "map", "pose_2", "map_2")]
+    + [("map", replace(judged(), inspected=replace(REPORTS["why"], text=f"{LONG}, {LONG}, {LONG}")))]  # type: ignore[type-var]
     + [("map", replace(crowded(), tags=tuple(TaggedPlace(f"{LONG} {k}", 1, 0.1 * k, 0.0) for k in range(5))))],
 )
 def test_no_words_cover_others_or_are_cut_off(plate: PlateName, snapshot: Snapshot) -> None:

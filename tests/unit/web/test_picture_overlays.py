@@ -15,11 +15,12 @@ from PIL import Image
 
 from tests.fake_snapshots import fake_reports, fake_snapshot
 from tests.unit.web.crowded import judged
-from tests.unit.web.office_moments import tried
+from tests.unit.web.office_moments import living, tried
 from tests.unit.web.test_picture_layers import SVG, Picture, circles, drawn, ink, on_map, strokes
 from web.messages import GoalMemoryLayer, MapLayer, OccupancyLayer, OccupancyPicture, Snapshot
 from web.switches import NAMES
 from web.themes import THEMES, Theme
+from web.viewer.marks.actors import LIT, NIGHT
 from web.viewer.marks.movements import shades
 from web.viewer.plates.overlays import occupancy_colours
 from web.viewer.primitives.palette import DARK, palette_of
@@ -161,7 +162,8 @@ def test_echoes_and_movements() -> None:
     assert world is not None
     assert truth is not None
     picture = drawn("office", snapshot)
-    x1, x2, y2 = world.bounds[0] - 0.1, world.bounds[2] + 0.1, world.bounds[3] + 0.1
+    room = 0.014 * (world.bounds[2] - world.bounds[0])
+    x1, x2, y2 = world.bounds[0] - room, world.bounds[2] + room, world.bounds[3] + room
     scale = CELLS_WIDE / (x2 - x1)
     heard = np.isfinite(snapshot.senses.ranges_m)
     angles, far = truth.heading_rad + world.sonar_angles_rad[heard], snapshot.senses.ranges_m[heard]
@@ -173,6 +175,29 @@ def test_echoes_and_movements() -> None:
     assert (len(free), len(blocked)) == (1, 1)  # at full speed
     off = drawn("office", snapshot, tuple(name for name in NAMES if name != "movements"))
     assert not strokes(off, shades(DARK)[0])
+
+
+def test_it_is_not_dark_below_a_lamp() -> None:
+    layer = living(daylight=0.4)
+    picture = drawn("office", replace(PLAIN, living=layer))
+    (night,) = [path for path in picture.iter(f"{SVG}path") if path.get("fill") == ink(NIGHT)]
+    (mask,) = picture.iter(f"{SVG}mask")
+    assert night.get("mask") == f"url(#{mask.get('id')})"
+    (pool,) = [path for path in picture.iter(f"{SVG}path") if path.get("fill") == ink(LIT) and path.get("opacity")]
+    assert list(mask)[1].get("d") == pool.get("d")
+    dark = drawn("office", replace(PLAIN, living=replace(layer, lamps=layer.lamps * (1, 1, 1, 0))))
+    assert not list(dark.iter(f"{SVG}mask"))
+
+
+def test_houses_are_no_desks() -> None:
+    world = PLAIN.world
+    assert world is not None
+    walls = np.array([(1, 1, 2, 1), (2, 1, 2, 2), (2, 2, 1, 2), (1, 2, 1, 1)], np.float32)
+    for kind, colour in (("desk", DARK.desk), ("wall", DARK.partition)):
+        shown = replace(world, walls=walls, wall_height_m=np.ones(4, np.float32), wall_kind=(kind,) * 4)
+        picture = drawn("office", replace(PLAIN, world=shown))
+        filled = [path.get("fill") for path in picture.iter(f"{SVG}path") if path.get("fill") != "none"]
+        assert filled.count(ink(colour)) == 1
 
 
 def test_a_robot_that_has_left_the_floor_is_in_the_picture() -> None:

@@ -10,18 +10,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.fake_snapshots import fake_snapshot
+from tests.fake_snapshots import fake_reports, fake_snapshot
 from tests.unit.web.doubles import house
-from web.viewer.camera_views import OFFICE_AT, VIEWS, camera_for
+from web.messages import GoalMemoryLayer, OccupancyLayer, OccupancyPicture
+from web.switches import NAMES
+from web.viewer.camera_views import CELLS_AT, MAP_AT, OFFICE_AT, VIEWS, camera_for, seen_by
+from web.viewer.fits.cell_fit import SIDE
+from web.viewer.fits.map_fit import MapFit, refit
 from web.viewer.fits.office_fit import OfficeFit
 from web.viewer.picture import UNITS, picture
-from web.viewer.primitives.palette import DARK, LIGHT
+from web.viewer.primitives.palette import DARK, LIGHT, Rgb, mix
 
 
 @pytest.mark.parametrize("view", VIEWS)
 @pytest.mark.parametrize("aspect", [0.46, 1.63])
 def test_it_is_a_whole_picture_of_what_stands_there(view: str, aspect: float) -> None:
-    root = ET.fromstring(picture(fake_snapshot(430), view, aspect, DARK))  # type: ignore[arg-type]
+    root = ET.fromstring(picture(fake_snapshot(430), view, aspect, DARK, NAMES))  # type: ignore[arg-type]
     drawn = [part for part in root.iter() if part.tag.endswith(("path", "circle"))]
     assert len(drawn) > 200
     assert all(math.isfinite(float(n)) for part in drawn for n in re.findall(r"-?[\d.]+", part.get("d", "0")))
@@ -43,18 +47,61 @@ def test_the_robot_is_where_the_camera_sees_it() -> None:
     zoom = UNITS / 2 / math.tan(camera.fov_rad / 2) / (offset @ ahead)
     wanted = offset @ right * zoom, -(offset @ np.cross(right, ahead)) * zoom
     colour = "#" + "".join(f"{part:02x}" for part in DARK.robot)
-    root = ET.fromstring(picture(snapshot, "all", aspect, DARK))
+    root = ET.fromstring(picture(snapshot, "all", aspect, DARK, NAMES))
     (robot,) = [part for part in root.iter() if part.tag.endswith("circle") and part.get("fill") == colour]
     assert float(robot.get("cx", "nan")) == pytest.approx(wanted[0], abs=0.2)
     assert float(robot.get("cy", "nan")) == pytest.approx(wanted[1], abs=0.2)
 
 
+def of_colour(svg: str, colour: Rgb) -> np.ndarray:
+    """(n, 2) all corners of what has this colour."""
+    ink = "#" + "".join(f"{part:02x}" for part in colour)
+    ways = [part.get("d", "") for part in ET.fromstring(svg).iter() if ink in (part.get("fill"), part.get("stroke"))]
+    return np.array(re.findall(r"-?\d+\.\d+", " ".join(ways)), float).reshape(-1, 2)
+
+
+def test_what_lies_on_the_floors_is_where_the_plates_have_it() -> None:
+    """A cell in which something stands, and one from which a way is known; nothing while its switch is off."""
+    plain, camera = fake_snapshot(430), camera_for("all", 1.63)
+    probability = np.full((6, 8), 0.5, np.float32)
+    probability[4, 2] = 0.95
+    met = OccupancyPicture(probability, (0.5, -0.5), 0.25)
+    seconds = np.full((64, 64), np.inf, np.float32)
+    seconds[20, 50] = 0.0
+    snapshot = replace(
+        plain, occupancy=OccupancyLayer(np.full((64, 64), 0.5, np.float32), lambda: met), goal=None,
+        goal_memory=GoalMemoryLayer(9, None, seconds, None),
+    )  # fmt: skip
+    svg, bare = (picture(snapshot, "all", 1.63, DARK, on) for on in (NAMES, ()))
+    unit = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+    cell = (np.array([2, 4]) + unit - 0.5) * 0.25 + (0.5, -0.5)
+    fit = refit(MapFit(), snapshot.map.extent_xy, snapshot.map_turn_rad)
+    known = (np.array([50, 20]) + unit) / 64 * SIDE - SIDE / 2 + CELLS_AT
+    near = tuple(DARK.times(np.zeros(1, np.float32), 1.0)[0].tolist())
+    zoom = UNITS / 2 / math.tan(camera.fov_rad / 2) / np.linalg.norm(camera.look_at - camera.position)
+    for colour, at in (
+        (mix(DARK.floor, DARK.occupied, 0.9), fit.to_plate(cell) + MAP_AT),
+        (mix(DARK.floor, near, 0.85), known),
+    ):
+        seen = seen_by(camera, np.column_stack([at, np.full(4, -0.02)]))[0] * (zoom, -zoom)
+        assert of_colour(svg, colour) == pytest.approx(seen, abs=0.11)
+        assert not len(of_colour(bare, colour))
+
+
+def test_what_is_inspected_is_ringed() -> None:
+    plain = replace(fake_snapshot(430), goal=None)
+    bare = len(of_colour(picture(plain, "map", 1.5, DARK, NAMES), DARK.text))
+    for report, rings, links in (("experience", 1, 2), ("view", 2, 0), ("cell", 2, 0), ("why", 2, 0)):
+        told = picture(replace(plain, inspected=fake_reports()[report]), "map", 1.5, DARK, NAMES)
+        assert len(of_colour(told, DARK.text)) - bare == 2 * (36 * rings + links)
+
+
 def test_without_office_or_map_it_is_there_all_the_same() -> None:
     plain = fake_snapshot(430)
-    assert "<circle" in picture(replace(plain, world=None, truth=None), "all", 1.5, LIGHT)
+    assert "<circle" in picture(replace(plain, world=None, truth=None), "all", 1.5, LIGHT, NAMES)
     few = replace(plain.map, ids=plain.map.ids[:0], xy=plain.map.xy[:0], links=plain.map.links[:0])
     assert "<path" in picture(
-        replace(plain, map=few, times=replace(plain.times, seconds=plain.times.seconds[:0])), "map", 1.5, DARK
+        replace(plain, map=few, times=replace(plain.times, seconds=plain.times.seconds[:0])), "map", 1.5, DARK, NAMES
     )
 
 

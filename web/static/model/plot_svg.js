@@ -1,8 +1,8 @@
 // A plot against time as a vector picture: axes, lines and what they are. No DOM.
 
-import { clock } from "./clock.js";
+import { clock, tickTimesIn } from "./clock.js";
 
-const [WIDE, HIGH, LEFT, RIGHT, TOP, BOTTOM] = [900, 420, 70, 24, 76, 44]; // pixels
+const [WIDE, HIGH, LEFT, RIGHT, TOP, BOTTOM] = [900, 420, 70, 24, 76, 58]; // pixels
 const MOST = 1500; // points of a line
 
 /** @typedef {{ label: string, colour: string, dash?: number[] }} DrawnLine `colour` as in CSS */
@@ -23,6 +23,15 @@ export function ticksIn(low, high, most = 6) {
   return ticks;
 }
 
+/** Ticks between which all lies: no line touches the upper edge. @param {number} low @param {number} high */
+function roundTicks(low, high) {
+  const ticks = ticksIn(low, high);
+  const step = ticks.length > 1 ? ticks[1] - ticks[0] : high - low;
+  const first = ticks[0] <= low ? [] : [Number((ticks[0] - step).toPrecision(12))];
+  const last = /** @type {number} */ (ticks.at(-1));
+  return [...first, ...ticks, ...(last >= high ? [] : [Number((last + step).toPrecision(12))])];
+}
+
 /**
  * @param {string} title
  * @param {string} moment of which run and moment it is
@@ -33,19 +42,20 @@ export function ticksIn(low, high, most = 6) {
 export function plotSvg(title, moment, columns, lines, inks) {
   const [times, ...values] = columns.map((column) => Array.from(column));
   const known = values.flat().filter(Number.isFinite);
-  const low = Math.min(0, ...extremes(known));
-  const high = Math.max(low + 1e-9, ...extremes(known));
+  const least = Math.min(0, ...extremes(known));
+  const ticks = roundTicks(least, Math.max(least + 1e-9, ...extremes(known)));
+  const [low, high] = [ticks[0], ticks.at(-1) ?? 1];
   const [from, to] = [times[0] ?? 0, Math.max(times.at(-1) ?? 1, (times[0] ?? 0) + 1e-9)];
   const x = (/** @type {number} */ s) => LEFT + ((WIDE - LEFT - RIGHT) * (s - from)) / (to - from);
   const y = (/** @type {number} */ v) => HIGH - BOTTOM - ((HIGH - TOP - BOTTOM) * (v - low)) / (high - low);
   const text = (/** @type {number} */ at, /** @type {number} */ up, /** @type {string} */ words, more = "") =>
     `<text x="${at.toFixed(1)}" y="${up.toFixed(1)}" fill="${inks.second}" font-size="14"${more}>${plain(words)}</text>`;
   const rule = (/** @type {string} */ d) => `<path d="${d}" fill="none" stroke="${inks.rim}"/>`;
-  const across = ticksIn(low, high).map(
+  const across = ticks.map(
     (v) =>
       rule(`M${LEFT} ${y(v).toFixed(1)}H${WIDE - RIGHT}`) + text(LEFT - 10, y(v) + 5, String(v), ' text-anchor="end"'),
   );
-  const along = ticksIn(from, to, 8).map(
+  const along = tickTimesIn(from, to, WIDE - LEFT - RIGHT).map(
     (s) =>
       rule(`M${x(s).toFixed(1)} ${TOP}V${HIGH - BOTTOM}`) +
       text(x(s), HIGH - BOTTOM + 20, clock(s), ' text-anchor="middle"'),
@@ -61,9 +71,10 @@ export function plotSvg(title, moment, columns, lines, inks) {
     'font-family="DejaVu Sans, Segoe UI, Roboto, Helvetica, Arial, sans-serif">',
     `<rect width="100%" height="100%" fill="${inks.paper}"/>`,
     `<text x="${LEFT}" y="32" fill="${inks.text}" font-size="19" font-weight="700">${plain(title)}</text>`,
-    text(WIDE - RIGHT, 32, moment, ' text-anchor="end"'),
+    text(LEFT, HIGH - 14, moment),
     ...across,
     ...along,
+    text(WIDE - RIGHT, HIGH - 14, "time (min:s)", ' text-anchor="end"'),
     ...drawn,
     "</svg>\n",
   ].join("");

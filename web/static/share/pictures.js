@@ -7,8 +7,8 @@ import { toast } from "../elements/toasts.js";
 
 const SHARP = 2; // pixels of a PNG for each of the vector picture
 
-/** The run and the moment that are shown, for names of files. */
-export const shown = { name: "run" };
+/** The run and the moment that are shown: for names of files, and in words. */
+export const shown = { name: "run", words: "" };
 
 /** @param {string} svg @param {string} what */
 export function saveSvg(svg, what) {
@@ -56,7 +56,7 @@ export function saveButtons(words, ask) {
     const { columns, lines } = ask();
     const drawn = lines.map(({ label, colour, dash }) => ({ label, dash, colour: property(colour) }));
     const inks = { paper: property("bar"), text: property("text"), second: property("second"), rim: property("rim") };
-    return plotSvg(words, shown.name, columns ?? [[]], drawn, inks);
+    return plotSvg(words, shown.words, columns ?? [[]], drawn, inks);
   };
   const button = (/** @type {string} */ kind, /** @type {() => unknown} */ save) => {
     const made = make("button", { type: "button", className: "tiny", textContent: kind, title: `Save as ${kind}` });

@@ -122,7 +122,8 @@ export class StageFilm {
   }
 }
 
-/** The run and the moment that are shown, for names of files. @param {State} state */
+/** The run and the moment that are shown. @param {State} state */
 export function naming({ world, seed, time_s }) {
   shown.name = nameOfMoment(world, seed, time_s);
+  shown.words = `${world ?? "recording"}, seed ${seed}, ${fine(time_s)}`;
 }

@@ -3,18 +3,21 @@ people alone know of it."""
 
 from __future__ import annotations
 
+from collections.abc import Sized
+
 import numpy as np
 from numpy.typing import NDArray
 
 from web.viewer.fits.judged import wheels_alone, wheels_path
 from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.fits.poses import on_plate
+from web.viewer.marks.place_names import MOST
 from web.viewer.marks.route import pill_stops
 from web.viewer.plates.map_plate import NO_MAP, grid_step_m, promise, round_up, seconds_words
 from web.viewer.vector import judged
 from web.viewer.vector.ground import draw_occupancy
 from web.viewer.vector.inspected import mark_on_map
-from web.viewer.vector.lesson import draw_pin, draw_pins
+from web.viewer.vector.names import draw_name, draw_pin, draw_pins
 from web.viewer.vector.sheet import Entry, Sheet
 from web.viewer.vector.subject import Subject
 
@@ -48,6 +51,8 @@ def draw_map(subject: Subject) -> str:
     longest = round_up(float(seconds[np.isfinite(seconds)].max(initial=1.0)))
     for place, colour in zip(places.tolist(), palette.times(seconds, longest).tolist(), strict=False):
         sheet.dot(place, DOT, tuple(colour))
+    if not np.isfinite(seconds).all():
+        legend.append(("area", palette.unknown, "no way there is known"))
     if not len(places):
         sheet.label(((low + high) / 2).tolist(), NO_MAP, palette.text_2)
     sheet.avoid(here.tolist(), ROBOT)
@@ -64,7 +69,7 @@ def draw_map(subject: Subject) -> str:
     legend += _draw_other(sheet, subject, fit)
     sheet.arrow(robot.x, robot.y, robot.heading_rad, palette.robot, ROBOT)
     sheet.scale_bar(palette.ramp[:: max(1, len(palette.ramp) // SHADES)], "0 s", seconds_words(longest))
-    sheet.foot(subject.moment, f"{len(places)} experiences, {len(layer.links)} links")
+    sheet.foot(subject.moment, f"{_count(places, 'experience')}, {_count(layer.links, 'link')}")
     sheet.legend(legend)
     return sheet.svg()
 
@@ -89,9 +94,9 @@ def _draw_goal(sheet: Sheet, subject: Subject, fit: MapFit) -> None:
 def _draw_names(sheet: Sheet, subject: Subject, fit: MapFit) -> None:
     """Places of the office that the map knows, tagged places, and what a lesson marks."""
     snapshot = subject.snapshot
-    for place in snapshot.places:
-        if place.map_xy is not None:
-            sheet.label(fit.to_plate(np.array([place.map_xy]))[0].tolist(), place.name, subject.palette.text)
+    known = [(place.name, place.map_xy) for place in snapshot.places if place.map_xy is not None]
+    for name, place in known[:MOST]:
+        draw_name(sheet, fit.to_plate(np.array([place]))[0].tolist(), name, known=True)
     for tag in snapshot.tags:
         draw_pin(sheet, subject, fit.to_plate(np.array([[tag.x, tag.y]]))[0].tolist(), tag.name)
     draw_pins(sheet, subject, "map", fit)
@@ -99,13 +104,14 @@ def _draw_names(sheet: Sheet, subject: Subject, fit: MapFit) -> None:
 
 def _draw_other(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
     """A pale arrow in a ring."""
+    palette = subject.palette
     if subject.other is None:
         return []
     other = on_plate(subject.other, fit)
-    sheet.arrow(other.x, other.y, other.heading_rad, subject.palette.casing, 0.9 * ROBOT)
-    sheet.dot((other.x, other.y), 1.5 * ROBOT, None, subject.palette.robot)
+    sheet.arrow(other.x, other.y, other.heading_rad, palette.casing, 0.9 * ROBOT, edge=palette.robot)
+    sheet.dot((other.x, other.y), 1.5 * ROBOT, None, palette.robot)
     sheet.avoid((other.x, other.y), 1.5 * ROBOT)
-    return [("ring", subject.palette.robot, "where it would be by looks that it does not believe yet")]
+    return [("ring", palette.robot, "where it would be by looks that it does not believe yet")]
 
 
 def _draw_grid(sheet: Sheet, low: NDArray[np.float64], high: NDArray[np.float64], scale: float) -> None:
@@ -116,3 +122,7 @@ def _draw_grid(sheet: Sheet, low: NDArray[np.float64], high: NDArray[np.float64]
         sheet.lines([[(k * step, low[1]), (k * step, high[1])]], sheet.palette.grid, 1.2)
     for k in range(first[1], last[1] + 1):
         sheet.lines([[(low[0], k * step), (high[0], k * step)]], sheet.palette.grid, 1.2)
+
+
+def _count(things: Sized, what: str) -> str:
+    return f"{len(things)} {what}{'' if len(things) == 1 else 's'}"

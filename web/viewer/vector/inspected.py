@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from textwrap import shorten
+
 import numpy as np
 
-from web.messages import CellReport, ExperienceReport, Report, ViewReport, WhyReport
+from web.messages import CellReport, ExperienceReport, ViewReport, WhyReport
 from web.viewer.fits.map_fit import MapFit
 from web.viewer.marks.inspected import linked_cells, links_of, spots_of
 from web.viewer.primitives import meshes
@@ -12,6 +14,7 @@ from web.viewer.vector.sheet import Entry, Sheet
 from web.viewer.vector.subject import Subject
 
 RING, SPOT = 16.0, 10.0  # pixels
+MOST_LETTERS = 72  # in the legend
 Points = np.ndarray
 
 
@@ -29,23 +32,22 @@ def mark_on_map(sheet: Sheet, subject: Subject, fit: MapFit, places: Points) -> 
         sheet.dot(at, RING, None, palette.text, edge=4.5)
         sheet.avoid(at, RING)
         sheet.label(at, f"#{report.id}", palette.sheet, up=34, fill=palette.text)
-    else:
-        for place in places[spots_of(report, len(places))].tolist():
-            sheet.dot(place, SPOT, None, palette.text, edge=3)
-            sheet.avoid(place, SPOT)
-    return [("ring", palette.text, _words(report))]
+        return [("ring", palette.text, f"experience {report.id} and its links")]
+    spots = places[spots_of(report, len(places))].tolist()
+    for place in spots:
+        sheet.dot(place, SPOT, None, palette.text, edge=3)
+        sheet.avoid(place, SPOT)
+    return [("ring", palette.text, _words(report))] if spots else []
 
 
-def _words(report: Report) -> str:
+def _words(report: ViewReport | CellReport | WhyReport) -> str:
     match report:
-        case ExperienceReport():
-            return f"experience {report.id} and its links"
         case ViewReport():
             return f"made with view {report.id}"
         case CellReport():
             return f"their zones hold the cells at {report.x}, {report.y}"
         case WhyReport():
-            return f"in: {report.text}"
+            return shorten(f"why: {report.text}", MOST_LETTERS, placeholder=" ...")
 
 
 def mark_among_cells(sheet: Sheet, subject: Subject) -> list[Entry]:

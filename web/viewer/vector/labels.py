@@ -27,6 +27,7 @@ class Label:
     ink: Rgb
     size: float  # of the words
     fill: Rgb | None  # of the bar below them; None: there is none
+    rim: Rgb | None = None  # of the bar
 
     @property
     def bar(self) -> Array:

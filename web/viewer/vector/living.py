@@ -14,16 +14,16 @@ NOSE = 0.45  # share of a person's radius
 
 
 def draw_light(sheet: Sheet, layer: LivingLayer | None, bounds: tuple[float, float, float, float]) -> None:
-    """On the floor: the less daylight, the darker, and brighter below each lamp that shines."""
+    """On the floor: the less daylight, the darker, but not below the lamps that shine."""
     if layer is None:
         return
     x1, y1, x2, y2 = bounds
     dark = DARKEST * (1.0 - min(max(layer.daylight, 0.0), 1.0))
+    pools = [meshes.circle(POOL * reach, (x, y)) for x, y, reach, on in layer.lamps.tolist() if on]
     if dark > 0:
-        sheet.polygon([(x1, y1), (x2, y1), (x2, y2), (x1, y2)], NIGHT, opacity=dark)
-    for x, y, reach, on in layer.lamps.tolist():
-        if on:
-            sheet.polygon(meshes.circle(POOL * reach, (x, y)), LIT, opacity=SHINE)
+        sheet.polygon([(x1, y1), (x2, y1), (x2, y2), (x1, y2)], NIGHT, opacity=dark, holes=pools)
+    for pool in pools:
+        sheet.polygon(pool, LIT, opacity=SHINE)
 
 
 def draw_living(sheet: Sheet, layer: LivingLayer | None) -> None:

@@ -9,19 +9,22 @@ import numpy as np
 from web.messages import WorldDrawing
 from web.viewer.fits.judged import wheels_alone, wheels_path
 from web.viewer.fits.map_fit import MapFit
-from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.fits.office_fit import DEPTH, WIDTH, OfficeFit
+from web.viewer.marks.place_names import MOST
 from web.viewer.plates.office_plate import OFFICE, TRUE_PATH
-from web.viewer.plates.sight import solids
+from web.viewer.plates.sight import solid_runs
 from web.viewer.primitives.palette import Palette, Rgb, mix
 from web.viewer.vector.judged import draw_ghost, draw_path, ghost_entry
-from web.viewer.vector.lesson import draw_pins
 from web.viewer.vector.living import draw_light, draw_living
+from web.viewer.vector.names import draw_name, draw_pins
 from web.viewer.vector.senses import draw_movements, draw_sonar, draw_view
 from web.viewer.vector.sheet import Entry, Sheet
 from web.viewer.vector.subject import Subject
 
 _WIDTHS = {"wall": 6.0, "partition": 4.0, "desk": 2.0, "glass": 2.0}
 JUMP_M = 1.2  # a kidnap leaves no line
+LEAST_ROOM_M, ROOM = 0.1, 0.014  # around the walls, the latter as a share of the office: for a robot at its edge
+SLOW = 0.22
 
 
 def draw_office(subject: Subject) -> str:
@@ -29,38 +32,52 @@ def draw_office(subject: Subject) -> str:
     world, truth = snapshot.world, snapshot.truth
     if world is None:
         raise ValueError("a recording without a true path has no office to be drawn")
-    x1, y1, x2, y2 = world.bounds
+    ghost = subject.judged.ghost
     _, told = OFFICE if world.is_office else TRUE_PATH
-    sheet = Sheet(palette, world.title, told, (x1 - 0.1, y1 - 0.1, x2 + 0.1, y2 + 0.1))
+    sheet = Sheet(
+        palette, world.title, told, _field(world, np.zeros((0, 2)) if ghost is None else wheels_path(ghost)[0])
+    )
     size = max(9.0, 1.2 * world.robot_radius_m * sheet.scale)
     _draw_floor(sheet, world)
     draw_light(sheet, snapshot.living, world.bounds)
-    for outline in solids(world):
-        sheet.polygon(outline, palette.desk)
+    for rows, outline in solid_runs(world):
+        kind = world.wall_kind[rows[0]]
+        if kind != "glass":
+            sheet.polygon(outline, palette.desk if kind == "desk" else palette.partition)
     seen = draw_view(sheet, subject)
     _draw_walls(sheet, world)
     draw_living(sheet, snapshot.living)
     for part in _unbroken(np.asarray(snapshot.trail, np.float64), JUMP_M if world.is_office else np.inf):
         sheet.line(part, palette.true_path, 2.5, opacity=0.8)
     legend: list[Entry] = [("line", palette.true_path, "where it drove in the last two minutes"), *seen]
+    if world.slow_zones:
+        legend.append(("area", mix(palette.floor, palette.packets[0], SLOW), "floor on which it is slow"))
     legend += draw_movements(sheet, subject, size)
     legend += draw_sonar(sheet, subject)
     if truth is not None:
         sheet.avoid((truth.x, truth.y), size)
-    known = {place.name for place in snapshot.places if place.map_xy is not None}
-    for name, x, y in world.places:
-        sheet.label((x, y), name, palette.text if name in known else mix(palette.floor, palette.text, 0.75))
+    for place in snapshot.places[:MOST]:
+        draw_name(sheet, (place.x, place.y), place.name, known=place.map_xy is not None)
     draw_pins(sheet, subject, "office", MapFit(1.0))
-    ghost = subject.judged.ghost
     if ghost is not None and truth is not None:
         draw_path(sheet, palette, wheels_path(ghost)[0])
         in_office, _, off_m = wheels_alone(ghost, truth)
         draw_ghost(sheet, palette, in_office, off_m, size)
     if truth is not None:
         sheet.arrow(truth.x, truth.y, truth.heading_rad, palette.robot, size)
-    sheet.foot(subject.moment, f"{x2 - x1:.1f} x {y2 - y1:.1f} m")
+    wide, deep = OfficeFit(world.bounds).size_m
+    sheet.foot(subject.moment, f"{wide:.1f} x {deep:.1f} m")
     sheet.legend(legend + ghost_entry(ghost, palette))
     return sheet.svg()
+
+
+def _field(world: WorldDrawing, path: np.ndarray) -> tuple[float, float, float, float]:
+    """The office with room around it, and what of the ghost's path (n, 2) is on the plate's floor beside it."""
+    fit = OfficeFit(world.bounds)
+    seen = path[np.all(np.abs(fit.to_plate(path)) <= (WIDTH / 2, DEPTH / 2), axis=1)]
+    both = np.vstack([np.reshape(world.bounds, (2, 2)), seen])
+    room = max(LEAST_ROOM_M, ROOM * max(fit.size_m))
+    return (*(both.min(0) - room).tolist(), *(both.max(0) + room).tolist())
 
 
 def _draw_floor(sheet: Sheet, world: WorldDrawing) -> None:
@@ -71,7 +88,7 @@ def _draw_floor(sheet: Sheet, world: WorldDrawing) -> None:
     lines += [[(x1, y1 + k * step), (x2, y1 + k * step)] for k in range(1, math.ceil((y2 - y1) / step))]
     sheet.lines(lines, sheet.palette.grid, 1.2)
     for zone in world.slow_zones:
-        sheet.polygon(zone, sheet.palette.packets[0], opacity=0.22)
+        sheet.polygon(zone, sheet.palette.packets[0], opacity=SLOW)
 
 
 def _draw_walls(sheet: Sheet, world: WorldDrawing) -> None:

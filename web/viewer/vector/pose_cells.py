@@ -13,7 +13,7 @@ from web.viewer.plates.pose_cell_plate import BELIEVES, LEAST_SHARE, NO_ACTIVITY
 from web.viewer.primitives.palette import Palette
 from web.viewer.vector.ground import draw_beneath
 from web.viewer.vector.inspected import mark_among_cells
-from web.viewer.vector.lesson import draw_cell_marks
+from web.viewer.vector.names import draw_cell_marks
 from web.viewer.vector.sheet import Entry, Sheet
 from web.viewer.vector.subject import Subject
 
@@ -114,6 +114,7 @@ def _draw_way(sheet: Sheet, layer: PoseCellLayer, goal: GoalMemoryLayer, palette
         ahead = np.array([math.cos(goal.direction_rad), math.sin(goal.direction_rad)])
         way = here + np.array([[TIP + 4], [WAY - 14]]) / sheet.scale * ahead
         sheet.way(way, palette.goal, 5.0)
+        sheet.avoid(way[1].tolist(), PACKET)
     return legend
 
 

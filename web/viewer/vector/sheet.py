@@ -41,7 +41,7 @@ class Sheet:
         self._around: list[str] = []
         self._labels: list[Label] = []
         self._avoided: list[tuple[float, float, float]] = []
-        self.polygon([(x1, y1), (x2, y1), (x2, y2), (x1, y2)], palette.floor, stroke=palette.rim)
+        self.polygon([(x1, y1), (x2, y1), (x2, y2), (x1, y2)], palette.floor)
         self._words(EDGE, 40, title, _fitting(title, 28, HEADING, bold=True), ink or palette.text, bold=True)
         self._words(EDGE, 64, words, _fitting(words, 16, HEADING), palette.text_2)
 
@@ -82,11 +82,18 @@ class Sheet:
                 f"{_see_through(opacity)}/>"
             )
 
-    def polygon(self, points: ArrayLike, fill: Rgb, *, stroke: Rgb | None = None, opacity: float = 1.0) -> None:
+    def polygon(
+        self, points: ArrayLike, fill: Rgb, *, stroke: Rgb | None = None, opacity: float = 1.0,
+        holes: Sequence[ArrayLike] = (),
+    ) -> None:  # fmt: skip
+        """holes: polygons, which may overlap, in which it is not drawn."""
         edge = "" if stroke is None else f' stroke="{_hex(stroke)}" stroke-width="1.5"'
-        self._parts.append(
-            f'<path d="{_path(self.pixels(points))}Z" fill="{_hex(fill)}"{edge}{_see_through(opacity)}/>'
-        )
+        d = f"{_path(self.pixels(points))}Z"
+        if holes:
+            name, cut = f"holes{len(self._parts)}", "".join(f"{_path(self.pixels(hole))}Z" for hole in holes)
+            self._parts.append(f'<mask id="{name}"><path d="{d}" fill="#fff"/><path d="{cut}"/></mask>')
+            edge += f' mask="url(#{name})"'
+        self._parts.append(f'<path d="{d}" fill="{_hex(fill)}"{edge}{_see_through(opacity)}/>')
 
     def dot(
         self, place: Sequence[float], radius: float, fill: Rgb | None, stroke: Rgb | None = None, *, edge: float = 2.5
@@ -115,11 +122,11 @@ class Sheet:
             f'style="image-rendering:pixelated" xlink:href="data:image/png;base64,{png}"/>'
         )
 
-    def arrow(self, x: float, y: float, heading_rad: float, fill: Rgb, size: float) -> None:
+    def arrow(self, x: float, y: float, heading_rad: float, fill: Rgb, size: float, *, edge: Rgb | None = None) -> None:
         """A robot: an arrowhead of this size, pixels."""
         outline = np.array([(1.0, 0.0), (-0.8, 0.62), (-0.4, 0.0), (-0.8, -0.62)]) * size / self.scale
         c, s = np.cos(heading_rad), np.sin(heading_rad)
-        self.polygon(outline @ np.array([(c, s), (-s, c)]) + (x, y), fill, stroke=self.palette.casing)
+        self.polygon(outline @ np.array([(c, s), (-s, c)]) + (x, y), fill, stroke=edge or self.palette.casing)
 
     def way(self, points: ArrayLike, colour: Rgb, width: float) -> None:
         """A line in a casing, with a head at its end."""
@@ -138,13 +145,14 @@ class Sheet:
         size: float = 15,
         up: float = 0.0,
         fill: Rgb | None = None,
+        rim: Rgb | None = None,
     ) -> None:
         """Words in the middle of a place or so many pixels above it, or beside that where labels that came before are.
 
-        fill: of a bar below them; a place beside the field is named at its edge."""
+        fill, rim: of a bar below them; a place beside the field is named at its edge."""
         x1, y1, x2, y2 = self.box
         x, y = self.pixels([np.clip(place, (x1, y1), (x2, y2))])[0].tolist()
-        self._labels.append(Label((x, y), up, plain(words), colour, size, fill))
+        self._labels.append(Label((x, y), up, plain(words), colour, size, fill, rim))
 
     def note(self, place: Sequence[float], words: str, *, anchor: str, up: float, bold: bool = False) -> None:
         """Words that stay where they are, so many pixels above a place, as numbers on an axis do; labels give way."""
@@ -196,8 +204,10 @@ class Sheet:
 
     def svg(self) -> str:
         (x1, y2), (x2, y1) = self.pixels([self.box[:2], self.box[2:]]).tolist()
-        field = f'<clipPath id="field"><path d="M{x1:.1f} {y1:.1f}H{x2:.1f}V{y2:.1f}H{x1:.1f}Z"/></clipPath>'
-        drawn = f'{field}<g clip-path="url(#field)">{"".join(self._parts)}</g>'
+        edge = f"M{x1:.1f} {y1:.1f}H{x2:.1f}V{y2:.1f}H{x1:.1f}Z"
+        field = f'<clipPath id="field"><path d="{edge}"/></clipPath>'
+        rim = f'<path d="{edge}" fill="none" stroke="{_hex(self.palette.rim)}" stroke-width="1.5"/>'
+        drawn = f'{field}<g clip-path="url(#field)">{"".join(self._parts)}</g>{rim}'
         self._name(np.array([(x1, y1), (x2, y2)]))
         size = f'width="{WIDTH:g}" height="{self.height:.0f}" viewBox="0 0 {WIDTH:g} {self.height:.0f}"'
         paper = f'<rect width="100%" height="100%" fill="{_hex(self.palette.sheet)}"/>'
@@ -218,9 +228,10 @@ class Sheet:
         for label, (x, y) in zip(self._labels, places, strict=True):
             if label.fill is not None:
                 width, height = label.bar.tolist()
+                rim = "" if label.rim is None else f' stroke="{_hex(label.rim)}" stroke-width="1.2"'
                 self._around.append(
                     f'<rect x="{x - width / 2:.1f}" y="{y - height / 2:.1f}" width="{width:.1f}" height="{height:.1f}" '
-                    f'rx="{height / 2:.1f}" fill="{_hex(label.fill)}"/>'
+                    f'rx="{height / 2:.1f}" fill="{_hex(label.fill)}"{rim}/>'
                 )
             bar = label.fill is not None
             self._words(

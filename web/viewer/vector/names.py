@@ -1,7 +1,8 @@
-"""What a lesson has on a sheet: what happened, where it happened, and what was predicted."""
+"""Names of places on a sheet, and what a lesson has there: what happened, where it happened, and what was predicted."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -11,11 +12,20 @@ from web.viewer.fits.map_fit import MapFit
 from web.viewer.marks import cell_marks
 from web.viewer.marks.tags import last_named
 from web.viewer.plates.lesson_marks import pins
+from web.viewer.primitives.palette import mix
 from web.viewer.vector.sheet import Sheet
 from web.viewer.vector.subject import Subject
 
 APART_PX = 45.0  # of marks that are nearer to one another only the last is named
 RING = 8.0
+
+
+def draw_name(sheet: Sheet, place: Sequence[float], name: str, *, known: bool) -> None:
+    """Of a place of the office. known: by the map."""
+    palette = sheet.palette
+    fill = mix(palette.slab, palette.sheet, 0.0 if known else 0.6)
+    ink = palette.text if known else palette.text_2
+    sheet.label(place, name, ink, fill=fill, rim=ink)
 
 
 def draw_pins(sheet: Sheet, subject: Subject, plate: Literal["office", "map"], fit: MapFit) -> None:
