@@ -22,6 +22,7 @@ Points = NDArray[np.float64]  # (n, 2), m
 STARTS_RAD = tuple(math.radians(d) for d in (0, -8, 8, -16, 16))  # added to the turn of the wheels
 SPACING_M = 0.5  # between the places from which it begins
 ROUNDS = 15
+ROUGH_ROUNDS, SPARSE, MOST_STARTS = 6, 3, 8  # every third point first; then the best places that are not the same
 LEAST_POINTS = 30
 LEAST, WELL = 0.15, 0.85  # share of the points on walls: to be believed, and to try no other start
 NEAR = 0.4  # m to begin with; points farther from every line say nothing, and this shrinks to a quarter
@@ -102,10 +103,9 @@ class Walls:
         if len(self.points) < LEAST_POINTS or len(now) < LEAST_POINTS:
             return None
         settled: list[Match] = []
-        for dx, dy in _around(reach_m):
-            for turn in STARTS_RAD:
-                if reach_m > 0 or not settled or settled[-1].fits <= WELL:
-                    settled.append(self._settle(now, Pose2(told.x + dx, told.y + dy, told.heading_rad + turn)))
+        for start in self._starts(now, told, reach_m):
+            if reach_m > 0 or not settled or settled[-1].fits <= WELL:
+                settled.append(self._settle(now, start))
         best = max(settled, key=lambda each: each.fits)
         if reach_m > 0:
             best = best._replace(rival=max((s.fits for s in settled if not alike(s.pose, best.pose, 2.0)), default=0.0))
@@ -114,10 +114,26 @@ class Walls:
             return None
         return best
 
-    def _settle(self, now: Points, start: Pose2) -> Match:
+    def _starts(self, now: Points, told: Pose2, reach_m: float) -> list[Pose2]:
+        """Where to begin. Of many places, those to which a part of the points settles best in a few rounds."""
+        starts = [
+            Pose2(told.x + dx, told.y + dy, told.heading_rad + turn)
+            for dx, dy in _around(reach_m)
+            for turn in STARTS_RAD
+        ]
+        if reach_m == 0:
+            return starts
+        roughly = [self._settle(now[::SPARSE], start, ROUGH_ROUNDS) for start in starts]
+        chosen: list[Pose2] = []
+        for each in sorted(roughly, key=lambda each: -each.fits):
+            if len(chosen) < MOST_STARTS and not any(alike(each.pose, other, 2.0) for other in chosen):
+                chosen.append(each.pose)
+        return chosen
+
+    def _settle(self, now: Points, start: Pose2, rounds: int = ROUNDS) -> Match:
         fits, holds, x, y, heading = _settle(
             self.points, self.normals, self._order, self._first, self._columns, self._low, now, start.x, start.y,
-            start.heading_rad,
+            start.heading_rad, rounds,
         )  # fmt: skip
         return Match(Pose2(x, y, wrap_angle(heading)), fits, 0.0, holds)
 
@@ -135,12 +151,12 @@ def _turning(angle: float) -> NDArray[np.float64]:
 @njit(cache=True, nogil=True, error_model="numpy")
 def _settle(
     points: Points, normals: Points, order: NDArray[np.int64], first: NDArray[np.int64], columns: int, low: NDArray[np.float64],
-    now: Points, x: float, y: float, heading: float,
+    now: Points, x: float, y: float, heading: float, rounds: int,
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
     """From one start to where it settles: fits and holds (`Match`), x, y, heading. order, first: the points by squares."""
     rows = (len(first) - 1) // columns
     fits = holds = 0.0
-    for k in range(ROUNDS):
+    for k in range(rounds):
         near = NEAR * (1 - 0.75 * k / (ROUNDS - 1))
         c, s = math.cos(heading), math.sin(heading)
         h, g = np.zeros((3, 3)), np.zeros(3)
@@ -168,7 +184,7 @@ def _settle(
                     h[u, v] += a[u] * a[v]
             on += 1
             off += abs(error)
-        if on < LEAST_POINTS // 2:
+        if on < min(LEAST_POINTS // 2, len(now) / 4):
             return 0.0, 0.0, x, y, heading
         apart = math.hypot((h[0, 0] - h[1, 1]) / 2, h[0, 1])
         holds = ((h[0, 0] + h[1, 1]) / 2 - apart) / on
