@@ -126,7 +126,7 @@ class ExperienceMap(Looks):
         """[ours] Something besides views measured where j lies in the frame of i, give or take `sigma_m`: a closure, no way.
 
         A laser does that (`app/recordings/scan_ties.py`); nobody else does.
-        test_recorded_motion.py::test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs.
+        test_scan_ties.py::test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs.
         """
         t = self.transitions
         row = t.add(i, j, travelled=False)
