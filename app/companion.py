@@ -20,6 +20,7 @@ from app.recordings.scan_ties import ScanTies
 from disk import encode, kind
 from ratslam_core import Estimate, Odometry, RatSlam
 from ratslam_core.params import RatSlamParams
+from ratslam_core.parts import Witness
 from sim2d import Truth
 
 SECTIONS = tuple(RatSlamParams.__dataclass_fields__)  # of the parameters that a brain has
@@ -37,7 +38,9 @@ class Heard:
     gap: bool = False
     scan_m: NDArray[np.float64] | None = None  # of a laser, in the order of its beams
 
-    def tell(self, brain: RatSlam, watch: Callable[[str], None] | None = None) -> Estimate:
+    def tell(
+        self, brain: RatSlam, watch: Callable[[str], None] | None = None, witness: Witness | None = None
+    ) -> Estimate:
         """One step of a brain. The scene number is made from the true pose, so a brain gets it only if its front end is
         "scene numbers", as in the papers' own simulator."""
         numbers = brain.params.local_view.front_end == "scene numbers"
@@ -48,6 +51,7 @@ class Heard:
             behaviour=self.behaviour,
             ranges_m=self.ranges_m,
             watch=watch,
+            witness=witness,
         )
 
 
@@ -102,9 +106,11 @@ class Companion:
         """
         if heard.gap:
             self.brain.declare_kidnapped()
-        own = self.estimate = heard.tell(self.brain)
-        if self.ties is not None and own.created and heard.scan_m is not None:
-            self.ties.made(self.brain.experience_map, heard.scan_m)
+        if self.ties is not None:
+            self.ties.see(heard.scan_m)
+        own = self.estimate = heard.tell(self.brain, witness=self.ties)
+        if self.ties is not None and own.created:
+            self.ties.made(self.brain.experience_map)
         if truth is not None:
             self.evaluation.record(time_s, truth, self.brain.experience_map, own.created, heard.odometry)
         self._note_counterpart(estimate.experience)

@@ -1,4 +1,8 @@
-"""The bars for recordings of real robots: `python -m benchmarks.recordings --data ../shared/data [office airsim intel]`."""
+"""The bars for recordings of real robots: `python -m benchmarks.recordings --data ../shared/data [office airsim intel]`.
+
+`variants` and `held-out` play laser logs that nobody tuned on (laser_variants.py); `--without NAME` does without a rule of
+`app/recordings/scan_rules.py`, `--only WORDS` plays those whose names contain the words.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,7 @@ import argparse
 import csv
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 import cv2
@@ -18,7 +22,12 @@ from app.recordings.made_odometry import OdometryErrors, WithMadeOdometry
 from app.recordings.opening import open_recording
 from app.recordings.playing import Player
 from app.recordings.recording import Recording
+from app.recordings.scan_rules import ScanRules
+from benchmarks.laser_drives import OF_OURS, OF_OURS_HELD_OUT, driven
+from benchmarks.laser_variants import OF_A_LOG, OF_A_LOG_HELD_OUT, Log, Logged, log_of
+from sim2d.importers.import_world import open_world
 
+KNOWN_S = 1.0  # a moment so near to a scan has a known pose
 NEAR_S, FAR_S = 1.0, 3.0  # a look is right within, and false beyond
 SEEDS = 20
 PICTURE = 480  # pixels along each of its two halves
@@ -37,7 +46,7 @@ class Played:
     odometry: NDArray[np.float64]  # (n, 3)
 
 
-def play(recording: Recording, seed: int = 0) -> Played:
+def play(recording: Recording, seed: int = 0, scans: ScanRules | None = None) -> Played:
     """Play it to the end; each frame is where its active experience lies in the final map."""
     frames: list[int] = []
     times: list[float] = []
@@ -46,7 +55,7 @@ def play(recording: Recording, seed: int = 0) -> Played:
     driven = [(0.0, 0.0, 0.0)]
     born: dict[int, float] = {}
     brain = None
-    for step in Player(recording, seed).steps():
+    for step in Player(recording, seed, scans=scans).steps():
         brain, at = step.brain, step.brain.experience_map.local_pose
         if step.estimate.created:
             born[step.estimate.experience] = step.moment.time_s
@@ -110,9 +119,8 @@ def draw_laps(played: Played, file: Path) -> None:
         raise OSError(f"{file}: cannot be written")
 
 
-def relations(path: NDArray[np.float64], times: NDArray[np.float64], file: Path) -> tuple[float, float]:
+def relations(path: NDArray[np.float64], times: NDArray[np.float64], raw: NDArray[np.float64]) -> tuple[float, float]:
     """Mean error (m, degrees) against the relations, each between two times; poses between two scans are interpolated."""
-    raw = np.loadtxt(file)
     heading = np.unwrap(path[:, 2])
 
     def at(time: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -123,6 +131,59 @@ def relations(path: NDArray[np.float64], times: NDArray[np.float64], file: Path)
     off = np.hypot(c * d[:, 0] + s * d[:, 1] - raw[:, 2], -s * d[:, 0] + c * d[:, 1] - raw[:, 3])
     turn = np.remainder(d[:, 2] - raw[:, 7] + math.pi, math.tau) - math.pi
     return float(off.mean()), math.degrees(float(np.abs(turn).mean()))
+
+
+def of_known(log: Log, path: NDArray[np.float64], file: Path) -> float:
+    """Mean error (m) against the relations between moments within a second of one of its scans."""
+    order = np.argsort(log.was)
+    was, path = log.was[order] + INTEL_BEGAN_S, path[order] * ((1, -1, -1) if log.mirrored else 1)
+    raw = np.loadtxt(file)
+
+    def known(time: NDArray[np.float64]) -> NDArray[np.bool_]:
+        after = np.clip(np.searchsorted(was, time), 1, len(was) - 1)
+        near = np.minimum(np.abs(time - was[after - 1]), np.abs(time - was[after])) <= KNOWN_S
+        return near & (time > was[0] - 0.01) & (time < was[-1] + 0.01)
+
+    return relations(path, was, raw[known(raw[:, 0]) & known(raw[:, 1])])[0]
+
+
+def of_truth(path: NDArray[np.float64], truth: NDArray[np.float64]) -> float:
+    """Mean distance (m) from the truth, once both lie on one another as well as they can."""
+    a, b = path[:, :2] - path[:, :2].mean(axis=0), truth[:, :2] - truth[:, :2].mean(axis=0)
+    u, _, v = np.linalg.svd(a.T @ b)
+    turn = u @ np.diag([1.0, np.sign(np.linalg.det(u @ v))]) @ v
+    return float(np.hypot(*(a @ turn - b).T).mean())
+
+
+def variants(args: argparse.Namespace, held_out: bool) -> None:
+    """Map, scans alone and wheels alone of logs that nobody tuned on."""
+    folder, rules = args.data / "logs" / "intel", replace(ScanRules(), **dict.fromkeys(args.without, False))
+    rows: list[tuple[float, float, float]] = []
+
+    def row(name: str, log: Log) -> None:
+        played = play(Logged(log, name), scans=rules)
+        paths = (played.path, played.odometry, log.wheels)
+        if log.truth is None:
+            errors = [of_known(log, path, folder / "intel.relations") for path in paths]
+        else:
+            errors = [of_truth(path, log.truth) for path in paths]
+        rows.append((errors[0], errors[1], errors[2]))
+        print(f"  {name}: map {errors[0]:.3f} m, scans alone {errors[1]:.3f} m, wheels {errors[2]:.3f} m", flush=True)
+
+    whole = log_of(open_recording(folder / "intel_gfs.gz"))
+    for name, change in (OF_A_LOG_HELD_OUT if held_out else OF_A_LOG).items():
+        if args.only in f"intel, {name}":
+            row(f"intel, {name}", change(whole))
+    for drive in OF_OURS_HELD_OUT if held_out else OF_OURS:
+        if args.only in drive.world:
+            world = args.data / "worlds" / drive.world if "/" in drive.world else drive.world
+            row(drive.world, driven(open_world(world), drive))
+    of_map, scans, wheels = np.array(rows).reshape(-1, 3).T
+    if len(of_map):
+        worse = (
+            f"worse than scans alone in {int((of_map > scans).sum())}, than wheels in {int((of_map > wheels).sum())}"
+        )
+        print(f"map {np.median(of_map):.3f} m median, {of_map.max():.3f} m at worst; {worse} of {len(of_map)}")
 
 
 def office(data: Path, picture: Path | None) -> None:
@@ -158,7 +219,7 @@ def intel(data: Path, _picture: Path | None) -> None:
     recording = open_recording(folder / "intel_gfs.gz")
     played = play(recording)
     for name, path in (("map", played.path), ("odometry", played.odometry)):
-        metres, degrees = relations(path, played.times + INTEL_BEGAN_S, folder / "intel.relations")
+        metres, degrees = relations(path, played.times + INTEL_BEGAN_S, np.loadtxt(folder / "intel.relations"))
         print(f"intel: {name} {metres:.3f} m, {degrees:.1f} degrees (bar 0.5 m)")
 
 
@@ -166,10 +227,15 @@ def main(words: Iterable[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--picture", type=Path, help="a PNG of the car's laps in the map and by odometry alone")
+    parser.add_argument("--without", action="append", default=[], choices=[f.name for f in fields(ScanRules)])
+    parser.add_argument("--only", default="", help="variants whose names contain this")
     parser.add_argument("which", nargs="*", default=["office", "airsim", "intel"])
     args = parser.parse_args(None if words is None else list(words))
     for name in args.which:
-        {"office": office, "airsim": airsim, "intel": intel}[name](args.data, args.picture)
+        if name in ("variants", "held-out"):
+            variants(args, name == "held-out")
+        else:
+            {"office": office, "airsim": airsim, "intel": intel}[name](args.data, args.picture)
 
 
 if __name__ == "__main__":

@@ -16,6 +16,17 @@ if TYPE_CHECKING:
     from ratslam_core.experience_map.experience_map import ExperienceMap
 
 
+class Witness(Protocol):
+    """[ours] A sense that measures where the robot is to a known experience, such as a laser."""
+
+    def confirms(self, map_: Any, experience: int, look: Pose2, /) -> tuple[Pose2, float] | None:
+        """The robot in the frame of the experience, and give or take what (m), near where a look puts it.
+
+        map_: an `ExperienceMap`. An infinite error: it cannot say, so that the look counts as it is. None: it is not there.
+        """
+        ...
+
+
 class LocalViewPart(Protocol):
     """Recognises scenes."""
 

@@ -18,7 +18,7 @@ from ratslam_core.local_view.recogniser import NOTHING, LocalView
 from ratslam_core.local_view.view_links import ViewLinks
 from ratslam_core.occupancy_grid import MapGrid, OccupancyGrid
 from ratslam_core.params import RatSlamParams
-from ratslam_core.parts import ExperienceMapPart, KidnapDetectorPart, LocalViewPart, Optimiser, PoseCellsPart
+from ratslam_core.parts import ExperienceMapPart, KidnapDetectorPart, LocalViewPart, Optimiser, PoseCellsPart, Witness
 from ratslam_core.pose_cells.network import PoseCells
 from ratslam_core.standard_parts import StandardParts
 from ratslam_core.types import Estimate, Odometry, Packet, Recognition, nothing_seen
@@ -79,14 +79,15 @@ class RatSlam:
         behaviour: int = 0,
         ranges_m: NDArray[np.floating] | None = None,
         watch: Callable[[str], None] | None = None,
+        witness: Witness | None = None,
     ) -> Estimate:
         """One iteration at the end of a movement: `odometry` is what the wheels report of it, `image` what is seen then.
 
         image: (h, w) or (h, w, 3) uint8; scene: its number, for the front end "scene numbers", which ignores the image;
         behaviour: 0 to 15, the local movement that led here (D 3.2); ranges_m: the sonars' ranges in m, shape
         (n_sonars,), for the front end "image and sonars", the occupancy pictures and to notice a kidnap; watch: called
-        after each of STAGES with its name; it may look but change nothing. ValueError when one of them is not valid;
-        nothing has changed then.
+        after each of STAGES with its name; it may look but change nothing; witness: looks that it does not confirm are
+        none. ValueError when one of them is not valid; nothing has changed then.
 
         [ours] Vision, attractor and map act in beats of 0.1 s (`beats.py`). Between two beats nothing is looked at, and
         only the robot's pose in the map moves on.
@@ -113,7 +114,8 @@ class RatSlam:
         self.experience_map.gate.surprised = self._misses_what_it_expects()
         foreign = self.experience_map.foreign_views
         self.experience_map.elsewhere = self.local_view.nearest_of(foreign) if len(foreign) else nothing_seen()
-        created = self.experience_map.step(packet, seen, odometry, behaviour)
+        heard = {} if witness is None else {"witness": witness}  # a part of a user's own need not know of it
+        created = self.experience_map.step(packet, seen, odometry, behaviour, **heard)
         known = NOTHING if created or seen.view == NOTHING else self.experience_map.active
         for _ in range(beats):
             self._settle(known)

@@ -16,6 +16,7 @@ from app.config import Config, Value
 from app.recordings.motion import Motion
 from app.recordings.recording import Recording
 from app.recordings.scan_odometry import is_laser
+from app.recordings.scan_rules import ScanRules
 from app.recordings.survey import Survey, survey
 from ratslam_core.local_view.front_ends import named_front_end
 
@@ -33,7 +34,7 @@ WIDTH_ERROR = 1.1  # the camera's width is measured to a tenth
 LOUD = ("local_view.", "kidnap.", "occupancy.")  # their lengths are those of echoes, which do not grow with the speed
 
 
-def rules(recording: Recording) -> tuple[Config, Motion]:
+def rules(recording: Recording, scans: ScanRules | None = None) -> tuple[Config, Motion]:
     """The parameters for this recording, and how its motion is read."""
     base = Config().with_value("local_view.front_end", _front_end(recording))
     laser = base.local_view.front_end == "laser"
@@ -50,7 +51,7 @@ def rules(recording: Recording) -> tuple[Config, Motion]:
         levels_per_m, scale = scale, 1.0
     scale = min(max(scale, LEAST_SCALE), MOST_SCALE)
     values: dict[str, Value] = {**_lengths(base, scale), **_views(recording, seen, scale), "memory.familiar": False}
-    motion = Motion(recording.about, seen.dt, seen.field_of_view, levels_per_m)
+    motion = Motion(recording.about, seen.dt, seen.field_of_view, levels_per_m, scans=scans or ScanRules())
     return base.with_values(values), motion
 
 

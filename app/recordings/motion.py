@@ -6,6 +6,7 @@ import math
 
 from app.recordings.recording import About, Moment
 from app.recordings.scan_odometry import ScanOdometry, is_laser
+from app.recordings.scan_rules import ScanRules
 from app.recordings.visual_odometry import VisualOdometry
 from disk import copy_state, kind
 from ratslam_core import Odometry
@@ -20,16 +21,22 @@ class Motion:
     """One odometry for each moment. Who needs the turn from pictures has to know the camera's field of view."""
 
     def __init__(
-        self, about: About, dt: float, field_of_view: float, levels_per_m: float = 1.0, *, scans: bool = True
+        self,
+        about: About,
+        dt: float,
+        field_of_view: float,
+        levels_per_m: float = 1.0,
+        *,
+        scans: ScanRules | None = None,
     ) -> None:
-        """scans: whether a laser, if there is one, makes the wheels better; dt: of a typical moment, s.
+        """scans: how a laser, if there is one, makes the wheels better, None: it does not; dt: of a typical moment, s.
 
         levels_per_m: how much a picture changes while the robot drives a metre.
         """
         self._dt, self._levels_per_m = dt, levels_per_m
         wheels = "speed" in about.has
         self._sees = VisualOdometry(field_of_view) if "camera" in about.has and not wheels else None
-        self._scans = ScanOdometry(about) if scans and wheels and is_laser(about) else None
+        self._scans = ScanOdometry(about, scans) if scans is not None and wheels and is_laser(about) else None
         self._before: tuple[float, float] | None = None  # speed and yaw rate that were told last
         self.gap = False  # whether the newest moment comes after a gap
 

@@ -14,6 +14,7 @@ from app.recordings.brain_rules import rules
 from app.recordings.motion import Motion
 from app.recordings.recording import Moment, Recording
 from app.recordings.scan_odometry import is_laser
+from app.recordings.scan_rules import ScanRules
 from app.recordings.scan_ties import ScanTies
 from disk import kind
 from ratslam_core import Estimate, Odometry, RatSlam
@@ -35,7 +36,12 @@ class Player:
     """Plays a recording; each time from the beginning, with a new brain, and with the same result."""
 
     def __init__(
-        self, recording: Recording, seed: int = 0, config: Config | None = None, path: Path | None = None
+        self,
+        recording: Recording,
+        seed: int = 0,
+        config: Config | None = None,
+        path: Path | None = None,
+        scans: ScanRules | None = None,
     ) -> None:
         """config: wins over that of the recording, if it is a run of ours, and over the rules that look at it. seed: that of a
         run of ours wins. path: where the recording lies, if it is opened from there without being told more: its run can
@@ -43,7 +49,8 @@ class Player:
         about = recording.about
         self.path = path
         self.recording, self.seed = recording, seed if about.seed is None else about.seed
-        ruled, self._motion = rules(recording)
+        ruled, self._motion = rules(recording, scans)
+        self._scans = scans or ScanRules()
         self.config = config or about.config or ruled
         angles = recording.about.beam_angles_rad
         # The front end for lasers takes beams from right to left; the order of sonars is that in which they were told.
@@ -58,7 +65,7 @@ class Player:
     def begin(self) -> Playing:
         """What plays the recording, before its first moment."""
         about = self.recording.about
-        ties = ScanTies(about) if is_laser(about) else None
+        ties = ScanTies(about, self._scans) if is_laser(about) else None
         return Playing(self.brain(), self._motion.anew(), ties, self._order.copy())
 
     def steps(self) -> Iterator[Step]:
@@ -93,7 +100,11 @@ class Playing:
         if motion.gap:
             brain.declare_kidnapped()
         ranges_m = self.ranges_of(moment)
-        estimate = brain.step(moment.image, moved, behaviour=moment.behaviour, ranges_m=ranges_m, watch=watch)
-        if self._ties is not None and estimate.created and moment.ranges_m is not None:
-            self._ties.made(brain.experience_map, moment.ranges_m)
+        if self._ties is not None:
+            self._ties.see(moment.ranges_m)
+        estimate = brain.step(
+            moment.image, moved, behaviour=moment.behaviour, ranges_m=ranges_m, watch=watch, witness=self._ties
+        )
+        if self._ties is not None and estimate.created:
+            self._ties.made(brain.experience_map)
         return Step(moment, estimate, brain, moved, ranges_m, motion.gap)

@@ -44,7 +44,7 @@ def survey(recording: Recording, front_end: FrontEnd, shift_at: Callable[[float]
 
     shift_at: how many columns are to be tried to either side, when the camera sees so wide (rad).
     """
-    motion = Motion(recording.about, 1.0, 1.0, scans=False)
+    motion = Motion(recording.about, 1.0, 1.0)
     dts: list[float] = []
     speeds: list[float] = []
     turns: list[float] = []

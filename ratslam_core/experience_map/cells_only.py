@@ -18,7 +18,10 @@ class CellsOnly(ExperienceMap):
     The network therefore has to be as large as the building. There are no links, so there are no routes.
     """
 
-    def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0) -> bool:  # noqa: ARG002
+    def step(
+        self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0, *, witness: object = None
+    ) -> bool:
+        del odometry, behaviour, witness  # only the packet counts
         if self.active < 0:
             self._create(packet, seen.view, IDENTITY)
             return True

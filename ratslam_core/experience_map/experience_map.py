@@ -20,7 +20,7 @@ from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges
 from ratslam_core.params import ExperienceMapParams, MemoryParams, PoseFilterParams, SolverParams
-from ratslam_core.parts import Optimiser
+from ratslam_core.parts import Optimiser, Witness
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite
 
 
@@ -54,11 +54,14 @@ class ExperienceMap(Looks):
         self._arrival: _Arrival | None = None
         self._edges = OdometryEdges() if self.params.odometry_edges else NoOdometryEdges()
 
-    def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0) -> bool:
+    def step(
+        self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0, *,
+        witness: Witness | None = None,
+    ) -> bool:  # fmt: skip
         """One step: the robot moved as the odometry says, to this packet and this view. True when a new experience was made.
 
-        behaviour: 0 to 15, the local movement that led here; links remember it. ValueError for another number, and for
-        a packet whose place or heading is not finite.
+        behaviour: 0 to 15, the local movement that led here; links remember it. witness: a look that it does not
+        confirm is none. ValueError for another number, and for a packet whose place or heading is not finite.
         """
         require_behaviour(behaviour)
         for name in ("x", "y", "heading_rad"):
@@ -72,8 +75,12 @@ class ExperienceMap(Looks):
             self.forget_view(seen.view)
         before = self._departure()
         # On familiar ground there is something to see, so the experiences of nothing do not count.
-        best, seen = (-1, seen) if seen.familiar else self._seen_experience(packet, seen)
+        best, seen = (-1, seen) if seen.familiar else self._seen_experience(packet, seen, witness)
         by_place = self.ground.of_view(self, seen.view) if best < 0 else -1
+        look = None
+        if best >= 0 and best != before.experience:
+            look = self._measured(best, packet, seen, witness)
+            best = -1 if look is None else best
         if max(best, by_place) < 0 and self.ground.spare():
             return False
         best = max(best, by_place)
@@ -83,8 +90,7 @@ class ExperienceMap(Looks):
             self._edges.made(self.active, driven, self.transitions, self._weight_of_way)
             return True
         if best != before.experience:
-            look = self._look(best, packet, seen) if by_place < 0 else self._look_by_view(best, seen)
-            self._enter(best, look, self._deviation(seen))
+            self._enter(best, *(look or (self._look_by_view(best, seen), self._deviation(seen))))
             self._learn_link(before, behaviour)
         elif self._arrival is not None and self._deviation(seen) < self._sigma:
             self._see_better(seen)
@@ -120,7 +126,7 @@ class ExperienceMap(Looks):
         """[ours] Something besides views measured where j lies in the frame of i, give or take `sigma_m`: a closure, no way.
 
         A laser does that (`app/recordings/scan_ties.py`); nobody else does.
-        test_recorded_motion.py::test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs.
+        test_scan_ties.py::test_a_scan_ties_an_experience_to_an_old_one_where_it_belongs.
         """
         t = self.transitions
         row = t.add(i, j, travelled=False)

@@ -16,6 +16,7 @@ from ratslam_core.extensions.gate import Gate
 from ratslam_core.extensions.islands import Islands, move
 from ratslam_core.extensions.torn import open_way_m, soften
 from ratslam_core.params import ExperienceMapParams, PoseFilterParams
+from ratslam_core.parts import Witness
 from ratslam_core.types import IDENTITY, Packet, Pose2, Recognition, nothing_seen, wrap_angle
 
 
@@ -47,7 +48,9 @@ class Looks(MapReading):
             self._foreign_views = islands.begun, islands.joined, np.unique(views[views >= 0]).astype(np.int64)
         return self._foreign_views[2]
 
-    def _seen_experience(self, packet: Packet, seen: Recognition) -> tuple[int, Recognition]:
+    def _seen_experience(
+        self, packet: Packet, seen: Recognition, witness: Witness | None = None
+    ) -> tuple[int, Recognition]:
         """The experience that the robot sees, the most energetic of those that it can see, -1 for none; and as what.
 
         When what was held back has won, it is one beyond reach; where that lies on another island, the two were joined.
@@ -59,16 +62,16 @@ class Looks(MapReading):
         for look in (seen, self.elsewhere) if self.islands.begun else ():
             foreign = self._foreign(packet, look) if look.view >= 0 else -1
             if foreign >= 0:
-                return (foreign, look) if self._crosses(foreign, packet, look) else (best, seen)
+                return (foreign, look) if self._crosses(foreign, packet, look, witness) else (best, seen)
         if math.isinf(reach):
             return best, seen
         if best >= 0 and not self.lost and self._turns(best, packet, seen):
-            return (best if self._jumps(best, packet, seen) else -1), seen
+            return (best if self._jumps(best, packet, seen, witness) else -1), seen
         if (best >= 0 and not self._experiences.doubtful[best]) or self._sees_where_it_is(seen.view, reach):
             self.gate.doubt()
             return best, seen
         far = self._most_energetic(packet, seen.view, reach, beyond=True)
-        return (far if far >= 0 and self._jumps(far, packet, seen) else best), seen
+        return (far if far >= 0 and self._jumps(far, packet, seen, witness) else best), seen
 
     def _turns(self, experience: int, packet: Packet, seen: Recognition) -> bool:
         """[ours] Whether a look would turn the robot farther than its heading can be off, wherever it puts it.
@@ -78,7 +81,8 @@ class Looks(MapReading):
         most = self.gate.params.gate_rad
         if most >= math.pi:
             return False
-        return abs(wrap_angle(self._claimed(experience, packet, seen).heading_rad - self.robot.heading_rad)) > most
+        claimed = self.pose(experience).compose(self._look(experience, packet, seen))
+        return abs(wrap_angle(claimed.heading_rad - self.robot.heading_rad)) > most
 
     def _foreign(self, packet: Packet, seen: Recognition) -> int:
         """The experience of another island that the robot sees, wherever its packet is; -1 for none.
@@ -118,17 +122,19 @@ class Looks(MapReading):
             packet, view, self.params, self.robot, reach_m, self.islands.current, foreign, beyond
         )
 
-    def _crosses(self, experience: int, packet: Packet, seen: Recognition) -> bool:
+    def _crosses(self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None) -> bool:
         """Whether a look at another island is believed; the robot's own is then joined to it."""
-        robot, claimed = self.robot, self._claimed(experience, packet, seen)
-        if not self._proved(claimed, self._needed(claimed), seen.view):
+        robot, claimed = self.robot, self._claimed(experience, packet, seen, witness)
+        if claimed is None or not self._proved(claimed, self._needed(claimed), seen.view):
             return False
         self.islands.join(int(self.island_of[experience]), self.island_of, self.poses, robot, claimed)
         return True
 
-    def _jumps(self, experience: int, packet: Packet, seen: Recognition) -> bool:
+    def _jumps(self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None) -> bool:
         """Whether a look at the robot's own island is believed although it is beyond reach."""
-        robot, claimed = self.robot, self._claimed(experience, packet, seen)
+        robot, claimed = self.robot, self._claimed(experience, packet, seen, witness)
+        if claimed is None:
+            return False
         if not self.lost and self._drifted_to(claimed, experience):
             return self._proved(claimed, self.params.join_sights, seen.view)
         needed = self._needed(claimed) if self.lost else self.gate.params.gate_sights
@@ -168,8 +174,23 @@ class Looks(MapReading):
         plain = self.islands.sure or self._off(claimed) <= self.gate.params.snap_m
         return self.params.join_sights if plain else max(self.params.join_sights, self.params.doubtful_sights)
 
-    def _claimed(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
-        return self.pose(experience).compose(self._look(experience, packet, seen))
+    def _claimed(
+        self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None = None
+    ) -> Pose2 | None:
+        """Where a look puts the robot; None if the witness does not confirm it."""
+        look = self._measured(experience, packet, seen, witness)
+        return None if look is None else self.pose(experience).compose(look[0])
+
+    def _measured(
+        self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None
+    ) -> tuple[Pose2, float] | None:
+        """[ours] The look, and how far off it may be (m); as a witness measures it, None if it does not confirm it.
+
+        test_scan_ties.py::test_the_map_asks_the_witness.
+        """
+        look, sigma = self._look(experience, packet, seen), self._deviation(seen)
+        confirmed = (look, math.inf) if witness is None else witness.confirms(self, experience, look)
+        return (look, sigma) if confirmed is not None and math.isinf(confirmed[1]) else confirmed
 
     def _look(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
         """The look: the robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
