@@ -189,6 +189,9 @@ def test_all_that_opens_is_large_enough_for_fingers(program: Program, browser: B
             look(key)
             page.click("dialog[open] .dialog-head [aria-label=Close]")
             expect(page.locator("dialog[open]")).to_have_count(0)
+        page.click("#places")  # without a keyboard on the screen, which would cover the list
+        expect(page.locator("#places-close")).to_be_focused()
+        page.click("#places-close")
         page.keyboard.press("o")
         page.wait_for_selector("#plan .body")
         page.click("#edit-time")
