@@ -138,8 +138,13 @@ def show(page: Page, view: View) -> None:
     while not _stands_at(page, view):
         assert time.monotonic() < end, f"the camera is not at {view} within {PATIENCE_S:g} s: {_told_camera.get(page)}"
         page.wait_for_timeout(50)
-    page.evaluate("() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
+    draw(page)
     page.wait_for_timeout(300)
+
+
+def draw(page: Page) -> None:
+    """Wait until two frames are drawn, however slowly."""
+    page.evaluate("() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
 
 
 def camera_of(page: Page) -> Camera:

@@ -8,15 +8,16 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.e2e.browser import calm, open_page
+from tests.e2e.browser import calm, draw, open_page
 from tests.e2e.program import Program
 
 # 683 x 384 is 1366 x 768 enlarged twice.
 SIZES = [(1024, 768), (1280, 720), (1366, 768), (1920, 1080), (683, 384), (820, 1180)]
 TOUCHED = [(390, 844), (820, 1180), (1024, 768), (1366, 1024)]  # phones and tablets
+ON_ITS_SIDE = [(844, 390), (740, 360), (667, 375), (932, 430)]  # a phone; one page, turned and cut to all of these
 # Each of these stands alone; what lies in one of them may not cover its neighbours there either.
 PARTS = """header, footer, .views, .aids, .hints, #panel, #panel-show, #beside, #lesson, #trial, #first, #situation, #film,
-    #walk, #kept, #presenter-bar, .toast"""
+    #walk, #kept, #presenter-bar, .pad, .toast"""
 WRONG = """([parts, least]) => {
     const wrong = [], name = (part) => part.id || part.className || part.tagName;
     const shown = (part) => part.checkVisibility({ visibilityProperty: true }) && part.getBoundingClientRect().width > 0;
@@ -66,7 +67,13 @@ def plain(_program: Program, _page: Page) -> None:
     pass
 
 
+def welcomed(_program: Program, page: Page) -> None:
+    page.evaluate("() => document.getElementById('help-first').click()")
+    expect(page.locator("#first")).to_be_visible()
+
+
 def on_the_way(program: Program, page: Page) -> None:
+    page.evaluate("() => document.getElementById('first-close').click()")
     program.command("set_goal", x=0.0, y=0.0)
     expect(page.locator("#goal")).to_be_visible()
 
@@ -117,24 +124,32 @@ def with_a_trial(program: Program, page: Page) -> None:
 
 
 STATES: list[Callable[[Program, Page], None]] = [
-    plain, on_the_way, in_the_past, branched, compared, presented, stage_by_stage, in_a_lesson,
+    plain, welcomed, on_the_way, in_the_past, branched, compared, presented, stage_by_stage, in_a_lesson,
     in_a_lesson_before_a_class, with_a_trial,
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("size", "touched"), [*((size, False) for size in SIZES), *((size, True) for size in TOUCHED)])
+@pytest.mark.parametrize(
+    ("sizes", "touched"),
+    [*(([size], False) for size in SIZES), *(([size], True) for size in TOUCHED), (ON_ITS_SIDE, True)],
+)
 def test_nothing_is_covered_cut_or_too_small(
-    program: Program, browser: Browser, size: tuple[int, int], touched: bool
+    program: Program, browser: Browser, sizes: list[tuple[int, int]], touched: bool
 ) -> None:
     program.command("reset", world="office", seed=5)
     program.command("step", ticks=300)
-    with open_page(browser, program.url, *size, stage=False, touched=touched) as page:
+    with open_page(browser, program.url, *sizes[0], stage=False, touched=touched) as page:
         page.evaluate("() => document.querySelectorAll('.toast').forEach((toast) => toast.remove())")
         wrong: list[str] = []
         for state in STATES:
             state(program, page)
-            calm(page)
-            wrong += [f"{state.__name__}: {each}" for each in page.evaluate(WRONG, [PARTS, 44 if touched else 24])]
+            for width, height in sizes:
+                if len(sizes) > 1:
+                    page.set_viewport_size({"width": width, "height": height})
+                    draw(page)
+                calm(page)
+                found = page.evaluate(WRONG, [PARTS, 44 if touched else 24])
+                wrong += [f"{state.__name__}, {width} x {height}: {each}" for each in found]
         assert not wrong, "\n".join(wrong)
 
 
@@ -146,7 +161,7 @@ SMALL = """() => [...document.querySelectorAll("button, select, summary, [role=t
     .map(([part, { width, height }]) => `${part.id || part.textContent || part.ariaLabel}: ${width} x ${height}`)"""
 
 
-@pytest.mark.parametrize("size", [(390, 844), (1024, 768)])
+@pytest.mark.parametrize("size", [(390, 844), (844, 390), (1024, 768)])
 def test_all_that_opens_is_large_enough_for_fingers(program: Program, browser: Browser, size: tuple[int, int]) -> None:
     program.command("reset", world="office", seed=5)
     program.command("step", ticks=300)
@@ -159,14 +174,14 @@ def test_all_that_opens_is_large_enough_for_fingers(program: Program, browser: B
             for each in page.evaluate(SMALL):
                 wrong.setdefault(each, where)
 
-        if size[0] < 500:
+        if min(size) < 500:
             page.click("#panels")
         for tab in page.locator("#panel [role=tab]").all():
             tab.click()
             look(tab.inner_text())
         page.evaluate("() => document.querySelectorAll('#panel details').forEach((part) => (part.open = true))")
         look("all that the panel can unfold")
-        if size[0] < 500:
+        if min(size) < 500:
             page.click("#panels")
         for key in "?", "c", "g", "/":
             page.keyboard.press(key)
@@ -174,6 +189,9 @@ def test_all_that_opens_is_large_enough_for_fingers(program: Program, browser: B
             look(key)
             page.click("dialog[open] .dialog-head [aria-label=Close]")
             expect(page.locator("dialog[open]")).to_have_count(0)
+        page.click("#places")  # without a keyboard on the screen, which would cover the list
+        expect(page.locator("#places-close")).to_be_focused()
+        page.click("#places-close")
         page.keyboard.press("o")
         page.wait_for_selector("#plan .body")
         page.click("#edit-time")
@@ -181,6 +199,7 @@ def test_all_that_opens_is_large_enough_for_fingers(program: Program, browser: B
         page.click("#edit-close")
         page.click("#keep summary")
         look("what can be kept")
+        page.keyboard.press("Escape")
         page.click("#bookmark")
         expect(page.locator("#bookmark-list input")).to_be_visible()
         look("events and bookmarks")

@@ -178,7 +178,7 @@ on("kidnap-phone", kidnap);
 on("cancel", cancelGoal);
 on("theme", () => theme.toggle());
 on("help", () => help.toggle());
-on("places", () => places.open());
+on("places", () => places.open(false));
 on("present", () => presenter.turn(!presenter.on));
 on("lessons", () => lessons.open());
 on("experiments", () => gallery.open());
@@ -231,7 +231,7 @@ async function mayLeave() {
 const ACTS = {
   explore,
   kidnap,
-  places: () => places.open(),
+  places: () => places.open(true),
   cancel: () => (state?.goal ? cancelGoal() : false),
   play: playOrPause,
   tick: () => (presenter.on ? false : oneTick()), // a clicker's keys for a black screen

@@ -6,6 +6,7 @@ import { choices } from "../model/places.js";
 import { renew } from "../panel/parts.js";
 
 const MOST = 60; // rows
+const touched = window.matchMedia("(pointer: coarse)");
 
 export class PlaceList {
   /**
@@ -28,12 +29,13 @@ export class PlaceList {
     });
   }
 
-  async open() {
+  /** @param {boolean} byKey */
+  async open(byKey) {
     this.places = null;
     $("places-typed").value = "";
     $("places-said").textContent = "Asking the robot";
     this.dialog.showModal();
-    $("places-typed").focus();
+    if (byKey || !touched.matches) $("places-typed").focus(); // a keyboard on the screen would cover the list
     try {
       const answer = await fetch("/api/places");
       const told = await answer.json();

@@ -8,7 +8,8 @@ import { Report } from "./report.js";
 import { SwitchList } from "./switch_list.js";
 
 const NOTHING =
-  "Nothing is chosen. Hold shift and click on the map: the experience there is shown, with all that the robot knows of it. " +
+  "Nothing is chosen. Hold shift and click on the map, or touch it with Click inspects on: the experience there is shown, with " +
+  "all that the robot knows of it. " +
   "Click into the pose cells: what is active there, and which views lead there.";
 
 export class InspectTab {

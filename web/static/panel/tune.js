@@ -7,7 +7,7 @@ import { say } from "./parts.js";
 
 /** @typedef {import("../model/knobs.js").Parameter} Parameter */
 
-const POINT = "Point at a name, or go there with the tab key, for its meaning. ↻ takes effect at reset.";
+const POINT = "Point at a name, or touch or tab to its field, for its meaning. ↻ takes effect at reset.";
 
 export class TuneTab {
   /** @param {import("./panel.js").Ask} ask */

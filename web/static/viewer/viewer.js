@@ -6,7 +6,7 @@ import { takePinches } from "./pinch.js";
 import { spareSoftware } from "./software.js";
 import { fadeDrawing, firstFrame } from "./waking.js";
 
-export const phone = window.matchMedia("(max-width: 760px)");
+export const phone = window.matchMedia("(max-width: 760px), (pointer: coarse) and (max-height: 500px)");
 
 export class Viewer extends EventTarget {
   /** @param {import("../net/connection.js").Connection} link @param {import("../driving/keys.js").Keys} keys */
