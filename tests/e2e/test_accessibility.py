@@ -7,10 +7,11 @@ import importlib.resources
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.browser import NO_STAGE, PATIENCE_MS, calm, open_page, turn_theme, until
+from tests.e2e.browser import NO_STAGE, PATIENCE_MS, at_each, calm, open_page, turn_theme, until
 
 AXE = importlib.resources.files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8")
-RUN = """async () => (await axe.run(document, {iframes: false})).violations.map(
+# Asked for violations alone, axe does half the work: it keeps one node for each rule that is kept.
+RUN = """async () => (await axe.run(document, {iframes: false, resultTypes: ["violations"]})).violations.map(
     (found) => `${found.impact}: ${found.help}: ${found.nodes.map((node) => node.html.slice(0, 120)).join(" ")}`)"""
 
 
@@ -22,7 +23,8 @@ CONTROLS = """() => [...document.querySelectorAll("button, select, summary")]
 
 def findings(page: Page) -> list[str]:
     calm(page)  # what is half transparent while it appears has no contrast
-    page.evaluate(AXE)
+    if not page.evaluate("() => 'axe' in window"):
+        page.evaluate(AXE)
     return page.evaluate(RUN)
 
 
@@ -63,26 +65,31 @@ def test_axe_finds_nothing_in_the_documents(program, browser):
         page.wait_for_selector("#answer:has-text('accepted')")
 
 
-@pytest.mark.parametrize("width", [360, 390, 760, 1024, 1440])
-def test_nothing_sticks_out(program, browser, width):
-    with open_page(browser, program.url, width, 740, stage=False) as page:
+@pytest.mark.parametrize("widths", [(360, 390), (760, 1024, 1440)], ids=["phones", "screens"])
+def test_nothing_sticks_out(program, browser, widths):
+    with open_page(browser, program.url, widths[0], 740, stage=False) as page:
         program.command("kidnap")
-        if width > 860:
-            until(page, "() => document.querySelector('#panel-senses canvas').checkVisibility()")  # the panel is filled
-        assert page.evaluate("() => document.documentElement.scrollWidth") <= width
-        sticking_out = """() => [...document.querySelectorAll("button, select, summary, p, section")]
-            .filter((part) => part.checkVisibility() && !part.closest("dialog, details .pop"))
-            .filter((part) => { const box = part.getBoundingClientRect();
-                const below = box.bottom > innerHeight + 1 && !part.closest("[role=tabpanel]");  // which can be scrolled
-                return box.width && (box.right > innerWidth + 1 || box.left < -1 || below); })
-            .map((part) => part.id || part.textContent.slice(0, 40))"""
-        assert page.evaluate(sticking_out) == []
-        if width < 500:
-            small = """() => [...document.querySelectorAll(".pad button, .views button, .transport button, #more")]
-                .filter((part) => part.checkVisibility())
-                .filter((part) => Math.min(part.getBoundingClientRect().height, part.getBoundingClientRect().width) < 43)
-                .map((part) => part.textContent || part.id)"""
-            assert page.evaluate(small) == []
+        for width, _ in at_each(page, [(width, 740) for width in widths]):
+            nothing_sticks_out_at(page, width)
+
+
+def nothing_sticks_out_at(page: Page, width: int) -> None:
+    if width > 860:
+        until(page, "() => document.querySelector('#panel-senses canvas').checkVisibility()")  # the panel is filled
+    assert page.evaluate("() => document.documentElement.scrollWidth") <= width
+    sticking_out = """() => [...document.querySelectorAll("button, select, summary, p, section")]
+        .filter((part) => part.checkVisibility() && !part.closest("dialog, details .pop"))
+        .filter((part) => { const box = part.getBoundingClientRect();
+            const below = box.bottom > innerHeight + 1 && !part.closest("[role=tabpanel]");  // which can be scrolled
+            return box.width && (box.right > innerWidth + 1 || box.left < -1 || below); })
+        .map((part) => part.id || part.textContent.slice(0, 40))"""
+    assert page.evaluate(sticking_out) == []
+    if width < 500:
+        small = """() => [...document.querySelectorAll(".pad button, .views button, .transport button, #more")]
+            .filter((part) => part.checkVisibility())
+            .filter((part) => Math.min(part.getBoundingClientRect().height, part.getBoundingClientRect().width) < 43)
+            .map((part) => part.textContent || part.id)"""
+        assert page.evaluate(small) == []
 
 
 def test_the_keyboard_reaches_every_control(program, browser):

@@ -8,13 +8,13 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.e2e.browser import calm, draw, open_page
+from tests.e2e.browser import at_each, calm, open_page
 from tests.e2e.program import Program
 
-# 683 x 384 is 1366 x 768 enlarged twice.
-SIZES = [(1024, 768), (1280, 720), (1366, 768), (1920, 1080), (683, 384), (820, 1180)]
-TOUCHED = [(390, 844), (820, 1180), (1024, 768), (1366, 1024)]  # phones and tablets
-ON_ITS_SIDE = [(844, 390), (740, 360), (667, 375), (932, 430)]  # a phone; one page, turned and cut to all of these
+# Of a page each, with the panel beside the plates or over them; 683 x 384 is 1366 x 768 enlarged twice.
+SIZES = [[(1024, 768), (1280, 720), (1366, 768), (1920, 1080)], [(683, 384), (820, 1180)]]
+ON_ITS_SIDE = [(844, 390), (740, 360), (667, 375), (932, 430)]  # a phone
+TOUCHED = [[(390, 844), (820, 1180)], [(1024, 768), (1366, 1024)], ON_ITS_SIDE]  # phones and tablets
 # Each of these stands alone; what lies in one of them may not cover its neighbours there either.
 PARTS = """header, footer, .views, .aids, .hints, #panel, #panel-show, #beside, #lesson, #trial, #first, #situation, #film,
     #walk, #kept, #presenter-bar, .pad, .toast"""
@@ -130,8 +130,7 @@ STATES: list[Callable[[Program, Page], None]] = [
 
 
 @pytest.mark.parametrize(
-    ("sizes", "touched"),
-    [*(([size], False) for size in SIZES), *(([size], True) for size in TOUCHED), (ON_ITS_SIDE, True)],
+    ("sizes", "touched"), [*((sizes, False) for sizes in SIZES), *((sizes, True) for sizes in TOUCHED)]
 )
 def test_nothing_is_covered_cut_or_too_small(
     program: Program, browser: Browser, sizes: list[tuple[int, int]], touched: bool
@@ -143,10 +142,7 @@ def test_nothing_is_covered_cut_or_too_small(
         wrong: list[str] = []
         for state in STATES:
             state(program, page)
-            for width, height in sizes:
-                if len(sizes) > 1:
-                    page.set_viewport_size({"width": width, "height": height})
-                    draw(page)
+            for width, height in at_each(page, sizes):
                 calm(page)
                 found = page.evaluate(WRONG, [PARTS, 44 if touched else 24])
                 wrong += [f"{state.__name__}, {width} x {height}: {each}" for each in found]

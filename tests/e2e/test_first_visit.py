@@ -64,6 +64,8 @@ def test_a_newcomer_sends_it_and_sees_a_kidnap_through(fresh, browser) -> None:
         page.keyboard.press("?")
         page.click("#help-first")
         expect(card).to_be_visible()
+    fresh.command("pause")  # or it would go on as fast as it can beside all that follows
+    fresh.command("set_speed", factor=1)
 
 
 def test_a_place_is_chosen_from_a_list_by_keyboard_and_told_aloud(fresh, browser) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.browser import box_of, on_screen, open_page, until
+from tests.e2e.browser import at_each, box_of, on_screen, open_page, until
 from tests.e2e.fake_engine import FakeEngine, fake_program
 from tests.fake_snapshots import SNAP_EVERY, fake_snapshot
 from web.panel.panel import TABS
@@ -133,18 +133,19 @@ def test_in_a_narrow_window_the_panel_comes_only_when_called(fake, browser, size
             until(page, beside)
 
 
-@pytest.mark.parametrize("size", [(1280, 800), (390, 844), (360, 740)])
-def test_all_tabs_of_the_panel_stand_on_one_row_in_full(fake, browser, size) -> None:
-    with open_page(browser, fake[1], *size, stage=False) as page:
-        if size[0] < 500:
+@pytest.mark.parametrize("sizes", [[(1280, 800)], [(390, 844), (360, 740)]], ids=["screen", "phones"])
+def test_all_tabs_of_the_panel_stand_on_one_row_in_full(fake, browser, sizes) -> None:
+    with open_page(browser, fake[1], *sizes[0], stage=False) as page:
+        if sizes[0][0] < 500:
             page.click("#panels")
         tabs = page.get_by_role("tab")
         expect(tabs).to_have_count(len(TABS))
-        boxes = tabs.evaluate_all("""tabs => tabs.map((tab) => {
-            const box = tab.getBoundingClientRect();
-            return [box.top, box.left, box.right, tab.scrollWidth > tab.clientWidth]; })""")
-        assert len({top for top, *_ in boxes}) == 1
-        assert all(0 <= left < right <= size[0] and not cut for _, left, right, cut in boxes)
+        for size in at_each(page, sizes):
+            boxes = tabs.evaluate_all("""tabs => tabs.map((tab) => {
+                const box = tab.getBoundingClientRect();
+                return [box.top, box.left, box.right, tab.scrollWidth > tab.clientWidth]; })""")
+            assert len({top for top, *_ in boxes}) == 1, size
+            assert all(0 <= left < right <= size[0] and not cut for _, left, right, cut in boxes), size
 
 
 def test_the_hints_go_where_the_pose_cells_need_their_place(fake, browser) -> None:

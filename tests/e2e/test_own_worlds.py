@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Page
 
 from sim2d import load_world, world_from_json, world_to_json
-from tests.e2e.browser import box_of, calm, open_page, turn_theme, until
+from tests.e2e.browser import at_each, box_of, calm, open_page, turn_theme, until
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
 from tests.e2e.test_world_editor import edit, walls_are, world
@@ -180,16 +180,16 @@ def test_axe_finds_nothing_and_it_fits(program, browser, size):
             turn_theme(page)
 
 
-@pytest.mark.parametrize("size", [(1024, 768), (1280, 800)])
-def test_the_editor_s_bar_is_one_row_saved_or_not(program, browser, size) -> None:
-    with open_page(browser, program.url, *size, stage=False) as page:
+def test_the_editor_s_bar_is_one_row_saved_or_not(program, browser) -> None:
+    with open_page(browser, program.url, 1024, 768, stage=False) as page:
         page.click("#edit")
         page.wait_for_selector("#editor .bar")
-        places = []
-        for unsaved in ("false", "true"):
-            page.evaluate(f"() => {{ document.getElementById('edit-unsaved').hidden = !{unsaved}; }}")
-            places.append([box_of(page.locator(part)) for part in ("#edit-undo", "#edit-close", "#editor .bar")])
-        for undo, close, bar in places:
-            assert undo["y"] < close["y"] + close["height"] / 2 < undo["y"] + undo["height"]
-            assert close["x"] + close["width"] <= bar["x"] + bar["width"]
-        assert places[0][2] == places[1][2]
+        for size in at_each(page, [(1024, 768), (1280, 800)]):
+            places = []
+            for unsaved in ("false", "true"):
+                page.evaluate(f"() => {{ document.getElementById('edit-unsaved').hidden = !{unsaved}; }}")
+                places.append([box_of(page.locator(part)) for part in ("#edit-undo", "#edit-close", "#editor .bar")])
+            for undo, close, bar in places:
+                assert undo["y"] < close["y"] + close["height"] / 2 < undo["y"] + undo["height"], size
+                assert close["x"] + close["width"] <= bar["x"] + bar["width"], size
+            assert places[0][2] == places[1][2], size

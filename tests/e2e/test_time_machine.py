@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.browser import box_of, open_page, told, until
+from tests.e2e.browser import at_each, box_of, open_page, told, until
 from tests.e2e.program import Program
 
 # Every visible part of the footer: its box against all others and against the window.
@@ -109,16 +109,18 @@ def test_go_on_without_the_kidnap_and_compare(driven: Program, browser) -> None:
         driven.wait(lambda state: state["tick"] == 600)
 
 
-@pytest.mark.parametrize("size", [(1024, 768), (1280, 800), (1920, 1080), (390, 844)])
-def test_nothing_is_covered_in_the_present_and_in_the_past(driven: Program, browser, size) -> None:
-    with open_page(browser, driven.url, *size, stage=False) as page:
-        assert page.evaluate(WRONG) == []
+@pytest.mark.parametrize("sizes", [[(1024, 768), (1280, 800), (1920, 1080)], [(390, 844)]], ids=["screens", "phone"])
+def test_nothing_is_covered_in_the_present_and_in_the_past(driven: Program, browser, sizes) -> None:
+    with open_page(browser, driven.url, *sizes[0], stage=False) as page:
+        for size in at_each(page, sizes):
+            assert page.evaluate(WRONG) == [], size
         driven.command("seek", time_s=12.0)
         expect(page.locator("#now")).to_be_visible()
-        assert page.evaluate(WRONG) == []
-        for part in ("#go-on", "#now"):
-            box = box_of(page.locator(part))
-            assert box["x"] >= 0
-            assert box["x"] + box["width"] <= size[0]
+        for size in at_each(page, sizes):
+            assert page.evaluate(WRONG) == [], size
+            for part in ("#go-on", "#now"):
+                box = box_of(page.locator(part))
+                assert box["x"] >= 0
+                assert box["x"] + box["width"] <= size[0], size
         page.click("#now")
         expect(page.locator("#now")).to_be_hidden()

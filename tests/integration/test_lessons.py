@@ -1,4 +1,4 @@
-"""Every lesson of the catalogue keeps what it promises, on its own seed."""
+"""Every lesson of the catalogue keeps what it promises, on its own seed, and comes out as docs/teaching.md tells teachers."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from app.lessons.schema import Lesson
 from ratslam_core.params.additions import ADDITIONS
 from sim2d import load_world
 from tests.unit.app.engines import an_engine, tell
+from tests.unit.test_teaching import comes_out_as_it_stands_there
 
 MOST_TICKS = 2600  # of a scene: what a quiet machine does in less than two seconds
 LESSONS = list(catalogue())
@@ -26,6 +27,7 @@ def test_it_keeps_what_it_promises(lesson: Lesson) -> None:
     check_formulas(lesson)
     report = report_of(lesson)
     assert report.kept, "\n".join(report.lines)
+    comes_out_as_it_stands_there(lesson, report.lines)
     most = MOST_TICKS if lesson.scene.compare is None else MOST_TICKS // 2  # two brains take twice as long
     for performance in report.performances:
         assert performance.scene_ticks <= most, f"{performance.label}: the scene takes {performance.scene_ticks} ticks"

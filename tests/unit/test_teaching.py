@@ -103,10 +103,8 @@ def test_the_kidnaps_take_on_other_seeds_what_lesson_and_answers_say() -> None:
     assert f"{', '.join(f'{time:.0f}' for time in took[:4])} and {took[4]:.0f} s" in LESSONS["kidnapped"].because
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("lesson", LESSONS.values(), ids=LESSONS)
-def test_it_comes_out_as_it_stands_there(lesson: Lesson) -> None:
-    lines = report_of(lesson).lines
+def comes_out_as_it_stands_there(lesson: Lesson, lines: tuple[str, ...]) -> None:
+    """Checked where every lesson is given, in tests/integration/test_lessons.py."""
     assert OUTCOMES[lesson.name] == f"{lesson.scene.seed} | {lines[1]}"
     for _, name, words in TAUGHT:
         if name == lesson.name and (said := re.search(r'comes\s+out\s+as\s+"([^"]+)"', words)):

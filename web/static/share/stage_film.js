@@ -36,15 +36,16 @@ export class StageFilm {
     return largest?.width ? largest : null;
   }
 
-  // What is drawn can be read only until the frame is shown, and viser draws in one of the browser's animation frames. Whoever asks
-  // for the next frame while one is drawn comes after viser in it.
+  // What is drawn can be read only until the frame is shown.
   async picture() {
     const [canvas, inside] = [this.canvas, $("stage").contentWindow];
     if (!canvas || !inside) return toast("The stage is not awake yet.", { bad: true });
     const copy = make("canvas", { width: canvas.width, height: canvas.height });
     const pen = copy.getContext("2d", { willReadFrequently: true });
     for (let look = 0; look < LOOKS && pen; look++) {
-      await new Promise((resolve) => inside.requestAnimationFrame(() => resolve(pen.drawImage(canvas, 0, 0))));
+      await new Promise((resolve) =>
+        inside.addEventListener("drawn", () => resolve(pen.drawImage(canvas, 0, 0)), { once: true }),
+      );
       if (pen.getImageData(copy.width >> 1, copy.height >> 1, 1, 1).data[3] > 0) return saveCanvas(copy, "stage");
     }
     return toast("The stage has drawn nothing that could be kept; try again.", { bad: true });

@@ -3,7 +3,8 @@
 import { $ } from "../elements/dom.js";
 import { freeFingers } from "./fingers.js";
 import { takePinches } from "./pinch.js";
-import { spareSoftware } from "./software.js";
+import { restBetweenFrames } from "./resting.js";
+import { fewerPixels, spareSoftware } from "./software.js";
 import { fadeDrawing, firstFrame } from "./waking.js";
 
 export const phone = window.matchMedia("(max-width: 760px), (pointer: coarse) and (max-height: 500px)");
@@ -24,7 +25,7 @@ export class Viewer extends EventTarget {
       button.addEventListener("click", () => this.show(/** @type {ViewName} */ (button.dataset.view)));
     this.mark();
     this.frame.addEventListener("load", () => this.loaded());
-    this.frame.src = `/viser/?websocket=ws://${location.host}/viser/ws/${link.page}&hideViserLogo`;
+    this.frame.src = `/viser/?websocket=ws://${location.host}/viser/ws/${link.page}&hideViserLogo${fewerPixels()}`;
     link.on("hello", (/** @type {{ launch: number | string }} */ detail) => this.hello(detail));
   }
 
@@ -55,8 +56,10 @@ export class Viewer extends EventTarget {
     if (!paper || !inside || inside.location.href === "about:blank") return;
     // viser reconnects only while its own frame has the focus, but people look at the page as a whole.
     paper.hasFocus = () => !document.hidden;
-    restBeneathTheEditor(inside);
-    spareSoftware(inside);
+    firstFrame(inside).then(() => this.wake(paper)); // it looks at every frame, before the loop of them may rest
+    const editor = $("editor");
+    const wake = restBetweenFrames(inside, () => !editor.hidden, spareSoftware(inside));
+    new MutationObserver(wake).observe(editor, { attributeFilter: ["hidden"] });
     takePinches(inside);
     freeFingers(inside);
     this.keys.listen(inside);
@@ -73,7 +76,6 @@ export class Viewer extends EventTarget {
     const style = paper.createElement("style"); // viser has a panel even when nothing is in it
     style.textContent = HIDE_PANEL;
     paper.head.append(style);
-    firstFrame(inside).then(() => this.wake(paper));
   }
 
   /** @param {Document} paper */
@@ -91,26 +93,6 @@ export class Viewer extends EventTarget {
 
 const HIDE_PANEL =
   ".mantine-Paper-root[style*='fixed'], [data-dock-root] > div:not(:has(> canvas)) { display: none !important; }";
-
-/** @param {Window & typeof globalThis} inside */
-// The editor covers the plates. Without a graphics card one frame of viser takes a second, which the editor needs. Its endless
-// loop of frames, recognised by being requested again and again, then runs once in two seconds. All else in it goes on as before.
-function restBeneathTheEditor(inside) {
-  const [editor, asked, held] = [$("editor"), new WeakMap(), new Map()];
-  const [next, drop] = [inside.requestAnimationFrame.bind(inside), inside.cancelAnimationFrame.bind(inside)];
-  inside.requestAnimationFrame = (step) => {
-    asked.set(step, (asked.get(step) ?? 0) + 1);
-    if (editor.hidden || asked.get(step) < 20) return next(step);
-    const id = -inside.setTimeout(() => held.delete(id) && next(step), 2000);
-    held.set(id, step);
-    return id;
-  };
-  inside.cancelAnimationFrame = (id) => (held.delete(id) ? inside.clearTimeout(-id) : drop(id));
-  new MutationObserver(() => {
-    for (const step of editor.hidden ? held.values() : []) next(step);
-    if (editor.hidden) held.clear();
-  }).observe(editor, { attributeFilter: ["hidden"] });
-}
 
 /** @param {Document} paper */
 // viser covers our view buttons for good with a message that there is no graphics card; a short sentence is enough.

@@ -17,6 +17,7 @@ export function firstFrame(inside) {
   /** @type {any} some of its functions are replaced for a while */
   const kind = inside.WebGL2RenderingContext.prototype;
   const before = DRAWS.map((name) => kind[name]);
+  const next = inside.requestAnimationFrame.bind(inside);
   return new Promise((resolve) => {
     let calls = 0;
     for (const [k, name] of DRAWS.entries())
@@ -34,10 +35,10 @@ export function firstFrame(inside) {
       if (calls >= WHOLE) done();
       else {
         calls = 0;
-        inside.requestAnimationFrame(look);
+        next(look);
       }
     };
-    inside.requestAnimationFrame(look);
+    next(look);
   });
 }
 
