@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from app.time_machine.shelf import Place, Shelf
 from disk import State
 
-CHUNK = 8192  # bytes
+CHUNK = 32768  # bytes
 LARGE = 1 << 20  # arrays from this size on are cut by their content ...
-CUT_BITS, CUT = 11, 77  # ... after a word whose hash has these first bits, ...
-LEAST, MOST = 1024, 32768  # ... in chunks of about these sizes, bytes
+CUT_BITS, CUT = 13, 77  # ... after a word whose hash has these first bits, ...
+LEAST, MOST = 4096, 131072  # ... in chunks of about these sizes, bytes
 ENTRY, LINK = 160, 8  # bytes that a chunk takes besides its content, and where an array names it
 SHELVED = 256  # bytes; a smaller content stays in memory, where its entry takes as much
 WORTH = 0.7  # a difference is kept where it takes less than this share of the whole
