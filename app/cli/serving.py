@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from app.time_machine import PastRoom
     from web.http.server import Dashboard, ForClass
 
-PAST_MB, PAST_DISK_MB = 200.0, 1000.0
+PAST_MB, PAST_DISK_MB = 200.0, 2000.0
 ENGINE_PATIENCE_S = 2.0  # how long leaving waits for a tick that hangs
 
 
