@@ -15,6 +15,7 @@ VIEWS: tuple[View, ...] = get_args(View)
 NEAR, FAR = 1.0, 300.0
 FLIGHT_S = 0.7
 PHONE_ASPECT = 0.85  # width over height below which a screen counts as a phone's
+LOW_ASPECT = 2.2  # and above which it is low: a phone on its side
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +63,9 @@ _LOOKS: dict[View, _Look] = {
 }
 _STEP_DEG = 2.0
 _TALL_ROOM = (0.2, _BESIDE)  # in a tall window: there are two rows of buttons
+_LOW_ROOM = (0.2, _BESIDE)  # in a low one the row of buttons takes a fifth
 _ROOM = (0.09, 0.125)  # with two brains: above for the buttons, below for the figures
+_LOW_ROOM_OF_TWO = (0.2, 0.24)
 
 
 @lru_cache(maxsize=256)
@@ -73,13 +76,13 @@ def camera_for(view: View, aspect: float, office: bool = True, two: bool = False
     The plates are as large as the window allows: of the elevations in question, it takes the one with the nearest camera."""
     tall, look = aspect < PHONE_ASPECT, _LOOKS[view if office or view != "office" else "all"]
     low, high = look.tall_deg if tall else look.wide_deg
-    room = _ROOM if two else _TALL_ROOM if tall else look.free
+    rooms = (_LOW_ROOM, _LOW_ROOM_OF_TWO) if aspect > LOW_ASPECT else (_TALL_ROOM if tall else look.free, _ROOM)
     points, azimuth_deg = (
         _seen_of_two(view, office) if two else _seen(view, office),
         0 if two else look.azimuth_deg[tall],
     )
     found = [
-        _fitted(points, elevation, azimuth_deg, look.fov_deg, max(aspect, 0.1), room)
+        _fitted(points, elevation, azimuth_deg, look.fov_deg, max(aspect, 0.1), rooms[two])
         for elevation in np.arange(low, high + 1e-9, _STEP_DEG).tolist()
     ]
     return min(found, key=lambda camera: float(np.linalg.norm(camera.position - camera.look_at)))
