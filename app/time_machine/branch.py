@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from app.order_book import Order
 from app.session import Session
-from app.time_machine.chunks import KeptState
+from app.time_machine.kept_state import KeptState
 from app.views.history import History
 from sim2d import World
 from web.messages import Snap
