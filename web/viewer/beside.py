@@ -54,6 +54,11 @@ class Beside:
         offer["other"].offer(now_s, view.other)
         offer["goal"].offer(now_s, view.goal)
 
+    def hurry(self) -> None:
+        """Whatever is offered next is due."""
+        for layer in self._layers.values():
+            layer.hurry()
+
     @property
     def two(self) -> bool:
         return self._stands[1]

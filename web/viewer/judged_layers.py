@@ -52,6 +52,11 @@ class JudgedLayers:
         offer["error"].offer(now_s, snapshot.estimate, shown.truth, frame)
         offer["spread"].offer(now_s, snapshot.estimate, shown.spread)
 
+    def hurry(self) -> None:
+        """Whatever is offered next is due."""
+        for layer in self._layers.values():
+            layer.hurry()
+
     def forget(self) -> None:
         """The map has moved on its plate, or the office is another one."""
         for layer in self._layers.values():

@@ -75,6 +75,8 @@ class Layers:
         """Whatever is offered next is due."""
         for layer in self._layers.values():
             layer.hurry()
+        self._judged.hurry()
+        self._beside.hurry()
 
     def forget(self, *layers: str) -> None:
         """What is offered to these layers next is new to them."""

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
 from tests.unit.web.crowded import FRAME, judged
-from web.messages import Pose
+from web.messages import Pose, Snapshot, TimeView
 from web.viewer.fits.map_fit import DEPTH, WIDTH
 from web.viewer.fits.poses import compose, into_map, placed
 from web.viewer.marks.outline import clipped
@@ -123,3 +123,19 @@ def test_what_is_cut_off_is_what_lies_beside_the_floor(walls: list[tuple[float, 
         apart = np.hypot(*(pieces[:, :2] + t[:, None] * along - point).T)
         if np.hypot(*(whole[:, 2:] - whole[:, :2]).T).min() > 1e-9:
             assert apart.min(initial=np.inf) < 1e-6
+
+
+def test_a_moment_that_was_sought_is_drawn_at_once(bench: Bench) -> None:
+    """Whatever was drawn a moment ago: nothing waits for its turn, but for the occupancy, which is drawn beside the rest."""
+    past = TimeView(past=True, end_tick=600, end_s=60.0, begin_s=0.0, branch=1, branches=(), loop=None)
+
+    def sought(tick: int, off_m: float) -> Snapshot:
+        return judged(tick, off_m, running=False, time=past)
+
+    bench.show(sought(420, 0.0))
+    bench.settle()
+    bench.show(sought(380, 0.5), 0.05)
+    now = bench.show(sought(300, 1.0), 0.05)
+    assert any("ghost_path" in name for name in now)
+    later = bench.show(None, 3.0)
+    assert not [name for name in later if "occupancy" not in name]
