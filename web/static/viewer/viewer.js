@@ -58,7 +58,12 @@ export class Viewer extends EventTarget {
     paper.hasFocus = () => !document.hidden;
     firstFrame(inside).then(() => this.wake(paper)); // it looks at every frame, before the loop of them may rest
     const editor = $("editor");
-    const wake = restBetweenFrames(inside, () => !editor.hidden, spareSoftware(inside));
+    spareSoftware(inside);
+    const wake = restBetweenFrames(
+      inside,
+      () => !editor.hidden,
+      () => null,
+    ); // rests in software: once a pinch was not drawn to its end
     new MutationObserver(wake).observe(editor, { attributeFilter: ["hidden"] });
     takePinches(inside);
     freeFingers(inside);
