@@ -100,8 +100,10 @@ class Cameras:
                 self._views[client.client_id] = wanted
                 end = turned or self._framed(wanted, camera)
                 self._ends[client.client_id] = end
-                start = end if now_s is None else _standing(camera)
-                self._flights[client.client_id] = Flight(start, end, -math.inf if now_s is None else now_s)
+                start = _standing(camera)
+                # Who is there already may turn it at once: a flight on the spot would hold it.
+                jumps = now_s is None or _near(start, end.position, end.look_at)
+                self._flights[client.client_id] = Flight(end, end, -math.inf) if jumps else Flight(start, end, now_s)
 
     def _framed(self, view: View, camera: viser.CameraHandle) -> Camera:
         return camera_for(view, aspect_of(camera), self._office, self._two)
