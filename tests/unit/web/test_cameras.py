@@ -93,3 +93,17 @@ def test_cameras_are_framed_flown_and_framed_anew() -> None:
     assert not cameras.flying
     cameras.reframe(9)
     assert isinstance(camera_for("all", 1.0), Camera)
+
+
+def test_a_camera_that_is_there_already_is_not_held() -> None:
+    """A flight on the spot would be felt: whoever turns the camera meanwhile is set back."""
+    screen = browser(1, 1.5)
+    cameras = Cameras(FakeServer(clients={1: screen}, initial_camera=SimpleNamespace()), lambda _: None)  # type: ignore[arg-type]
+    cameras.welcome(screen)
+    cameras.fly_on(0.0)
+    cameras.take_off(1, "all", 10.0)
+    cameras.fly_on(10.0)
+    assert not cameras.flying
+    screen.camera.position = by_hand = screen.camera.position + 1.0
+    cameras.fly_on(10.1)
+    assert np.allclose(screen.camera.position, by_hand)

@@ -58,12 +58,7 @@ export class Viewer extends EventTarget {
     paper.hasFocus = () => !document.hidden;
     firstFrame(inside).then(() => this.wake(paper)); // it looks at every frame, before the loop of them may rest
     const editor = $("editor");
-    spareSoftware(inside);
-    const wake = restBetweenFrames(
-      inside,
-      () => !editor.hidden,
-      () => null,
-    ); // rests in software: once a pinch was not drawn to its end
+    const wake = restBetweenFrames(inside, () => !editor.hidden, spareSoftware(inside));
     new MutationObserver(wake).observe(editor, { attributeFilter: ["hidden"] });
     takePinches(inside);
     freeFingers(inside);
