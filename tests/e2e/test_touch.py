@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Page
 
 from sim2d import load_world
-from tests.e2e.browser import box_of, camera_of, draw, on_screen, open_page, show, until
+from tests.e2e.browser import box_of, camera_of, on_screen, open_page, show, until
 from tests.e2e.program import Program
 from tests.e2e.test_dashboard import robot_on_stage
 from tests.patience import PATIENCE_S
@@ -45,7 +45,6 @@ def drag(page: Page, *fingers: tuple[tuple[float, float], tuple[float, float]]) 
         glass.send("Input.dispatchTouchEvent", {"type": "touchMove" if k else "touchStart", "touchPoints": points})
         page.wait_for_timeout(80)
     page.wait_for_timeout(500)
-    draw(page)  # who looks lifts the fingers when the picture has followed them
     glass.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
 

@@ -101,9 +101,11 @@ class Cameras:
                 end = turned or self._framed(wanted, camera)
                 self._ends[client.client_id] = end
                 start = _standing(camera)
-                # Who is there already may turn it at once: a flight on the spot would hold it.
-                jumps = now_s is None or _near(start, end.position, end.look_at)
-                self._flights[client.client_id] = Flight(end, end, -math.inf) if jumps else Flight(start, end, now_s)
+                if now_s is None or _near(start, end.position, end.look_at):
+                    flight = Flight(end, end, -math.inf)  # one on the spot would hold it against who turns it
+                else:
+                    flight = Flight(start, end, now_s)
+                self._flights[client.client_id] = flight
 
     def _framed(self, view: View, camera: viser.CameraHandle) -> Camera:
         return camera_for(view, aspect_of(camera), self._office, self._two)

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Gesture, pinched } from "../../../web/static/model/pinch.js";
+import { pinched } from "../../../web/static/model/pinch.js";
 
 const CAMERA = { distance: 12, unit: 0.004 };
 
@@ -43,27 +43,4 @@ test("many small steps come to the same as a large one", () => {
 
 test("fingers on one another move nothing", () => {
   assert.equal(pinched(pair(5, 5, 5, 5), pair(5, 5, 5, 5), CAMERA).distance, CAMERA.distance);
-});
-
-test("where a finger is lifted counts, also just after the other", () => {
-  const gesture = new Gesture();
-  gesture.down(7, [0, 0]);
-  assert.equal(gesture.move(7, [1, 0]), null);
-  gesture.down(8, [50, 0]);
-  assert.deepEqual(gesture.move(8, [100, 0]), [pair(1, 0, 50, 0), pair(1, 0, 100, 0)]);
-  assert.deepEqual(gesture.up(7, [1, 0]), [pair(1, 0, 100, 0), pair(1, 0, 100, 0)]);
-  assert.deepEqual(gesture.up(8, [200, 0]), [pair(1, 0, 100, 0), pair(1, 0, 200, 0)]);
-  assert.equal(gesture.fingers, 0);
-  assert.equal(gesture.has(8), false);
-});
-
-test("a finger that stays pinches no more until another comes", () => {
-  const gesture = new Gesture();
-  gesture.down(1, [0, 0]);
-  gesture.down(2, [10, 0]);
-  gesture.up(1, null);
-  assert.equal(gesture.move(2, [90, 0]), null);
-  assert.equal(gesture.fingers, 1);
-  gesture.down(3, [0, 0]);
-  assert.deepEqual(gesture.move(3, [40, 0]), [pair(90, 0, 0, 0), pair(90, 0, 40, 0)]);
 });

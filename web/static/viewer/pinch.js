@@ -2,11 +2,12 @@
 // a resting thumb for a click, and a thumb on the robot for a drag. So the second finger ends what the first one began, and the
 // camera is set here, until the last finger is lifted.
 
-import { Gesture, pinched } from "../model/pinch.js";
+import { pinched } from "../model/pinch.js";
 
 /** @param {Window & typeof globalThis} inside */
 export function takePinches(inside) {
-  const gesture = new Gesture();
+  /** @type {Map<number, import("../model/pinch.js").Point>} */
+  const fingers = new Map();
   let canvas = inside.document.documentElement; // on which the first finger is
   let pinching = false;
 
@@ -18,29 +19,29 @@ export function takePinches(inside) {
     const target = /** @type {HTMLElement} */ (event.target);
     if (event.pointerType !== "touch" || target.tagName !== "CANVAS") return;
     canvas = target;
-    gesture.down(event.pointerId, place(event));
-    if (!pinching && gesture.fingers === 2 && cameraOf(inside)) {
+    fingers.set(event.pointerId, place(event));
+    if (!pinching && fingers.size === 2 && cameraOf(inside)) {
       pinching = true;
-      const [pointerId] = gesture.places.keys();
+      const [pointerId] = fingers.keys();
       target.dispatchEvent(
         new inside.PointerEvent("pointercancel", { pointerId, pointerType: "touch", bubbles: true }),
       );
     }
     if (pinching) event.stopImmediatePropagation();
   };
-  const follow = (/** @type {ReturnType<Gesture["move"]>} */ moved) => {
-    if (pinching && moved) move(cameraOf(inside), canvas.clientHeight, ...moved);
-  };
   const moved = (/** @type {PointerEvent} */ event) => {
-    if (!gesture.has(event.pointerId)) return;
-    follow(gesture.move(event.pointerId, place(event)));
+    if (!fingers.has(event.pointerId)) return;
+    const [a, b] = fingers.values();
+    fingers.set(event.pointerId, place(event));
+    const [c, d] = fingers.values();
+    if (pinching && fingers.size === 2) move(cameraOf(inside), canvas.clientHeight, [a, b], [c, d]);
     if (pinching) event.stopImmediatePropagation();
   };
   // viser's camera has to hear that the first finger is up; to all others it was ended before.
   const up = (/** @type {PointerEvent} */ event) => {
-    if (!event.isTrusted || !gesture.has(event.pointerId)) return;
-    follow(gesture.up(event.pointerId, event.type === "pointerup" ? place(event) : null));
-    if (gesture.fingers === 0) pinching = false;
+    if (!event.isTrusted || !fingers.has(event.pointerId)) return;
+    fingers.delete(event.pointerId);
+    if (fingers.size === 0) pinching = false;
   };
 
   inside.addEventListener("pointerdown", down, true);
