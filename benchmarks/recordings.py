@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.evaluation.alignment import rmse
+from app.evaluation.alignment import align, rmse
 from app.recordings.made_odometry import OdometryErrors, WithMadeOdometry
 from app.recordings.opening import open_recording
 from app.recordings.playing import Player
@@ -149,10 +149,7 @@ def of_known(log: Log, path: NDArray[np.float64], file: Path) -> float:
 
 def of_truth(path: NDArray[np.float64], truth: NDArray[np.float64]) -> float:
     """Mean distance (m) from the truth, once both lie on one another as well as they can."""
-    a, b = path[:, :2] - path[:, :2].mean(axis=0), truth[:, :2] - truth[:, :2].mean(axis=0)
-    u, _, v = np.linalg.svd(a.T @ b)
-    turn = u @ np.diag([1.0, np.sign(np.linalg.det(u @ v))]) @ v
-    return float(np.hypot(*(a @ turn - b).T).mean())
+    return float(np.hypot(*(align(path[:, :2], truth[:, :2]) - truth[:, :2]).T).mean())
 
 
 def variants(args: argparse.Namespace, held_out: bool) -> None:
