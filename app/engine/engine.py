@@ -131,6 +131,8 @@ class Engine(OtherRuns):
         if run.session.recording is None:
             self.editor.follow(run.session.simulator.world)
         snapshots = self.shown.snapshots
+        if not (self.running or self.steps or self.runs_ahead):
+            snapshots.settle()
         snapshots.office = None if run.session.recording is not None else self.editor.edition
         snapshots.trial = None if run.trial is None else run.trial.view()
         snapshots.situation = None if run.ahead is None else run.ahead.view()

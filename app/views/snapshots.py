@@ -69,6 +69,7 @@ class Snapshots:
         self._drawn, self._actors, self._parameters = DrawnWorld(), ActorsView(), ParameterRows()
         self._floor = TruthFloor()
         self._fitted: tuple[Pose2 | None, Pose | None] = None, None
+        self._settled_at: int | None = None
         self._map = MapLayers(
             lambda: session.brain.experience_map, lambda: session.evaluation, lambda: session.pilot.goals
         )
@@ -94,6 +95,14 @@ class Snapshots:
         """Rebuild everything for the next snapshot, since a command has changed something."""
         for part in (self._map, self._beside, self._goal_memory, self._inspection):
             part.refresh()
+
+    def settle(self) -> None:
+        """The session stands still: what shows an earlier tick is rebuilt, since no later snapshot would."""
+        if self._settled_at != self._session.tick_count:
+            self._settled_at = self._session.tick_count
+            self.refresh()
+            self._occupancy.refresh()
+            self._places.refresh()
 
     def build(self, *, running: bool, speed: float, real_time_factor: float, fault: str | None) -> Snapshot:
         session, history = self._session, self._history

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from app.session import Session
-from app.views import throttle
+from app.views import snapshots, throttle
 from app.views.history import History
+from app.views.places import known_places
 from app.views.snapshots import Snapshots
 from app.views.throttle import Slow
 from sim2d import load_world
+from tests.unit.app.engines import an_engine, tell
 from web import messages as m
 
 OFFICE = load_world("office")
@@ -126,3 +128,26 @@ def test_a_hypothesis_of_the_robot_is_shown_where_it_is(session: Session) -> Non
         assert other is not None
         assert (other.x, other.y, other.heading_rad) == pytest.approx((robot.x, robot.y, robot.heading_rad))
     map_.gate.doubt()
+
+
+def test_what_stands_still_is_shown_as_it_is(monkeypatch) -> None:
+    """The slow parts, too: while it is paused no later snapshot would catch up."""
+    for slow in ("OCCUPANCY_EVERY_S", "PLACES_EVERY_S"):
+        monkeypatch.setattr(snapshots, slow, math.inf)
+    engine = an_engine(OFFICE, seed=5)
+    first = engine.snapshot()
+    engine.running = True
+    for _ in range(1700):  # it has been in the library by then
+        engine.tick()
+    late = engine.snapshot()
+    session = engine.run.session
+    tell(engine, type="pause")
+    still = engine.snapshot()
+    assert (late.places, late.occupancy) == (first.places, first.occupancy)
+    assert still.places == known_places(session) != first.places
+    assert len(still.map.ids) == len(session.brain.experience_map)
+    assert still.occupancy is not None
+    assert session.brain.occupancy is not None
+    np.testing.assert_array_equal(still.occupancy.cells, session.brain.occupancy.probability)
+    again = engine.snapshot()
+    assert (again.places, again.map, again.occupancy) == (still.places, still.map, still.occupancy)
