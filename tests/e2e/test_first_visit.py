@@ -8,7 +8,7 @@ from playwright.sync_api import Page, expect
 
 from tests.e2e.browser import on_screen, open_page, show, until
 from tests.e2e.program import Program
-from web.viewer.fits.map_fit import MapFit, refit
+from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.plates.map_plate import NODE_Z, ORIGIN
 
 MOST_WORDS = 60
@@ -48,6 +48,8 @@ def test_a_newcomer_sends_it_and_sees_a_kidnap_through(fresh, browser) -> None:
         fresh.command("pause")  # nothing moves while the person aims
         was = fresh.state()["robot"]
         show(page, "map")
+        corner = ORIGIN[0] - 0.42 * WIDTH, ORIGIN[1] + 0.42 * DEPTH, NODE_Z  # of the map, beneath where the card was
+        assert page.evaluate("(at) => document.elementFromPoint(...at).id", on_screen(page, "map", corner)) == "stage"
         page.mouse.click(*on_screen(page, "map", far_node(fresh)))
         until(page, "() => !document.getElementById('goal').hidden")
         page.select_option("#speed", "0")
