@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
 from web.messages import KnownPlace, SetGoal, Snapshot
-from web.viewer.camera_views import LOW_ASPECT, CELLS_AT, MAP_AT, OFFICE_AT, VIEWS, camera_for
+from web.viewer.camera_views import CELLS_AT, LOW_ASPECT, MAP_AT, OFFICE_AT, VIEWS, camera_for
 from web.viewer.marks.place_names import HEIGHT, REACH, Z
 from web.viewer.marks.robot_model import SMALLEST
 from web.viewer.plates import map_plate, office_plate, pose_cell_plate
@@ -119,4 +119,6 @@ def test_the_plates_fill_the_window_and_stay_in_it(view: str, aspect: float) -> 
     assert np.abs(x).max() < 1
     assert np.abs(y).max() < 1
     filled = max(x.max() - x.min(), y.max() - y.min() if view in ("office", "map") else 2 * abs(y.min()))
-    assert filled > (1.5 if aspect > LOW_ASPECT else 1.65)  # of 2; the rest is for buttons above and for what is said below
+    assert filled > (
+        1.5 if aspect > LOW_ASPECT else 1.65
+    )  # of 2; the rest is for buttons above and for what is said below
