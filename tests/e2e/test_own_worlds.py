@@ -11,9 +11,9 @@ from playwright.sync_api import Page
 
 from sim2d import load_world, world_from_json, world_to_json
 from tests.e2e.browser import at_each, box_of, calm, open_page, turn_theme, until
+from tests.e2e.editor import edit, walls_are, world
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
-from tests.e2e.test_world_editor import edit, walls_are, world
 
 
 @pytest.fixture(scope="module")

@@ -11,8 +11,8 @@ from playwright.sync_api import Page, expect
 
 from sim2d import load_world
 from tests.e2e.browser import box_of, open_page, told, until
+from tests.e2e.editor import drop
 from tests.e2e.program import Program
-from tests.e2e.test_world_editor import drop
 
 FRAMES = 60
 

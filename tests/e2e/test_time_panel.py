@@ -10,9 +10,9 @@ import pytest
 from playwright.sync_api import Locator, Page
 
 from tests.e2e.browser import at_each, box_of, calm, open_page, turn_theme, until
+from tests.e2e.editor import edit, says, world
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
-from tests.e2e.test_world_editor import edit, says, world
 
 DOOR = {"name": "lab", "hinge": [8.0, 1.0], "angle_deg": 0, "width": 1.0}
 LAMP = {"name": "desk lamp", "x": 5.0, "y": 5.0}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import re
-import socket
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -18,10 +17,9 @@ from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.doubles import ORIGIN as MAIN_ORIGIN
 from tests.unit.web.doubles import PAGE, PORT, StubEngine, StubViewer, StubViewers, viser_double
 from tests.unit.web.test_watching import WATCHER, said
-from web.http import class_door, listening
+from web.http import class_door
 from web.http.api import create_app
 from web.http.class_door import MOST_WATCHERS, RATE_HZ, ClassDoor, Classroom
-from web.http.listening import CannotListen, class_socket
 from web.latest import Latest
 from web.messages import Vote
 
@@ -262,67 +260,3 @@ def test_without_a_class_there_is_no_address():
     with TestClient(guard, base_url=MAIN_ORIGIN) as client:
         assert client.get("/api/class").json() == {"vote": None, "watch": None}
         assert "ratslam run --class" in client.get("/api/class.svg").json()["detail"][0]["reason"]
-
-
-@pytest.mark.parametrize(
-    ("host", "words"),
-    [
-        ("0.0.0.0", "every address"),
-        ("::", "every address"),
-        ("", "takes one IP address"),
-        ("0", "takes one IP address"),
-        ("*", "takes one IP address"),
-        ("localhost", "takes one IP address"),
-        ("school.example", "takes one IP address"),
-        ("::ffff:0.0.0.0", "takes one IP address"),
-        ("fe80::1%eth0", "takes one IP address"),
-        ("224.0.0.1", "takes one IP address"),
-        ("203.0.113.9", "no address of this machine"),
-    ],
-)
-def test_only_one_address_of_this_machine(host, words):
-    with pytest.raises(CannotListen, match=words):
-        class_socket(host, 0)
-
-
-def test_a_taken_port_is_a_sentence():
-    with class_socket("127.0.0.1", 0) as taken, pytest.raises(CannotListen, match="--class-port"):
-        class_socket("127.0.0.1", taken.getsockname()[1])
-    with pytest.raises(CannotListen, match="does not exist"):
-        class_socket("127.0.0.1", 70_000)
-
-
-class Probe:
-    """A socket of a machine with this address; None: with none."""
-
-    def __init__(self, address: str | None) -> None:
-        self.address = address
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        pass
-
-    def connect(self, _to) -> None:
-        if self.address is None:
-            raise OSError("network is unreachable")
-
-    def getsockname(self):
-        return self.address, 1
-
-
-@pytest.mark.parametrize(
-    ("address", "words"),
-    [(None, "in no network"), ("127.0.0.1", "in no network"), ("8.8.8.8", "whole internet; if that is meant")],
-)
-def test_the_address_is_found_out_and_never_a_public_one(monkeypatch, address, words):
-    monkeypatch.setattr(listening.socket, "socket", lambda *_: Probe(address))
-    with pytest.raises(CannotListen, match=words):
-        listening._in_local_network()
-
-
-def test_an_address_in_the_local_network_is_taken(monkeypatch):
-    monkeypatch.setattr(listening.socket, "socket", lambda *_: Probe("192.168.1.5"))
-    assert str(listening._in_local_network()) == "192.168.1.5"
-    assert socket.socket(socket.AF_INET) is not None

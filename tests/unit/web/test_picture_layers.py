@@ -2,71 +2,24 @@
 
 from __future__ import annotations
 
-import itertools
 import re
 from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from tests.fake_snapshots import fake_reports
-from tests.unit.web.crowded import FRAME, crowded, judged, taught, two_brains
-from web.messages import KnownPlace, Pose, Snapshot, TaggedPlace
-from web.switches import NAMES, Name
-from web.themes import THEMES, Theme
-from web.viewer.fits.map_fit import DEPTH as FLOOR_DEPTH
-from web.viewer.fits.map_fit import WIDTH as FLOOR_WIDTH
-from web.viewer.fits.map_fit import MapFit, refit
+from tests.unit.web.crowded import FRAME, judged, taught, two_brains
+from tests.unit.web.read_pictures import SVG, boxes, circles, drawn, ink, on_map, strokes, words
+from web.messages import Pose
+from web.switches import NAMES
+from web.themes import THEMES
 from web.viewer.fits.poses import compose, into_map, placed
 from web.viewer.marks.ghost import PALE, PATH_PALE, pale
 from web.viewer.marks.outline import clipped
-from web.viewer.primitives.palette import BRAINS, DARK, Rgb, mix
+from web.viewer.primitives.palette import BRAINS, DARK, mix
 from web.viewer.vector import PlateName, vector_picture
-from web.viewer.vector.labels import Label, laid_out, width_of
 from web.viewer.vector.sheet import EDGE, TOP, WIDTH
-
-REPORTS = fake_reports()
-SVG = "{http://www.w3.org/2000/svg}"
-Picture = ElementTree.Element
-
-
-def drawn(plate: PlateName, snapshot: Snapshot, on: tuple[Name, ...] = NAMES, theme: Theme = "dark") -> Picture:
-    return ElementTree.fromstring(vector_picture(plate, snapshot, theme, on))
-
-
-def words(picture: Picture) -> list[str]:
-    return [text.text or "" for text in picture.iter(f"{SVG}text")]
-
-
-def ink(colour: Rgb) -> str:
-    return "#" + "".join(f"{part:02x}" for part in colour)
-
-
-def strokes(picture: Picture, colour: Rgb) -> list[np.ndarray]:
-    """In the field: the corners of each line of a colour, pixels."""
-    field = next(group for group in picture if group.get("clip-path"))
-    paths = [path.get("d", "") for path in field.iter(f"{SVG}path") if path.get("stroke") == ink(colour)]
-    ways = [way for path in paths for way in path.split("M")[1:]]
-    return [np.array(re.findall(r"-?\d+\.\d+", way), float).reshape(-1, 2) for way in ways]
-
-
-def circles(picture: Picture, colour: Rgb) -> np.ndarray:
-    """Middles of the rings of a colour in the field."""
-    field = next(group for group in picture if group.get("clip-path"))
-    found = [c for c in field.iter(f"{SVG}circle") if c.get("stroke") == ink(colour)]
-    return np.array([(float(c.get("cx", 0)), float(c.get("cy", 0))) for c in found]).reshape(-1, 2)
-
-
-def on_map(snapshot: Snapshot, points: np.ndarray) -> tuple[np.ndarray, tuple[float, float]]:
-    """(n, 2) points of the map in pixels, and the field's size: they lie as on the plate, whose floor fills the field."""
-    fit = refit(MapFit(), snapshot.map.extent_xy, snapshot.map_turn_rad)
-    scale = (WIDTH - 2 * EDGE) / FLOOR_WIDTH
-    pixels = (fit.to_plate(points) - (-FLOOR_WIDTH / 2, FLOOR_DEPTH / 2)) * (scale, -scale) + (EDGE, TOP)
-    return pixels, (WIDTH - 2 * EDGE, FLOOR_DEPTH * scale)
-
 
 WALLS = mix(DARK.floor, DARK.wall, 0.75)
 
@@ -236,67 +189,3 @@ def test_each_of_two_brains_has_its_own_plates_under_its_name(plate: PlateName, 
 def test_of_one_brain_there_is_no_second_plate() -> None:
     with pytest.raises(ValueError, match="there is one brain only"):
         vector_picture("map_2", judged(), "dark", NAMES)
-
-
-# ---------------------------------------------------------------- words
-
-
-def boxes(picture: Picture) -> list[tuple[float, float, float, float]]:
-    """Left, top, right and bottom of all words, by the metrics of the widest font that may be taken."""
-    found = []
-    for text in picture.iter(f"{SVG}text"):
-        size = float(text.get("font-size", 0))
-        wide = width_of(text.text or "", size, bold=text.get("font-weight") == "700")
-        share = {"start": 0.0, "middle": 0.5, "end": 1.0}[text.get("text-anchor", "start")]
-        left, base = float(text.get("x", 0)) - share * wide, float(text.get("y", 0))
-        found.append((left, base - 0.75 * size, left + wide, base + 0.2 * size))
-    return found
-
-
-LONG = "the place where the coffee machine was before they moved it"
-
-
-@pytest.mark.parametrize(
-    ("plate", "snapshot"),
-    [
-        (plate, made)
-        for plate in ("office", "pose", "map")
-        for made in (judged(), judged(off_m=40.0), crowded(), taught())
-    ]
-    + [(plate, two_brains()) for plate in ("pose", "map", "pose_2", "map_2")]
-    + [("map", replace(judged(), inspected=replace(REPORTS["why"], text=f"{LONG}, {LONG}, {LONG}")))]  # type: ignore[type-var]
-    + [("map", replace(crowded(), tags=tuple(TaggedPlace(f"{LONG} {k}", 1, 0.1 * k, 0.0) for k in range(5))))],
-)
-def test_no_words_cover_others_or_are_cut_off(plate: PlateName, snapshot: Snapshot) -> None:
-    picture = drawn(plate, snapshot)
-    height = float(picture.get("height", 0))
-    found = boxes(picture)
-    for left, top, right, bottom in found:
-        assert left >= EDGE - 0.5
-        assert right <= WIDTH - EDGE + 0.5
-        assert top >= 0
-        assert bottom <= height
-    for (l1, t1, r1, b1), (l2, t2, r2, b2) in itertools.combinations(found, 2):
-        assert r1 <= l2 + 0.5 or r2 <= l1 + 0.5 or b1 <= t2 + 0.5 or b2 <= t1 + 0.5
-
-
-@settings(max_examples=60)
-@given(st.lists(st.tuples(st.floats(0, 1000), st.floats(0, 700), st.text(max_size=20)), max_size=10))
-def test_labels_lie_apart_wherever_their_places_are(made: list[tuple[float, float, str]]) -> None:
-    labels = [Label((x, y), 20.0, name, DARK.text, 15, DARK.goal) for x, y, name in made]
-    places = laid_out(labels, [], np.array([(0.0, 0.0), (1000.0, 700.0)]))
-    for (a, first), (b, second) in itertools.combinations(list(zip(places, labels, strict=True)), 2):
-        assert (np.abs(np.subtract(a, b)) >= (first.bar + second.bar) / 2 - 1e-6).any()
-    for (x, y), label in zip(places, labels, strict=True):
-        wide, high = label.bar
-        assert wide / 2 - 1e-6 <= x <= 1000 - wide / 2 + 1e-6
-        assert high / 2 - 1e-6 <= y <= 700 - high / 2 + 1e-6
-
-
-def test_a_known_place_has_its_name_on_the_map_and_a_label_that_went_aside_a_line() -> None:
-    snapshot = replace(judged(), places=(KnownPlace("kitchen", 2, 2, (0.5, 0.5)), KnownPlace("attic", 2, 2, None)))
-    told = words(drawn("map", snapshot))
-    assert "kitchen" in told
-    assert "attic" not in told
-    lines = [path for path in drawn("map", crowded()) if path.tag == f"{SVG}path"]
-    assert lines

@@ -16,7 +16,7 @@ from PIL import Image
 from tests.fake_snapshots import fake_reports, fake_snapshot
 from tests.unit.web.crowded import judged
 from tests.unit.web.office_moments import living, tried
-from tests.unit.web.test_picture_layers import SVG, Picture, circles, drawn, ink, on_map, strokes
+from tests.unit.web.read_pictures import SVG, Picture, circles, drawn, ink, on_map, strokes
 from web.messages import GoalMemoryLayer, MapLayer, OccupancyLayer, OccupancyPicture, Snapshot
 from web.switches import NAMES
 from web.themes import THEMES, Theme
