@@ -81,7 +81,7 @@ class Simulator:
         before: another one, as for a new simulator.
         """
         self.actors.settle(world)
-        self._sensors.settle(world, self.params, self.actors)
+        self._sensors.settle(world, self.params, self.actors, None if before is None else before._sensors)
         self._begin_in(world, None if before is None else before._measured)
         self._frame.freeze()
 

@@ -34,7 +34,9 @@ class Atlas:
     """
 
     def __init__(self, walls: tuple[Wall, ...], before: Atlas | None = None) -> None:
-        """before: another atlas; for walls that are the same objects, what is known of their looks is taken over."""
+        """before: another atlas; for walls that are the same objects, what is known of their looks is taken over, and of
+        those that all look the same the texels are shared. Use both from one thread.
+        """
         self._walls = walls
         was = {} if before is None else {id(wall): i for i, wall in enumerate(before._walls)}
         old = np.array([was.get(id(wall), -1) for wall in walls], np.int64)
@@ -57,6 +59,14 @@ class Atlas:
                 self._looks[i, k], self._plain[i, k] = self._look(walls[i], side)
         self._lay_out()
         self._painted, self._bare = np.zeros(2 * len(walls), np.bool_), np.zeros(2 * len(walls), np.int64)
+        if before is not None and self._known is before._known and self._looks_like(before):
+            self.texels, self._painted = before.texels, before._painted
+
+    def _looks_like(self, other: Atlas) -> bool:
+        mine = (self._looks, self.columns, self.rows)
+        return all(map(np.array_equal, mine, (other._looks, other.columns, other.rows))) and (
+            self._texel_m == other._texel_m
+        )
 
     def _look(self, wall: Wall, side: str) -> tuple[int, bool]:
         """The number of the side's look, and whether it is the same all along, so that one column is enough."""

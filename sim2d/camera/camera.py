@@ -32,7 +32,7 @@ class Camera:
     ) -> None:  # fmt: skip
         """actors: of the same world; None: new ones. index: of all its walls, as `build_index` makes it.
 
-        before: another camera; what it knows of the looks of the same walls is taken over.
+        before: another camera; what it knows of the looks of the same walls is taken over. Use both from one thread.
         """
         self._noise = np.zeros(_NOISE_BANK + _MOST_NOISE, np.float32)
         if actors is None:
@@ -89,6 +89,10 @@ class Camera:
     def new_noise(self, rng: np.random.Generator) -> None:
         """Draw the noise of all images to come: 9216 deviates for each would take longer than the image itself."""
         self._noise = rng.standard_normal(_NOISE_BANK + _MOST_NOISE, dtype=np.float32)
+
+    def same_noise(self, other: Camera) -> None:
+        """Use the noise that another camera has drawn."""
+        self._noise = other._noise
 
     def image(
         self,

@@ -61,10 +61,13 @@ class Sensors:
         self._bounds = world.bounds  # of the first world, so that an edit does not change the scene numbers
         self._set_up(world, params, actors, before)
 
-    def settle(self, world: World, params: SimParams, actors: Actors) -> None:
-        """Compute the caches from a world, a robot and the seed."""
-        self._set_up(world, params, actors, None)
-        self._camera.new_noise(np.random.default_rng(seeds(self._seed)["noise bank"]))
+    def settle(self, world: World, params: SimParams, actors: Actors, before: Sensors | None = None) -> None:
+        """Compute the caches from a world, a robot and the seed. before: as for new ones."""
+        self._set_up(world, params, actors, before)
+        if before is not None and before._seed == self._seed:
+            self._camera.same_noise(before._camera)
+        else:
+            self._camera.new_noise(np.random.default_rng(seeds(self._seed)["noise bank"]))
 
     def _set_up(self, world: World, params: SimParams, actors: Actors, before: Sensors | None) -> None:
         self._angles = np.array(SONAR_ANGLES_RAD)

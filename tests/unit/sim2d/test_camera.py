@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim2d import Panel, SimParams, Wall, World, load_world
-from sim2d.camera import camera, column_hits, painting
+from sim2d.camera import atlas, camera, column_hits, painting
 from sim2d.camera.atlas import Atlas
 from sim2d.camera.camera import Camera
 from sim2d.world.texture import paint_strip
@@ -217,9 +217,9 @@ def test_images_keep_still_where_the_robot_does_and_change_where_it_moves() -> N
 
 
 def test_equal_sides_share_texels() -> None:
-    atlas = Atlas(room(Wall(1, 1, 2, 1, "partition", 1.4, GREY)).walls)
-    assert (atlas.first[8] == atlas.first[9]).all()
-    assert atlas.texels.dtype == np.float32
+    made = Atlas(room(Wall(1, 1, 2, 1, "partition", 1.4, GREY)).walls)
+    assert (made.first[8] == made.first[9]).all()
+    assert made.texels.dtype == np.float32
 
 
 def test_a_side_is_painted_when_it_is_first_seen_and_never_otherwise() -> None:
@@ -233,6 +233,19 @@ def test_a_side_is_painted_when_it_is_first_seen_and_never_otherwise() -> None:
     picture = fresh.image(*place, 0.3, 1.0, 0.0, rng)
     assert np.array_equal(picture, used.image(*place, 0.3, 1.0, 0.0, rng))
     assert 0 < fresh._atlas._painted.sum() < used._atlas._painted.sum() < used._atlas._painted.size
+
+
+def test_what_another_camera_has_painted_of_the_same_walls_is_not_painted_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    world, other = load_world(), load_world("loop")
+    used = Camera(world, PARAMS)
+    place, rng = (world.starts[0].x, world.starts[0].y), np.random.default_rng(0)
+    picture = used.image(*place, 0.3, 1.0, 0.0, rng)
+    elsewhere = Camera(other, PARAMS, before=used)
+    assert not elsewhere._atlas._painted.any()
+    monkeypatch.setattr(atlas, "paint_strip", None)
+    assert np.array_equal(Camera(world, PARAMS, before=used).image(*place, 0.3, 1.0, 0.0, rng), picture)
 
 
 def test_of_two_walls_in_one_place_always_the_first_is_seen() -> None:
