@@ -1,8 +1,9 @@
 // Asks for moments of the past, one at a time: while one is on its way, only the newest wish waits. A moment that takes long is
-// given up for a newer wish.
+// given up for a newer wish; where the pointer has come to rest, at once.
 
 const PATIENCE_MS = 150;
-const LOOK_MS = 30;
+const RESTED_MS = 40;
+const LOOK_MS = 20;
 
 export class Seeker {
   /** @param {import("../net/connection.js").Connection} link */
@@ -10,6 +11,7 @@ export class Seeker {
     this.link = link;
     /** @type {Seek | null} */
     this.wish = null;
+    this.wished = 0; // when, ms
     this.busy = false;
     /** @type {number | null} */
     this.aim = null; // the tick asked for last, until the page is told of it: quick steps count from here
@@ -23,6 +25,7 @@ export class Seeker {
   /** @param {Omit<Seek, "type">} where */
   async seek(where) {
     this.wish = { type: "seek", ...where };
+    this.wished = performance.now();
     this.aim = where.tick ?? null;
     if (this.busy) return;
     this.busy = true;
@@ -41,7 +44,8 @@ export class Seeker {
       here = true;
     });
     const asked = performance.now();
-    while (!here && !(this.wish && performance.now() - asked > PATIENCE_MS))
+    const isOver = () => performance.now() - asked > PATIENCE_MS || performance.now() - this.wished > RESTED_MS;
+    while (!here && !(this.wish && isOver()))
       await Promise.race([answer, new Promise((resolve) => setTimeout(resolve, LOOK_MS))]);
   }
 }
