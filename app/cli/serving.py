@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import webbrowser
@@ -71,6 +72,8 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     from web.http.kept_offer import Offered
     from web.http.server import CannotListen, Dashboard
     from web.viewer.viewers import Viewers
+
+    gc.freeze()  # what is loaded by now stays to the end: to look through it for garbage holds everything up for 50 ms
 
     def warn(words: str) -> None:
         print(f"ratslam: {words}", file=sys.stderr, flush=True)

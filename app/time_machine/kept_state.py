@@ -1,12 +1,16 @@
 """Arrays and states kept as chunks of bytes: one that has not changed since the state before is the same object; one that has
-changed is kept as its difference from an earlier one where that is smaller."""
+changed is kept as its difference from an earlier one where that is smaller.
+
+Of ten hours there are hundreds of thousands of them. None can be part of a cycle, so the garbage collector is not to walk
+through them: it would hold up everything for half a second. test_chunks.py.
+"""
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 import zstandard
 from numpy.typing import NDArray
@@ -23,8 +27,7 @@ PACK, UNPACK = zstandard.ZstdCompressor(level=1), zstandard.ZstdDecompressor()  
 Bytes = NDArray[np.uint8]
 
 
-@dataclass(slots=True, eq=False)
-class Chunk:
+class Chunk(msgspec.Struct, eq=False, gc=False):
     """base: what the content was XORed with. itemsize: of the numbers by whose places the bytes were then sorted.
 
     packed: b"" once it lies at its place on the shelf, no sooner.
@@ -48,8 +51,7 @@ class Chunk:
         self.packed = PACK.compress(_sorted(whole, self.itemsize))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class KeptArray:
+class KeptArray(msgspec.Struct, frozen=True, eq=False, gc=False):
     """starts: of the chunks, bytes."""
 
     dtype: np.dtype[Any]
@@ -65,8 +67,7 @@ class KeptArray:
         return whole
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class KeptState:
+class KeptState(msgspec.Struct, frozen=True, eq=False, gc=False):
     tree: bytes  # packed JSON
     arrays: tuple[KeptArray, ...]
 

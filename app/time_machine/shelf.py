@@ -12,15 +12,15 @@ import tempfile
 import weakref
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 UNIT = 512  # bytes; places have sizes of whole units, so that one that is free fits another content
 LEAVES_FREE = 1_000_000_000  # bytes that are left to others on the disk
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Place:
+class Place(msgspec.Struct, frozen=True, eq=False, gc=False):
     """Where a content lies, and its length in bytes."""
 
     file: int

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import random
 from typing import Any
 
@@ -78,3 +79,13 @@ def test_a_difference_whose_base_nobody_else_needs_takes_no_more_than_the_whole(
     assert all(chunk.base is None for array in kept[2].arrays for chunk in array.chunks)
     assert chunks.nbytes == pytest.approx(bytes_of([whole]), rel=0.01)
     assert same(kept[2], third)
+
+
+def test_the_garbage_collector_does_not_walk_through_what_is_kept() -> None:
+    chunks = Chunks()
+    kept = [chunks.keep(state) for state in states(5, 8)]
+    gc.collect()
+    arrays = [array for state in kept for array in state.arrays]
+    held = [*kept, *arrays, *(state.arrays for state in kept), *(array.chunks for array in arrays)]
+    held += [chunk for array in arrays for chunk in array.chunks]
+    assert not any(map(gc.is_tracked, held))
