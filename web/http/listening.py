@@ -23,7 +23,9 @@ def class_socket(host: str | None, port: int) -> socket.socket:
 
 
 def _bound(address: Address, port: int, option: str) -> socket.socket:
-    listener = socket.socket(socket.AF_INET6 if address.version == 6 else socket.AF_INET, socket.SOCK_STREAM)
+    family = socket.AF_INET6 if address.version == 6 else socket.AF_INET
+    # asyncio has small messages sent at once only where TCP is named: else each second one waits 40 ms
+    listener = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listener.bind((str(address), port))

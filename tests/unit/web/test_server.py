@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import logging
 import os
@@ -33,6 +34,25 @@ def test_only_loopback(host):
 def test_a_port_must_exist(port):
     with pytest.raises(CannotListen, match="does not exist"):
         listening_socket("127.0.0.1", port)
+
+
+def test_small_messages_are_sent_at_once():
+    """Else the second of two waits for 40 ms, until the browser has confirmed the first."""
+
+    async def is_sent_at_once(listener: socket.socket) -> bool:
+        told: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+
+        def met(_: object, writer: asyncio.StreamWriter) -> None:
+            told.set_result(writer.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+            writer.close()
+
+        async with await asyncio.start_server(met, sock=listener):
+            _, writer = await asyncio.open_connection(*listener.getsockname())
+            writer.close()
+            return bool(await told)
+
+    with listening_socket("localhost", 0) as listener:
+        assert asyncio.run(is_sent_at_once(listener))
 
 
 def dashboard(port: int = 0, **options) -> Dashboard:
