@@ -61,8 +61,11 @@ class TimeTravel:
         if tick == live.end_tick:
             self.back_to_now()
             return
-        moment = self._machine.before(live, tick, self._moment)
+        moment = self._machine.on_the_way(live, tick, self._moment)
         try:
+            if moment is None:
+                yield 0.0  # whoever asks for another moment meanwhile need not wait until this one is restored
+                moment = Moment(live, tick)
             yield from moment.going(tick)
             if moment is not self._moment or self.past is None:
                 run, shown = self._live, self.past or self._live
@@ -153,7 +156,7 @@ class TimeTravel:
         """Take the branch beside to this tick; None at its end."""
         beside = self._beside
         if beside is not None and tick < beside.end_tick:
-            self._other = self._machine.before(beside, tick, self._other)
+            self._other = self._machine.on_the_way(beside, tick, self._other) or Moment(beside, tick)
             yield from self._other.going(tick)
 
     # ------------------------------------------------------------ for the page

@@ -6,8 +6,9 @@ import math
 import time
 from collections.abc import Callable, Generator
 
-from app.engine.pace import SLICE_S
 from web.messages import Accepted, Refused, Request
+
+SLICE_S = 0.02  # a newer wish is heard after it
 
 
 class Work:

@@ -44,6 +44,16 @@ class Inbox:
     def has_answers(self) -> bool:
         return bool(self._answers)
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nobody waits to be heard."""
+        return self._requests.empty()
+
+    def has_news(self, *others: type) -> bool:
+        """Whether one of the answers is to what may have changed something that is shown. others: what has not, this
+        time."""
+        return any(not isinstance(request.command, (*m.READS, *others)) for request, _ in self._answers)
+
     def answer(self, request: m.Request, answer: Answer) -> None:
         """Keep an answer until the next `give`."""
         self._answers.append((request, answer))

@@ -29,7 +29,7 @@ from web import messages as m
 from web.latest import Latest
 
 STALL_S = 2.0
-FIRST_SLICE_S = 0.15  # most moments are gone to within it
+FIRST_SLICE_S = 0.03  # many moments are gone to within it
 
 
 class EngineThread:
@@ -58,7 +58,6 @@ class EngineThread:
             world, self.pace, self._watchdog, running=running, answer=self._inbox.answer, keeper=keeper,
             past_room=past_room,
         )  # fmt: skip
-        self._engine.slices.first_s = FIRST_SLICE_S
         self._stopping = False
         self._thread = threading.Thread(target=self._loop, name="engine", daemon=True)
 
@@ -115,9 +114,11 @@ class EngineThread:
 
     def _turn(self) -> None:
         self._take_requests()
-        if self._inbox.has_answers:
+        work = self._engine.slices.work
+        given_up = (m.Seek,) if work is not None and work.moves else ()  # for the moment that is gone to now
+        if self._inbox.has_news(*given_up):
             self._publish()  # before answering: whoever has the answer and reads the state must see its effect
-            self._inbox.give()
+        self._inbox.give()
         engine, pace, session = self._engine, self.pace, self._engine.shown.session
         if pace.let_go() and self.session.pilot.mode == "manual":
             self.session.drive(0.0, 0.0)
@@ -156,6 +157,7 @@ class EngineThread:
             request = self._inbox.take(min(wait, LONGEST_WAIT_S) if idle else 0.0)
             if request is None:
                 return
+            engine.slices.first_s = FIRST_SLICE_S if self._inbox.is_empty else 0.0
             self._take(request)
 
     def _take(self, request: m.Request) -> None:
@@ -174,6 +176,7 @@ class EngineThread:
             work = self._engine.slices.work
             assert work is not None
             work.request = request
+            self.pace.published()  # how far it has come is shown when it takes long
         else:
             self._inbox.answer(request, answer)
 

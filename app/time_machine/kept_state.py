@@ -42,7 +42,7 @@ class Chunk(msgspec.Struct, eq=False, gc=False):
         packed = self.packed or (self.place.read() if self.place else b"")
         raw = np.frombuffer(UNPACK.decompress(packed), np.uint8)
         if self.itemsize > 1:
-            raw = raw.reshape(self.itemsize, -1).T.reshape(-1)
+            raw = _as_it_was(raw, self.itemsize)
         return raw if self.base is None else raw ^ self.base.content()
 
     def pack_whole(self, whole: Bytes, dtype: np.dtype[Any]) -> None:
@@ -149,6 +149,14 @@ def _whole(raw: Bytes, dtype: np.dtype[Any]) -> Chunk:
 def _sorted(raw: Bytes, itemsize: int) -> bytes:
     """By the place of each byte in its number."""
     return raw.reshape(-1, itemsize).T.tobytes()
+
+
+def _as_it_was(raw: Bytes, itemsize: int) -> Bytes:
+    """The other way. A byte of all numbers after the other, which takes half the time of numpy's own transposing."""
+    numbers, places = np.empty((len(raw) // itemsize, itemsize), np.uint8), raw.reshape(itemsize, -1)
+    for place in range(itemsize):
+        numbers[:, place] = places[place]
+    return numbers.reshape(-1)
 
 
 def _changed(before: Bytes, now: Bytes, starts: NDArray[np.int64]) -> NDArray[np.int64]:

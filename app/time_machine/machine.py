@@ -81,12 +81,12 @@ class TimeMachine:
     def moment(self, branch: Branch, tick: int, near: Moment | None = None) -> Moment:
         """A moment of a branch. near: another one; if it is on the way to this, it goes on to it. ValueError names what
         can be gone to."""
-        moment = self.before(branch, tick, near)
+        moment = self.on_the_way(branch, tick, near) or Moment(branch, tick)
         moment.go_to(tick)
         return moment
 
-    def before(self, branch: Branch, tick: int, near: Moment | None = None) -> Moment:
-        """The moment to go on to this one from: `near` or that of a keyframe. ValueError names what can be gone to."""
+    def on_the_way(self, branch: Branch, tick: int, near: Moment | None) -> Moment | None:
+        """`near`, if it can go on to this moment and no keyframe is nearer. ValueError names what can be gone to."""
         root = self.branches[0].from_tick
         if not root <= tick <= branch.end_tick:
             raise ValueError(f"tick must be from {root} to {branch.end_tick}, got {tick}")
@@ -96,7 +96,7 @@ class TimeMachine:
             and branch.at(tick).keyframe(tick).tick <= near.tick_count <= tick
         ):
             return near
-        return Moment(branch, tick)
+        return None
 
     def go_on_from(self, moment: Moment) -> Branch:
         """Make the moment the end of a new branch, which is then the live one. The moment must not be used again."""

@@ -47,6 +47,7 @@ from web.messages.commands import (
     WatchExperiment,
 )
 from web.messages.engine_requests import (
+    READS,
     Accepted,
     EngineRequest,
     GoOn,
@@ -135,6 +136,7 @@ from web.messages.trial import TrialState, TrialView
 
 __all__ = [
     "NO_PLACES",
+    "READS",
     "Accepted",
     "AdditionsOff",
     "BackToNow",

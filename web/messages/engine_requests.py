@@ -120,6 +120,7 @@ EngineRequest = (
     | ReadSituation
     | OpenSituation
 )  # what no command can hold; it takes the same way
+READS = (ReadExperience, ReadBrain, ReadSession, ReadWorld, ReadFiled, ReadSituation)  # those that change nothing
 
 
 @dataclass(frozen=True, slots=True)

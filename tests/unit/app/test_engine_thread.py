@@ -14,6 +14,19 @@ from web import messages as m
 
 from .engine_threads import OFFICE, PATIENCE_S, accept, do, refuse, snapshot, step, wait_for
 
+
+def test_what_only_reads_makes_no_snapshot(start: Callable[..., EngineThread]) -> None:
+    """Who keeps brains reads one now and then, and the pages would be told the same once more."""
+    engine = start()
+    accept(engine, step(3))
+    version, _ = engine.latest.get()
+    for reads in (m.ReadSession(), m.ReadBrain()):
+        assert do(engine, reads).result is not None
+    assert engine.latest.get()[0] == version
+    accept(engine, step(1))
+    assert engine.latest.get()[0] > version
+
+
 # ---------------------------------------------------------------- pace
 
 

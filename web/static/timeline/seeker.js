@@ -2,8 +2,8 @@
 // given up for a newer wish; where the pointer has come to rest, at once.
 
 const PATIENCE_MS = 150;
-const RESTED_MS = 40;
-const LOOK_MS = 20;
+const RESTED_MS = 25;
+const LOOK_MS = 10;
 
 export class Seeker {
   /** @param {import("../net/connection.js").Connection} link */
