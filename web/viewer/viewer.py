@@ -34,6 +34,7 @@ from web.viewer.viser_server import guarded_server
 DragEvent = viser.SceneNodeDragEvent[viser.MeshHandle]
 FRAME_S = 1 / 30  # least time between two frames, however fast snapshots come
 IDLE_S = 0.05  # longest time that a click waits
+ARTIST_S = 0.005  # that what another thread has drawn waits
 
 
 class Viewer:
@@ -117,9 +118,11 @@ class Viewer:
         seen = 0
         while not self._stopping.is_set():
             began_s = time.monotonic()
-            seen, snapshot = self._latest.wait(seen, FRAME_S if self._cameras.flying else IDLE_S)
+            wait_s = ARTIST_S if self.drawing else FRAME_S if self._cameras.flying else IDLE_S
+            seen, snapshot = self._latest.wait(seen, wait_s)
             self.tick(snapshot, time.monotonic(), watched=bool(self.server.get_clients()))
-            self._stopping.wait(max(0.0, FRAME_S - (time.monotonic() - began_s)))
+            least_s = ARTIST_S if self.drawing else FRAME_S
+            self._stopping.wait(max(0.0, least_s - (time.monotonic() - began_s)))
 
     def tick(self, snapshot: Snapshot | None, now_s: float, watched: bool = True) -> None:
         """One round: handle what people did, move cameras in flight, and draw the layers that are new and due."""
