@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import Field, dataclass, fields, replace
 from typing import Any
 
@@ -25,6 +25,7 @@ from ratslam_core.params import (
 from sim2d import OfficeParams, SimParams
 
 Value = float | int | bool | str
+MOST_NAMED, MOST_SAID = 12, 80  # names in a sentence, and characters of one that somebody gave
 
 
 @kind("config/1")
@@ -90,8 +91,7 @@ class Config:
         changes: dict[str, dict[str, Value]] = {"robot": {}}  # first: it is to be named if the field of view is wrong
         for name, value in values.items():
             if name not in known:
-                close = difflib.get_close_matches(name, known, n=3) or sorted(known)
-                raise ValueError(f"unknown parameter {name!r}; expected one of: {', '.join(close)}")
+                raise ValueError(f"unknown parameter {name[:MOST_SAID]!r}; {_what_would_be_right(name, known)}")
             section, key = name.split(".")
             changes.setdefault(section, {})[key] = _fitting(name, known[name], value)
         if "camera_fov_rad" in changes["robot"]:
@@ -103,6 +103,15 @@ class Config:
             except ValueError as error:
                 raise ValueError(f"{section}.{error}") from None
         return changed
+
+
+def _what_would_be_right(name: str, known: Iterable[str]) -> str:
+    """The names that are like this one; else those of the section, or of that name in any section."""
+    within = [each for each in known if {*name.split(".")} & {*each.split(".")}]
+    like = difflib.get_close_matches(name[:MOST_SAID], known, n=3) or within
+    if not like:
+        return "it has a section and a name, as pose_cells.inhibit; `ratslam config` prints all of them"
+    return f"expected one of: {', '.join(like[:MOST_NAMED])}" + ", ..." * (len(like) > MOST_NAMED)
 
 
 def _fitting(name: str, old: Value, value: Value) -> Value:

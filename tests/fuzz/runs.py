@@ -37,6 +37,7 @@ from tests.fuzz.brains import file_of, state_of
 from tests.fuzz.mutators import bytes_spoilt, text_of, tree_spoilt
 
 TICKS = 40
+LONG = 1_000_000  # bytes of a line; to spoil a longer one once more would take more memory than to read it may
 Files = dict[str, bytes]
 BOMBS = (
     lambda: b"[" + b"[]," * 5_000_000 + b"[]]", lambda: b'"' + b"a" * 17_000_000 + b'"', lambda: b"9" * 4_000_000,
@@ -114,7 +115,7 @@ def _lines_spoilt(data: bytes, rng: Random) -> bytes:
         at, other = rng.randrange(len(texts)), rng.randrange(len(texts))
         match rng.randrange(10):
             case 0:
-                texts[at:at] = [texts[other]] * rng.choice((1, 1, 500))
+                texts[at:at] = [texts[other]] * (rng.choice((1, 1, 500)) if len(texts[other]) < LONG else 1)
             case 1:
                 texts[at], texts[other] = texts[other], texts[at]
             case 2 if len(texts) > 1:
@@ -131,7 +132,7 @@ def _lines_spoilt(data: bytes, rng: Random) -> bytes:
                 tree = tree_spoilt(json.loads(world_to_json(load_world("loop"))), rng)
                 text = json.dumps(tree, indent=1)
                 texts[at:at] = [json.dumps(_edit(text)).encode()]
-            case _:
+            case _ if len(texts[at]) < LONG:
                 with contextlib.suppress(ValueError, RecursionError):  # spoilt before
                     texts[at] = text_of(tree_spoilt(json.loads(texts[at]), rng)).encode("utf-8", "surrogatepass")
     return signed(texts)
