@@ -37,7 +37,8 @@ def local_view(view: LocalView) -> None:
         same = all(np.array_equal(value, vars(fresh)[name]) for name, value in vars(front_end).items())
         true(same, "the front end must be that of the parameters")
     _recognition(view.recognition, count)
-    _matcher(view._matcher, matcher_of(view.front_end))
+    for matcher in (view._matcher, view._among):
+        _matcher(matcher, matcher_of(view.front_end))
 
 
 def _recognition(seen: Recognition, count: int) -> None:

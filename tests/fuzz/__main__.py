@@ -1,4 +1,7 @@
-"""Spoils inputs by the thousand and counts the outcomes. The exit code is 1 when one was not processed properly."""
+"""Spoils inputs by the thousand and counts the outcomes. The exit code is 1 when one was not processed properly.
+
+With NUMBA_BOUNDSCHECK=1 and a NUMBA_CACHE_DIR of its own, a kernel that would write beyond an array is a traceback, too.
+"""
 
 from __future__ import annotations
 

@@ -141,6 +141,8 @@ MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "exper
         (write("local_view._count", 2000), "the number of views must be a whole number from 0 to 1024"),
         (reshape("local_view.features", lambda a: a[:5]), r"features must have shape \(104\)"),
         (put("local_view._matcher._masks", (0, 0), 7), "masks must be those of the shifts"),
+        (reshape("local_view._among._masks", lambda a: a[:7]), r"masks must have shape \(23, 96\)"),
+        (reshape("local_view._among._shifted", lambda a: a[:13]), r"the shifted view must have shape \(23, 96\)"),
         (write("local_view._templates", 5), "must be a ndarray, got a int"),
         (write("local_view.recognition.view", 800), "the recognised view must be a whole number from -1 to"),
         (put(f"{KNOWN}._before_of_view", 0, 0), "each experience must know the one before it of its view"),
