@@ -76,10 +76,27 @@ test("where the pointer has come to rest, the moment there does not wait for ano
   seeker.seek({ tick: 1 });
   await pass(context, 10);
   seeker.seek({ tick: 2 });
-  await pass(context, 30);
+  await pass(context, 15);
   assert.deepEqual(link.asked, [1]);
   await pass(context, 50);
   assert.deepEqual(link.asked, [1, 2]);
+});
+
+test("of a slow drag at least every second moment is waited for", async (context) => {
+  stopClocks(context);
+  const [seeker, link] = made();
+  for (let tick = 0; tick < 6; tick++) {
+    seeker.seek({ tick });
+    await pass(context, 40);
+  }
+  assert.deepEqual(link.asked, [0, 1, 5]); // 1 is given up after its patience, not at the next rest
+  link.answers[2]?.();
+  await pass(context, 20);
+  seeker.seek({ tick: 6 });
+  await pass(context, 10);
+  seeker.seek({ tick: 7 });
+  await pass(context, 50);
+  assert.deepEqual(link.asked, [0, 1, 5, 6, 7]);
 });
 
 test("without another wish a moment may take as long as it takes", async (context) => {

@@ -1,5 +1,5 @@
 // Asks for moments of the past, one at a time: while one is on its way, only the newest wish waits. A moment that takes long is
-// given up for a newer wish; where the pointer has come to rest, at once.
+// given up for a newer wish; where the pointer has come to rest, at once, but not twice running: a slow drag rests at each step.
 
 const PATIENCE_MS = 150;
 const RESTED_MS = 25;
@@ -13,6 +13,7 @@ export class Seeker {
     this.wish = null;
     this.wished = 0; // when, ms
     this.busy = false;
+    this.gaveUp = false; // the last moment, before it came
     /** @type {number | null} */
     this.aim = null; // the tick asked for last, until the page is told of it: quick steps count from here
   }
@@ -44,8 +45,10 @@ export class Seeker {
       here = true;
     });
     const asked = performance.now();
-    const isOver = () => performance.now() - asked > PATIENCE_MS || performance.now() - this.wished > RESTED_MS;
+    const isOver = () =>
+      performance.now() - asked > PATIENCE_MS || (!this.gaveUp && performance.now() - this.wished > RESTED_MS);
     while (!here && !(this.wish && isOver()))
       await Promise.race([answer, new Promise((resolve) => setTimeout(resolve, LOOK_MS))]);
+    this.gaveUp = !here;
   }
 }
