@@ -120,7 +120,7 @@ EngineRequest = (
     | ReadSituation
     | OpenSituation
 )  # what no command can hold; it takes the same way
-READS = (ReadExperience, ReadBrain, ReadSession, ReadWorld, ReadFiled, ReadSituation)  # those that change nothing
+READS = (ReadBrain, ReadSession)  # what the program keeps now and then; nobody waits to be shown anything
 
 
 @dataclass(frozen=True, slots=True)
