@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import logging
 import os
@@ -18,41 +17,8 @@ import pytest
 from tests.fake_snapshots import fake_snapshot
 from tests.patience import PATIENCE_S, until
 from tests.unit.web.doubles import StubEngine, StubViewers
-from web.http.server import CannotListen, Dashboard, listening_socket
+from web.http.server import Dashboard, listening_socket
 from web.latest import Latest
-
-
-@pytest.mark.parametrize(
-    "host", ["0.0.0.0", "::", "", "0", "*", "192.168.1.1", "example.org", "127.0.0.2", "::ffff:0.0.0.0"]
-)
-def test_only_loopback(host):
-    with pytest.raises(CannotListen, match="localhost or ::1 only"):
-        listening_socket(host, 0)
-
-
-@pytest.mark.parametrize("port", [-1, 65536, 10**9])
-def test_a_port_must_exist(port):
-    with pytest.raises(CannotListen, match="does not exist"):
-        listening_socket("127.0.0.1", port)
-
-
-def test_small_messages_are_sent_at_once():
-    """Else the second of two waits for 40 ms, until the browser has confirmed the first."""
-
-    async def is_sent_at_once(listener: socket.socket) -> bool:
-        told: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-
-        def met(_: object, writer: asyncio.StreamWriter) -> None:
-            told.set_result(writer.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
-            writer.close()
-
-        async with await asyncio.start_server(met, sock=listener):
-            _, writer = await asyncio.open_connection(*listener.getsockname())
-            writer.close()
-            return bool(await told)
-
-    with listening_socket("localhost", 0) as listener:
-        assert asyncio.run(is_sent_at_once(listener))
 
 
 def dashboard(port: int = 0, **options) -> Dashboard:

@@ -1,13 +1,48 @@
-"""The address of a class: one of this machine, in the local network, and never a public one that nobody named."""
+"""Sockets to listen on: at this machine alone, or, for a class, at one address in the local network; never a public one that
+nobody named."""
 
 from __future__ import annotations
 
+import asyncio
 import socket
 
 import pytest
 
 from web.http import listening
-from web.http.listening import CannotListen, class_socket
+from web.http.listening import CannotListen, class_socket, listening_socket
+
+
+@pytest.mark.parametrize(
+    "host", ["0.0.0.0", "::", "", "0", "*", "192.168.1.1", "example.org", "127.0.0.2", "::ffff:0.0.0.0"]
+)
+def test_only_loopback(host):
+    with pytest.raises(CannotListen, match="localhost or ::1 only"):
+        listening_socket(host, 0)
+
+
+@pytest.mark.parametrize("port", [-1, 65536, 10**9])
+def test_a_port_must_exist(port):
+    with pytest.raises(CannotListen, match="does not exist"):
+        listening_socket("127.0.0.1", port)
+
+
+def test_small_messages_are_sent_at_once():
+    """Else the second of two waits for 40 ms, until the browser has confirmed the first."""
+
+    async def is_sent_at_once(listener: socket.socket) -> bool:
+        told: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+
+        def met(_: object, writer: asyncio.StreamWriter) -> None:
+            told.set_result(writer.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+            writer.close()
+
+        async with await asyncio.start_server(met, sock=listener):
+            _, writer = await asyncio.open_connection(*listener.getsockname())
+            writer.close()
+            return bool(await told)
+
+    with listening_socket("localhost", 0) as listener:
+        assert asyncio.run(is_sent_at_once(listener))
 
 
 @pytest.mark.parametrize(
