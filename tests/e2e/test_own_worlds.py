@@ -1,4 +1,4 @@
-"""A person's own worlds in a real Chromium: begun empty, saved, renamed, deleted and brought back."""
+"""A person's own worlds in a real Chromium: begun empty or with a dropped file, saved, renamed, deleted and brought back."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 from playwright.sync_api import Page
 
 from sim2d import load_world, world_from_json, world_to_json
-from tests.e2e.browser import at_each, box_of, calm, open_page, turn_theme, until
-from tests.e2e.editor import edit, walls_are, world
+from tests.e2e.browser import at_each, box_of, calm, open_page, told, turn_theme, until
+from tests.e2e.editor import drop, edit, plan_png, walls_are, world
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
 
@@ -193,3 +195,43 @@ def test_the_editor_s_bar_is_one_row_saved_or_not(program, browser) -> None:
                 assert undo["y"] < close["y"] + close["height"] / 2 < undo["y"] + undo["height"], size
                 assert close["x"] + close["width"] <= bar["x"] + bar["width"], size
             assert places[0][2] == places[1][2], size
+
+
+def test_a_dropped_picture_becomes_a_world(program, browser):
+    with open_page(browser, program.url, 1280, 800) as page:
+        drop(page, ("plan.pgm", cv2.imencode(".pgm", np.zeros((7, 8), np.uint8))[1].tobytes()))
+        until(page, "() => document.getElementById('scale-size').textContent.includes('8 × 7 pixels')")
+        drop(page, ("plan.png", plan_png()), inside=True)
+        until(page, "() => document.getElementById('scale-size').textContent.includes('90 × 70 pixels')")
+        page.fill("#scale", "0.1")
+        until(page, "() => document.getElementById('scale-size').textContent.includes('9.0 × 7.0 m')")
+        page.click("#open-scale .go")
+        told(page, "walls, 8.0 × 6.0 m")
+        assert program.wait(lambda state: state["world"] == "plan")["tick"] == 0
+        assert page.is_hidden("#open-dialog")
+        edit(page)
+        yaml = (
+            b"image: p.png\nresolution: 0.2\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+        )
+        drop(page, ("m.yaml", yaml), ("p.png", plan_png()))
+        told(page, "walls, 16.0 × 12.0 m")
+
+
+def test_what_cannot_be_opened_says_why_and_the_session_goes_on(program, browser):
+    program.command("step", ticks=7)
+    before = program.state()
+    with open_page(browser, program.url, 1280, 800, refused=True, stage=False) as page:
+        for files, why in (
+            ([("w.json", b'{"format": 1,\n "name": }')], "w.json: not JSON: line 2, column 10"),
+            ([("m.yaml", b"image: p.png\nresolution: zero\n")], "m.yaml: origin is missing"),
+            ([("a.txt", b"hello")], "a.txt: cannot be imported"),
+            ([("v.json", b"[[0, 0, 1, 0], [1, 0, 1]]")], "v.json: [1]: got [1, 0, 1]; must be"),
+            ([("a.json", b"[]"), ("b.json", b"[]")], "one plan at a time"),
+        ):
+            drop(page, *files)
+            until(page, "(why) => document.getElementById('open-wrong').textContent.includes(why)", argument=why)
+            assert "The robot goes on as before." in (page.text_content("#open-wrong") or "")
+        drop(page, ("black.png", cv2.imencode(".png", np.zeros((20, 20), np.uint8))[1].tobytes()))
+        page.click("#open-scale .go")
+        until(page, "() => document.getElementById('open-wrong').textContent.includes('no pixel is floor')")
+    assert program.state() == before

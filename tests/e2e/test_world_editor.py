@@ -1,4 +1,4 @@
-"""The world editor and files that are dropped on the page, in a real Chromium."""
+"""The world editor in a real Chromium."""
 
 from __future__ import annotations
 
@@ -6,12 +6,10 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
-import cv2
-import numpy as np
 import pytest
 
 from sim2d import load_world, world_from_json
-from tests.e2e.browser import calm, open_page, told, turn_theme, until
+from tests.e2e.browser import calm, open_page, turn_theme, until
 from tests.e2e.editor import click, drag, drop, edit, plan_png, says, walls_are, world
 from tests.e2e.program import Program
 from tests.e2e.test_accessibility import findings
@@ -232,46 +230,6 @@ def test_people_boxes_and_lamps_are_drawn_as_they_are_now(program, browser):
         program.command("step", ticks=1)
         until(page, "() => document.querySelectorAll('#plan .head').length === 0")
         program.command("set_parameter", name="office.people", value=True)
-
-
-def test_a_dropped_picture_becomes_a_world(program, browser):
-    with open_page(browser, program.url, 1280, 800) as page:
-        drop(page, ("plan.pgm", cv2.imencode(".pgm", np.zeros((7, 8), np.uint8))[1].tobytes()))
-        until(page, "() => document.getElementById('scale-size').textContent.includes('8 × 7 pixels')")
-        drop(page, ("plan.png", plan_png()), inside=True)
-        until(page, "() => document.getElementById('scale-size').textContent.includes('90 × 70 pixels')")
-        page.fill("#scale", "0.1")
-        until(page, "() => document.getElementById('scale-size').textContent.includes('9.0 × 7.0 m')")
-        page.click("#open-scale .go")
-        told(page, "walls, 8.0 × 6.0 m")
-        assert program.wait(lambda state: state["world"] == "plan")["tick"] == 0
-        assert page.is_hidden("#open-dialog")
-        edit(page)
-        yaml = (
-            b"image: p.png\nresolution: 0.2\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
-        )
-        drop(page, ("m.yaml", yaml), ("p.png", plan_png()))
-        told(page, "walls, 16.0 × 12.0 m")
-
-
-def test_what_cannot_be_opened_says_why_and_the_session_goes_on(program, browser):
-    program.command("step", ticks=7)
-    before = program.state()
-    with open_page(browser, program.url, 1280, 800, refused=True, stage=False) as page:
-        for files, why in (
-            ([("w.json", b'{"format": 1,\n "name": }')], "w.json: not JSON: line 2, column 10"),
-            ([("m.yaml", b"image: p.png\nresolution: zero\n")], "m.yaml: origin is missing"),
-            ([("a.txt", b"hello")], "a.txt: cannot be imported"),
-            ([("v.json", b"[[0, 0, 1, 0], [1, 0, 1]]")], "v.json: [1]: got [1, 0, 1]; must be"),
-            ([("a.json", b"[]"), ("b.json", b"[]")], "one plan at a time"),
-        ):
-            drop(page, *files)
-            until(page, "(why) => document.getElementById('open-wrong').textContent.includes(why)", argument=why)
-            assert "The robot goes on as before." in (page.text_content("#open-wrong") or "")
-        drop(page, ("black.png", cv2.imencode(".png", np.zeros((20, 20), np.uint8))[1].tobytes()))
-        page.click("#open-scale .go")
-        until(page, "() => document.getElementById('open-wrong').textContent.includes('no pixel is floor')")
-    assert program.state() == before
 
 
 def test_leaving_an_edited_office_asks_first(program, browser):
