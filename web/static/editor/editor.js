@@ -60,6 +60,8 @@ export class Editor {
     click("edit-save", () => this.saving.ask());
     window.addEventListener("keydown", (event) => this.history(event), true);
     this.use("select");
+    /** @type {[State, PageFields] | null} */
+    this.heard = null; // what the engine said last
   }
 
   /** @returns {NodeListOf<HTMLButtonElement>} */
@@ -80,6 +82,7 @@ export class Editor {
     $("edit").setAttribute("aria-pressed", String(on));
     if (!on) return $("edit").focus();
     this.office.load();
+    if (this.heard) this.at(...this.heard); // a paused engine says nothing more
     $("plan").focus();
   }
 
@@ -87,6 +90,7 @@ export class Editor {
 
   /** @param {State} state @param {PageFields} page */
   at(state, page) {
+    this.heard = /** @type {[State, PageFields]} */ ([state, page]);
     if (!this.open) return;
     const { undo, redo, saved, edition } = page.office ?? {};
     $("edit-undo").disabled = !undo;
