@@ -20,6 +20,7 @@ export class TimePanel {
     this.now_s = 0;
     this.level = 1;
     this.shown = ""; // the lines as they were last drawn
+    this.names = ""; // that can be chosen in the form
     /** @type {number | null} */
     this.place = null; // of the mark for the present moment among the lines
     this.daylight = new DaylightForm(office, tell);
@@ -64,7 +65,8 @@ export class TimePanel {
   show(world) {
     if (this.box.hidden || !world) return; // a thousand lines take a while
     const kinds = /** @type {const} */ (["doors", "lamps", "boxes"]).map((list) => namesOf(world, list));
-    const text = JSON.stringify([world.script, kinds]);
+    const names = JSON.stringify(kinds);
+    const text = JSON.stringify([world.script, names]);
     if (text !== this.shown) {
       this.shown = text;
       const rows = (world.script ?? [])
@@ -72,8 +74,11 @@ export class TimePanel {
         .sort((a, b) => a.item.at_s - b.item.at_s || a.number - b.number);
       keepingPlace(this.list, this.form, () => this.list.replaceChildren(...rows.map((row) => this.row(world, row))));
       $("script-none").hidden = rows.length > 0;
-      this.draw(this.draft());
       this.place = null;
+    }
+    if (names !== this.names) {
+      this.names = names; // only then: whoever types the next line is not to be interrupted by the one before
+      this.draw(this.draft());
     }
     this.daylight.show(world);
     this.at(this.now_s);
@@ -148,6 +153,7 @@ export class TimePanel {
 
   async add() {
     const item = this.read(this.form);
+    const typed = parts(this.form)[0]?.value;
     if (!item || !(await this.office.edit(() => [{ do: "add", list: "script", item }]))) return;
     const words = `${time(item.at_s)}: ${ACTIONS[item.do].title.toLowerCase()} ${item.name ?? item.level ?? ""}`.trim();
     this.tell(
@@ -156,6 +162,7 @@ export class TimePanel {
     );
     /** @type {HTMLInputElement} */
     const when = find(this.form, ".when");
+    if (when.value !== typed) return; // the next line is being typed already
     when.focus();
     when.select();
   }
