@@ -136,6 +136,27 @@ test("what is held is given up when it is cancelled", () => {
   assert.equal(ran, false);
 });
 
+test("who cancels without having asked stops nothing", () => {
+  const inside = new Inside();
+  const gl = slow(inside, 160);
+  restBetweenFrames(
+    /** @type {any} */ (inside),
+    () => false,
+    () => /** @type {any} */ (gl),
+  );
+  let count = 0;
+  const loop = () => {
+    count++;
+    inside.requestAnimationFrame(loop);
+  };
+  inside.requestAnimationFrame(loop);
+  for (let at = 0; at < 5000; at += 50) {
+    inside.pass(at);
+    for (const none of [0, -1, /** @type {any} */ (null), undefined]) inside.cancelAnimationFrame(none);
+  }
+  assert.ok(count > 20 + 4000 / 400, `${count}`);
+});
+
 test("after each frame of the loop it is said that it is drawn", () => {
   const { inside, at } = drawn(160);
   let said = 0;

@@ -7,6 +7,7 @@ const OFTEN = 20; // nothing but the loop asks as often for the same step
 const COVERED_MS = 2000;
 const TOUCHED_MS = 1000;
 const LOOK_MS = 8;
+const HELD_FROM = 1e9; // ids that the browser does not come to, and nobody cancels who has none: viser does so with -1
 const LONGEST_MS = 5000; // who is told nothing of a frame for so long never rests again
 const TOUCHES = ["pointerdown", "pointermove", "pointerup", "wheel"];
 
@@ -20,14 +21,14 @@ export function restBetweenFrames(inside, covered, software) {
   const [next, drop] = [inside.requestAnimationFrame.bind(inside), inside.cancelAnimationFrame.bind(inside)];
   /** @type {[WeakMap<FrameRequestCallback, number>, Map<number, FrameRequestCallback>]} */
   const [asked, held] = [new WeakMap(), new Map()];
-  let [drawing, silent, last, rest, touched] = [false, false, 0, 0, -TOUCHED_MS];
+  let [drawing, silent, last, rest, touched] = [false, false, HELD_FROM, 0, -TOUCHED_MS];
   const now = () => inside.performance.now();
 
   inside.requestAnimationFrame = (step) => {
     asked.set(step, (asked.get(step) ?? 0) + 1);
     if (/** @type {number} */ (asked.get(step)) < OFTEN) return next(step);
     if (drawing || rest) {
-      held.set(--last, step);
+      held.set(++last, step);
       return last;
     }
     return next((at) => draw(step, at));
