@@ -12,8 +12,7 @@ import viser
 
 from web.messages import BesideView, MapLayer, PoseCellLayer
 from web.throttle import Throttle
-from web.viewer.camera_views import CELLS_OF_TWO, CELLS_OF_TWO_ALONE, MAPS_OF_TWO, OFFICE_OF_TWO
-from web.viewer.plates import map_plate, office_plate, pose_cell_plate
+from web.viewer.camera_views import stands
 from web.viewer.plates.map_plate import NODE_Z, MapPlate
 from web.viewer.plates.plate import point_on_plane
 from web.viewer.plates.pose_cell_plate import PoseCellPlate
@@ -72,22 +71,17 @@ class Beside:
 
     def _arrange(self, *, office: bool, two: bool) -> None:
         self._stands = office, two
-        first, plates = self._scenery, (office_plate, pose_cell_plate, map_plate)
+        first, at = self._scenery, stands(office=office, two=two)
         if two:
             self._make()
-            stands = (OFFICE_OF_TWO, (CELLS_OF_TWO if office else CELLS_OF_TWO_ALONE)[0], MAPS_OF_TWO[0])
-        else:
-            stands = tuple((plate.ORIGIN[0], plate.ORIGIN[1]) for plate in plates)
-            stands = (
-                *stands[:2],
-                stands[2] if office else (0.0, stands[2][1]),
-            )  # without an office the map is in the middle
-        for plate, (x, y) in zip((first.office, first.cells, first.map), stands, strict=True):
-            plate.stand_at(x, y)
+        for plate, where in zip(
+            (first.office, first.cells, first.map), (at.office, at.cells[0], at.maps[0]), strict=True
+        ):
+            plate.stand_at(*where)
         if self.cells is not None and self.map is not None:
             self.cells.frame.visible = self.map.frame.visible = two
-            self.cells.stand_at(*(CELLS_OF_TWO if office else CELLS_OF_TWO_ALONE)[1])
-            self.map.stand_at(*MAPS_OF_TWO[1])
+            self.cells.stand_at(*at.cells[-1])
+            self.map.stand_at(*at.maps[-1])
         self._moved(two)
 
     def _make(self) -> None:

@@ -26,21 +26,37 @@ class Camera:
 
 
 Points = NDArray[np.float64]  # (n, 3)
-OFFICE_AT, MAP_AT, CELLS_AT = (-5.85, -2.2), (5.85, -2.2), (0.0, 8.5)  # x, y of the plates
-# Of two brains each has its pose cells behind and its map in front, and the office they share stands between.
-OFFICE_OF_TWO, MAPS_OF_TWO, CELLS_OF_TWO = (0.0, 8.5), ((-5.85, -2.2), (5.85, -2.2)), ((-10.4, 8.5), (10.4, 8.5))
-CELLS_OF_TWO_ALONE = ((-5.85, 8.5), (5.85, 8.5))  # without an office
+At = tuple[float, float]  # x, y of a plate
+OFFICE_AT, MAP_AT, CELLS_AT = (-5.85, -2.2), (5.85, -2.2), (0.0, 8.5)
 
 
-def _block(at: tuple[float, float], size: tuple[float, float, float], y: float = 0.0) -> Points:
+@dataclass(frozen=True)
+class Stands:
+    """Where the plates stand: the office, and of each brain its pose cells and its map."""
+
+    office: At
+    cells: tuple[At, ...]
+    maps: tuple[At, ...]
+
+
+def stands(*, office: bool, two: bool) -> Stands:
+    """office: whether there is one; without it, the others have its room. Of two brains each has its pose cells behind and its
+    map in front, and the office they share stands between."""
+    if two:
+        beside = 10.4 if office else MAP_AT[0]
+        return Stands(CELLS_AT, ((-beside, CELLS_AT[1]), (beside, CELLS_AT[1])), (OFFICE_AT, MAP_AT))
+    return Stands(OFFICE_AT, (CELLS_AT,), (MAP_AT if office else (0.0, MAP_AT[1]),))
+
+
+def _block(size: tuple[float, float, float], y: float = 0.0) -> Points:
     """(8, 3) corners of a block of this width, depth and height, `y` beyond a plate's place."""
     width, depth, height = size
     corners = [(a * width / 2, y + b * depth / 2, z) for a in (-1, 1) for b in (-1, 1) for z in (0.0, height)]
-    return np.array(corners) + np.array((*at, 0.0))
+    return np.array(corners)
 
 
-_OFFICE, _MAP = (_block(at, (11.0, 10.0, 0.0), -0.5) for at in (OFFICE_AT, MAP_AT))
-_CELLS = np.vstack([_block(CELLS_AT, (9.4, 9.9, 0.0), -0.75), _block(CELLS_AT, (7.0, 7.0, 4.6))])
+_OFFICE = _MAP = _block((11.0, 10.0, 0.0), -0.5)
+_CELLS = np.vstack([_block((9.4, 9.9, 0.0), -0.75), _block((7.0, 7.0, 4.6))])
 
 
 @dataclass(frozen=True)
@@ -77,10 +93,7 @@ def camera_for(view: View, aspect: float, office: bool = True, two: bool = False
     tall, look = aspect < PHONE_ASPECT, _LOOKS[view if office or view != "office" else "all"]
     low, high = look.tall_deg if tall else look.wide_deg
     rooms = (_LOW_ROOM, _LOW_ROOM_OF_TWO) if aspect > LOW_ASPECT else (_TALL_ROOM if tall else look.free, _ROOM)
-    points, azimuth_deg = (
-        _seen_of_two(view, office) if two else _seen(view, office),
-        0 if two else look.azimuth_deg[tall],
-    )
+    points, azimuth_deg = _seen(view, office, two), 0 if two else look.azimuth_deg[tall]
     found = [
         _fitted(points, elevation, azimuth_deg, look.fov_deg, max(aspect, 0.1), rooms[two])
         for elevation in np.arange(low, high + 1e-9, _STEP_DEG).tolist()
@@ -88,30 +101,17 @@ def camera_for(view: View, aspect: float, office: bool = True, two: bool = False
     return min(found, key=lambda camera: float(np.linalg.norm(camera.position - camera.look_at)))
 
 
-def _seen(view: View, office: bool) -> Points:
+def _seen(view: View, office: bool, two: bool) -> Points:
     """What a view shows."""
-    alone = _MAP - (MAP_AT[0], 0.0, 0.0)  # without an office the map stands in the middle
-    if view == "pose":
-        return _CELLS
-    if view == "map":
-        return _MAP if office else alone
-    if view == "office" and office:
-        return _OFFICE
-    return np.vstack([_OFFICE, _MAP, _CELLS]) if office else np.vstack([alone, _CELLS])
-
-
-def _seen_of_two(view: View, office: bool) -> Points:
-    """The same of two brains."""
-    cells = np.vstack(
-        [_CELLS - (*CELLS_AT, 0.0) + (*at, 0.0) for at in (CELLS_OF_TWO if office else CELLS_OF_TWO_ALONE)]
-    )
-    maps = np.vstack([_MAP - (*MAP_AT, 0.0) + (*at, 0.0) for at in MAPS_OF_TWO])
-    between = _OFFICE - (*OFFICE_AT, 0.0) + (*OFFICE_OF_TWO, 0.0)
+    at = stands(office=office, two=two)
+    cells = np.vstack([_CELLS + np.array((*here, 0.0)) for here in at.cells])
+    maps = np.vstack([_MAP + np.array((*here, 0.0)) for here in at.maps])
+    floor = _OFFICE + np.array((*at.office, 0.0))
     if view in ("pose", "map"):
         return cells if view == "pose" else maps
     if view == "office" and office:
-        return between
-    return np.vstack([cells, maps, between]) if office else np.vstack([cells, maps])
+        return floor
+    return np.vstack([cells, maps, floor] if office else [cells, maps])
 
 
 def _fitted(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from web.messages import ExperienceReport, Pose, Snapshot
 from web.switches import Name
-from web.viewer.camera_views import CELLS_AT, MAP_AT, OFFICE_AT, Camera, View, camera_for, seen_by
+from web.viewer.camera_views import At, Camera, View, camera_for, seen_by, stands
 from web.viewer.fits.cell_fit import HEIGHT, SIDE, CellFit
 from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.fits.office_fit import OfficeFit
@@ -22,7 +22,8 @@ from web.viewer.fits.overlaid import Overlaid, overlaid
 from web.viewer.marks.inspected import links_of, spots_of
 from web.viewer.marks.robot_model import ENLARGED, SMALLEST
 from web.viewer.primitives import meshes
-from web.viewer.primitives.palette import Palette, Rgb, mix
+from web.viewer.primitives.palette import BRAINS, Palette, Rgb, mix
+from web.viewer.vector.subject import snapshot_of_second
 
 Points = NDArray[np.float64]
 UNITS = 1000.0  # of the picture's height
@@ -30,25 +31,30 @@ WALL_HIGH, MOST_WALLS, MOST_DOTS = 0.6, 1200, 900
 SURE = 0.15  # how far from one half a probability is shown
 TIMES = 12  # shades of the goal memory
 Shades = tuple[NDArray[np.int64], list[Rgb]]  # (n_y, n_x) which of the colours each cell has, -1: none
-SHEETS = ((CELLS_AT, 9.4, 9.9, -0.75), (OFFICE_AT, 11.0, 10.0, -0.5), (MAP_AT, 11.0, 10.0, -0.5))
+CELL_SHEET, SHEET = (9.4, 9.9, -0.75), (11.0, 10.0, -0.5)  # width, depth, y of the middle
 
 
 def picture(snapshot: Snapshot, view: View, aspect: float, palette: Palette, on: Collection[Name]) -> str:
     """The stage as it is now; aspect: width over height of the canvas; on: the switches that are on."""
-    office = snapshot.world is not None
-    sketch = _Sketch(camera_for(view, aspect, office), palette)
-    map_at = MAP_AT if office else (0.0, MAP_AT[1])
-    for at, width, depth, centre_y in SHEETS:
-        if at == OFFICE_AT and not office:
-            continue
-        stands = map_at if at == MAP_AT else at
-        outline = meshes.rounded_rectangle(width, depth, 0.45, centre=(0.0, centre_y)) + stands
-        sketch.area(meshes.lifted(outline, -0.055), palette.sheet, palette.rim)
-    laid = overlaid(snapshot, on)
-    _cells(sketch, snapshot, laid)
+    office, beside = snapshot.world is not None, snapshot.beside
+    at = stands(office=office, two=beside is not None)
+    brains = [(snapshot, overlaid(snapshot, on))]
+    if beside is not None:
+        second = snapshot_of_second(snapshot, beside)
+        brains.append((second, overlaid(second, ())))
+    sketch = _Sketch(camera_for(view, aspect, office, beside is not None), palette)
+    for k, (cells_at, map_at) in enumerate(zip(at.cells, at.maps, strict=True)):
+        rim = palette.rim if beside is None else BRAINS[palette.dark][k]
+        sketch.sheet(cells_at, CELL_SHEET, rim)
+        sketch.sheet(map_at, SHEET, rim)
     if office:
-        _office(sketch, snapshot)
-    _map(sketch, snapshot, map_at, laid)
+        sketch.sheet(at.office, SHEET, palette.rim)
+    for (seen, laid), where in zip(brains, at.cells, strict=True):
+        _cells(sketch, seen, laid, where)
+    if office:
+        _office(sketch, snapshot, at.office)
+    for (seen, laid), where in zip(brains, at.maps, strict=True):
+        _map(sketch, seen, where, laid)
     return sketch.text(aspect)
 
 
@@ -58,6 +64,11 @@ class _Sketch:
         self._parts: list[str] = []
         half = float(np.linalg.norm(camera.look_at - camera.position)) * math.tan(camera.fov_rad / 2)
         self._zoom = UNITS / 2 / half
+
+    def sheet(self, at: At, size: tuple[float, float, float], rim: Rgb) -> None:
+        width, depth, centre_y = size
+        outline = meshes.rounded_rectangle(width, depth, 0.45, centre=(0.0, centre_y)) + at
+        self.area(meshes.lifted(outline, -0.055), self.palette.sheet, rim)
 
     def area(self, points: Points, fill: tuple[int, int, int], rim: tuple[int, int, int] | None = None) -> None:
         line = "" if rim is None else f' stroke="{_hex(rim)}" stroke-width="1.5"'
@@ -97,28 +108,28 @@ class _Sketch:
         return (seen * (self._zoom, -self._zoom)).tolist()
 
 
-def _office(sketch: _Sketch, snapshot: Snapshot) -> None:
+def _office(sketch: _Sketch, snapshot: Snapshot, at: At) -> None:
     world, palette = snapshot.world, sketch.palette
     assert world is not None
     fit = OfficeFit(world.bounds)
     half = np.array(fit.size_m) * fit.scale / 2
-    floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half + OFFICE_AT
+    floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half + at
     sketch.area(meshes.lifted(floor, -0.03), palette.floor)
     walls = np.asarray(world.walls, np.float64)
     lengths = np.hypot(*(walls[:, 2:] - walls[:, :2]).T)
     walls = walls[np.argsort(-lengths, kind="stable")[:MOST_WALLS]]
-    ends = fit.to_plate(walls.reshape(-1, 2)).reshape(-1, 2, 2) + OFFICE_AT
+    ends = fit.to_plate(walls.reshape(-1, 2)).reshape(-1, 2, 2) + at
     low = np.concatenate([ends, np.zeros((len(ends), 2, 1))], 2)
     high = low[:, ::-1] + (0.0, 0.0, WALL_HIGH * fit.relief)
     sketch.areas(np.concatenate([low, high], 1), palette.wall, palette.floor)
     truth = snapshot.truth
     if truth is not None:
-        at = meshes.lifted(fit.to_plate(np.array([[truth.x, truth.y]])) + OFFICE_AT, 0.2)
+        middle = meshes.lifted(fit.to_plate(np.array([[truth.x, truth.y]])) + at, 0.2)
         radius = max(ENLARGED * fit.scale * world.robot_radius_m, SMALLEST)
-        sketch.dots(at, np.array([palette.robot], np.uint8), radius)
+        sketch.dots(middle, np.array([palette.robot], np.uint8), radius)
 
 
-def _map(sketch: _Sketch, snapshot: Snapshot, at: tuple[float, float], laid: Overlaid) -> None:
+def _map(sketch: _Sketch, snapshot: Snapshot, at: At, laid: Overlaid) -> None:
     palette, layer = sketch.palette, snapshot.map
     floor = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (WIDTH / 2, DEPTH / 2) + at
     sketch.area(meshes.lifted(floor, -0.03), palette.floor)
@@ -146,7 +157,7 @@ def _map(sketch: _Sketch, snapshot: Snapshot, at: tuple[float, float], laid: Ove
     sketch.area(_arrow(snapshot.estimate, fit, at), palette.robot)
 
 
-def _arrow(pose: Pose, fit: MapFit, at: tuple[float, float]) -> Points:
+def _arrow(pose: Pose, fit: MapFit, at: At) -> Points:
     turn = pose.heading_rad + fit.turn_rad
     c, s = math.cos(turn), math.sin(turn)
     shape = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)]) @ np.array([[c, s], [-s, c]])
@@ -188,16 +199,16 @@ def _met(probability: NDArray[np.float32], palette: Palette) -> Shades:
     ]
 
 
-def _cells(sketch: _Sketch, snapshot: Snapshot, laid: Overlaid) -> None:
+def _cells(sketch: _Sketch, snapshot: Snapshot, laid: Overlaid, at: At) -> None:
     palette, layer = sketch.palette, snapshot.pose_cells
-    fit, stands = CellFit(layer.shape), np.array((*CELLS_AT, 0.0))
+    fit, stands = CellFit(layer.shape), np.array((*at, 0.0))
     foot = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (SIDE / 2)
     sketch.area(meshes.lifted(foot, -0.03) + stands, palette.floor)
     size = np.array(layer.shape[:0:-1]) / SIDE
     if laid.beneath is not None:
-        _floor(sketch, _met(laid.beneath.cells, palette), lambda xy: xy / size - SIDE / 2 + CELLS_AT)
+        _floor(sketch, _met(laid.beneath.cells, palette), lambda xy: xy / size - SIDE / 2 + at)
     if laid.goal_memory is not None and laid.goal_memory.seconds is not None:
-        _floor(sketch, _timed(laid.goal_memory.seconds, palette), lambda xy: xy / size - SIDE / 2 + CELLS_AT)
+        _floor(sketch, _timed(laid.goal_memory.seconds, palette), lambda xy: xy / size - SIDE / 2 + at)
     low, high = meshes.lifted(foot, 0.0) + stands, meshes.lifted(foot, HEIGHT) + stands
     edges = np.concatenate([meshes.closed_line(foot, z).astype(np.float64) for z in (0.0, HEIGHT)]) + stands
     sketch.lines(np.concatenate([edges, np.stack([low, high], 1)]), palette.glass_edge, 1.5)

@@ -11,15 +11,16 @@ import numpy as np
 import pytest
 
 from tests.fake_snapshots import fake_reports, fake_snapshot
+from tests.unit.web.crowded import two_brains
 from tests.unit.web.doubles import house
 from web.messages import GoalMemoryLayer, OccupancyLayer, OccupancyPicture
 from web.switches import NAMES
-from web.viewer.camera_views import CELLS_AT, MAP_AT, OFFICE_AT, VIEWS, camera_for, seen_by
+from web.viewer.camera_views import CELLS_AT, MAP_AT, OFFICE_AT, VIEWS, camera_for, seen_by, stands
 from web.viewer.fits.cell_fit import SIDE
 from web.viewer.fits.map_fit import MapFit, refit
 from web.viewer.fits.office_fit import OfficeFit
 from web.viewer.picture import UNITS, picture
-from web.viewer.primitives.palette import DARK, LIGHT, Rgb, mix
+from web.viewer.primitives.palette import BRAINS, DARK, LIGHT, Rgb, mix
 
 
 @pytest.mark.parametrize("view", VIEWS)
@@ -86,6 +87,29 @@ def test_what_lies_on_the_floors_is_where_the_plates_have_it() -> None:
         seen = seen_by(camera, np.column_stack([at, np.full(4, -0.02)]))[0] * (zoom, -zoom)
         assert of_colour(svg, colour) == pytest.approx(seen, abs=0.11)
         assert not len(of_colour(bare, colour))
+
+
+def test_of_two_brains_each_stands_where_its_plates_do() -> None:
+    """The arrows of both, on their own maps by their own fits, and the rims in their colours."""
+    snapshot, aspect = two_brains(), 1.63
+    beside = snapshot.beside
+    assert beside is not None
+    svg, camera = picture(snapshot, "all", aspect, DARK, NAMES), camera_for("all", aspect, two=True)
+    zoom = UNITS / 2 / math.tan(camera.fov_rad / 2) / np.linalg.norm(camera.look_at - camera.position)
+    wanted: list[np.ndarray] = []
+    for layer, turn, pose, at in (
+        (snapshot.map, snapshot.map_turn_rad, snapshot.estimate, stands(office=True, two=True).maps[0]),
+        (beside.map, beside.map_turn_rad, beside.estimate, stands(office=True, two=True).maps[1]),
+    ):
+        fit = refit(MapFit(), layer.extent_xy, turn)
+        c, s = math.cos(pose.heading_rad + fit.turn_rad), math.sin(pose.heading_rad + fit.turn_rad)
+        tip = fit.to_plate(np.array([[pose.x, pose.y]])) + at + 0.5 * np.array([c, s])
+        wanted.append(seen_by(camera, np.column_stack([tip, [0.22]]))[0][0] * (zoom, -zoom))
+    arrows = of_colour(svg, DARK.robot)
+    for tip in wanted:
+        assert np.hypot(*(arrows - tip).T).min() < 0.2
+    for colour in BRAINS[DARK.dark]:
+        assert svg.count(f'stroke="#{bytes(colour).hex()}"') == 2
 
 
 def test_what_is_inspected_is_ringed() -> None:

@@ -51,11 +51,12 @@ def second_of(snapshot: Snapshot, palette: Palette) -> Subject:
     if beside is None:
         raise ValueError("there is one brain only; compare_brains begins a second one")
     brain = beside.second.name, BRAINS[palette.dark][1]
-    theirs = _with(snapshot, beside)
+    theirs = snapshot_of_second(snapshot, beside)
     return Subject(theirs, palette, judged(theirs, ()), overlaid(theirs, ()), brain, beside.other)
 
 
-def _with(snapshot: Snapshot, beside: BesideView) -> Snapshot:
+def snapshot_of_second(snapshot: Snapshot, beside: BesideView) -> Snapshot:
+    """The moment, with the second brain in place of the first."""
     return replace(
         snapshot, pose_cells=beside.pose_cells, map=beside.map, times=beside.times, estimate=beside.estimate,
         goal=beside.goal, map_turn_rad=beside.map_turn_rad, map_in_office=None, places=(), tags=(), lesson=None, inspected=None,
