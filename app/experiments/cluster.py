@@ -19,6 +19,7 @@ HERE = "127.0.0.1"
 FIND_S = 20.0  # how long to look for a scheduler
 JOIN_S = 60.0  # how long to wait for its first worker
 END_S = 5.0
+BEGIN_TRIES = 5
 _ONE_THREAD = {"NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 _CONFIG: dict[str, Any] = {
     "distributed.scheduler.http.routes": [],  # nothing is served to browsers
@@ -61,15 +62,11 @@ def cores() -> int:
 @contextlib.contextmanager
 def _cluster_of_our_own(workers: int) -> Generator[Any]:
     import dask.config
-    from distributed import Client, LocalCluster
+    from distributed import Client
 
     with dask.config.set(_CONFIG):
         _fork_ready_workers()
-        cluster: Any = LocalCluster(
-            n_workers=workers, threads_per_worker=1, processes=True, host=HERE, memory_limit=0,
-            dashboard_address=f"{HERE}:0", scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL,
-            preload=["app.experiments.batch"],
-        )  # fmt: skip
+        cluster = _begun(workers)
         try:
             client: Any = Client(cluster, set_as_default=False)
             try:
@@ -81,6 +78,26 @@ def _cluster_of_our_own(workers: int) -> Generator[Any]:
         finally:
             with contextlib.suppress(TimeoutError, OSError):
                 cluster.close(timeout=END_S)
+
+
+def _begun(workers: int) -> Any:
+    """A cluster with all its workers. If one dies before it has begun, which nobody starts again, all are begun anew."""
+    from distributed import LocalCluster
+
+    for more in range(BEGIN_TRIES - 1, -1, -1):
+        try:
+            return LocalCluster(
+                n_workers=workers, threads_per_worker=1, processes=True, host=HERE, memory_limit=0,
+                dashboard_address=f"{HERE}:0", scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL,
+                preload=["app.experiments.batch"],
+            )  # fmt: skip
+        except RuntimeError as error:
+            if not more:
+                raise ValueError(
+                    f"{workers} workers cannot begin: {BEGIN_TRIES} times one of them died at once ({error}); with too little "
+                    "memory for so many, try fewer (--workers 1)"
+                ) from None
+    raise AssertionError("unreachable")
 
 
 def _fork_ready_workers() -> None:

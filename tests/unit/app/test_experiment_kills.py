@@ -21,7 +21,7 @@ from tests.unit.app.test_experiment_runner import PATIENCE_S, assert_all_right, 
 
 KILLS = 50
 CLIENTS = 8  # of them; it takes longer until a client is at work again
-MORE = 4000  # trials at first, and whenever all are done
+MORE = 2000  # trials at first, and whenever all are done
 MOST_WAIT_S = 0.2
 
 
@@ -38,8 +38,9 @@ def test_fifty_kills_lose_nothing(tmp_path: Path) -> None:
                 wait_until(partial(_has_done, store, wanted, command), "there are more")
             time.sleep(rng.uniform(0.0, MOST_WAIT_S))
             while (pid := command.pid if victim == "client" else worker_of(command.pid, rng)) is None or dead(command):
-                if dead(command):  # it has done all: there shall be more
-                    total += MORE
+                if dead(command):
+                    assert command.returncode == 0, command.communicate()[1]
+                    total += MORE  # it has done all: there shall be more
                     command = begin(path, total)
                 time.sleep(0.01)
             os.kill(pid, signal.SIGKILL)

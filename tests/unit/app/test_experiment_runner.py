@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -96,6 +97,37 @@ def test_a_worker_that_is_killed_costs_its_batch_and_nothing_else(client: Any, s
     run_trials(trials, store, client, run=fake_trials.run, expected_s=0.1, tell=tell)
     assert len(killed) == 1
     assert_all_right(store, trials)
+
+
+def test_a_worker_that_dies_before_it_has_begun_is_begun_again() -> None:
+    known = _grandchildren()
+
+    def kill() -> None:
+        wait_until(lambda: _grandchildren() - known, "a worker begins")
+        os.kill((_grandchildren() - known).pop(), signal.SIGKILL)
+
+    with ThreadPoolExecutor(1) as pool:
+        killed = pool.submit(kill)
+        with connected_to(None, 2) as client:
+            killed.result()
+            assert len(client.nthreads()) == 2
+
+
+def test_workers_that_never_begin_are_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    def die(*_: object, **__: object) -> None:
+        raise RuntimeError("Nanny failed to start.")
+
+    monkeypatch.setattr("distributed.LocalCluster", die)
+    with (
+        pytest.raises(ValueError, match=r"3 workers cannot begin: 5 times .*Nanny failed to start.*--workers 1"),
+        connected_to(None, 3),
+    ):
+        pass
+
+
+def _grandchildren() -> set[int]:
+    """Workers are forked by a child of the client."""
+    return {worker.pid for child in psutil.Process().children() for worker in child.children()}
 
 
 def test_a_cluster_that_exists_is_used_by_its_address(client: Any, store: Store) -> None:
