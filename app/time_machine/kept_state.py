@@ -82,13 +82,12 @@ def kept_array(array: NDArray[Any], before: tuple[Bytes, KeptArray] | None) -> t
     if before is None or before[1].dtype != array.dtype or len(before[0]) != len(raw):
         return raw.copy(), _kept_anew(array, raw, before)
     copy, old = before
-    changed = _changed(copy, raw, old.starts)
-    if len(changed) == 0 and array.shape == old.shape:
+    parts, chunks = [slice(*part) for part in _parts(old.starts, len(raw))], list(old.chunks)
+    changed = [number for number, part in enumerate(parts) if copy[part].tobytes() != raw[part].tobytes()]
+    if not changed and array.shape == old.shape:
         return before
-    parts, chunks = _parts(old.starts, len(raw)), list(old.chunks)
-    numbers: list[int] = changed.tolist()
-    for number in numbers:
-        part = slice(*parts[number])
+    for number in changed:
+        part = parts[number]
         copy[part] = raw[part]
         chunks[number] = _chunk(raw[part], array.dtype, chunks[number])
     return copy, KeptArray(array.dtype, array.shape, tuple(chunks), old.starts)
@@ -157,12 +156,3 @@ def _as_it_was(raw: Bytes, itemsize: int) -> Bytes:
     for place in range(itemsize):
         numbers[:, place] = places[place]
     return numbers.reshape(-1)
-
-
-def _changed(before: Bytes, now: Bytes, starts: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The numbers of the chunks that differ. Both have the same length."""
-    whole = len(now) // 8 * 8
-    differ = np.flatnonzero(before[:whole].view(np.uint64) != now[:whole].view(np.uint64)) * 8
-    rest = np.flatnonzero(before[whole:] != now[whole:]) + whole
-    first = np.concatenate([differ, np.minimum(differ + 7, len(now) - 1), rest])  # eight bytes may be of two chunks
-    return np.unique(np.searchsorted(starts, first, side="right") - 1)

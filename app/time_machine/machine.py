@@ -19,7 +19,7 @@ from app.time_machine.shelf import Shelf
 from app.views.history import History
 from disk import encode
 
-EVERY_TICKS = 150  # between two keyframes, until there are too many
+EVERY_TICKS = 100  # between two keyframes, until there are too many
 AGAIN_MS, LOOK_AFTER = 200.0, 10  # the moments of some recordings take long: so much is run again at most
 BUDGET_BYTES, DISK_BYTES = 200_000_000, 2_000_000_000
 IN_MEMORY = 0.8  # of the budget: from here on the oldest goes to the disk, and has time to get there
