@@ -47,6 +47,10 @@ WRONG = """([parts, least]) => {
             wrong.push(`${name(part)} is ${box.width.toFixed(0)} x ${box.height.toFixed(0)}`);
         if (part.tagName !== "SELECT" && part.scrollWidth > part.clientWidth + 1 && getComputedStyle(part).overflow !== "visible")
             wrong.push(`${name(part)} is cut`);
+        if (part.matches("#beside-end")) { // it stands first in a line that is scrolled
+            const line = part.parentElement.getBoundingClientRect();
+            if (box.left < line.left - 0.5 || box.right > line.right + 0.5) wrong.push(`${name(part)} is out of sight`);
+        }
         if (scrolled(part)) continue;
         const at = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2);
         if (at && !part.contains(at) && !at.contains(part) && !at.closest("label")?.contains(part))
