@@ -34,13 +34,13 @@ from tests.e2e.browser import launch, open_page
 from tests.e2e.program import Program
 from web.http.state import StateText
 from web.http.stream import PERIOD_S
-from web.messages import Pause, Resume, SetGoal, SetMode, SetSpeed
+from web.messages import CompareBrains, Pause, Resume, SetGoal, SetMode, SetSpeed
 from web.panel.panel import TABS, Panel, PanelReader
 from web.switches import Switches
 from web.viewer import Viewer
 
 BARS_KB = {"exploring": 180.0, "to a goal": 300.0, "standing still": 80.0, "paused": 1.0}  # per second, all together
-LARGE_KB = 300.0  # what viser may send a second in any of these, with 5,000 experiences
+LARGE_KB = 300.0  # what viser may send a second in any of these, with 5,000 experiences or two brains
 FRAME_MS, HZ = 8.0, 60  # what the page's own script may take of 99 in 100 frames, and how many there are a second
 MOST_US = 5000  # a longer gap between two samples is the machine's other work, not ours
 LINES = 12
@@ -68,17 +68,20 @@ def main() -> int:
     parser.add_argument(
         "--experiences", type=int, default=0, help="explore until the map has as many; held to another bar"
     )
+    parser.add_argument("--two", action="store_true", help="two brains from then on; held to viser's bar")
     parser.add_argument("--only", choices=("traffic", "frames"), help="one of the two; traffic needs no browser")
     parser.add_argument("--picture", help="a PNG of the page at the end")
     options = parser.parse_args()
-    met = options.only == "frames" or traffic(options.world, options.seconds, options.after, options.experiences)
+    met = options.only == "frames" or traffic(
+        options.world, options.seconds, options.after, options.experiences, two=options.two
+    )
     if options.only != "traffic":
         met &= frames(options.world, options.seconds, options.after, options.picture, options.experiences)
     print("met" if met else "MISSED")
     return not met
 
 
-def traffic(world: str, seconds: float, after_s: float, experiences: int) -> bool:
+def traffic(world: str, seconds: float, after_s: float, experiences: int, *, two: bool = False) -> bool:
     """Bytes per second while the robot explores, goes to a goal, stands still, and while the session is paused."""
     engine = EngineThread(load_world(world), 5, _growing() if experiences else Config(), speed=0.0)
     page = _Page(engine)
@@ -91,6 +94,8 @@ def traffic(world: str, seconds: float, after_s: float, experiences: int) -> boo
             )
         )
         engine.submit(SetSpeed(type="set_speed", factor=1.0)).result()
+        if two:
+            engine.submit(CompareBrains(type="compare_brains", pair="vision", since="now")).result()
         for phase, bar_kb in BARS_KB.items():
             if phase == "to a goal":
                 engine.submit(_farthest(engine)).result()
@@ -101,7 +106,7 @@ def traffic(world: str, seconds: float, after_s: float, experiences: int) -> boo
             page.heard.clear()
             page.look_for(seconds)
             total, stage = _tell(phase, page.heard, seconds)
-            met &= stage <= LARGE_KB if experiences else total <= bar_kb
+            met &= stage <= LARGE_KB if experiences or two else total <= bar_kb
     finally:
         engine.stop()
         page.viewer.stop()
