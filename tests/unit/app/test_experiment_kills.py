@@ -49,7 +49,8 @@ def test_fifty_kills_lose_nothing(tmp_path: Path) -> None:
                 command = begin(path, total)
         command.wait(4 * PATIENCE_S)  # on a busy machine thousands of trials are still to come
         for _ in range(2):  # a trial whose worker died four times has failed, and is run by the next command
-            assert begin(path, total).wait(PATIENCE_S) == 0
+            with begin(path, total) as again:
+                assert again.wait(PATIENCE_S) == 0
         assert_all_right(store, fake_trials.trials(total))
 
 

@@ -212,7 +212,8 @@ def test_a_command_that_is_stopped_leaves_no_process_and_goes_on(tmp_path: Path,
         wait_until(lambda: not any(psutil.pid_exists(pid) for pid in group), "all processes have ended")
         kept = len(store.of_experiment("small"))
         assert 20 < kept < 600
-        assert begin(path, 600).wait(PATIENCE_S) == 0
+        with begin(path, 600) as again:
+            assert again.wait(PATIENCE_S) == 0
         assert_all_right(store, fake_trials.trials(600))
 
 
