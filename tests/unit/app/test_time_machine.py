@@ -90,8 +90,8 @@ def test_keyframes_stay_under_their_budget_and_the_first_is_never_dropped() -> N
     ticks = [frame.tick for frame in machine.live.keyframes]
     assert machine.nbytes <= 8_000_000
     assert ticks[0] == 0
-    assert ticks[-1] == 2400
-    assert len(ticks) < 17
+    assert ticks[-1] == 2500
+    assert len(ticks) < 26  # one every ten seconds, if there were room for all
     for tick, state_hash in hashes.items():
         assert machine.moment(machine.live, tick).session.state_hash() == state_hash
 
