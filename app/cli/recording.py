@@ -75,6 +75,6 @@ def _check(args: argparse.Namespace) -> int:
         print("\n".join(checked.lines))
         for problem in checked.about.problems:
             print(f"ratslam: {problem}", file=sys.stderr)
-        if not checked.about.problems:
+        if checked.about.whole:
             print("  nothing is wrong with it")
     return 1 if checked.about.problems else 0

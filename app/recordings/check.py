@@ -31,6 +31,8 @@ class Checked:
             "has": sorted(about.has),
             "uses": list(about.uses),
             "problems": list(about.problems),
+            "counts": [{"what": count.what, "read": count.read, "of": count.there} for count in about.counts],
+            "unused": list(about.unused),
             "lengths": lengths(about) or "metres",
         }
         if about.image_shape is not None:
@@ -51,6 +53,8 @@ class Checked:
             limit = "" if about.range_limit_m is None else f" up to {about.range_limit_m:g} m"
             lines.append(f"  scans of {len(about.beam_angles_rad)} beams{limit}")
         lines += [f"  {sentence}" for sentence in about.uses]
+        lines += [f"  read {count.read} of {count.there} {count.what}" for count in about.counts]
+        lines += [f"  not used: {sentence}" for sentence in about.unused]
         if (told := lengths(about)) is not None:
             lines.append(f"  {told}")
         if missing := [kind for kind in ("camera", "speed", "yaw rate", "ranges", "truth") if kind not in about.has]:

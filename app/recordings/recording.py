@@ -37,6 +37,15 @@ class Moment:
 
 
 @dataclass(frozen=True, slots=True)
+class Count:
+    """How much of one source could be read."""
+
+    what: str  # "messages of /odom", "lines of values.csv", "pictures"
+    read: int
+    there: int  # all of them, the unreadable, too
+
+
+@dataclass(frozen=True, slots=True)
 class About:
     """What a recording says of itself before it is played."""
 
@@ -52,6 +61,13 @@ class About:
     config: Config | None = None  # of a run of ours: its parameters ...
     seed: int | None = None  # ... and its seed
     problems: tuple[str, ...] = ()  # sentences with the message or line where something is wrong
+    counts: tuple[Count, ...] = ()  # of each source that is used
+    unused: tuple[str, ...] = ()  # sentences: each file, topic and column that is not used, and why
+
+    @property
+    def whole(self) -> bool:
+        """Whether all that is in it is played, and nothing is wrong with it."""
+        return not self.problems and not self.unused and all(count.read == count.there for count in self.counts)
 
 
 class Recording(Protocol):
