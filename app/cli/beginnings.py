@@ -97,12 +97,12 @@ def opened_situation(args: argparse.Namespace) -> First:
 
 def played_recording(args: argparse.Namespace) -> First:
     """A recording from its beginning."""
-    from app.recordings.opening import open_recording
+    from app.recordings.apart import ReadApart
     from app.recordings.playing import Player
 
     _refuse(args, _NOT_WITH_RECORDING, "--recording, which is no simulated world")
     seed = checked_seed(1 if args.seed is None else args.seed)
-    player = Player(open_recording(args.recording), seed, path=args.recording)
+    player = Player(ReadApart(args.recording), seed, path=args.recording)
     player.config = config_of(args, player.config)
 
     def begin(engine: Engine) -> None:

@@ -122,10 +122,10 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
 
 def _opened(path: Path) -> object:
     """What plays the recording in a file. ValueError says what is wrong with it."""
-    from app.recordings.opening import open_recording
+    from app.recordings.apart import ReadApart
     from app.recordings.playing import Player
 
-    return Player(open_recording(path), 1, path=path)
+    return Player(ReadApart(path), 1, path=path)
 
 
 def _tell(serving: Serving, dashboard: Dashboard, url: str) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from app.config.toml_file import from_toml
 from app.recordings.recording import About, Moment, Recording, Wanted, every
 
 
@@ -14,6 +13,8 @@ class OwnRun:
 
     def __init__(self, recording: Recording, said: dict[str, str]) -> None:
         """said: what the run says of itself, as `app/export/mcap_file.py` writes it."""
+        from app.config.toml_file import from_toml  # which needs the engine, and most recordings do not
+
         self._recording = recording
         self._problems: tuple[str, ...] = ()
         self._config, self._seed = None, None

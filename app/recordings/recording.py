@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.config import Config
+if TYPE_CHECKING:
+    from app.config import Config
 
 Pose = tuple[float, float, float]  # x, y (m), heading (rad, counter-clockwise)
 Wanted = Callable[[int], bool]  # whether the picture of the moment of this number, from 0, is wanted

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import cast
 
 from app.played_session import PlayedSession
+from app.recordings.apart import ReadApart
 from app.recordings.fingerprint import fingerprint
-from app.recordings.opening import open_recording
 from app.recordings.playing import Player
 from app.runs.header import Header
 from disk import decode
@@ -29,7 +29,7 @@ def recorded(name: str, header: Header) -> PlayedSession:
         raise ValueError(f"{whose}, which cannot be read: {error.strerror or error}") from None
     if not same:
         raise ValueError(f"{whose}, which has changed since: the run cannot be played again")
-    return PlayedSession(Player(open_recording(path), header.seed, header.config, path), header.seed)
+    return PlayedSession(Player(ReadApart(path), header.seed, header.config, path), header.seed)
 
 
 def state_of(file: Path, begun: PlayedSession, hashes: dict[int, str]) -> PlayedSession | None:

@@ -1,0 +1,103 @@
+"""Recordings that another process reads are the same, and what they cost ends with it."""
+
+import os
+import sqlite3
+import subprocess
+import sys
+import threading
+from itertools import zip_longest
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+
+from app.recordings.apart import Most, ReadApart
+from app.recordings.opening import open_recording
+from app.recordings.recording import Moment
+from tests.recordings import FORMATS
+
+LITTLE = Most(cpu_s=1.0, cpu_s_a_byte=0.0)
+
+
+def made(folder: Path, name: str) -> Path:
+    file, write, _ = FORMATS[name]
+    return write(folder / file)
+
+
+def same(one: Moment | None, other: Moment | None, picture: bool) -> bool:
+    assert one is not None
+    assert other is not None
+    for name in ("frame", "time_s", "dt", "speed", "yaw_rate", "throttle", "truth", "behaviour"):
+        assert getattr(one, name) == getattr(other, name)
+    np.testing.assert_array_equal(one.ranges_m, other.ranges_m)
+    if picture:
+        np.testing.assert_array_equal(one.image, other.image)
+    return True
+
+
+@pytest.mark.parametrize("name", ["mp4", "carmen", "mcap"])
+def test_moments_are_the_same_as_here_whoever_else_reads(tmp_path: Path, name: str) -> None:
+    path = made(tmp_path, name)
+    here, apart = open_recording(path), ReadApart(path)
+    assert apart.about == here.about
+    some = zip_longest(here.moments(lambda n: n >= 3), apart.moments(lambda n: n >= 3))
+    for k, (one, other) in enumerate(zip_longest(here.moments(), apart.moments())):
+        assert same(one, other, picture=True)
+        assert same(*next(some), picture=k >= 3)
+    assert next(some, None) is None
+    assert apart.about == here.about
+
+
+def endless(path: Path) -> Path:
+    """A bag whose table of messages is a view without an end."""
+    with sqlite3.connect(path) as base:
+        base.execute("CREATE TABLE topics (id INTEGER, name TEXT, type TEXT)")
+        again = "WITH RECURSIVE more(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM more) SELECT n AS id, 1, n, x'00' FROM more"
+        base.execute(f"CREATE VIEW messages (id, topic_id, timestamp, data) AS {again}")
+    base.close()
+    return path
+
+
+def test_reading_without_an_end_is_ended_and_said(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"bag\.db3: more than 1 s of computing"):
+        ReadApart(endless(tmp_path / "bag.db3"), most=LITTLE)
+
+
+def test_opening_can_be_called_off(tmp_path: Path) -> None:
+    off = threading.Event()
+    threading.Timer(0.2, off.set).start()
+    with pytest.raises(ValueError, match="called off"):
+        ReadApart(endless(tmp_path / "bag.db3"), called_off=off)
+
+
+def test_too_much_memory_is_the_readers_fault_alone(tmp_path: Path) -> None:
+    path = made(tmp_path, "mcap")
+    with pytest.raises(ValueError, match="MemoryError|memory"):
+        ReadApart(path, most=Most(memory=1 << 20))
+
+
+def test_a_reader_that_is_killed_is_said_and_the_next_reading_has_another(tmp_path: Path) -> None:
+    path = made(tmp_path, "mcap")
+    recording = ReadApart(path)
+    moments = recording.moments(lambda _number: True)
+    next(moments)
+    recording._process.kill()
+    with pytest.raises(ValueError, match=r"has ended \(code -9\)"):
+        list(moments)
+    assert len(list(recording.moments())) == recording.about.moments
+
+
+def test_the_reader_ends_with_whoever_asked(tmp_path: Path) -> None:
+    """Also with one that is killed, and while it reads without an end."""
+    bag = endless(tmp_path / "bag.db3")
+    code = f"from pathlib import *; from app.recordings.apart import ReadApart; ReadApart(Path({str(bag)!r}))"
+    asker = subprocess.Popen([sys.executable, "-c", code], cwd=Path(__file__).parents[3])
+    try:
+        while not (readers := psutil.Process(asker.pid).children()):
+            assert asker.poll() is None
+            os.sched_yield()
+    finally:
+        asker.kill()
+        asker.wait()
+    assert psutil.wait_procs(readers, timeout=60)[1] == []
