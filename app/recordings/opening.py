@@ -12,13 +12,14 @@ from app.recordings.formats.airsim import FILE as AIRSIM
 from app.recordings.formats.airsim import open_airsim
 from app.recordings.formats.bag_file import MAGIC as BAG
 from app.recordings.formats.bag_file import bag_packets
-from app.recordings.formats.bag_folder import METADATA, db3_packets, folder_packets
+from app.recordings.formats.bag_folder import METADATA, Bag, has_bag
 from app.recordings.formats.carmen import WORDS, open_carmen
 from app.recordings.formats.donkey import MANIFEST, open_old_tub, open_tub
 from app.recordings.formats.image_folder import open_image_folder, pictures_in
 from app.recordings.formats.lines import open_whole
 from app.recordings.formats.mcap_file import MAGIC as MCAP
 from app.recordings.formats.mcap_file import mcap_packets, said_of_run
+from app.recordings.formats.packed import ZSTD
 from app.recordings.formats.ros_recording import open_ros
 from app.recordings.formats.ros_topics import Choice
 from app.recordings.formats.scan_json import open_scans
@@ -63,8 +64,8 @@ def _folder(path: Path, opening: Opening) -> Recording:
         return open_airsim(path)
     if (path / MANIFEST).is_file():
         return open_tub(path)
-    if (path / METADATA).is_file() or any(path.glob("*.db3")) or any(path.glob("*.mcap")):
-        return open_ros(path, "bag of ROS 2", partial(folder_packets, path), opening.topics)
+    if (path / METADATA).is_file() or has_bag(path):
+        return _bag(path, opening)
     if next(path.glob("record_*.json"), None) is not None:
         return open_old_tub(path)
     if pictures_in(path) or any(path.glob("*.csv")):
@@ -72,6 +73,11 @@ def _folder(path: Path, opening: Opening) -> Recording:
     if path.name == "data" or not (path / "data").is_dir():
         raise ValueError(f"{path}: nothing in this folder can be played; expected {READ}")
     return _folder(path / "data", opening)  # as Donkey's own folders and EuRoC's are laid out
+
+
+def _bag(path: Path, opening: Opening) -> Recording:
+    bag = Bag(path)
+    return open_ros(path, "bag of ROS 2", bag.packets, opening.topics, bag.unused)
 
 
 def _file(path: Path, opening: Opening) -> Recording:
@@ -85,8 +91,8 @@ def _file(path: Path, opening: Opening) -> Recording:
         return OwnRun(recording, said) if said else recording
     if start.startswith(BAG):
         return open_ros(path, "bag of ROS 1", partial(bag_packets, path), opening.topics)
-    if start.startswith(b"SQLite format 3\0"):
-        return open_ros(path, "bag of ROS 2", partial(db3_packets, path), opening.topics)
+    if start.startswith(b"SQLite format 3\0") or (start.startswith(ZSTD) and has_bag(path)):
+        return _bag(path, opening)
     if path.name == AIRSIM or path.name == MANIFEST:
         return _folder(path.parent, opening)
     if path.suffix.lower() in VIDEOS:

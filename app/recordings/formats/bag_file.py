@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import IO
 
 from app.recordings.formats.lines import open_whole
-from app.recordings.formats.mcap_file import lz4_unpacked
+from app.recordings.formats.packed import lz4_unpacked
 from app.recordings.formats.problems import Problems, plain
 from app.recordings.formats.ros_packets import MOST_CHUNK, Packet, type_of
 
@@ -27,18 +27,21 @@ Fields = dict[bytes, bytes]
 
 def bag_packets(path: Path, problems: Problems) -> Iterator[Packet]:
     """Messages in the order of the file."""
-    connections: dict[int, tuple[str, str, bool]] = {}
+    connections: dict[int, tuple[str, str, str]] = {}
     number = 0
     for fields, data in _all_records(path, problems):
         try:
             if fields[b"op"][0] == _CONNECTION:
                 about = _fields(data)
                 topic = plain(fields[b"topic"].decode(errors="replace"), 100)
-                connections[_uint(fields[b"conn"])] = topic, type_of(about[b"type"].decode(errors="replace")), True
-            elif (channel := connections.get(_uint(fields[b"conn"]))) is not None:
-                seconds, nanoseconds = struct.unpack("<II", fields[b"time"])
-                yield Packet(*channel, seconds * 10**9 + nanoseconds, data, number)
+                type_ = type_of(plain(about[b"type"].decode(errors="replace"), 100))
+                definition = about.get(b"message_definition", b"").decode(errors="replace")
+                connections[_uint(fields[b"conn"])] = topic, type_, definition
+            else:
                 number += 1
+                topic, type_, definition = connections[_uint(fields[b"conn"])]
+                seconds, nanoseconds = struct.unpack("<II", fields[b"time"])
+                yield Packet(topic, type_, True, seconds * 10**9 + nanoseconds, data, number - 1, definition)
         except (*_BROKEN, IndexError) as error:
             problems.add(
                 "records left out", f"{path.name}: after message {number}", f"a record is left out: {_words(error)}"

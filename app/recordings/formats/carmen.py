@@ -3,122 +3,169 @@
 from __future__ import annotations
 
 import math
+import re
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.recordings.formats.lines import lines_of
-from app.recordings.formats.problems import Problems
-from app.recordings.formats.sensed import Rates, Sensed, ns_of
-from app.recordings.formats.streamed import Beams, StreamedRecording
+from app.recordings.formats.problems import Problems, plain
+from app.recordings.formats.sensed import Beams, Rates, Sensed, ns_of
+from app.recordings.formats.streamed import StreamedRecording
 from app.recordings.recording import Pose
 
-WORDS = ("FLASER", "ROBOTLASER1", "RAWLASER1", "ODOM")
 SICK_LIMIT_M = 81.0  # a SICK laser reports 81.83 m and the like where nothing comes back
-_MOST_BEAMS = 10_000
+# What makes a text a log of CARMEN. Of lasers of which there are several, the first one looks ahead.
+WORDS = ("FLASER", "ROBOTLASER1", "RAWLASER1", "ODOM", "RLASER", "TRUEPOS")
+_LASERS = re.compile(r"FLASER|ROBOTLASER\d|RAWLASER\d|RLASER|LASER\d")
+_LEAST = 0.5  # of the lines of the laser with the most, so that a few lines of another kind do not hide it
+_MOST_BEAMS, _MOST_WORDS = 10_000, 100
 
 
-def front_angles(beams: int) -> tuple[float, ...]:
-    """Of a laser that looks over half a circle, from the right to the left."""
+@lru_cache(maxsize=64)
+def front_angles(beams: int, ahead: float = 0.0) -> tuple[float, ...]:
+    """Of a laser that looks over half a circle, from the right to the left; ahead: of its middle (rad)."""
     step = math.pi / (beams if beams % 2 == 0 else max(1, beams - 1))
-    return tuple(-math.pi / 2 + k * step for k in range(beams))
+    return tuple(ahead - math.pi / 2 + k * step for k in range(beams))
 
 
-class _Scans:
-    """The kind of line that the scans are taken from, and the beams of the first."""
-
-    def __init__(self, word: str) -> None:
-        self.word = word
-        self.beams = Beams()
-
-    def ranges(self, cells: list[str], angles: tuple[float, ...], limit_m: float) -> NDArray[np.float64]:
-        ranges = np.array([float(cell) for cell in cells])
-        if not self.beams.angles_rad:
-            self.beams = Beams(angles, limit_m)
-        if len(ranges) != len(self.beams.angles_rad):
-            raise ValueError(f"{len(ranges)} ranges, but the first scan has {len(self.beams.angles_rad)}")
-        if np.isnan(ranges).any():
-            raise ValueError("a range is not a number")
-        return np.where((ranges >= limit_m) | (ranges <= 0), np.inf, ranges)
+@lru_cache(maxsize=64)
+def _beams(start: float, step: float, n: int, limit_m: float) -> Beams:
+    return Beams(tuple(start + k * step for k in range(n)), limit_m)
 
 
 def open_carmen(path: Path) -> StreamedRecording:
-    """FLASER, ROBOTLASER1 or RAWLASER1 lines; odometry from their own poses, or from ODOM lines. ValueError: none of them."""
-    counts: dict[str, int] = dict.fromkeys(WORDS, 0)
+    """The lines of one laser; odometry from their own poses, or from ODOM lines. ValueError: there is no scan in it."""
+    counts = _counted(path)
+    lasers = [word for word in counts if _LASERS.fullmatch(word)]
+    enough = [word for word in lasers if counts[word] >= _LEAST * max(counts[laser] for laser in lasers)]
+    laser = min(enough, key=_rank, default=None)
+    if laser is None:
+        there = ", ".join(f"{plain(word, 20)} ({n})" for word, n in list(counts.items())[:6]) or "no lines"
+        raise ValueError(
+            f"{path.name}: no line with a scan; expected FLASER, ROBOTLASER1, RAWLASER1 or the like, found {there}"
+        )
+    wheels = "ODOM lines" if laser.startswith("RAW") else f"the robot's poses in {laser} lines"
+    uses = (f"ranges: {laser} lines", f"speed and yaw rate: {wheels}", "truth: TRUEPOS lines")
+    unused = tuple(_unused(counts, laser))
+    return StreamedRecording(path.name, "CARMEN log", partial(_sensed, path, laser), uses, unused)
+
+
+def _counted(path: Path) -> Counter[str]:
+    """Lines by their first word. Those of words beyond the first hundred are counted together."""
+    counts: Counter[str] = Counter()
     for _, line in lines_of(path):
-        word = line.split(" ", 1)[0]
-        if word in counts:
-            counts[word] += 1
-    word = next((name for name in WORDS[:3] if counts[name]), None)
-    if word is None:
-        raise ValueError(f"{path.name}: no line with a scan; expected FLASER, ROBOTLASER1 or RAWLASER1")
-    scans = _Scans(word)
-    wheels = "ODOM lines" if word == "RAWLASER1" else f"the robot's poses in {word} lines"
-    uses = (f"ranges: {counts[word]} {word} lines", f"speed and yaw rate: {wheels}")
-    return StreamedRecording(path.name, "CARMEN log", partial(_sensed, path, scans), lambda: scans.beams, uses)
+        if word := _word(line):
+            counts[word if word in counts or len(counts) < _MOST_WORDS else "others"] += 1
+    return counts
 
 
-def _sensed(path: Path, scans: _Scans, problems: Problems) -> Iterator[Sensed]:
-    rates, scan = Rates(), -1
-    for number, line in lines_of(path):
-        cells = line.split()
-        if not cells or cells[0] not in (scans.word, "ODOM"):
+def _word(line: str) -> str:
+    """The first one; empty of a comment and of an empty line."""
+    cells = line.split(None, 1)
+    return cells[0] if cells and not cells[0].startswith("#") else ""
+
+
+def _rank(laser: str) -> tuple[int, str]:
+    """FLASER, ROBOTLASER1, RAWLASER1, then those that look elsewhere."""
+    return (WORDS.index(laser) if laser in WORDS else len(WORDS)), laser
+
+
+def _unused(counts: Counter[str], laser: str) -> Iterator[str]:
+    for word, n in counts.items():
+        if word in (laser, "TRUEPOS") or (word == "ODOM" and laser.startswith("RAW")):
             continue
+        why = "not read"
+        if _LASERS.fullmatch(word):
+            why = f"ranges come from {laser} lines"
+        elif word == "ODOM":
+            why = f"odometry comes from {laser} lines"
+        elif word == "PARAM":
+            why = "the robot's parameters are not needed"
+        yield f"{plain(word, 20)}, {n} lines: {why}"
+
+
+def _sensed(path: Path, laser: str, problems: Problems) -> Iterator[Sensed]:
+    rates, scan = Rates(), -1
+    used = {laser, "TRUEPOS", "ODOM"} if laser.startswith("RAW") else {laser, "TRUEPOS"}
+    for number, line in lines_of(path):
+        word = _word(line)
+        if word not in used:
+            continue
+        source, where, cells = f"{word} lines", f"{path.name}: line {number}", line.split()
+        problems.seen(source)
+        scan += word == laser
         try:
-            where = f"{path.name}: line {number}"
-            if cells[0] == "ODOM":
-                if scans.word == "RAWLASER1":
-                    yield _moved(ns_of(cells[7]), where, None, _pose(cells[1:4]), rates)
-            else:
-                scan += 1
-                yield replace(_READERS[cells[0]](cells, where, scans, rates), frame=scan)
+            sensed = _READERS[word.rstrip("0123456789")](cells, where, rates)
+            yield replace(sensed, frame=scan if word == laser else None, source=source)
         except (ValueError, IndexError, OverflowError) as error:
             what = "too few numbers" if isinstance(error, IndexError) else str(error)
-            problems.add("lines left out", f"{path.name}: line {number}", f"left out: {what}")
+            problems.add("lines left out", where, f"left out: {what}")
 
 
-def _flaser(cells: list[str], where: str, scans: _Scans, rates: Rates) -> Sensed:
-    """FLASER n r... x y theta odom_x odom_y odom_theta time host time."""
+def _odom(cells: list[str], where: str, rates: Rates) -> Sensed:
+    """ODOM x y theta tv rv accel time host time."""
+    return _moved(Sensed(ns_of(cells[7]), where), _pose(cells[1:4]), rates)
+
+
+def _truepos(cells: list[str], where: str, _rates: Rates) -> Sensed:
+    """TRUEPOS true_x true_y true_theta odom_x odom_y odom_theta time host time, of CARMEN's simulator."""
+    return Sensed(ns_of(cells[7]), where, truth=_pose(cells[1:4]))
+
+
+def _laser(cells: list[str], where: str, rates: Rates) -> Sensed:
+    """FLASER n r... x y theta odom_x odom_y odom_theta time host time. RLASER looks back."""
     n = _count(cells[1])
     after = cells[2 + n :]
-    ranges = scans.ranges(cells[2 : 2 + n], front_angles(n), SICK_LIMIT_M)
-    return _moved(ns_of(after[6]), where, ranges, _pose(after[3:6]), rates)
+    beams = Beams(front_angles(n, math.pi if cells[0] == "RLASER" else 0.0), SICK_LIMIT_M)
+    sensed = Sensed(ns_of(after[6]), where, ranges_m=_ranges(cells[2 : 2 + n], SICK_LIMIT_M), beams=beams)
+    return _moved(sensed, _pose(after[3:6]), rates)
 
 
-def _robotlaser(cells: list[str], where: str, scans: _Scans, rates: Rates) -> Sensed:
+def _robotlaser(cells: list[str], where: str, rates: Rates) -> Sensed:
     """ROBOTLASER1 type start fov step limit accuracy remission n r... m rem... laser's pose, robot's pose, ... time host time."""
-    ranges, after = _raw(cells, scans)
-    return _moved(ns_of(after[11]), where, ranges, _pose(after[3:6]), rates)
+    ranges, beams, after = _raw(cells)
+    return _moved(Sensed(ns_of(after[11]), where, ranges_m=ranges, beams=beams), _pose(after[3:6]), rates)
 
 
-def _rawlaser(cells: list[str], where: str, scans: _Scans, _rates: Rates) -> Sensed:
+def _rawlaser(cells: list[str], where: str, _rates: Rates) -> Sensed:
     """RAWLASER1 type start fov step limit accuracy remission n r... m rem... time host time."""
-    ranges, after = _raw(cells, scans)
-    return Sensed(ns_of(after[0]), where, ranges_m=ranges)
+    ranges, beams, after = _raw(cells)
+    return Sensed(ns_of(after[0]), where, ranges_m=ranges, beams=beams)
 
 
-_READERS = {"FLASER": _flaser, "ROBOTLASER1": _robotlaser, "RAWLASER1": _rawlaser}
+_READERS = {
+    "ODOM": _odom, "TRUEPOS": _truepos, "FLASER": _laser, "RLASER": _laser, "LASER": _laser,
+    "ROBOTLASER": _robotlaser, "RAWLASER": _rawlaser,
+}  # fmt: skip
 
 
-def _raw(cells: list[str], scans: _Scans) -> tuple[NDArray[np.float64], list[str]]:
-    """The ranges, and what comes after the remissions."""
+def _raw(cells: list[str]) -> tuple[NDArray[np.float64], Beams, list[str]]:
+    """The ranges, their beams, and what comes after the remissions."""
     start, step, limit, n = float(cells[2]), float(cells[4]), float(cells[5]), _count(cells[8])
     if not (abs(start) <= 7 and abs(step) <= 7 and limit > 0):
         raise ValueError("its angles or its range are none of a laser")
-    ranges = scans.ranges(cells[9 : 9 + n], tuple(start + k * step for k in range(n)), limit)
-    remissions = int(cells[9 + n])
+    ranges, remissions = _ranges(cells[9 : 9 + n], limit), int(cells[9 + n])
     if remissions < 0:
         raise ValueError("a number of remissions below 0")
-    return ranges, cells[10 + n + remissions :]
+    return ranges, _beams(start, step, n, limit), cells[10 + n + remissions :]
 
 
-def _moved(time_ns: int, where: str, ranges: NDArray[np.float64] | None, pose: Pose, rates: Rates) -> Sensed:
-    speed, yaw_rate = rates.since(time_ns, pose) or (None, None)
-    return Sensed(time_ns, where, None, ranges, speed, yaw_rate)
+def _ranges(cells: list[str], limit_m: float) -> NDArray[np.float64]:
+    ranges = np.array([float(cell) for cell in cells])
+    if np.isnan(ranges).any():
+        raise ValueError("a range is not a number")
+    return np.where((ranges >= limit_m) | (ranges <= 0), np.inf, ranges)
+
+
+def _moved(sensed: Sensed, pose: Pose, rates: Rates) -> Sensed:
+    speed, yaw_rate = rates.since(sensed.time_ns, pose) or (None, None)
+    return replace(sensed, speed=speed, yaw_rate=yaw_rate)
 
 
 def _count(text: str) -> int:

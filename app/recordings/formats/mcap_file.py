@@ -9,40 +9,53 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import lz4.frame  # pyright: ignore[reportMissingTypeStubs]
-import zstandard
 from mcap.exceptions import McapError
-from mcap.records import Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
+from mcap.records import Attachment, Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 
 from app.recordings.formats.lines import open_whole
+from app.recordings.formats.packed import lz4_unpacked, zstd_unpacked
 from app.recordings.formats.problems import Problems, plain
-from app.recordings.formats.ros_packets import MOST_CHUNK, SONAR_ANGLES, Packet, type_of
+from app.recordings.formats.ros_packets import MOST_CHUNK, SONAR_ANGLES, Packet, cdr_of, type_of
 
 BROKEN = (McapError, ValueError, struct.error, EOFError, OSError, OverflowError, MemoryError)
 MAGIC = b"\x89MCAP0\r\n"
 
 
 def mcap_packets(path: Path, problems: Problems) -> Iterator[Packet]:
-    """Messages of ROS 1 and ROS 2 in the order of the file. Others are left out; the rest after a fault is a problem."""
-    schemas: dict[int, str] = {}
-    channels: dict[int, tuple[str, str, bool] | None] = {}
+    """Messages in the order of the file; those that are not of ROS have their encoding in their type, attachments no topic.
+
+    The rest after a fault is a problem.
+    """
+    schemas: dict[int, Schema] = {}
+    channels: dict[int, tuple[Channel, str, str]] = {}
     number = 0
     for record in _records(path, problems):
         if isinstance(record, Schema):
-            schemas[record.id] = type_of(record.name)
+            schemas[record.id] = record
         elif isinstance(record, Channel):
-            kind = {"cdr": False, "ros1": True}.get(record.message_encoding)
-            known = kind is not None and record.schema_id in schemas
-            channels[record.id] = (plain(record.topic, 100), schemas[record.schema_id], bool(kind)) if known else None
+            schema, encoding = schemas.get(record.schema_id), record.message_encoding
+            type_ = "unknown" if schema is None else type_of(schema.name)
+            text = "" if schema is None else schema.data.decode(errors="replace")
+            if encoding not in ("cdr", "ros1"):
+                type_, text = f"{type_} ({plain(encoding, 20)})", ""
+            channels[record.id] = record, plain(type_, 100), text
+        elif isinstance(record, Attachment):
+            yield Packet(plain(record.name, 100), "attachment", False, record.log_time, b"", number)
         elif isinstance(record, Metadata):
             if record.name == "ratslam" and "sonar_angles_rad" in record.metadata:
                 yield Packet("ratslam", SONAR_ANGLES, False, 0, record.metadata["sonar_angles_rad"].encode(), number)
         elif isinstance(record, Message):
-            channel = channels.get(record.channel_id)
-            if channel is not None:
-                yield Packet(*channel, record.log_time, record.data, number)
             number += 1
+            try:
+                channel, type_, text = channels[record.channel_id]
+                data = cdr_of(record.data) if channel.message_encoding == "cdr" else record.data
+            except (KeyError, ValueError) as error:
+                what = "no channel has told of its topic" if isinstance(error, KeyError) else str(error)
+                problems.add("messages left out", f"{path.name}: message {number - 1}", f"left out: {what}")
+                continue
+            ros1 = channel.message_encoding == "ros1"
+            yield Packet(plain(channel.topic, 100), type_, ros1, record.log_time, data, number - 1, text)
 
 
 def said_of_run(path: Path) -> dict[str, str]:
@@ -90,7 +103,7 @@ def _unpacked(chunk: Chunk, where: str, problems: Problems) -> list[McapRecord]:
         if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
             raise ValueError("its checksum does not fit")
         return breakup_chunk(replace(chunk, compression="", data=data))
-    except (*BROKEN, zstandard.ZstdError, RuntimeError) as error:
+    except (*BROKEN, RuntimeError) as error:
         problems.add("chunks left out", where, f"left out: {_words(error)}")
         return []
 
@@ -98,34 +111,12 @@ def _unpacked(chunk: Chunk, where: str, problems: Problems) -> list[McapRecord]:
 def _data(chunk: Chunk) -> bytes:
     """Unpacked, and never more than the chunk says."""
     if chunk.compression == "zstd":
-        unpacker: Any = zstandard.ZstdDecompressor().decompressobj()
-        return _limited(unpacker, chunk)
+        return zstd_unpacked(chunk.data, chunk.uncompressed_size)
     if chunk.compression == "lz4":
         return lz4_unpacked(chunk.data, chunk.uncompressed_size)
     if chunk.compression:
         raise ValueError(f"packed by {chunk.compression[:20]!r}; zstd and lz4 are read")
     return chunk.data
-
-
-def _limited(unpacker: Any, chunk: Chunk) -> bytes:
-    """Fed piece by piece, since it has no limit of its own: a piece of 1 kB unpacks to some 16 MB at most."""
-    out = bytearray()
-    for at in range(0, len(chunk.data), 1024):
-        out += unpacker.decompress(chunk.data[at : at + 1024])
-        if len(out) > chunk.uncompressed_size:
-            raise ValueError(f"more than the {chunk.uncompressed_size} bytes that it says")
-        if unpacker.eof:
-            break
-    return bytes(out)
-
-
-def lz4_unpacked(data: bytes, most: int) -> bytes:
-    """ValueError: it is broken, or unpacks to more than `most` bytes."""
-    unpacker: Any = lz4.frame.LZ4FrameDecompressor()
-    out: bytes = unpacker.decompress(data, max_length=most + 1)
-    if len(out) > most:
-        raise ValueError(f"more than the {most} bytes that it says")
-    return out
 
 
 def _words(error: BaseException) -> str:

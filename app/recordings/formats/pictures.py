@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import stat
 import warnings
 from io import BytesIO
@@ -14,25 +15,40 @@ from PIL import Image, UnidentifiedImageError
 
 PICTURES = (".jpg", ".jpeg", ".png", ".bmp", ".pgm", ".ppm", ".webp")
 MOST_PIXELS, MOST_SIDE, MOST_BYTES = 20_000_000, 12_000, 64_000_000
-_FORMATS = ("JPEG", "PNG", "BMP", "PPM", "WEBP")
+_FORMATS = ("JPEG", "PNG", "BMP", "PPM", "WEBP", "TIFF")
+_DEEP = ("I;16", "I;16B", "I;16L", "I;16N")
+_VIDEO = re.compile(r"h\.?26[45]|hevc|avc|av1|vp[89]|theora|mpeg", re.IGNORECASE)
 
 
-def unpacked(data: bytes) -> NDArray[np.uint8]:
-    """A JPEG, PNG, ... as RGB, (h, w, 3). ValueError: it is none, broken, or too large."""
+def unpacked(data: bytes, told: str = "") -> NDArray[np.uint8]:
+    """A JPEG, PNG, ... as RGB, (h, w, 3); of 16 bits grey the upper 8. ValueError: it is none, broken, or too large.
+
+    told: what whoever packed it says that it is.
+    """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # our own limit is far below Pillow's
             picture = Image.open(BytesIO(data), formats=_FORMATS)
             require_size(*picture.size)
+            if picture.mode in _DEEP:
+                return np.repeat((np.asarray(picture, np.uint16) >> 8).astype(np.uint8)[:, :, None], 3, axis=2)
             if picture.mode.startswith(("I", "F")):
-                raise ValueError(f"a picture of more than 8 bits a pixel (mode {picture.mode}); 8 are read")
+                raise ValueError(f"a picture of more than 16 bits a pixel (mode {picture.mode}); 8 and 16 are read")
             return np.asarray(picture.convert("RGB"))
     except UnidentifiedImageError:
-        raise ValueError("not a picture that can be read; expected JPEG, PNG, BMP, PPM or WebP") from None
+        raise ValueError(_no_picture(data, told)) from None
     except Image.DecompressionBombError:
         raise ValueError(f"hundreds of millions of pixels; at most {MOST_PIXELS / 1e6:g} million") from None
     except (OSError, SyntaxError, IndexError, TypeError, EOFError) as error:
         raise ValueError(f"the picture is broken: {error}") from None
+
+
+def _no_picture(data: bytes, told: str) -> str:
+    wanted = "expected JPEG, PNG, BMP, PPM, TIFF or WebP"
+    said = f", said to be {told[:40]!r}" if told else ""
+    if _VIDEO.search(told) or data.startswith((b"\0\0\0\1", b"\0\0\1")):
+        return f"a piece of a video{said or ' (H.264 or the like)'}, not a picture that stands alone; {wanted}"
+    return f"not a picture that can be read{said}; {wanted}"
 
 
 def require_size(width: int, height: int) -> None:

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from app.recordings.formats import ros_messages as ros
-from app.recordings.formats.problems import Problems
+from app.recordings.formats.problems import Problems, plain
 from app.recordings.formats.ros_packets import SONAR_ANGLES, Packet
-from app.recordings.formats.ros_topics import Choice, Roles, Topic, is_odometry, roles_of
-from app.recordings.formats.sensed import Rates, Sensed
-from app.recordings.formats.streamed import Beams, StreamedRecording
+from app.recordings.formats.ros_times import times_of
+from app.recordings.formats.ros_topics import Choice, Roles, Topic, roles_of
+from app.recordings.formats.ros_topics import unused as unused_topics
+from app.recordings.formats.ros_transforms import transforms_in
+from app.recordings.formats.sensed import Beams, Rates, Sensed
+from app.recordings.formats.streamed import StreamedRecording
 
 ORDER_S, ORDER_BYTES = 0.5, 64_000_000  # a message waits so long for earlier ones, or until so much waits
 MOST_TOPICS = 10_000
@@ -22,82 +26,97 @@ MOST_TOPICS = 10_000
 Packets = Callable[[Problems], Iterator[Packet]]
 
 
-def open_ros(path: Path, format_: str, packets: Packets, choice: Choice | None = None) -> StreamedRecording:
-    """packets: gives the messages, anew each time. ValueError: there is nothing in it that could be played."""
-    topics = _topics(packets)
+def open_ros(
+    path: Path, format_: str, packets: Packets, choice: Choice | None = None, unused: tuple[str, ...] = ()
+) -> StreamedRecording:
+    """packets: gives the messages, anew each time; unused: what is there beside them, and why it is not used.
+
+    ValueError: there is nothing in it that could be played.
+    """
+    topics, angles = _topics(packets)
     roles = roles_of(topics, choice or Choice())
-    source = _Source(packets, topics, roles)
+    source = _Source(packets, topics, roles, angles)
     try:
-        return StreamedRecording(path.name, format_, source.sensed, lambda: source.beams, tuple(source.uses()))
+        unused = (*unused, *unused_topics(topics, roles))
+        return StreamedRecording(path.name, format_, source.sensed, tuple(source.uses()), unused)
     except ValueError as error:
         there = ", ".join(f"{name} ({topic.type})" for name, topic in list(topics.items())[:6]) or "none"
         raise ValueError(f"{error} Topics of ROS in it: {there}") from None
 
 
-def _topics(packets: Packets) -> dict[str, Topic]:
-    topics: dict[str, Topic] = {}
+def _topics(packets: Packets) -> tuple[dict[str, Topic], Beams]:
+    """All topics, and where the sonars of a run of ours look."""
+    topics, angles = dict[str, Topic](), Beams()
     for packet in packets(Problems()):
+        if packet.type == SONAR_ANGLES:
+            angles = angles if angles.angles_rad else ros.told_angles(packet)
+            continue
         topic = topics.get(packet.topic)
         if topic is None:
             if len(topics) >= MOST_TOPICS:
                 raise ValueError(f"more than {MOST_TOPICS} topics; no robot has so many")
             topic = topics[packet.topic] = Topic(packet.type)
         topic.note(packet)
-    return topics
+    return topics, angles
 
 
 class _Source:
-    def __init__(self, packets: Packets, topics: dict[str, Topic], roles: Roles) -> None:
+    def __init__(self, packets: Packets, topics: dict[str, Topic], roles: Roles, angles: Beams) -> None:
         self._packets, self._topics, self._roles = packets, topics, roles
-        self.beams = Beams()
-        used = {name: topics[name] for name in self._used() if name is not None}
-        self._stamped = all(topic.stamped for topic in used.values() if topic.type in ros.STAMPED)
-        self._stamped &= all(topic.type in ros.STAMPED for topic in used.values())
-
-    def _used(self) -> list[str | None]:
-        r = self._roles
-        return [r.camera, r.odometry, r.transforms, r.gyro, r.scan, r.truth, r.sonars, r.behaviour]
+        self._sonars = Beams(angles.angles_rad, topics[roles.scan].limit_m if roles.scan else None)
+        self._times = times_of({name: topics[name].stamps for name in roles.used()})
 
     def uses(self) -> Iterator[str]:
         """Sentences: which topic is used for what."""
         r = self._roles
-        odometry = self._topics[r.odometry] if r.odometry else None
-        how = "its poses, since it reports no speeds" if odometry and self._by_poses(odometry) else "its twist"
+        how = "its twist"
+        if r.odometry and self._topics[r.odometry].odometer.by_poses:
+            how = "its poses, since it reports no speeds"
+            if self._topics[r.odometry].odometer.unlike:
+                how = "its poses, since its twist does not lead from one to the next"
+        edge = " to ".join(plain(frame, 60) for frame in r.wheels.edge) if r.wheels else ""
         for words, name in (
             ("camera", r.camera),
             (f"speed and yaw rate ({how})" if r.gyro is None else f"speed ({how})", r.odometry),
-            ("speed and yaw rate (odom to base_link)", r.transforms),
+            (f"speed and yaw rate ({edge})", r.wheels and r.wheels.topic),
             ("yaw rate (gyro, about what is up)", r.gyro), ("ranges", r.scan if r.sonars is None else r.sonars),
             ("truth", r.truth), ("behaviour", r.behaviour),
         ):  # fmt: skip
             if name is not None:
                 yield f"{words}: {name}, {self._topics[name].count} messages of {self._topics[name].type}"
-        yield f"time: {'that in the headers' if self._stamped else 'when a message was written down'}"
-
-    @staticmethod
-    def _by_poses(topic: Topic) -> bool:
-        return topic.moved and not topic.twisted
+        times, why = self._times, f", since {self._times.why}" if self._times.why else ""
+        yield f"time: {'that in the headers' if times.stamped else f'when a message was written down{why}'}"
 
     def sensed(self, problems: Problems) -> Iterator[Sensed]:
         """Everything that is used, in the order of time."""
+        self._contradictions(problems)
         rates = Rates()
         for time_ns, packet in self._in_order(problems):
             try:
-                sensed = self._unpacked(packet, time_ns, rates)
+                sensed = self._unpacked(packet, Sensed(time_ns, packet.where, source=_source(packet)), rates)
             except ValueError as error:
                 problems.add(f"messages of {packet.topic} left out", packet.where, f"left out: {error}")
                 continue
-            if sensed is not None:
-                yield sensed
+            yield sensed
+
+    def _contradictions(self, problems: Problems) -> None:
+        """What sources say of each other."""
+        if self._times.problem:
+            problems.add("times", "time", f"{self._times.why}; what counts is when a message was written down")
+        name = self._roles.odometry
+        if name is not None and self._topics[name].odometer.unlike:
+            poses, twist = self._topics[name].odometer.way_m
+            ways = f"{poses:.2f} m by poses, {twist:.2f} m by twist, forwards and backwards"
+            problems.add(
+                "odometry", name, f"its twist does not lead from one pose to the next ({ways}); poses are used"
+            )
 
     def _in_order(self, problems: Problems) -> Iterator[tuple[int, Packet]]:
-        used, waiting, size, newest = {*self._used()}, list[tuple[int, int, Packet]](), 0, 0
+        used, waiting, size, newest = self._roles.used(), list[tuple[int, int, Packet]](), 0, 0
         for order, packet in enumerate(self._packets(problems)):
-            if packet.type == SONAR_ANGLES and self._roles.sonars and not self.beams.angles_rad:
-                self.beams = ros.told_angles(packet)
-            if packet.topic not in used or packet.type != self._topics[packet.topic].type:
+            if packet.topic not in used or not self._tells(packet, problems):
                 continue
-            time = ros.stamp_ns(packet) if self._stamped else packet.time_ns
+            time = ros.stamp_ns(packet) if self._times.stamped else packet.time_ns
             heapq.heappush(waiting, (time, order, packet))
             size, newest = size + len(packet.data), max(newest, time)
             while waiting and (waiting[0][0] < newest - ORDER_S * 1e9 or size > ORDER_BYTES):
@@ -108,51 +127,62 @@ class _Source:
             time, _, packet = heapq.heappop(waiting)
             yield time, packet
 
-    def _unpacked(self, packet: Packet, time_ns: int, rates: Rates) -> Sensed | None:
-        r, where, name = self._roles, packet.where, packet.topic
+    def _tells(self, packet: Packet, problems: Problems) -> bool:
+        """Whether it is one of its topic. Counts it."""
+        wheels = self._roles.wheels
+        if packet.type != self._topics[packet.topic].type:
+            problems.seen(_source(packet))
+            told = f"left out: its type is {packet.type}, and not that of the others"
+            problems.add(f"messages of {packet.topic} left out", packet.where, told)
+            return False
+        if wheels is not None and packet.topic == wheels.topic:
+            try:
+                if all(edge != wheels.edge for edge, _ in transforms_in(ros.message(packet))):
+                    return False  # it is one of those that are told of as unused
+            except ValueError:
+                pass  # told when it is unpacked
+        problems.seen(_source(packet))
+        return True
+
+    def _unpacked(self, packet: Packet, empty: Sensed, rates: Rates) -> Sensed:
+        """What a message tells, added to what has its time and place. ValueError: it is broken."""
+        r, name = self._roles, packet.topic
         if name == r.camera:
-            return Sensed(time_ns, where, partial(ros.picture, packet))
+            return replace(empty, image=partial(ros.picture, packet))
         told = ros.message(packet)
         if name == r.odometry:
-            return self._odometry(told, time_ns, where, rates)
-        if name == r.transforms:
-            return self._transform(told, time_ns, where, rates)
+            by_poses = self._topics[name].odometer.by_poses
+            moved = rates.since(empty.time_ns, ros.pose(told)) if by_poses else ros.twist(told)
+            sensed = _moving(empty, moved)
+            return sensed if r.gyro is None else replace(sensed, yaw_rate=None)
+        if r.wheels is not None and name == r.wheels.topic:
+            pose = r.wheels.pose(told)
+            return empty if pose is None else _moving(empty, rates.since(empty.time_ns, pose))
         if name == r.gyro:
-            return Sensed(time_ns, where, yaw_rate=ros.gyro(told, self._topics[name].up))
+            return replace(empty, yaw_rate=ros.gyro(told, self._topics[name].up))
         if name == r.truth:
-            return Sensed(time_ns, where, truth=ros.pose(told))
+            return replace(empty, truth=ros.pose(told))
         if name == r.behaviour:
-            return Sensed(time_ns, where, behaviour=int(told.data))
-        return self._scan(told, time_ns, where, name)
+            return replace(empty, behaviour=int(told.data))
+        return self._scan(told, empty, name)
 
-    def _odometry(self, told: object, time_ns: int, where: str, rates: Rates) -> Sensed | None:
-        assert self._roles.odometry is not None
-        if self._by_poses(self._topics[self._roles.odometry]):
-            moved = rates.since(time_ns, ros.pose(told))
-        else:
-            moved = ros.twist(told)
-        if moved is None:
-            return None
-        return Sensed(time_ns, where, speed=moved[0], yaw_rate=None if self._roles.gyro else moved[1])
-
-    def _transform(self, told: object, time_ns: int, where: str, rates: Rates) -> Sensed | None:
-        for part in getattr(told, "transforms", ()):
-            if is_odometry(part.header.frame_id, part.child_frame_id):
-                moved = rates.since(time_ns, ros.pose(part))
-                return None if moved is None else Sensed(time_ns, where, speed=moved[0], yaw_rate=moved[1])
-        return None
-
-    def _scan(self, told: object, time_ns: int, where: str, name: str) -> Sensed | None:
+    def _scan(self, told: object, empty: Sensed, name: str) -> Sensed:
         r = self._roles
         if name == r.scan:
             beams = ros.scan_beams(told)
-            if self.beams.limit_m is None:
-                self.beams = Beams(self.beams.angles_rad or beams.angles_rad, beams.limit_m)
-            if r.sonars:
-                return None
-            ranges = ros.scan_ranges(told, len(self.beams.angles_rad))
-            return Sensed(time_ns, where, ranges_m=ranges)
+            if not r.sonars:
+                return replace(empty, ranges_m=ros.scan_ranges(told), beams=beams)
+            self._sonars = Beams(self._sonars.angles_rad or beams.angles_rad, self._sonars.limit_m)
+            return empty
         ranges = np.array(getattr(told, "data", ()), np.float64)
-        if np.isnan(ranges).any() or len(ranges) != len(self.beams.angles_rad or ranges):
+        if np.isnan(ranges).any() or len(ranges) != len(self._sonars.angles_rad or ranges):
             raise ValueError("its ranges are no numbers, or not as many as those of the scan")
-        return Sensed(time_ns, where, ranges_m=ranges)
+        return replace(empty, ranges_m=ranges, beams=self._sonars if self._sonars.angles_rad else None)
+
+
+def _source(packet: Packet) -> str:
+    return f"messages of {packet.topic}"
+
+
+def _moving(sensed: Sensed, moved: tuple[float, float] | None) -> Sensed:
+    return sensed if moved is None else replace(sensed, speed=moved[0], yaw_rate=moved[1])

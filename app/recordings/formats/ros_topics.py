@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.recordings.formats import ros_messages as ros
+from app.recordings.formats.problems import plain
+from app.recordings.formats.ros_odometry import Odometer
 from app.recordings.formats.ros_packets import Packet
+from app.recordings.formats.ros_times import Stamps
+from app.recordings.formats.ros_transforms import Edge, Moving, Wheels, note, wheels_of
 
 _TRUTH = re.compile(r"(^|[/_])(truth|ground_?truth|gt|true_pose|mocap|vicon|optitrack)([/_]|$)", re.IGNORECASE)
 _NOT_A_CAMERA = re.compile(r"depth|disparity|mask|segment|label|infra|thermal|normals|debug", re.IGNORECASE)
+_TRUTHS = (ros.POSE, ros.ODOMETRY, ros.POSE_COVARIANCE, ros.TRANSFORM)
 _ODOMETRIES = {"odom", "odometry"}
-_BASES = {"base_link", "base_footprint", "base"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,26 +39,30 @@ class Topic:
 
     type: str
     count: int = 0
-    last_stamp_ns: int = 0
-    stamped: bool = True  # every message has a time of its own, and they never go back
-    twisted: bool = False  # an odometry that reports speeds
-    moved: bool = False  # an odometry whose poses change
-    first_pose: tuple[float, float, float] | None = None
+    stamps: Stamps | None = None  # None: of a type without a time
+    odometer: Odometer = field(default_factory=Odometer)
+    transforms: dict[Edge, Moving] = field(default_factory=dict[Edge, Moving])
+    limit_m: float | None = None  # of a scan
     accelerated: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))  # sum of a gyro's accelerations
 
     def note(self, packet: Packet) -> None:
         """Broken messages are told of later, when they are played."""
         self.count += 1
+        if packet.type != self.type:
+            return
+        stamp = 0
         if self.type in ros.STAMPED:
             stamp = ros.stamp_ns(packet)
-            self.stamped &= stamp > 0 and stamp >= self.last_stamp_ns
-            self.last_stamp_ns = stamp
+            self.stamps = self.stamps or Stamps()
+            self.stamps.note(stamp, packet.time_ns)
         try:
-            if self.type == ros.ODOMETRY and not (self.twisted and self.moved):
+            if self.type == ros.ODOMETRY:
                 told = ros.message(packet)
-                self.twisted |= ros.twist(told) != (0.0, 0.0)
-                self.first_pose = self.first_pose or ros.pose(told)
-                self.moved |= ros.pose(told) != self.first_pose
+                self.odometer.note(stamp or packet.time_ns, ros.pose(told), ros.twist(told))
+            elif self.type in ros.TRANSFORMS:
+                note(ros.message(packet), self.transforms)
+            elif self.type == ros.SCAN and self.limit_m is None:
+                self.limit_m = ros.scan_beams(ros.message(packet)).limit_m
             elif self.type == ros.IMU:
                 a = ros.message(packet).linear_acceleration
                 force = np.array([a.x, a.y, a.z])
@@ -76,22 +84,30 @@ class Roles:
 
     camera: str | None
     odometry: str | None
-    transforms: str | None  # used where there is no odometry
+    wheels: Wheels | None  # a transform, used where there is no odometry
     gyro: str | None  # used where neither is there, or when it was asked for
     scan: str | None
     truth: str | None
     sonars: str | None  # of a run of ours: the ranges in full precision
     behaviour: str | None
 
+    def used(self) -> dict[str, None]:
+        """The topics."""
+        wheels = None if self.wheels is None else self.wheels.topic
+        names = (
+            self.camera, self.odometry, wheels, self.gyro, self.scan, self.truth, self.sonars, self.behaviour,
+        )  # fmt: skip
+        return {name: None for name in names if name is not None}
+
 
 def roles_of(topics: dict[str, Topic], choice: Choice) -> Roles:
     """By type, then by name, then by the number of messages. ValueError: a topic that was asked for is not there."""
-    truth = _chosen(topics, choice.truth, (ros.POSE, ros.ODOMETRY, ros.POSE_COVARIANCE, ros.TRANSFORM), _is_truth)
+    truth = _chosen(topics, choice.truth, _TRUTHS, _is_truth)
     camera = _chosen(topics, choice.camera, (ros.COMPRESSED, ros.IMAGE), lambda name: not _NOT_A_CAMERA.search(name))
     odometry = _chosen(
         topics, choice.odometry, (ros.ODOMETRY,), lambda name: name != truth and not _is_truth(name), _ODOMETRIES
     )
-    transforms = _chosen(topics, None, (ros.TF, ros.TF_OLD), lambda name: not name.endswith("_static"))
+    transforms = wheels_of({name: topic.transforms for name, topic in topics.items() if topic.transforms})
     gyro = _chosen(topics, choice.gyro, (ros.IMU,), lambda _name: True)
     scan = _chosen(topics, choice.scan, (ros.SCAN,), lambda _name: True, {"scan"})
     sonars = _chosen(topics, None, (ros.FLOATS,), lambda name: name == "/sonars")
@@ -101,6 +117,47 @@ def roles_of(topics: dict[str, Topic], choice: Choice) -> Roles:
         camera, odometry, None if odometry else transforms, gyro if choice.gyro or not by_wheels else None, scan, truth,
         sonars if scan else None, behaviour,
     )  # fmt: skip
+
+
+def unused(topics: dict[str, Topic], roles: Roles) -> Iterator[str]:
+    """Sentences: each topic that is not used, and why."""
+    used, wheels = roles.used(), roles.wheels
+    for name, topic in topics.items():
+        if name not in used:
+            yield f"{name}, {topic.count} messages: {_why_not(name, topic, roles)}"
+        elif (
+            wheels is not None and name == wheels.topic and (rest := topic.count - topic.transforms[wheels.edge].count)
+        ):
+            others = [edge for edge in topic.transforms if edge != wheels.edge]
+            yield f"{name}, {rest} messages: of other transforms only, {_told(others)}"
+
+
+def _why_not(name: str, topic: Topic, roles: Roles) -> str:
+    """Why a topic is not used."""
+    motion = roles.odometry or (roles.wheels and roles.wheels.topic)
+    if topic.type in ros.TRANSFORMS:
+        if roles.odometry is not None or (roles.wheels is not None and roles.wheels.edge not in topic.transforms):
+            return f"odometry comes from {motion}"
+        return f"no transform odom -> base_link among: {_told(list(topic.transforms))}"
+    for types, taken, option, what in (
+        ((ros.COMPRESSED, ros.IMAGE), roles.camera, "camera", "not a camera by its name"),
+        ((ros.ODOMETRY,), roles.odometry, "odometry", "a truth by its name"),
+        ((ros.IMU,), roles.gyro or motion, "gyro", ""),
+        ((ros.SCAN,), roles.scan, "scan", ""),
+        (_TRUTHS, roles.truth, "truth", "not a truth by its name"),
+    ):
+        if topic.type in types:
+            if taken is None or (option == "camera" and _NOT_A_CAMERA.search(name)):
+                return f"{what}; --{option}-topic takes it"
+            source = {"gyro": "yaw rate", "scan": "ranges"}.get(option, option)
+            return f"{source} comes from {taken}; --{option}-topic takes this one"
+    return f"type {topic.type} is not read"
+
+
+def _told(edges: list[Edge]) -> str:
+    """Transforms, the first few."""
+    told = ", ".join(f"{plain(parent, 40)} -> {plain(child, 40)}" for parent, child in edges[:5])
+    return f"{told} and {len(edges) - 5} more" if len(edges) > 5 else told or "none"
 
 
 def _is_truth(name: str) -> bool:
@@ -126,8 +183,3 @@ def _chosen(
 def _rank(name: str, topic: Topic, names: set[str]) -> tuple[bool, int, int, str]:
     """The smallest is the best."""
     return name.strip("/").lower() not in names, -topic.count, len(name), name
-
-
-def is_odometry(parent: str, child: str) -> bool:
-    """Whether a transform is that of the wheels."""
-    return parent.strip("/").split("/")[-1] in _ODOMETRIES and child.strip("/").split("/")[-1] in _BASES

@@ -15,8 +15,8 @@ import numpy as np
 from app.recordings.formats.carmen import SICK_LIMIT_M, front_angles
 from app.recordings.formats.lines import UNPACKED, open_whole
 from app.recordings.formats.problems import Problems
-from app.recordings.formats.sensed import Rates, Sensed, ns_of
-from app.recordings.formats.streamed import Beams, StreamedRecording
+from app.recordings.formats.sensed import Beams, Rates, Sensed, ns_of
+from app.recordings.formats.streamed import StreamedRecording
 
 MOST_BYTES = 200_000_000  # unpacked; a JSON object has to be read as a whole
 MOST_BEAMS = 10_000
@@ -25,12 +25,8 @@ MOST_BEAMS = 10_000
 def open_scans(path: Path) -> StreamedRecording:
     """ValueError: it is no such file."""
     scans = _read(path)
-    first = next((scan.get("range") for scan in scans.values() if isinstance(scan.get("range"), list)), None)
-    if not first or len(first) > MOST_BEAMS:
-        raise ValueError(f"{path.name}: no scan in it has a list 'range' of up to {MOST_BEAMS} numbers")
-    beams = Beams(front_angles(len(first)), SICK_LIMIT_M)
-    uses = (f"ranges: {len(scans)} scans of {len(first)} beams", "speed and yaw rate: the robot's poses beside them")
-    return StreamedRecording(path.name, "scans as JSON", partial(_sensed, path.name, scans, beams), lambda: beams, uses)
+    uses = (f"ranges: {len(scans)} scans", "speed and yaw rate: the robot's poses beside them")
+    return StreamedRecording(path.name, "scans as JSON", partial(_sensed, path.name, scans), uses)
 
 
 def _read(path: Path) -> dict[str, dict[str, Any]]:
@@ -49,15 +45,16 @@ def _read(path: Path) -> dict[str, dict[str, Any]]:
     return cast(dict[str, dict[str, Any]], scans)
 
 
-def _sensed(name: str, scans: dict[str, dict[str, Any]], beams: Beams, problems: Problems) -> Iterator[Sensed]:
+def _sensed(name: str, scans: dict[str, dict[str, Any]], problems: Problems) -> Iterator[Sensed]:
     rates = Rates()
     for number, (time, scan) in enumerate(scans.items()):
         where = f"{name}: scan {number}"
+        problems.seen("scans")
         try:
             time_ns, pose = ns_of(time), (float(scan["x"]), float(scan["y"]), float(scan["theta"]))
             ranges = np.array(scan["range"], np.float64)
-            if ranges.shape != (len(beams.angles_rad),) or np.isnan(ranges).any():
-                raise ValueError(f"range must be a list of {len(beams.angles_rad)} numbers")
+            if ranges.ndim != 1 or not 0 < len(ranges) <= MOST_BEAMS or np.isnan(ranges).any():
+                raise ValueError(f"range must be a list of up to {MOST_BEAMS} numbers")
             if not math.hypot(*pose) < 1e7:
                 raise ValueError("its pose is not finite, or far off")
         except (KeyError, TypeError, ValueError, OverflowError) as error:
@@ -66,4 +63,5 @@ def _sensed(name: str, scans: dict[str, dict[str, Any]], beams: Beams, problems:
             continue
         speed, yaw_rate = rates.since(time_ns, pose) or (None, None)
         ranges = np.where((ranges >= SICK_LIMIT_M) | (ranges <= 0), np.inf, ranges)
-        yield Sensed(time_ns, where, None, ranges, speed, yaw_rate, frame=number)
+        beams = Beams(front_angles(len(ranges)), SICK_LIMIT_M)
+        yield Sensed(time_ns, where, None, ranges, speed, yaw_rate, frame=number, beams=beams, source="scans")

@@ -18,6 +18,14 @@ Picture = Callable[[], NDArray[np.uint8]]  # unpacks it when it is needed; Value
 
 
 @dataclass(frozen=True, slots=True)
+class Beams:
+    """Of a laser or of sonars: angles from straight ahead (rad, left positive), and how far it sees (m)."""
+
+    angles_rad: tuple[float, ...] = ()
+    limit_m: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Sensed:
     """One line or message; None: it does not have it. Rates are those of the time since the one before."""
 
@@ -31,6 +39,8 @@ class Sensed:
     truth: Pose | None = None
     behaviour: int | None = None
     frame: int | None = None  # the picture's or scan's number, where some that cannot be read are counted, too
+    beams: Beams | None = None  # those of the ranges
+    source: str = ""  # what it is counted under, as in `Problems.seen`: "messages of /odom"
 
 
 class Rates:

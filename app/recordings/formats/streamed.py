@@ -2,54 +2,53 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from app.recordings.formats.clock import Clock
 from app.recordings.formats.held import Held
 from app.recordings.formats.problems import Problems
-from app.recordings.formats.sensed import Sensed
+from app.recordings.formats.raster import laid_on, typical
+from app.recordings.formats.sensed import Beams, Sensed
 from app.recordings.recording import About, Moment, Pose, Wanted, every
 
 SCAN_HELD_S, TRUTH_HELD_S = 0.25, 0.1  # older ones are not those of a picture
 DEFAULT_DT = 0.1  # of a single moment
-_LOOKED_AT = 1000  # steps, from which the typical one is taken
+_LOOKED_AT, _SCANS = 1000, 200  # steps and scans, from which the typical one is taken
+_SAME_RATIO = 0.02  # pictures whose sides' ratios differ by no more show the same
 
 KINDS = ("camera", "ranges", "speed", "yaw rate", "throttle", "truth")
 
 Source = Callable[[Problems], Iterator[Sensed]]
 
 
-@dataclass(frozen=True, slots=True)
-class Beams:
-    """Of a laser or of sonars: angles from straight ahead (rad, left positive), and how far it sees (m)."""
-
-    angles_rad: tuple[float, ...] = ()
-    limit_m: float | None = None
-
-
 class StreamedRecording:
     """Moments are those of the camera, or where there is none, of the laser. What lies between them is summed up."""
 
     def __init__(
-        self, name: str, format_: str, source: Source, beams: Callable[[], Beams] = Beams, uses: tuple[str, ...] = ()
+        self, name: str, format_: str, source: Source, uses: tuple[str, ...] = (), unused: tuple[str, ...] = ()
     ) -> None:
-        """source: gives everything that was sensed, anew each time; beams: asked after it has been read once.
+        """source: gives everything that was sensed, anew each time.
 
-        ValueError: there is nothing in it that could be played.
+        uses: "speed and yaw rate (how): from where"; what was not sensed after all is not announced. unused: what of the
+        recording never comes through `source`, and why. ValueError: there is nothing in it that could be played.
         """
-        self._source, self._beams, self._name = source, beams, name
+        self._source, self._name = source, name
         self._problems = Problems()
         self._readable: dict[int, bool] = {}  # of the pictures that were unpacked once, by their numbers
-        self._about = self._look_through(name, format_, uses)
+        self._raster = Beams()
+        self._about = self._look_through(name, format_, uses, unused)
+        self._counts = self._problems.counts
 
     @property
     def about(self) -> About:
         """What is in it. Problems with pictures are found when they are read, so there are more of them later."""
-        return replace(self._about, problems=self._problems.sentences)
+        return replace(self._about, problems=self._problems.sentences, counts=self._counts)
 
     def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
         """In order of time. Whoever wants all pictures is told what is wrong with them (`about`)."""
@@ -59,25 +58,39 @@ class StreamedRecording:
         pictures = _Pictures(problems, self._about.image_shape, wanted, self._readable)
         gathering = _Gathering(problems, pictures if camera else None, self._typical_ns)
         for sensed in self._in_time(problems):
-            if (moment := gathering.take(sensed)) is not None:
+            if (moment := gathering.take(self._on_raster(sensed, problems))) is not None:
                 yield moment
         if (moment := gathering.emitted()) is not None:
             yield moment
+        if problems is self._problems:
+            self._counts = problems.counts
+
+    def _on_raster(self, sensed: Sensed, problems: Problems) -> Sensed:
+        """With its scan, if it has one, on the beams that all scans are laid on. Counts it, unless it makes a moment."""
+        if sensed.ranges_m is not None and sensed.beams is not None:
+            try:
+                sensed = replace(sensed, ranges_m=laid_on(self._raster, sensed.beams, sensed.ranges_m))
+            except ValueError as error:
+                problems.add("scans left out", sensed.where, f"left out: {error}")
+                return replace(sensed, ranges_m=None)
+        if (sensed.image if "camera" in self._about.has else sensed.ranges_m) is None:
+            problems.read(sensed.source)
+        return sensed
 
     def _in_time(self, problems: Problems) -> Iterator[Sensed]:
         clock = Clock(problems)
         for sensed in self._source(problems):
             yield replace(sensed, time_ns=clock.at(sensed.time_ns, sensed.where))
 
-    def _look_through(self, name: str, format_: str, uses: tuple[str, ...]) -> About:
+    def _look_through(self, name: str, format_: str, uses: tuple[str, ...], unused: tuple[str, ...]) -> About:
         counts, times = {"camera": 0, "ranges": 0}, dict[str, list[int]]()
         has, steps = set[str](), {"camera": list[int](), "ranges": list[int]()}
-        shape: tuple[int, int] | None = None
+        shapes, beams = _Shapes(self._problems), list[Beams]()
         for sensed in self._in_time(self._problems):
             for kind, there in (("camera", sensed.image), ("ranges", sensed.ranges_m)):
                 if there is None:
                     continue
-                if kind == "camera" and shape is None and (shape := self._shape(sensed)) is None:
+                if kind == "camera" and not shapes.look(sensed):
                     continue
                 counts[kind] += 1
                 first_last = times.setdefault(kind, [sensed.time_ns, sensed.time_ns])
@@ -85,6 +98,9 @@ class StreamedRecording:
                     steps[kind].append(sensed.time_ns - first_last[1])
                 first_last[1] = sensed.time_ns
             has.update(_kinds(sensed))
+            self._problems.read(sensed.source)
+            if sensed.beams is not None and len(beams) < _SCANS:
+                beams.append(sensed.beams)
         main = "camera" if counts["camera"] else "ranges"
         if not counts[main]:
             told = "; ".join(self._problems.sentences[:2])
@@ -94,23 +110,48 @@ class StreamedRecording:
         if not counts["camera"]:
             has.discard("camera")
         self._typical_ns = sorted(steps[main])[len(steps[main]) // 2] if steps[main] else round(DEFAULT_DT * 1e9)
-        beams = self._beams()
         seconds = (times[main][1] - times[main][0]) / 1e9
-        uses = tuple(
-            sentence
-            for sentence in uses
-            if sentence.partition(":")[0] in has or sentence.partition(":")[0] not in KINDS
+        uses = tuple(sentence for sentence in uses if _sensed(sentence, has))
+        if beams:
+            self._raster = typical(beams)
+            least, most = (rule(len(b.angles_rad) for b in beams) for rule in (min, max))
+            if any(b.angles_rad != self._raster.angles_rad for b in beams):
+                uses += (f"scans of {least} to {most} ranges: laid by angle on {len(self._raster.angles_rad)} beams",)
+        angles, limit = self._raster.angles_rad, self._raster.limit_m
+        return About(
+            name, format_, counts[main], seconds, frozenset(has), shapes.usual, angles, limit, uses, unused=unused
         )
-        return About(name, format_, counts[main], seconds, frozenset(has), shape, beams.angles_rad, beams.limit_m, uses)
 
-    def _shape(self, sensed: Sensed) -> tuple[int, int] | None:
+
+def _sensed(sentence: str, has: set[str]) -> bool:
+    """Whether something of what "speed and yaw rate (how): from where" announces was sensed; other sentences stand."""
+    kinds = sentence.partition(":")[0].partition(" (")[0].split(" and ")
+    return not all(kind in KINDS for kind in kinds) or any(kind in has for kind in kinds)
+
+
+class _Shapes:
+    """What shape the pictures have: the usual one of the first, second, third, fifth, ninth, ... that can be read."""
+
+    def __init__(self, problems: Problems) -> None:
+        self._problems = problems
+        self._seen = 0
+        self._found: Counter[tuple[int, int]] = Counter()
+        self.usual: tuple[int, int] | None = None
+
+    def look(self, sensed: Sensed) -> bool:
+        """Whether a picture has been readable up to now."""
         assert sensed.image is not None
-        try:
-            height, width = sensed.image().shape[:2]
-        except ValueError as error:
-            self._problems.add("pictures left out", sensed.where, f"left out: {error}")
-            return None
-        return height, width
+        if not self._found or self._seen & (self._seen - 1) == 0:
+            try:
+                height, width = sensed.image().shape[:2]
+            except ValueError as error:
+                self._problems.add("pictures left out", sensed.where, f"left out: {error}")
+                return self.usual is not None
+            self._found[height, width] += 1
+            if self.usual is None or self._found[height, width] >= self._found[self.usual]:
+                self.usual = height, width
+        self._seen += 1
+        return True
 
 
 def _kinds(sensed: Sensed) -> Iterator[str]:
@@ -177,6 +218,7 @@ class _Gathering:
             good, image = self._pictures.next(sensed)
             if not good:
                 return None
+        self._problems.read(sensed.source)
         now = sensed.time_ns
         if not self._begun:
             self._begun, self._first_ns, self._last_ns = True, now, now - self._typical_ns
@@ -220,12 +262,20 @@ class _Pictures:
         assert sensed.image is not None
         try:
             image = sensed.image()
-            if image.shape[:2] != self._shape and self._shape is not None:
-                height, width = self._shape
-                raise ValueError(
-                    f"{image.shape[1]} x {image.shape[0]} pixels, but the first picture has {width} x {height}"
-                )
+            return (
+                image if image.shape[:2] == self._shape or self._shape is None else self._resized(image, sensed.where)
+            )
         except ValueError as error:
             self._problems.add("pictures left out", sensed.where, f"left out: {error}")
             return None
-        return image
+
+    def _resized(self, image: NDArray[np.uint8], where: str) -> NDArray[np.uint8]:
+        """As large as the others. ValueError: it shows something else."""
+        assert self._shape is not None
+        (height, width), (rows, columns) = self._shape, image.shape[:2]
+        told = f"{columns} x {rows} pixels, but most pictures have {width} x {height}"
+        if abs(columns * height / (rows * width) - 1) > _SAME_RATIO:
+            raise ValueError(told)
+        self._problems.add("pictures resized", where, f"resized: {told}")
+        how = cv2.INTER_AREA if rows > height else cv2.INTER_LINEAR
+        return np.asarray(cv2.resize(image, (width, height), interpolation=how), np.uint8)

@@ -20,7 +20,7 @@ from app.recordings.formats.sensed import Rates, ns_of
 from app.recordings.made_odometry import OdometryErrors, WithMadeOdometry, parse_errors
 from app.recordings.opening import Opening, open_recording
 from ratslam_core import Pose2
-from tests.recordings import airsim, drive, image_folder, plain_folder, png
+from tests.recordings import N, airsim, carmen, drive, image_folder, plain_folder, png
 
 S = 10**9
 
@@ -177,3 +177,21 @@ def test_odometry_made_from_truth_has_the_errors_that_are_asked_for(tmp_path: Pa
     for wrong in ("", "1,2", "a,b,c", "nan,0,0", "0.1,0.02,1e9"):
         with pytest.raises(ValueError):
             parse_errors(wrong)
+
+
+def test_a_log_of_carmen_tells_what_was_used_of_it_and_what_was_not(tmp_path: Path) -> None:
+    """Scans alone: no odometry is announced. Few lines of another laser do not hide the one that was meant."""
+    path = carmen(tmp_path / "a.log", "RAWLASER1")
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("ODOM")]
+    few = carmen(tmp_path / "few.log").read_text().splitlines()[2]
+    path.write_text("\n".join([*lines, few, "SYNC 1 2", lines[-1].rsplit(" ", 9)[0]]))
+    recording = open_recording(path)
+    assert len(list(recording.moments())) == N
+    about = recording.about
+    assert about.uses == ("ranges: RAWLASER1 lines",)
+    assert [(count.what, count.read, count.there) for count in about.counts] == [("RAWLASER1 lines", N, N + 1)]
+    assert len(about.problems) == 1
+    assert set(about.unused) == {
+        "PARAM, 1 lines: the robot's parameters are not needed", "FLASER, 1 lines: ranges come from RAWLASER1 lines",
+        "SYNC, 1 lines: not read",
+    }  # fmt: skip

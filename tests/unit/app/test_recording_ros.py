@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import sqlite3
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import zstandard
 from mcap.writer import CompressionType
+from rosbags.rosbag1 import Writer as Bag1
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from app.recordings.formats import ros_messages as ros
+from app.recordings.formats.encodings import decoded
 from app.recordings.formats.ros_packets import Packet
 from app.recordings.formats.ros_recording import open_ros
 from app.recordings.formats.ros_topics import Choice
 from app.recordings.opening import open_recording
 from app.recordings.recording import Recording
-from tests.recordings import BEAMS, BEGAN_NS, ROS2, N, bag1, bag2, drive, mcap, ros_messages
+from tests.recordings import BEAMS, BEGAN_NS, ROS1, ROS2, N, bag1, bag2, db3, drive, mcap, ros_messages
 
 T = ROS2.types
 S = 10**9
@@ -189,3 +196,248 @@ def test_odd_values_in_messages_are_named_and_left_out() -> None:
     assert moments[-1].speed is not None
     assert math.isfinite(moments[-1].speed)
     assert "(/odom): left out: its twist is not finite" in recording.about.problems[0]
+
+
+def played(recording: Recording) -> Recording:
+    """After all of it was read, as `ratslam recording check` does."""
+    for _ in recording.moments():
+        pass
+    return recording
+
+
+def transform(time_ns: int, parent: str, child: str, pose: tuple[float, float, float], types: Any = T) -> Any:
+    x, y, heading = pose
+    turn = types["geometry_msgs/msg/Quaternion"](0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2))
+    placed = types["geometry_msgs/msg/Transform"](types["geometry_msgs/msg/Vector3"](x, y, 0.0), turn)
+    stamp = types["builtin_interfaces/msg/Time"](sec=time_ns // S, nanosec=time_ns % S)
+    extra = {"seq": 0} if types is not T else {}
+    told = types["std_msgs/msg/Header"](stamp=stamp, frame_id=parent, **extra)
+    return types[ros.TRANSFORM](told, child, placed)
+
+
+def test_every_message_is_read_left_out_with_a_word_or_told_of_as_unused() -> None:
+    messages = list(ros_messages(False))
+    messages += [imu(BEGAN_NS + k * S // 10, vector(0.0, 0.0, 1.0), vector(0.0, 0.0, 9.8)) for k in range(3)]
+    messages += [("/depth/image", *message[1:]) for message in camera_only()]
+    messages += [("/tf", ros.TF, BEGAN_NS, T[ros.TF]([transform(BEGAN_NS, "map", "odom", (1.0, 0.0, 0.0))]))]
+    messages.sort(key=lambda message: message[2])
+    images = [told for topic, _, _, told in messages if topic == "/camera/image"]
+    images[2].encoding = "secret"
+    images[5].data = images[5].data[:-30]
+    whole = list(packets(messages))
+    at = [packet.topic for packet in whole].index("/odom")
+    whole[at] = replace(whole[at], data=whole[at].data[:99])
+    about = played(open_ros(Path("made"), "made", lambda _problems: iter(whole), None)).about
+    left = sum(int(sentence.split(", ")[1].split(" ")[0]) for sentence in about.unused)
+    assert sum(count.there for count in about.counts) + left == len(messages)
+    missing = sum(count.there - count.read for count in about.counts)
+    assert missing == len(about.problems) == 3
+    assert not about.whole
+    for told in (
+        "/imu, 3 messages: yaw rate comes from /odom; --gyro-topic takes this one",
+        f"/depth/image, {N} messages: not a camera by its name; --camera-topic takes it",
+        "/tf, 1 messages: odometry comes from /odom",
+        f"/words, {N} messages: type std_msgs/msg/String is not read",
+    ):
+        assert told in about.unused
+
+
+@pytest.mark.parametrize("type_", [ros.TF, ros.TF_OLD])
+def test_types_are_as_the_bag_defines_them(type_: str, tmp_path: Path) -> None:
+    """rosbags' table of ROS 1 has neither type, and none with a field that somebody added."""
+    types = get_typestore(Stores.ROS1_NOETIC)
+    added = get_types_from_msg("geometry_msgs/TransformStamped[] transforms\nuint8 more", type_)
+    types.register(added)
+    path = tmp_path / "a.bag"
+    with Bag1(path) as bag:
+        camera = bag.add_connection("/camera/image", ros.IMAGE, typestore=ROS1)
+        tf = bag.add_connection("/tf", type_, typestore=types)
+        images = [told for topic, _, _, told in ros_messages(True) if topic == "/camera/image"]
+        for row, image in zip(drive(), images, strict=True):
+            told = types.types[type_]([transform(row.time_ns, "odom", "base_link", row.pose, types.types)], 7)
+            bag.write(camera, row.time_ns, ROS1.serialize_ros1(image, ros.IMAGE))
+            bag.write(tf, row.time_ns, types.serialize_ros1(told, type_))
+    recording = open_recording(path)
+    moments = list(recording.moments())
+    assert recording.about.whole
+    for moment, row in list(zip(moments, drive(), strict=True))[1:]:
+        assert (moment.speed, moment.yaw_rate) == pytest.approx((row.speed, row.yaw_rate), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("parent", "child", "over"),
+    [
+        ("odom_combined", "base_footprint", False), ("/robot1/odom", "robot1/base_link", False),
+        ("odom_frame", "lidar", False), ("base_link", "odom_lidar", True), ("world", "chassis", False),
+        ("base_link", "wheel_left", None), ("map", "person", None),
+    ],
+)  # fmt: skip
+def test_the_transform_that_moves_the_robot_is_odometry_whatever_its_names(
+    parent: str, child: str, over: bool | None
+) -> None:
+    messages = camera_only()
+    for row in drive():
+        x, y, heading = row.pose
+        cos, sin = math.cos(heading), math.sin(heading)
+        pose = (-(x * cos + y * sin), x * sin - y * cos, -heading) if over else row.pose
+        messages.append(("/tf", ros.TF, row.time_ns, T[ros.TF]([transform(row.time_ns, parent, child, pose)])))
+    recording = opened(sorted(messages, key=lambda message: message[2]))
+    moments = list(recording.moments())
+    if over is None:
+        assert recording.about.has == {"camera"}
+        assert not any("/tf" in use for use in recording.about.uses)
+        told = f"/tf, {N} messages: no transform odom -> base_link among: {parent} -> {child}"
+        assert recording.about.unused == (told,)
+    else:
+        for moment, row in list(zip(moments, drive(), strict=True))[1:]:
+            assert (moment.speed, moment.yaw_rate) == pytest.approx((row.speed, row.yaw_rate), rel=1e-6)
+
+
+def test_what_a_killed_recorder_left_beside_its_file_is_read_and_nothing_is_written_there(tmp_path: Path) -> None:
+    path, home = db3(tmp_path / "a.db3"), tmp_path / "killed"
+    home.mkdir()
+    base = sqlite3.connect(path)
+    base.execute("PRAGMA journal_mode=WAL")
+    base.execute("CREATE TABLE late AS SELECT * FROM messages WHERE id > 20")
+    base.execute("DELETE FROM messages WHERE id > 20")
+    base.commit()
+    base.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    base.execute("INSERT INTO messages SELECT * FROM late")
+    base.commit()
+    for end in ("", "-wal", "-shm"):
+        (home / f"a.db3{end}").write_bytes(Path(f"{path}{end}").read_bytes())
+    base.close()
+    before = {file.name: file.read_bytes() for file in home.iterdir()}
+    assert len(list(open_recording(home).moments())) == len(list(open_recording(home / "a.db3").moments())) == N
+    assert {file.name: file.read_bytes() for file in home.iterdir()} == before
+
+
+def test_what_rosbag2_packed_is_unpacked(tmp_path: Path) -> None:
+    path = db3(tmp_path / "a.db3")
+    packed = tmp_path / "whole" / "a.db3.zstd"
+    packed.parent.mkdir()
+    packed.write_bytes(zstandard.compress(path.read_bytes()))
+    base = sqlite3.connect(path)
+    for id_, data in base.execute("SELECT id, data FROM messages").fetchall():
+        base.execute("UPDATE messages SET data = ? WHERE id = ?", (zstandard.compress(data), id_))
+    base.commit()
+    base.close()
+    for made in (path, packed, packed.parent):
+        recording = open_recording(made)
+        for moment, row in zip(recording.moments(), drive(), strict=True):
+            assert np.array_equal(moment.image, row.image)
+        assert recording.about.problems == ()
+
+
+def test_messages_that_the_recorder_counted_are_missed(tmp_path: Path) -> None:
+    folder = bag2(tmp_path / "b")
+    (file,) = folder.glob("*.db3")
+    base = sqlite3.connect(file)
+    base.execute("DELETE FROM messages WHERE id % 3 = 0")
+    base.commit()
+    base.close()
+    assert "metadata.yaml: tells of 40 messages, but there are 27" in open_recording(folder).about.problems
+
+
+def test_scans_whose_rays_vary_are_laid_on_one_another_by_angle() -> None:
+    messages = list[tuple[str, str, int, Any]]()
+    for k, count in enumerate((20, 100, 101, 99, 100, 98, 0, 30)):
+        step = math.tau / max(count, 1) if k < 7 else 0.01  # the last one looks at a part of it
+        ranges = (3 + np.cos(-math.pi + step * np.arange(count))).astype(np.float32)
+        ranges[count // 2 : count // 2 + 1] = np.nan
+        told = T[ros.SCAN](header(BEGAN_NS + k * S), -math.pi, math.pi, step, 0.0, 1.0, 0.1, 30.0, ranges, ranges[:0])
+        messages.append(("/scan", ros.SCAN, BEGAN_NS + k * S, told))
+    recording = opened(messages)
+    angles = np.array(recording.about.beam_angles_rad)
+    moments = list(recording.moments())
+    assert len(angles) == 99
+    assert len(moments) == 6
+    for moment in moments:
+        assert moment.ranges_m is not None
+        seen = np.isfinite(moment.ranges_m)
+        assert seen.mean() > 0.9
+        assert np.abs(moment.ranges_m - (3 + np.cos(angles)))[seen].max() < 0.17
+    assert [(count.read, count.there) for count in recording.about.counts] == [(6, 8)]
+    assert "it has no ranges" in recording.about.problems[0]
+
+
+def test_headers_of_different_clocks_are_not_believed() -> None:
+    messages = list(ros_messages(False))
+    for topic, _, time_ns, told in messages:
+        if topic == "/camera/image":
+            told.header = header(time_ns - 1_699_999_400 * S)
+    about = opened(messages).about
+    assert "the clocks of /camera/image and /odom are 1.7e+09 s apart" in about.problems[0]
+    assert about.seconds == pytest.approx((N - 1) / 10)
+    assert not any("headers" in use and "since" not in use for use in about.uses)
+
+
+@pytest.mark.parametrize("wrong", ["frame", "unit"])
+def test_a_twist_that_does_not_lead_from_pose_to_pose_is_not_believed(wrong: str) -> None:
+    """Six seconds round a circle; the twist is that in the world's frame, or in km/h."""
+    messages, told_of = camera_only()[:1], next(message for message in ros_messages(False) if message[0] == "/odom")
+    for k in range(61):
+        time, heading = BEGAN_NS + k * S // 10, k / 10
+        told = copy.deepcopy(told_of[3])
+        told.header.stamp = header(time).stamp
+        place, turn, twist = told.pose.pose.position, told.pose.pose.orientation, told.twist.twist
+        place.x, place.y = math.sin(heading), -math.cos(heading)
+        turn.z, turn.w = math.sin(heading / 2), math.cos(heading / 2)
+        twist.linear.x, twist.angular.z = (math.cos(heading) if wrong == "frame" else 3.6), 1.0
+        messages.append(("/odom", ros.ODOMETRY, time, told))
+        messages.append(("/camera/image", ros.IMAGE, time, copy.deepcopy(messages[0][3])))
+        messages[-1][3].header.stamp = header(time).stamp
+    recording = opened(messages[1:])
+    assert [moment.speed for moment in recording.moments()][1:] == pytest.approx([1.0] * 60, rel=1e-3)
+    assert "its twist does not lead from one pose to the next" in recording.about.problems[0]
+
+
+def test_the_usual_picture_is_the_rule_and_not_the_first() -> None:
+    messages = camera_only()
+    small = np.ascontiguousarray(drive()[0].image[::2, ::2])
+    for at, shape in ((0, (6, 8)), (4, (12, 8))):
+        told = messages[at][3]
+        told.height, told.width, told.step = shape[0], shape[1], shape[1] * 3
+        told.data = small.reshape(-1) if at == 0 else np.zeros(12 * 8 * 3, np.uint8)
+    recording = opened(messages)
+    moments = list(recording.moments())
+    assert recording.about.image_shape == (12, 16)
+    assert [moment.frame for moment in moments] == [0, 1, 2, 3, 5, 6, 7]
+    assert "8 x 6 pixels, but most pictures have 16 x 12" in recording.about.problems[0]
+
+
+@pytest.mark.parametrize("encoding", ["uyvy", "yuv422", "yuv422_yuy2", "NV12", "nv21", "i420", "nv24"])
+def test_pictures_in_the_colours_of_video(encoding: str) -> None:
+    """One colour: Y, U, V of orange."""
+    h, w, (y, u, v) = 4, 6, (170, 40, 190)
+    pixels = {
+        "uyvy": [u, y, v, y] * (h * w // 2), "yuv422_yuy2": [y, u, y, v] * (h * w // 2),
+        "nv12": [y] * h * w + [u, v] * (h * w // 4), "nv21": [y] * h * w + [v, u] * (h * w // 4),
+        "i420": [y] * h * w + [u] * (h * w // 4) + [v] * (h * w // 4), "nv24": [y] * h * w + [u, v] * h * w,
+    }  # fmt: skip
+    data = np.array(pixels.get(encoding.lower(), pixels["uyvy"]), np.uint8)
+    step = len(data) // h if encoding.startswith(("u", "y")) else w
+    seen = decoded(encoding, w, h, step, data)
+    assert seen.shape == (h, w, 3)
+    assert (np.ptp(seen, axis=(0, 1)) <= 1).all()
+    red, green, blue = seen[0, 0].tolist()
+    assert red > 240 > 180 > green > 110 > 60 > blue
+    with pytest.raises(ValueError, match="bytes are too few"):
+        decoded(encoding, w, h, step, data[:-1])
+
+
+@pytest.mark.parametrize("pattern", ["rggb", "bggr", "gbrg", "grbg"])
+@pytest.mark.parametrize("depth", [8, 16])
+def test_pictures_of_bare_sensors(pattern: str, depth: int) -> None:
+    colours = {"r": 200, "g": 100, "b": 50}
+    cell = np.array([colours[c] for c in pattern], np.uint16).reshape(2, 2)
+    raw = np.tile(cell, (4, 4)) << (depth - 8)
+    data = raw.astype(">u2").view(np.uint8) if depth == 16 else raw.astype(np.uint8)
+    seen = decoded(f"bayer_{pattern}{depth}", 8, 8, 8 * depth // 8, data.reshape(-1), True)
+    assert np.abs(seen[2:6, 2:6].astype(int) - [200, 100, 50]).max() <= 1
+
+
+def test_a_video_in_pieces_is_named() -> None:
+    told = T[ros.COMPRESSED](header(S), "h264", np.frombuffer(b"\0\0\0\1abc", np.uint8))
+    with pytest.raises(ValueError, match=r"a piece of a video, said to be 'h264'"):
+        ros.picture(Packet("/c", ros.COMPRESSED, False, 0, bytes(ROS2.serialize_cdr(told, ros.COMPRESSED)), 0))
