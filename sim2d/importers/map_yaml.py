@@ -19,7 +19,7 @@ Tell = Callable[[str], None]  # is given a sentence about something that was tak
 _NEEDED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 _KEYS = (*_NEEDED, "mode")
 _MODES = ("trinary", "scale", "raw")
-_WORDS = {word: "1" for word in ("true", "yes", "on", "y")} | {word: "0" for word in ("false", "no", "off", "n")}
+_WORDS = dict.fromkeys(("true", "yes", "on", "y"), "1") | dict.fromkeys(("false", "no", "off", "n"), "0")
 SCALES_M = (0.001, 1.0)  # metres per pixel, least and most
 
 
