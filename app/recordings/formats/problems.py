@@ -1,6 +1,9 @@
-"""What is wrong with a recording, in sentences: the first ones of each kind, and how many more there are."""
+"""What is wrong with a recording, in sentences: the first ones of each kind, and how many more there are. And how much
+of each source was read, which is counted where it comes in and again where it is used."""
 
 from __future__ import annotations
+
+from app.recordings.recording import Count
 
 TOLD = 10  # sentences of one kind
 
@@ -11,6 +14,21 @@ class Problems:
     def __init__(self) -> None:
         self._told: dict[str, dict[str, None]] = {}
         self._more: dict[str, int] = {}
+        self._there: dict[str, int] = {}
+        self._read: dict[str, int] = {}
+
+    def seen(self, source: str) -> None:
+        """One more message, line or picture of this source has come, whatever becomes of it."""
+        self._there[source] = self._there.get(source, 0) + 1
+
+    def read(self, source: str) -> None:
+        """One of them is used."""
+        self._read[source] = self._read.get(source, 0) + 1
+
+    @property
+    def counts(self) -> tuple[Count, ...]:
+        """Of every source of which something has come."""
+        return tuple(Count(source, self._read.get(source, 0), there) for source, there in self._there.items())
 
     def add(self, kind: str, where: str, what: str) -> None:
         """kind: of which the first few are told; where: the message, line or file; what: is wrong with it."""
@@ -24,6 +42,8 @@ class Problems:
     def begin(self) -> None:
         """The recording is read from its beginning again: what was only counted is counted anew."""
         self._more.clear()
+        self._there.clear()
+        self._read.clear()
 
     def __bool__(self) -> bool:
         return bool(self._told)

@@ -31,6 +31,7 @@ class Sensed:
     truth: Pose | None = None
     behaviour: int | None = None
     frame: int | None = None  # the picture's or scan's number, where some that cannot be read are counted, too
+    source: str = ""  # what it is counted under, as in `Problems.seen`: "messages of /odom"
 
 
 class Rates:

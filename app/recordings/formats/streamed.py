@@ -35,8 +35,9 @@ class StreamedRecording:
     """Moments are those of the camera, or where there is none, of the laser. What lies between them is summed up."""
 
     def __init__(
-        self, name: str, format_: str, source: Source, beams: Callable[[], Beams] = Beams, uses: tuple[str, ...] = ()
-    ) -> None:
+        self, name: str, format_: str, source: Source, beams: Callable[[], Beams] = Beams, uses: tuple[str, ...] = (),
+        unused: tuple[str, ...] = (),
+    ) -> None:  # fmt: skip
         """source: gives everything that was sensed, anew each time; beams: asked after it has been read once.
 
         ValueError: there is nothing in it that could be played.
@@ -44,12 +45,13 @@ class StreamedRecording:
         self._source, self._beams, self._name = source, beams, name
         self._problems = Problems()
         self._readable: dict[int, bool] = {}  # of the pictures that were unpacked once, by their numbers
-        self._about = self._look_through(name, format_, uses)
+        self._about = replace(self._look_through(name, format_, uses), unused=unused)
+        self._counts = self._problems.counts
 
     @property
     def about(self) -> About:
         """What is in it. Problems with pictures are found when they are read, so there are more of them later."""
-        return replace(self._about, problems=self._problems.sentences)
+        return replace(self._about, problems=self._problems.sentences, counts=self._counts)
 
     def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
         """In order of time. Whoever wants all pictures is told what is wrong with them (`about`)."""
@@ -59,10 +61,14 @@ class StreamedRecording:
         pictures = _Pictures(problems, self._about.image_shape, wanted, self._readable)
         gathering = _Gathering(problems, pictures if camera else None, self._typical_ns)
         for sensed in self._in_time(problems):
+            if (sensed.image if camera else sensed.ranges_m) is None:
+                problems.read(sensed.source)
             if (moment := gathering.take(sensed)) is not None:
                 yield moment
         if (moment := gathering.emitted()) is not None:
             yield moment
+        if problems is self._problems:
+            self._counts = problems.counts
 
     def _in_time(self, problems: Problems) -> Iterator[Sensed]:
         clock = Clock(problems)
@@ -85,6 +91,7 @@ class StreamedRecording:
                     steps[kind].append(sensed.time_ns - first_last[1])
                 first_last[1] = sensed.time_ns
             has.update(_kinds(sensed))
+            self._problems.read(sensed.source)
         main = "camera" if counts["camera"] else "ranges"
         if not counts[main]:
             told = "; ".join(self._problems.sentences[:2])
@@ -177,6 +184,7 @@ class _Gathering:
             good, image = self._pictures.next(sensed)
             if not good:
                 return None
+        self._problems.read(sensed.source)
         now = sensed.time_ns
         if not self._begun:
             self._begun, self._first_ns, self._last_ns = True, now, now - self._typical_ns
