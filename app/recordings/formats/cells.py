@@ -76,7 +76,7 @@ def style_of(path: Path) -> Style | None:
     else:
         header = _commented(comments, delimiter, usual)
     sample = tuple(cells for _, cells in cut)
-    return Style(delimiter, delimiter != "," and _has_comma(sample), header, first, sample)
+    return Style(delimiter, _has_comma(sample, delimiter), header, first, sample)
 
 
 def _cut(line: str, delimiter: str) -> list[str]:
@@ -122,8 +122,10 @@ def _commented(comments: list[str], delimiter: str, cells: int) -> tuple[str, ..
     return ()
 
 
-def _has_comma(sample: tuple[tuple[str, ...], ...]) -> bool:
+def _has_comma(sample: tuple[tuple[str, ...], ...], delimiter: str) -> bool:
     cells = [cell.strip() for row in sample for cell in row]
+    if delimiter == ",":  # one in a quoted cell may be that of thousands
+        cells = [cell for cell in cells if not _THOUSANDS.fullmatch(cell)]
     commas = sum(_COMMA.fullmatch(cell) is not None for cell in cells)
     return commas > sum(_POINT.fullmatch(cell) is not None for cell in cells)
 
@@ -182,7 +184,7 @@ def columns_without_header(style: Style) -> tuple[str, ...]:
     names = [""] * width
     for k, kind in enumerate(kinds):
         if kind == "p":
-            names[k] = "image" if "image" not in names else f"image_{k}"
+            names[k] = f"pictures {k + 1}"
     times = [k for k, kind in enumerate(kinds) if kind == "t" or (kind == "n" and _rises(columns[k], style))]
     if times and ("p" in kinds or width == 1):
         names[times[0]] = "time"

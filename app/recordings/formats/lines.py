@@ -10,7 +10,7 @@ import stat
 import zlib
 from collections.abc import Generator
 from pathlib import Path
-from typing import IO, cast
+from typing import IO, Any, cast
 
 MOST_LINE, MOST_BYTES = 1_000_000, 4_000_000_000
 UNPACKED = 40  # times its size; more is a bomb
@@ -31,7 +31,11 @@ def open_whole(path: Path) -> IO[bytes]:
             raise ValueError(f"{path}: not a file")
     except OSError as error:
         raise ValueError(f"{path}: cannot be read: {error.strerror or error}") from None
-    return cast(IO[bytes], gzip.GzipFile(fileobj=file)) if path.suffix.lower() == ".gz" else file
+    if path.suffix.lower() != ".gz":
+        return file
+    unpacked = gzip.GzipFile(fileobj=file)
+    unpacked.myfileobj = cast(Any, file)  # so that it is closed with it
+    return cast(IO[bytes], unpacked)
 
 
 def encoding_of(start: bytes) -> str:

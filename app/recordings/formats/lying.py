@@ -87,12 +87,13 @@ def cameras_of(names: Iterable[str]) -> dict[str, list[str]]:
 
     def rank(camera: str) -> tuple[int, int, int]:
         few = len(cameras[camera]) < _FEW * most
-        return 10 if few else _rank(camera), -len(cameras[camera]), camera.count("/")
+        return 10 if few else rank_of(camera), -len(cameras[camera]), camera.count("/")
 
     return {camera: cameras[camera] for camera in sorted(cameras, key=rank)}
 
 
-def _rank(camera: str) -> int:
+def rank_of(camera: str) -> int:
+    """By the words in its name: the lower, the sooner it is played; 9: no camera."""
     words = camera.lower()
     if _NO_CAMERA.search(words):
         return 9

@@ -14,6 +14,7 @@ import numpy as np
 
 from app.recordings.formats.cells import columns_without_header, is_picture, ns_of_date, samples, style_of
 from app.recordings.formats.lines import lines_of
+from app.recordings.formats.lying import rank_of
 from app.recordings.formats.problems import Problems, plain
 from app.recordings.formats.sensed import Picture, Rates, Sensed, ns_of
 from app.recordings.recording import Pose
@@ -81,7 +82,7 @@ def _columns(names: tuple[str, ...], pictures: list[int]) -> dict[str, Column]:
     words = [re.sub(r"[^a-z0-9]+", "_", name.strip().lower()).strip("_") for name in names]
     for at, name in enumerate(names):
         for meaning, factor in _readings(words[at]):
-            if meaning != "image" or not pictures or at in pictures:
+            if meaning != "image" or not pictures or at == pictures[0]:
                 found.setdefault(meaning, Column(at, plain(name.strip(), 40), factor))
             break
     if pictures and "image" not in found:
@@ -125,6 +126,7 @@ class Table:
         self._style = style
         names = style.header or columns_without_header(style)
         pictures = [at for at in range(len(names)) if (some := list(samples(style, at))) and all(map(is_picture, some))]
+        pictures.sort(key=lambda at: rank_of(f"{names[at]}/{next(samples(style, at))}"))
         self.columns = _needed(_columns(names, pictures), self.path.stem)
         if not self.columns:
             told = ", ".join(plain(each.strip(), 30) for each in style.header[:8]) or "it has no header"
