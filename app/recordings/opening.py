@@ -101,7 +101,7 @@ def _found(path: Path, names: list[str]) -> tuple[Path, Opened | None]:
         if re.fullmatch(pattern, name.rpartition("/")[2])
     ]
     if not found:
-        return path, None
+        return path, _bag if METADATA in names and (path / METADATA).is_file() else None
     _, _, name, opened = min(found, key=lambda each: each[:3])
     return (path / name).parent, opened
 

@@ -25,6 +25,7 @@ _ALIKE = 0.9  # this share of the lines must have the same number of cells
 _COMMENT = ("#", "%", "//")
 _COMMA = re.compile(r"[+-]?(\d{1,3}(\.\d{3})+|\d*),\d+(e[+-]?\d+)?", re.IGNORECASE)  # 0,5 and 1.234,5
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(,\d{3})+(\.\d*)?")  # 1,234 and 1,234.5
+_DOTTED = re.compile(r"[+-]?\d{1,3}(\.\d{3})+")  # 1.234, beside numbers with a comma
 _POINT = re.compile(r"[+-]?\d*\.\d+(e[+-]?\d+)?", re.IGNORECASE)
 _DATE = re.compile(r"(\d{4})[-/.](\d\d?)[-/.](\d\d?)[ T_]+(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,9}))?Z?")
 _CLOCK = re.compile(r"(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,9}))?")
@@ -127,7 +128,8 @@ def _has_comma(sample: tuple[tuple[str, ...], ...], delimiter: str) -> bool:
     if delimiter == ",":  # one in a quoted cell may be that of thousands
         cells = [cell for cell in cells if not _THOUSANDS.fullmatch(cell)]
     commas = sum(_COMMA.fullmatch(cell) is not None for cell in cells)
-    return commas > sum(_POINT.fullmatch(cell) is not None for cell in cells)
+    points = sum(_POINT.fullmatch(cell) is not None and _DOTTED.fullmatch(cell) is None for cell in cells)
+    return commas > points
 
 
 def _number_of(cell: str) -> bool:
@@ -186,7 +188,7 @@ def columns_without_header(style: Style) -> tuple[str, ...]:
         if kind == "p":
             names[k] = f"pictures {k + 1}"
     times = [k for k, kind in enumerate(kinds) if kind == "t" or (kind == "n" and _rises(columns[k], style))]
-    if times and ("p" in kinds or width == 1):
+    if times and (times[0] < kinds.find("p") or width == 1):
         names[times[0]] = "time"
     return tuple(names)
 

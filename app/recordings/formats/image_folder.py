@@ -74,9 +74,12 @@ class _Folder:
             self._times = [self._times[k] for k in order]
         self.beside: list[tuple[str, Table]] = []  # row k is of picture k
         self.merged: list[tuple[str, Table]] = []  # by time
-        for name, table in sorted(tables.items(), key=lambda item: "time" not in item[1].columns):
+        for name in sorted(
+            tables, key=lambda name: ("time" not in tables[name].columns, -self._near(name), by_number(name))
+        ):
             if name not in naming:
-                self._fit(name, table)
+                self._once(name, tables[name])
+                self._fit(name, tables[name])
         self._require()
         self._disagreeing = self._compared()
 
@@ -147,10 +150,22 @@ class _Folder:
     def _timed(self, table: Table) -> bool:
         return "time" in table.columns
 
+    def _near(self, name: str) -> int:
+        """How many folders a file shares with the pictures."""
+        return len(posixpath.commonprefix([name.split("/")[:-1], self.camera.split("/")]))
+
+    def _once(self, name: str, table: Table) -> None:
+        """What one table tells, no other does: which is right nobody could say. The first and nearest counts."""
+        for other in self._read():
+            if twice := table.tells & other.tells:
+                table.leave(twice)
+                self._reasons[name] = f"{other.name} tells the {' and the '.join(sorted(twice))}"
+
     def _fit(self, name: str, table: Table) -> None:
         """Whether a table that names no pictures goes with them: by its times, or row by row."""
-        tells = set(table.columns) - {"time"}
-        span = self._span()
+        tells, span = table.tells, self._span()
+        if not tells and name in self._reasons:
+            return
         apart = _APART_S * 1e9
         if (
             tells
@@ -177,7 +192,7 @@ class _Folder:
 
     def _rows_fit(self, table: Table) -> bool:
         """As many as there are pictures; a log that somebody put beside pictures without any times may be longer or shorter."""
-        loose = self._timed(table) and self._span() is None and len(set(table.columns) - {"time"}) > 0
+        loose = self._timed(table) and self._span() is None and bool(table.tells)
         return table.count == len(self._pictures) or loose
 
     def _span(self) -> tuple[int, int] | None:
@@ -199,6 +214,11 @@ class _Folder:
         return f"its times span {table:.6g} s, those in the names of its pictures {names:.6g} s; the table's are taken"
 
     def _require(self) -> None:
+        plan = next((name for name in self._names if name.lower().endswith((".yaml", ".yml"))), None)
+        if len(self._pictures) == 1 and plan is not None and self.primary is None:
+            raise ValueError(
+                f"{self._folder}: one picture and {plan}: a map, and no recording; open the two files together, as a world"
+            )
         if self._pictures or (self.primary is not None and "image" in self.primary.columns):
             return
         found = "; ".join(left_over(self._names, set(), self._reasons)[:6])

@@ -63,6 +63,10 @@ _GROUPS = (
     ("odom_x", "odom_y", "odom_heading"), ("gyro_x", "gyro_y", "gyro_z", "acc_x", "acc_y", "acc_z"), ("gyro_z",),
 )  # fmt: skip
 _POSES = _GROUPS[:3]
+_TOLD = {  # what a moment can be told, and the columns that tell it
+    "speed": {"speed", *_GROUPS[3]}, "yaw rate": {"yaw_rate", *_GROUPS[3], *_GROUPS[4]}, "throttle": {"throttle"},
+    "truth": {name for group in _GROUPS[:3] for name in group},
+}  # fmt: skip
 _ALONE = ("time", "image", "speed", "yaw_rate", "throttle")
 LARGEST = 1e9  # of a measured value; more is no robot's
 GRAVITY = 7.0, 13.0  # m/s²: so long is the mean of an accelerometer's readings where its up is known
@@ -140,9 +144,15 @@ class Table:
         self.count, self.first_ns, self.last_ns = 0, 0, 0
 
     @property
-    def poses(self) -> bool:
-        """Whether it has the truth."""
-        return any(all(name in self.columns for name in group) for group in _POSES)
+    def tells(self) -> set[str]:
+        """Of speed, yaw rate, throttle and truth, those that it has."""
+        return {kind for kind, columns in _TOLD.items() if columns & set(self.columns)}
+
+    def leave(self, kinds: set[str]) -> None:
+        """Do not use what tells of these: another table does."""
+        for kind in kinds:
+            for meaning in _TOLD[kind] & set(self.columns):
+                self.left.append(self.columns.pop(meaning).name)
 
     def survey(self) -> None:
         """Count its rows, and find out between which times they lie, which way is up for its gyro, and whether its poses

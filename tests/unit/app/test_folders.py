@@ -209,6 +209,13 @@ TABLES: dict[str, bytes] = {
     "sep=": table("|", before="sep=|\n").encode(),
     "sep=;": table(";", before='"sep=;"\r\n', end="\r\n").encode(),
     "decimal comma": table(";", comma=True).encode(),
+    "thousands": (
+        "image;time_ms;speed;yaw_rate\n"
+        + "".join(
+            f"bild {k}.png;{1 + k // 10}.{k % 10}00;{str(row.speed).replace('.', ',')};{str(row.yaw_rate).replace('.', ',')}\n"
+            for k, row in enumerate(drive())
+        )
+    ).encode(),
     "decimal comma, tabs": table("\t", comma=True).encode(),
     "decimal comma in quotes": table(",", comma=True, quote=True).encode(),
     "quotes": table(",", quote=True).encode(),
@@ -230,6 +237,36 @@ def test_a_table_is_read_as_spreadsheets_write_it(how: str, tmp_path: Path) -> N
     assert told.about.has == {"camera", "speed", "yaw rate"}
     for moment, row in zip(open_recording(tmp_path).moments(), drive(), strict=True):
         assert (moment.speed, moment.yaw_rate) == pytest.approx((row.speed, row.yaw_rate))
+
+
+def test_what_two_tables_tell_is_taken_from_one_and_told(tmp_path: Path) -> None:
+    """Of two drives in one folder, that of the pictures that are played."""
+    for number in ("00", "01"):
+        kitti(tmp_path / "sequences" / number)
+    about = checked(tmp_path).about
+    assert about.moments == N
+    assert "sequences/01/poses/00.txt: sequences/00/poses/00.txt tells the truth" in about.unused
+    pictures(tmp_path / "b", *(f"{time}.png" for time in TIMES))
+    wrote(tmp_path / "b", "odom.csv", "timestamp,speed,yaw_rate", *(f"{time},1,1" for time in TIMES))
+    wrote(tmp_path / "b", "wheel.csv", "timestamp,yaw_rate,throttle", *(f"{time},2,0.5" for time in TIMES))
+    recording = open_recording(tmp_path / "b")
+    assert {(moment.yaw_rate, moment.throttle) for moment in recording.moments()} == {(1.0, 0.5)}
+    assert "column 'yaw_rate' of wheel.csv: no use for it is known" in recording.about.unused
+
+
+def test_a_map_is_no_recording(tmp_path: Path) -> None:
+    pictures(tmp_path, "room.png")
+    wrote(tmp_path, "room.yaml", "image: room.png")
+    with pytest.raises(ValueError, match=r"one picture and room.yaml: a map, and no recording; open the two files"):
+        open_recording(tmp_path)
+
+
+def test_a_number_after_a_picture_is_no_time(tmp_path: Path) -> None:
+    """Steering, in a list that has no header."""
+    pictures(tmp_path, *(f"{k}.png" for k in range(N)))
+    wrote(tmp_path, "data.txt", *(f"{k}.png {k * 0.37:.3f}" for k in range(N)))
+    told = checked(tmp_path)
+    assert (told.seconds, told.about.problems) == (pytest.approx((N - 1) / HZ), ())
 
 
 def test_a_table_that_is_not_understood_is_told_of(tmp_path: Path) -> None:
