@@ -1,7 +1,7 @@
 """Archives of recordings: unpacked into a folder of their own, within limits, and nowhere else.
 
 Refused: names that lead out of the folder, more files or bytes than a recording has, and what unpacks to a hundred times its
-size. Links and devices are left out and told of. test_archives.py.
+size. Links and devices are left out and told of. test_folders.py.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ SPARE_BYTES = 500_000_000  # of the disk are left free
 _SMALL = 10_000_000  # bytes that any archive may unpack to
 _PIECE = 1 << 20
 _OTHERS = ((b"7z\xbc\xaf'\x1c", "7z"), (b"Rar!", "RAR"), (b"\x28\xb5\x2f\xfd", "Zstandard"))
+_ZIP = (b"PK\x03\x04", b"PK\x05\x06")
 _PACKED = (b"\x1f\x8b", b"BZh", b"\xfd7zXZ\0")
 
 
@@ -42,7 +43,7 @@ def is_archive(path: Path) -> bool:
     for magic, kind in _OTHERS:
         if start.startswith(magic):
             raise ValueError(f"{path.name}: {kind} archives are not read; pack it as .zip or .tar.gz, or unpack it")
-    if start.startswith((b"PK\x03\x04", b"PK\x05\x06")) or start[257:262] == b"ustar":
+    if start.startswith(_ZIP) or start[257:262] == b"ustar":
         return True
     return start.startswith(_PACKED) and _is_tar(path)
 
@@ -82,7 +83,9 @@ def _unpack(path: Path, folder: Path) -> tuple[str, ...]:
     most = min(MOST_BYTES, max(_SMALL, MOST_RATIO * path.stat().st_size))
     room = shutil.disk_usage(folder).free - SPARE_BYTES
     total, unused = 0, list[str]()
-    with closing(_zip(path) if zipfile.is_zipfile(path) else _tar(path)) as members:
+    with path.open("rb") as file:
+        zipped = file.read(4) in _ZIP
+    with closing(_zip(path) if zipped else _tar(path)) as members:
         for number, member in enumerate(members):
             if number >= MOST_FILES:
                 raise ValueError(f"{path.name}: more than {MOST_FILES} files in it")

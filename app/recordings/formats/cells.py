@@ -1,6 +1,6 @@
 """What a spreadsheet, a logger or a data set's author calls a table: found out from its first lines. [ours]
 
-Encoding, `sep=`, delimiter, decimal comma, thousands, comments, header or none: test_tables.py holds the kinds that are read.
+Encoding, `sep=`, delimiter, decimal comma, thousands, comments, header or none: test_folders.py holds the kinds that are read.
 """
 
 from __future__ import annotations
