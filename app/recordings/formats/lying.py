@@ -161,4 +161,6 @@ def _why(name: str) -> str:
         return "pictures of no camera that is played"
     if name.lower().endswith(_RECORDED):
         return "may be a recording of its own; open it by itself"
+    if name.lower().endswith((".xlsx", ".xls", ".ods", ".numbers")):
+        return "a spreadsheet; save it as CSV"
     return "nothing that is known here reads it"
