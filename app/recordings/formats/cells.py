@@ -93,6 +93,10 @@ def _delimiter(lines: list[str]) -> str:
     """By which nearly all lines have the same number of cells, more than one. A comma may be part of a number."""
     if all(ns_of_date(line) is not None for line in lines):
         return ","
+    if all(is_picture(line) and not _number_of(re.split(r"[\s,;]", line.strip())[0]) for line in lines) and not any(
+        mark in line for line in lines for mark in "\t;|,"
+    ):
+        return ","  # names with blanks
     best, share = ",", 0.0
     for delimiter in ("\t", ";", "|", ",", " "):
         try:

@@ -176,7 +176,9 @@ class _Folder:
         ):
             self.merged.append((name, table))
             return
-        if not self._pictures:
+        if not tells and table.left:
+            self._reasons[name] = f"no use is known for its columns ({', '.join(table.left[:8])})"
+        elif not self._pictures:
             self._reasons[name] = "there are no pictures that it could tell of"
         elif self.primary is None and (tells or span is None) and self._rows_fit(table):
             self.beside.append((name, table))
@@ -305,6 +307,10 @@ class _Folder:
                 sensed = replace(sensed, time_ns=self._times[number])
             for table, rates, rows in beside:
                 row = next(rows, None)
+                if row is None and self._times is None and self._timed(table):
+                    for _ in self._pictures[number + 1 :]:
+                        problems.seen(what)
+                    return  # nobody knows when the others were taken
                 if row is None:
                     continue
                 try:

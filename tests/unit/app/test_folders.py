@@ -254,6 +254,17 @@ def test_what_two_tables_tell_is_taken_from_one_and_told(tmp_path: Path) -> None
     assert "column 'yaw_rate' of wheel.csv: no use for it is known" in recording.about.unused
 
 
+def test_why_a_table_is_not_used_is_the_reason(tmp_path: Path) -> None:
+    pictures(tmp_path / "a", *(f"{time}.png" for time in TIMES))
+    wrote(tmp_path / "a", "accelerometer.txt", "# timestamp ax ay az", *(f"{seconds(time)} 0 0 9.8" for time in TIMES))
+    assert checked(tmp_path / "a").about.unused == ("accelerometer.txt: no use is known for its columns (ax, ay, az)",)
+    pictures(tmp_path / "b", *(f"{k}.png" for k in range(N)))
+    wrote(tmp_path / "b", "short.csv", "time_s,speed", *(f"{1000 + k / HZ},1" for k in range(N - 3)))
+    told = checked(tmp_path / "b")
+    assert (told.moments, told.about.problems) == (N - 3, ())
+    assert told.about.unused == (f"short.csv: it has {N - 3} rows, but there are {N} pictures",)
+
+
 def test_a_map_is_no_recording(tmp_path: Path) -> None:
     pictures(tmp_path, "room.png")
     wrote(tmp_path, "room.yaml", "image: room.png")
