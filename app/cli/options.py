@@ -61,10 +61,16 @@ def checked_seed(seed: int) -> int:
     return seed
 
 
+def tell_beside(sentence: str) -> None:
+    """A word about a plan, beside what is printed."""
+    print(f"ratslam: {sentence}", file=sys.stderr)
+
+
 def session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None]:
     checked_seed(args.seed)
     brain = None if args.brain is None else load_brain(args.brain)
     config = config_of(args, Config() if brain is None else Config().with_engine(brain.params))
     for words in config.warnings:
         print(f"ratslam: note: {words}", file=sys.stderr)
-    return open_world(args.world, args.scale, robot_radius_m=config.robot.robot_radius_m), config, brain
+    world = open_world(args.world, args.scale, robot_radius_m=config.robot.robot_radius_m, tell=tell_beside)
+    return world, config, brain

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from app.cli.options import Verbs
+from app.cli.options import Verbs, tell_beside
 from disk import write_whole
 from sim2d import WorldError, load_world, own_worlds, world_names, world_to_json
 from sim2d.importers import import_file
@@ -60,7 +60,7 @@ def _complaints(path: Path, scale_m: float | None) -> list[str]:
             text = path.read_text("utf-8")
             if not isinstance(parse_json(text, path.name), list):
                 return complaints(text, path.name)
-        import_file(path, scale_m)
+        import_file(path, scale_m, tell=tell_beside)
     except (OSError, UnicodeDecodeError) as error:
         return [f"{path}: cannot be read: {error}"]
     except WorldError as error:
@@ -71,7 +71,7 @@ def _complaints(path: Path, scale_m: float | None) -> list[str]:
 def _import(args: argparse.Namespace) -> int:
     if args.seed < 0:
         raise ValueError(f"--seed must be 0 or larger, got {args.seed}")
-    world = import_file(args.file, args.scale, args.seed)
+    world = import_file(args.file, args.scale, args.seed, tell=tell_beside)
     write_whole(args.output, world_to_json(world))
     print(f"{args.output}: {world.title}, {len(world.walls)} walls, {len(world.starts)} starts")
     return 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path, PurePath
 from typing import cast
 
-from sim2d.importers.map_yaml import SCALES_M, MapYaml, read_map_yaml
+from sim2d.importers.map_yaml import SCALES_M, MapYaml, Tell, read_map_yaml
 from sim2d.importers.picture import PICTURES
 from sim2d.importers.picture_map import picture_world
 from sim2d.importers.vector_map import vector_world
@@ -14,45 +14,96 @@ from sim2d.world.world import World
 from sim2d.world.world_file import WorldError, load_world, parse_json, world_from_json, world_names
 
 YAMLS = (".yaml", ".yml")
+DRAWINGS = (
+    ".svg",
+    ".svgz",
+    ".pdf",
+    ".eps",
+    ".ps",
+    ".ai",
+    ".dxf",
+    ".dwg",
+    ".drawio",
+    ".vsdx",
+    ".odg",
+    ".ifc",
+    ".heic",
+    ".avif",
+)
 MOST_BYTES = {".json": 1_000_000, ".yaml": 65_536, ".yml": 65_536}  # of an uploaded file
 MOST_WORLD_BYTES = 10_000_000  # a world of 10,000 walls with posters takes 7.7 MB
 MOST_PICTURE_BYTES = 16_000_000
 _OCCUPIED, _FREE = 0.65, 0.196  # the defaults of map_server
 
 
+def _quiet(_sentence: str) -> None:
+    pass
+
+
 def import_world(
-    name: str, files: dict[str, bytes], scale_m: float | None = None, seed: int = 0, robot_radius_m: float | None = None
+    name: str,
+    files: dict[str, bytes],
+    scale_m: float | None = None,
+    seed: int = 0,
+    robot_radius_m: float | None = None,
+    tell: Tell = _quiet,
 ) -> World:
     """The world in the file `name`. files: name -> contents, of this file and of all that it refers to.
 
     scale_m: metres per pixel, for a plain picture only. seed: for the looks of bare walls; the same seed gives the same
-    world. robot_radius_m: of the robot that will start in it. Nothing is read from or written to the disk.
+    world. robot_radius_m: of the robot that will start in it. tell: is given sentences about what was left unused or
+    taken in another way than it is written. Nothing is read from or written to the disk.
     Raises WorldError, which names file, line or pixel, value and what would be right.
     """
     for given, data in files.items():
         limit = _most_bytes(given, data)
         if len(data) > limit:
             raise WorldError(f"{given}: {len(data)} bytes; at most {limit}")
-    return _import(name, files, scale_m, seed, robot_radius_m)
+    return _import(name, files, scale_m, seed, robot_radius_m, tell)
 
 
 def import_file(
-    path: str | Path, scale_m: float | None = None, seed: int = 0, robot_radius_m: float | None = None
+    path: str | Path,
+    scale_m: float | None = None,
+    seed: int = 0,
+    robot_radius_m: float | None = None,
+    tell: Tell = _quiet,
 ) -> World:
     """The world in a file on disk. The picture of a map_server file must lie beside it. Raises WorldError."""
     path = Path(path)
     try:
         files = {path.name: path.read_bytes()}
         if path.suffix.lower() in YAMLS:
-            image = read_map_yaml(path.name, _text(path.name, files[path.name])).image
-            files[image] = (path.parent / image).read_bytes()
+            about = read_map_yaml(path.name, _text(path.name, files[path.name]))
+            files[about.picture] = _picture_of(path, about).read_bytes()
     except OSError as error:
         raise WorldError(f"{error.filename}: cannot be read: {error.strerror}") from None
-    return _import(path.name, files, scale_m, seed, robot_radius_m)
+    return _import(path.name, files, scale_m, seed, robot_radius_m, tell)
+
+
+def _picture_of(path: Path, about: MapYaml) -> Path:
+    """The file that a map names: where it says, if that is in the map's folder, else the one of that name beside it. Never
+    one from another folder, also not by a link. WorldError: there is none."""
+    homes = {path.parent.resolve(), path.resolve().parent}  # a map that is linked to its place brings its picture along
+    for place in (path.parent / about.image.replace("\\", "/"), path.parent / about.picture):
+        try:
+            found = place.resolve()
+            if found.is_file() and any(found.is_relative_to(home) for home in homes):
+                return found
+        except (OSError, RuntimeError, ValueError):
+            continue
+    raise WorldError(
+        f"{path.name}: image: got {about.image!r}, but there is no file {about.picture!r} in {path.parent}; put the map's "
+        "picture beside it under that name"
+    )
 
 
 def open_world(
-    name_or_path: str | Path, scale_m: float | None = None, seed: int = 0, robot_radius_m: float | None = None
+    name_or_path: str | Path,
+    scale_m: float | None = None,
+    seed: int = 0,
+    robot_radius_m: float | None = None,
+    tell: Tell = _quiet,
 ) -> World:
     """A world by its name, or anything that can be imported from a file. Raises WorldError."""
     path = Path(name_or_path)
@@ -62,29 +113,43 @@ def open_world(
         return load_world(name_or_path, robot_radius_m)
     if not path.is_file():
         return load_world(name_or_path, robot_radius_m)
-    return import_file(path, scale_m, seed, robot_radius_m)
+    return import_file(path, scale_m, seed, robot_radius_m, tell)
 
 
-def _import(name: str, files: dict[str, bytes], scale_m: float | None, seed: int, radius_m: float | None) -> World:
+def _import(
+    name: str, files: dict[str, bytes], scale_m: float | None, seed: int, radius_m: float | None, tell: Tell
+) -> World:
     radius = SimParams().robot_radius_m if radius_m is None else radius_m
     if name not in files:
         raise WorldError(f"{name}: is not among the files given: {', '.join(sorted(files)) or 'none'}")
     suffix = PurePath(name).suffix.lower()
-    if scale_m is not None and suffix not in PICTURES:
-        raise WorldError(f"{name}: got a scale of {scale_m:g} m a pixel; only plain pictures take one")
     if suffix in YAMLS:
-        about = read_map_yaml(name, _text(name, files[name]))
-        if about.image not in files:
-            raise WorldError(f"{name}: image: {about.image!r} was not given with it; put both together")
-        return picture_world(about.image, files[about.image], about, seed, radius)
+        _require_no_scale(name, scale_m, "it says itself how long a pixel is (resolution)")
+        about = read_map_yaml(name, _text(name, files[name]), tell)
+        if about.picture not in files:
+            raise WorldError(f"{name}: image: {about.picture!r} was not given with it; put both together")
+        if about.image != about.picture:
+            tell(f"{name}: image: {about.image!r} is taken for {about.picture!r} beside it")
+        return picture_world(about.picture, files[about.picture], about, seed, radius, tell=tell)
     if suffix in PICTURES:
-        return picture_world(name, files[name], _plain(name, scale_m), seed, radius)
+        return picture_world(name, files[name], _plain(name, scale_m), seed, radius, tell=tell)
     if suffix == ".json":
+        _require_no_scale(name, scale_m, "a world or a vector map is in metres")
         return _from_json(name, _text(name, files[name]), seed, radius)
+    if suffix in DRAWINGS:
+        raise WorldError(
+            f"{name}: a drawing in {suffix[1:].upper()} is not read; save or export it as PNG, and give the scale of that, in "
+            "metres a pixel"
+        )
     raise WorldError(
         f"{name}: cannot be imported; expected .json (a world, or a list of segments), "
         f"{' or '.join(YAMLS)} (map_server), or a picture: {', '.join(PICTURES)}"
     )
+
+
+def _require_no_scale(name: str, scale_m: float | None, why: str) -> None:
+    if scale_m is not None:
+        raise WorldError(f"{name}: got a scale of {scale_m:g} m a pixel; only plain pictures take one, and {why}")
 
 
 def _from_json(name: str, text: str, seed: int, radius: float) -> World:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sim2d.importers.dress import Dresser
 from sim2d.importers.floor import choose_floor
-from sim2d.importers.map_yaml import MapYaml
+from sim2d.importers.map_yaml import MapYaml, Tell
 from sim2d.importers.picture import read_picture
 from sim2d.importers.plan import plan_world
 from sim2d.importers.trace import ring_area, simplify, trace
@@ -23,11 +23,27 @@ _SLIVER_M = 0.3  # ... if it is also too narrow for any robot
 
 
 def picture_world(
-    name: str, data: bytes, about: MapYaml, seed: int, radius_m: float, speck_px: int = SPECK_PX
+    name: str,
+    data: bytes,
+    about: MapYaml,
+    seed: int,
+    radius_m: float,
+    speck_px: int = SPECK_PX,
+    tell: Tell = lambda _: None,
 ) -> World:
-    """The world that a picture shows. about: scale, origin and thresholds. Raises WorldError."""
-    grey, veiled = read_picture(name, data)
+    """The world that a picture shows. about: scale, origin and thresholds. Raises WorldError.
+
+    What is transparent shows the paper beneath, which is floor, as in any viewer.
+    """
+    grey, veiled = read_picture(name, data, 0 if about.negate else 255)
     free = free_pixels(grey, veiled, about)[::-1]
+    if veiled.any() and about.mode == "trinary":
+        if free.all():
+            raise WorldError(
+                f"{name}: no pixel is wall: what is transparent counts as white paper, and nothing on it is dark; are its "
+                "lines light, for a dark ground?"
+            )
+        tell(f"{name}: {veiled.mean():.0%} of it is transparent, which counts as white paper")
     if not free.any():
         raise WorldError(f"{name}: {_no_floor(grey, about)}")
     scale = about.resolution

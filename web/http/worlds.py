@@ -61,6 +61,7 @@ class Opened(BaseModel):
     walls: int
     starts: int
     size_m: list[float]
+    said: list[str]  # sentences: what of a plan is not used, or taken in another way than it is written
 
 
 def add_worlds(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
@@ -110,11 +111,12 @@ async def _open(request: Request, latest: Latest[Snapshot], submit: Submit, limi
     _, snapshot = latest.get()
     office = None if snapshot is None or snapshot.recording is not None else snapshot.world
     radius = None if office is None else office.robot_radius_m
+    said: list[str] = []
     try:
-        world = await asyncio.to_thread(import_world, _main(files), files, wish.scale_m, wish.seed, radius)
+        world = await asyncio.to_thread(import_world, _main(files), files, wish.scale_m, wish.seed, radius, said.append)
     except WorldError as error:
         raise Malformed([wrong("files", list(files), str(error))]) from None
-    return await _begin(submit, world, filed=True)
+    return await _begin(submit, world, True, said)
 
 
 async def _new(request: Request, submit: Submit, limits: Limits) -> bytes:
@@ -124,16 +126,15 @@ async def _new(request: Request, submit: Submit, limits: Limits) -> bytes:
         world = empty_room(wish.name, wish.title or wish.name, wish.width_m, wish.depth_m)
     except ValueError as error:
         raise Malformed([wrong("width_m, depth_m", [wish.width_m, wish.depth_m], str(error))]) from None
-    return await _begin(submit, world, filed=False)
+    return await _begin(submit, world, False, [])
 
 
-async def _begin(submit: Submit, world: World, filed: bool) -> bytes:
+async def _begin(submit: Submit, world: World, filed: bool, said: list[str]) -> bytes:
     name = (await told(submit, OpenWorld(world, filed), OPEN_TIMEOUT_S)).result
     x0, y0, x1, y1 = world.bounds
     size = [round(x1 - x0, 3), round(y1 - y0, 3)]
-    return to_json(
-        {"name": name, "title": world.title, "walls": len(world.walls), "starts": len(world.starts), "size_m": size}
-    )
+    about = {"name": name, "title": world.title, "walls": len(world.walls), "starts": len(world.starts)}
+    return to_json({**about, "size_m": size, "said": said})
 
 
 def _plain(name: str) -> str:

@@ -15,8 +15,8 @@ from urllib.parse import quote
 import yaml
 import zstandard
 
-from app.recordings.formats.image_folder import by_number
 from app.recordings.formats.lines import open_whole
+from app.recordings.formats.lying import by_number
 from app.recordings.formats.mcap_file import mcap_packets
 from app.recordings.formats.packed import ZSTD
 from app.recordings.formats.problems import Problems, plain
@@ -50,11 +50,10 @@ class Bag:
         self._whole: dict[Path, Path] = {}
 
     @property
-    def unused(self) -> tuple[str, ...]:
-        """Files of the folder that are none of the bag."""
-        bag = {file.name for file in self.files} | {METADATA}
-        bag |= {file.name + end for file in self.files for end in _OURS}
-        return tuple(f"{plain(name, 100)}: not a file of the bag" for name in self._names if name not in bag)
+    def names(self) -> set[str]:
+        """Files of the folder that belong to the bag."""
+        bag = {file.name for file in self.files}
+        return bag | {METADATA} | {name + end for name in bag for end in _OURS}
 
     def packets(self, problems: Problems) -> Iterator[Packet]:
         """Messages of one file after the other."""

@@ -9,15 +9,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
-from app.recordings.formats.image_folder import by_number
 from app.recordings.formats.lines import lines_of
-from app.recordings.formats.pictures import read_picture, within
+from app.recordings.formats.lying import by_number
+from app.recordings.formats.pictures import beside, read_picture, within
 from app.recordings.formats.problems import Problems, plain
 from app.recordings.formats.sensed import Sensed, ns_of
 from app.recordings.formats.streamed import StreamedRecording
 
 MANIFEST = "manifest.json"
 SPEEDS = ("enc/speed", "pos/speed", "rs2/vel", "odom/speed")
+_RECORDS = "records"
 RATE_HZ = 20.0  # a Donkey car's loop, where no record tells its time
 _USES = (
     "camera: cam/image_array",
@@ -27,18 +28,22 @@ _USES = (
 )
 
 
-def open_tub(folder: Path) -> StreamedRecording:
-    """Frames are counted as in the catalogs; those that were deleted are left out. ValueError: it is none."""
-    return StreamedRecording(folder.name, "Donkey tub", partial(_sensed, folder), uses=_USES)
+def open_tub(folder: Path, used: set[str]) -> StreamedRecording:
+    """Frames are counted as in the catalogs; those that were deleted are left out. Without a manifest all catalogs are read.
+
+    used: is filled with the names of the files that belong to it. ValueError: it is none.
+    """
+    return StreamedRecording(folder.name, "Donkey tub", partial(_sensed, folder, used), uses=_USES)
 
 
-def open_old_tub(folder: Path) -> StreamedRecording:
+def open_old_tub(folder: Path, used: set[str]) -> StreamedRecording:
     """A tub of version 1: one JSON file a record."""
-    return StreamedRecording(folder.name, "Donkey tub, version 1", partial(_old, folder), uses=_USES)
+    return StreamedRecording(folder.name, "Donkey tub, version 1", partial(_old, folder, used), uses=_USES)
 
 
-def _sensed(folder: Path, problems: Problems) -> Iterator[Sensed]:
-    catalogs, deleted = _manifest(folder)
+def _sensed(folder: Path, used: set[str], problems: Problems) -> Iterator[Sensed]:
+    catalogs, deleted = _catalogs(folder, problems)
+    used |= {MANIFEST, *catalogs, *(f"{catalog}_manifest" for catalog in catalogs)}
     row = 0
     for catalog in catalogs:
         try:
@@ -46,11 +51,25 @@ def _sensed(folder: Path, problems: Problems) -> Iterator[Sensed]:
             for number, line in lines_of(path):
                 if line.strip():
                     where = f"{path.name}: line {number}"
-                    if (sensed := _record(folder, line, where, row, deleted, problems)) is not None:
+                    if (sensed := _record(folder, line, where, row, deleted, used, problems)) is not None:
                         yield sensed
                     row += 1
         except ValueError as error:
             problems.add("catalogs left out", MANIFEST, f"the rest of {catalog!r} is left out: {error}")
+
+
+def _catalogs(folder: Path, problems: Problems) -> tuple[list[str], frozenset[int]]:
+    """Names of the catalogs, and the numbers of records that were deleted; of a tub whose manifest is gone or tells nothing,
+    all catalogs there are."""
+    there = sorted((path.name for path in folder.glob("*.catalog")), key=by_number)
+    try:
+        return _manifest(folder)
+    except ValueError as error:
+        if not there:
+            raise
+        what = str(error).removeprefix(f"{MANIFEST}: ") if (folder / MANIFEST).exists() else "it is not there"
+        problems.add("manifest", MANIFEST, f"{what}; all catalogs are read, with the records that were deleted")
+        return there, frozenset()
 
 
 def _manifest(folder: Path) -> tuple[list[str], frozenset[int]]:
@@ -69,7 +88,7 @@ def _manifest(folder: Path) -> tuple[list[str], frozenset[int]]:
 
 
 def _record(
-    folder: Path, line: str, where: str, row: int, deleted: frozenset[int], problems: Problems
+    folder: Path, line: str, where: str, row: int, deleted: frozenset[int], used: set[str], problems: Problems
 ) -> Sensed | None:
     try:
         record = _json(line, where)
@@ -77,42 +96,45 @@ def _record(
             raise ValueError("not a record")
         named = cast(dict[str, Any], record)
         if named.get("_index") in deleted if isinstance(named.get("_index"), int) else row in deleted:
+            used.add(f"images/{named.get('cam/image_array')}")
             return None
-        return _made(folder, named, where, row, "_timestamp_ms")
+        problems.seen(_RECORDS)
+        return _made(folder, named, where, row, "_timestamp_ms", used)
     except ValueError as error:
         problems.add("records left out", where, f"left out: {error}")
         return None
 
 
-def _old(folder: Path, problems: Problems) -> Iterator[Sensed]:
+def _old(folder: Path, used: set[str], problems: Problems) -> Iterator[Sensed]:
     names = sorted((path.name for path in folder.glob("record_*.json")), key=by_number)
+    used.update(names)
     for row, name in enumerate(names):
+        problems.seen(_RECORDS)
         try:
             text = "\n".join(line for _, line in lines_of(within(folder, name)))
             record = _json(text, name)
             if not isinstance(record, dict):
                 raise ValueError("not a record")
-            yield _made(folder, cast(dict[str, Any], record), plain(name), row, "milliseconds")
+            yield _made(folder, cast(dict[str, Any], record), plain(name), row, "milliseconds", used)
         except ValueError as error:
             problems.add("records left out", plain(name), f"left out: {error}")
 
 
-def _made(folder: Path, record: dict[str, Any], where: str, row: int, clock: str) -> Sensed:
+def _made(folder: Path, record: dict[str, Any], where: str, row: int, clock: str, used: set[str]) -> Sensed:
     time_ms = None if _number(record, clock) is None else ns_of(str(record[clock]), 1_000_000)
     time_ns = round(row * 1e9 / RATE_HZ) if time_ms is None else time_ms
     name = record.get("cam/image_array")
     if not isinstance(name, str):
         raise ValueError("no cam/image_array")
-    path = within(folder, name)
-    if not path.exists():
-        path = within(folder, f"images/{name}")
+    path = beside(folder, name)
+    used.add(path.relative_to(folder.resolve()).as_posix())
     gyro = _number(record, "imu/gyr_z")
     driver = "pilot" if record.get("user/mode") not in ("user", None) and "pilot/throttle" in record else "user"
     return Sensed(
         time_ns, where, partial(read_picture, path),
         speed=next((speed for key in SPEEDS if (speed := _number(record, key)) is not None), None),
         yaw_rate=None if gyro is None else math.radians(gyro),
-        throttle=_number(record, f"{driver}/throttle"), frame=row,
+        throttle=_number(record, f"{driver}/throttle"), frame=row, source=_RECORDS,
     )  # fmt: skip
 
 

@@ -84,3 +84,16 @@ def within(folder: Path, name: str) -> Path:
     if not path.is_relative_to(home):
         raise ValueError(f"{name[:80]!r} leads out of the recording's folder")
     return path
+
+
+def beside(folder: Path, name: str) -> Path:
+    """The file of this name in a folder or in its `images`; of a path of another machine, that of its last part. ValueError:
+    it would lead out of the folder."""
+    bare = name.replace("\\", "/").rsplit("/", 1)[-1]
+    for each in (name, f"images/{name}", bare, f"images/{bare}"):
+        try:
+            if (path := within(folder, each)).exists():
+                return path
+        except ValueError:
+            continue
+    return within(folder, name)

@@ -23,6 +23,8 @@ def open_video(path: Path) -> StreamedRecording:
     _require_video(path)
     beside = path.with_suffix(".csv")
     table = Table(beside) if beside.is_file() else None
+    if table is not None:
+        table.survey()
     if table is not None and "time" not in table.columns:
         raise ValueError(f"{beside.name}: line 1: a video's CSV needs a column 'time_s', since the video's start")
     uses = (f"camera: {plain(path.name)}", *(() if table is None else table.uses))

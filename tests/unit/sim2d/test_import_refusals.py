@@ -33,13 +33,15 @@ def yaml_with(old: str, new: str) -> dict[str, bytes]:
         (yaml_with("negate: 0", "negate: 0.5"), r"line 4: negate: got 0.5; must be 0 or 1"),
         (yaml_with("0.196", "0.7"), r"line 6: free_thresh: got 0.7; must be below occupied_thresh, 0.65"),
         (yaml_with("negate: 0", "negate: 0\nmode: fancy"), r"line 5: mode: got 'fancy'; expected one of: trinary"),
-        (yaml_with("negate", "negated"), r"line 4: unknown key 'negated'; expected one of: image"),
+        (yaml_with("negate", "negated"), r"m.yaml: negate is missing; .*, and not 'negated'"),
         (yaml_with("negate: 0", "negate: 0\nnegate: 1"), r"line 5: negate is there twice, first on line 4"),
-        (yaml_with("negate: 0", "{a: !!python/object}"), r"line 4: got '{a.*expected `key: value`"),
-        (yaml_with("plan.pgm", "../../etc/passwd"), r"line 1: image: got '../../etc/passwd'; must be the plain name"),
-        (yaml_with("plan.pgm", "/etc/passwd"), r"image: got '/etc/passwd'; must be the plain name"),
-        (yaml_with("plan.pgm", "..\\x.pgm"), r"must be the plain name"),
-        (yaml_with("plan.pgm", ".."), r"must be the plain name"),
+        (yaml_with("negate: 0", "{a: !!python/object}"), r"line 4: not YAML: "),
+        (yaml_with("plan.pgm", "../../etc/passwd"), r"image: 'passwd' was not given with it; put both together"),
+        (yaml_with("plan.pgm", "..\\x.pgm"), r"'x.pgm' was not given"),
+        (yaml_with("plan.pgm", ".."), r"line 1: image: got '..'; must name a picture"),
+        (yaml_with("[0, 0, 0]", "&a [*a, *a]"), r"line 3: not YAML: an alias"),
+        (yaml_with("[0, 0, 0]", "[" * 5000), r"not YAML: nested too deep"),
+        ({"m.yaml": b"- a\n- b\n"}, r"line 1: expected one list of `key: value`"),
         (yaml_with("plan.pgm", "other.pgm"), r"'other.pgm' was not given with it"),
         ({"m.yaml": b"\xff\xfe"}, "m.yaml: not text: byte 0 is 0xff"),
         ({"m.yaml": YAML.encode(), "plan.pgm": b"P5\n10 10\n255\nshort"}, "plan.pgm: the picture is broken"),
@@ -51,7 +53,7 @@ def yaml_with(old: str, new: str) -> dict[str, bytes]:
         ({"m.yaml": YAML.encode(), "plan.pgm": b"P5\n9000 9000\n255\n"}, "plan.pgm: 9000 x 9000 pixels; at most 16"),
         ({"m.yaml": YAML.encode(), "plan.pgm": b"P5\n2 2\n65535\n" + bytes(8)}, "more than 8 bits"),
         ({"m.yaml": YAML.encode() + b"#" * 70_000}, "m.yaml: 70102 bytes; at most 65536"),
-        (yaml_with("image: plan.pgm", "image: plan.pgm\nrobot"), "line 2: got 'robot'"),
+        (yaml_with("image: plan.pgm", "image: plan.pgm\nrobot"), "line 3: not YAML"),
     ],
 )
 def test_bad_map_server_files(files: dict[str, bytes], complaint: str) -> None:
@@ -83,16 +85,19 @@ def test_bad_pictures(picture: NDArray[np.uint8], scale_m: float | None, complai
 
 
 def test_other_refusals(tmp_path: Path) -> None:
-    with pytest.raises(WorldError, match=r"plan.dwg: cannot be imported; expected .json"):
-        import_world("plan.dwg", {"plan.dwg": b""})
+    with pytest.raises(WorldError, match=r"plan.txt: cannot be imported; expected .json"):
+        import_world("plan.txt", {"plan.txt": b""})
     with pytest.raises(WorldError, match=r"x.json: is not among the files given: none"):
         import_world("x.json", {})
     with pytest.raises(WorldError, match="only plain pictures take one"):
         import_world("m.yaml", yaml_with("", ""), 0.05)
     path = tmp_path / "m.yaml"
     path.write_text(YAML, "utf-8")
-    with pytest.raises(WorldError, match=r"plan.pgm: cannot be read"):
+    with pytest.raises(WorldError, match=r"m.yaml: image: got 'plan.pgm', but there is no file 'plan.pgm'"):
         import_file(path)
+    for name in ("plan.svg", "plan.pdf", "plan.DWG"):
+        with pytest.raises(WorldError, match=r"a drawing in \w+ is not read; .* as PNG"):
+            import_world(name, {name: b"<svg/>"}, 0.05)
     with pytest.raises(WorldError, match="no world 'nowhere'"):
         open_world("nowhere")
     (tmp_path / "plan.pgm").write_bytes(pgm(room()))

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from io import BytesIO
+from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
-from sim2d import FreeSpace, world_from_json, world_to_json
-from sim2d.importers import import_world
+from sim2d import FreeSpace, WorldError, world_from_json, world_to_json
+from sim2d.importers import import_file, import_world
 
 from .plans import YAML, corners, from_picture, pgm, png, room
 
@@ -109,3 +112,76 @@ def test_a_map_of_ten_thousand_walls_loads() -> None:
         for column in range(51):
             picture[14 + 20 * row : 18 + 20 * row, 9 + 20 * column : 13 + 20 * column] = 0
     assert len(from_picture(picture, 0.1).walls) == 4 * 49 * 51 + 4
+
+
+_OTHERS_WRITE = {
+    "unknown keys": (YAML + "georeference_type: none\nmap_id: [1, {a: 2}]\n", 2),
+    "numbers in quotes": (YAML.replace("[0, 0, 0]", "['0.0', \"-0.0\", 0]").replace("0.05", "'5e-2'"), 0),
+    "a list over lines": (YAML.replace("[0, 0, 0]", "[0,\n         0,\n 0.0]"), 0),
+    "a directive": ("%YAML 1.2\n---\n" + YAML + "...\n", 0),
+    "indented": ("".join(f"    {line}\n" for line in YAML.splitlines()), 0),
+    "in braces": ("{" + YAML.strip().replace("\n", ", ") + "}", 0),
+    "words for numbers": (YAML.replace("negate: 0", "negate: off"), 0),
+    "no yaw": (YAML.replace("[0, 0, 0]", "[0, 0, -.nan]"), 1),
+    "C's nan": (YAML.replace("[0, 0, 0]", "[0, 0, -nan]"), 1),
+    "a path": (YAML.replace("plan.pgm", "maps/plan.pgm"), 1),
+    "a path of another machine": (YAML.replace("plan.pgm", "/home/somebody/catkin_ws/plan.pgm"), 1),
+    "a path of Windows": (YAML.replace("plan.pgm", "C:\\maps\\plan.pgm"), 1),
+    "a path at home": (YAML.replace("plan.pgm", "~/plan.pgm"), 1),
+}
+
+
+@pytest.mark.parametrize("how", _OTHERS_WRITE)
+def test_a_map_is_read_as_others_write_it_and_what_is_not_used_is_told(how: str, tmp_path: Path) -> None:
+    """In memory, as both files come from the page, and on the disk."""
+    (text, told), said = _OTHERS_WRITE[how], list[str]()
+    same = corners(from_picture(room()))
+    assert corners(import_world("m.yaml", {"m.yaml": text.encode(), "plan.pgm": pgm(room())}, tell=said.append)) == same
+    assert len(said) == told
+    (tmp_path / "m.yaml").write_text(text)
+    (tmp_path / "plan.pgm").write_bytes(pgm(room()))
+    assert corners(import_file(tmp_path / "m.yaml")) == same
+
+
+def test_a_map_takes_no_picture_from_outside_its_folder(tmp_path: Path) -> None:
+    (tmp_path / "in" / "maps").mkdir(parents=True)
+    (tmp_path / "plan.pgm").write_bytes(pgm(room()))
+    (tmp_path / "in" / "link.pgm").symlink_to(tmp_path / "plan.pgm")
+    yaml = tmp_path / "in" / "m.yaml"
+    for image in ("../plan.pgm", str(tmp_path / "plan.pgm"), "link.pgm"):
+        yaml.write_text(YAML.replace("plan.pgm", image))
+        with pytest.raises(WorldError, match=r"there is no file '\w+.pgm' in"):
+            import_file(yaml)
+    (tmp_path / "in" / "maps" / "plan.pgm").write_bytes(pgm(room()))
+    yaml.write_text(YAML.replace("plan.pgm", "./maps/plan.pgm"))
+    assert len(import_file(yaml).walls) == 4
+
+
+@pytest.mark.parametrize("kind", ["PNG", "WEBP", "TIFF", "GIF", "palette"])
+def test_what_is_transparent_is_white_paper(kind: str) -> None:
+    """Dark lines and nothing else, as drawing programs export them: the colour of what is transparent does not count."""
+    said, out = list[str](), BytesIO()
+    drawn = np.zeros((*room().shape, 4), np.uint8)
+    drawn[..., 3] = np.where(room() == 0, 255, 0)
+    picture = Image.fromarray(drawn)
+    if kind == "palette":
+        picture.quantize(4).save(out, "PNG")
+    else:
+        picture.save(out, kind, **({"lossless": True} if kind == "WEBP" else {}))
+    name = f"plan.{'png' if kind == 'palette' else kind.lower()}"
+    world = import_world(name, {name: out.getvalue()}, 0.05, tell=said.append)
+    assert corners(world) == corners(from_picture(room()))
+    assert "transparent, which counts as white paper" in said[0]
+    drawn[..., :3] = 255  # white on nothing: nobody could see it on paper
+    with pytest.raises(WorldError, match="what is transparent counts as white paper, and nothing on it is dark"):
+        import_world("plan.png", {"plan.png": png(drawn)}, 0.05)
+
+
+def test_a_photograph_is_turned_as_the_camera_was_held() -> None:
+    out, exif = BytesIO(), Image.Exif()
+    exif[0x0112] = 6  # to be turned by a quarter, clockwise
+    picture = room()
+    picture[20:40, 20:30] = 0
+    Image.fromarray(picture).save(out, "PNG", exif=exif)
+    turned = from_picture(np.rot90(picture, -1))
+    assert corners(import_world("plan.png", {"plan.png": out.getvalue()}, 0.05)) == corners(turned)

@@ -51,6 +51,10 @@ def test_a_map_server_pair_becomes_a_world(server: House) -> None:
     pair = files(p__png=plan_png(), m__yaml=yaml)
     status, answer = post(server, "/api/worlds/open", {"files": pair})
     assert (status, answer["size_m"]) == (200, [4.0, 3.0])
+    far = files(p__png=plan_png(), m__yaml=yaml.replace(b"p.png", b"/home/somebody/maps/p.png") + b"floor: 3\n")
+    status, answer = post(server, "/api/worlds/open", {"files": far})
+    assert (status, answer["size_m"]) == (200, [4.0, 3.0])
+    assert [words.partition(":")[2].split()[0] for words in answer["said"]] == ["line", "image:"]  # what the page tells
     status, answer = post(server, "/api/worlds/open", {"files": pair[1:]})
     assert (status, "image: 'p.png' was not given with it; put both together" in why(answer)) == (422, True)
 

@@ -2,7 +2,8 @@
 
 import { ended, megabytes } from "../model/sentences.js";
 
-const RECORDING = /\.(mcap|bag|db3|log|clf|carmen|mp4|avi|mkv|mov|webm|m4v|mpe?g)(\.(gz|bz2))?$/i;
+const RECORDING =
+  /\.(mcap|bag|db3|log|clf|carmen|mp4|avi|mkv|mov|webm|m4v|mpe?g|tar|tgz|tbz2?|txz|zip|7z|rar)(\.(gz|bz2|xz|zst))?$/i;
 const MOST_BYTES = 900_000_000;
 const AT_ONCE = 4; // files of a folder on their way
 

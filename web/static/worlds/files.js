@@ -5,7 +5,7 @@ import { chosen, dropped, isRecording, play, playFolder } from "../recordings/up
 import { ended, megabytes } from "../model/sentences.js";
 import { toast } from "../elements/toasts.js";
 
-const PICTURE = /\.(pgm|png|bmp|jpe?g|ppm|pbm)$/i;
+const PICTURE = /\.(pgm|png|bmp|jpe?g|ppm|pbm|webp|tiff?|gif)$/i;
 const MOST_BYTES = 16_000_000;
 const MOST_FILES = 4;
 
@@ -183,6 +183,7 @@ export class Files {
         this.dialog.close();
         const size = told.size_m.map(metres).join(" × ");
         toast(`${told.name}: ${told.walls.toLocaleString("en")} walls, ${size} m. The robot starts in it.`);
+        for (const sentence of told.said) toast(ended(sentence));
       } else this.fail(told.detail.map((/** @type {Wrong} */ wrong) => ended(wrong.reason)).join(" "), scale !== null);
     } catch {
       this.fail(`${names} could not be sent.`, scale !== null);

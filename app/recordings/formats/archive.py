@@ -1,0 +1,134 @@
+"""Archives of recordings: unpacked into a folder of their own, within limits, and nowhere else.
+
+Refused: names that lead out of the folder, more files or bytes than a recording has, and what unpacks to a hundred times its
+size. Links and devices are left out and told of. test_folders.py.
+"""
+
+from __future__ import annotations
+
+import lzma
+import shutil
+import tarfile
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Generator
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import IO
+
+from app.recordings.formats.problems import plain
+
+MOST_BYTES, MOST_FILES, MOST_RATIO = 16_000_000_000, 500_000, 100
+SPARE_BYTES = 500_000_000  # of the disk are left free
+_SMALL = 10_000_000  # bytes that any archive may unpack to
+_PIECE = 1 << 20
+_OTHERS = ((b"7z\xbc\xaf'\x1c", "7z"), (b"Rar!", "RAR"), (b"\x28\xb5\x2f\xfd", "Zstandard"))
+_ZIP = (b"PK\x03\x04", b"PK\x05\x06")
+_PACKED = (b"\x1f\x8b", b"BZh", b"\xfd7zXZ\0")
+
+
+@dataclass(frozen=True, slots=True)
+class _Member:
+    name: str
+    size: int
+    file: IO[bytes] | None  # None: no regular file
+
+
+def is_archive(path: Path) -> bool:
+    """Whether this reads it. ValueError: it is an archive of a kind that is not read."""
+    with path.open("rb") as file:
+        start = file.read(512)
+    for magic, kind in _OTHERS:
+        if start.startswith(magic):
+            raise ValueError(f"{path.name}: {kind} archives are not read; pack it as .zip or .tar.gz, or unpack it")
+    if start.startswith(_ZIP) or start[257:262] == b"ustar":
+        return True
+    return start.startswith(_PACKED) and _is_tar(path)
+
+
+def _is_tar(path: Path) -> bool:
+    try:
+        with tarfile.open(path, "r|*") as tar:
+            return tar.next() is not None
+    except (tarfile.TarError, OSError, EOFError, zlib.error, lzma.LZMAError):
+        return False
+
+
+def unpack(path: Path) -> tuple[Path, tuple[str, ...]]:
+    """The folder that it was unpacked into, which is the caller's to delete, and a sentence for each member that was left out.
+    ValueError: it is broken, or more than a recording is."""
+    folder = Path(tempfile.mkdtemp(prefix="ratslam-unpacked-"))
+    try:
+        return folder, _unpack(path, folder)
+    except BaseException as error:
+        shutil.rmtree(folder, ignore_errors=True)
+        if isinstance(
+            error, NotImplementedError | RuntimeError
+        ):  # of a way of packing that is not known, or with a password
+            raise ValueError(f"{path.name}: cannot be unpacked: {plain(str(error))}") from None
+        broken = (tarfile.TarError, zipfile.BadZipFile, OSError, EOFError, zlib.error, lzma.LZMAError, LookupError)
+        if isinstance(error, broken):
+            why = (
+                error.strerror
+                if isinstance(error, OSError) and error.strerror
+                else plain(str(error)) or "it is cut off"
+            )
+            raise ValueError(f"{path.name}: cannot be unpacked: {why}") from None
+        raise
+
+
+def _unpack(path: Path, folder: Path) -> tuple[str, ...]:
+    most = min(MOST_BYTES, max(_SMALL, MOST_RATIO * path.stat().st_size))
+    room = shutil.disk_usage(folder).free - SPARE_BYTES
+    total, unused = 0, list[str]()
+    with path.open("rb") as file:
+        zipped = file.read(4) in _ZIP
+    with closing(_zip(path) if zipped else _tar(path)) as members:
+        for number, member in enumerate(members):
+            if number >= MOST_FILES:
+                raise ValueError(f"{path.name}: more than {MOST_FILES} files in it")
+            place = _place(path, folder, member.name)
+            if member.file is None:
+                unused.append(f"{plain(member.name, 80)}: a link or a device, which is not unpacked")
+                continue
+            place.parent.mkdir(parents=True, exist_ok=True)
+            with member.file, place.open("wb") as out:
+                while piece := member.file.read(_PIECE):
+                    total += len(piece)
+                    if total > most:
+                        raise ValueError(
+                            f"{path.name}: unpacks to more than {most} bytes, {MOST_RATIO} times its size at most"
+                        )
+                    if total > room:
+                        raise ValueError(f"{path.name}: there is no room for it in {folder.parent}")
+                    out.write(piece)
+    return tuple(unused)
+
+
+def _place(path: Path, folder: Path, name: str) -> Path:
+    parts = PurePosixPath(name.replace("\\", "/")).parts
+    if not parts or ".." in parts or parts[0] == "/" or ":" in parts[0] or "\0" in name or len(name) > 1000:
+        raise ValueError(f"{path.name}: {plain(name, 80)!r} in it would lead out of its folder; nothing was unpacked")
+    return folder.joinpath(*parts)
+
+
+def _zip(path: Path) -> Generator[_Member, None, None]:
+    with zipfile.ZipFile(path) as packed:
+        infos = packed.infolist()
+        if len(infos) > MOST_FILES:
+            raise ValueError(f"{path.name}: more than {MOST_FILES} files in it")
+        for info in infos:
+            if info.is_dir():
+                continue
+            mode = info.external_attr >> 16
+            regular = mode & 0o170000 in (0, 0o100000)
+            yield _Member(info.filename, info.file_size, packed.open(info) if regular else None)
+
+
+def _tar(path: Path) -> Generator[_Member, None, None]:
+    with tarfile.open(path, "r|*") as packed:
+        for info in packed:
+            if not info.isdir():
+                yield _Member(info.name, info.size, packed.extractfile(info) if info.isreg() else None)
