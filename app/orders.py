@@ -13,6 +13,7 @@ from app.hand_packet import put_packet
 from app.order_book import Order, order
 from app.pilot import Mode, Pilot
 from app.pilot.goal_place import nearest_to, of_its_place
+from disk.words import one_line
 from ratslam_core import RatSlam
 from sim2d import Box, SensorFrame, Simulator, World
 
@@ -69,9 +70,9 @@ class Orders(Comparing):
     def tag(self, name: str) -> int:
         """Name the place where the robot believes itself to be, as "the kitchen", to send it there later. A name that is
         given again moves. Returns the active experience. IROS 2005 IV."""
-        name = name.strip()
-        if not name or not name.isprintable():
-            raise ValueError(f"a tag needs a name that can be printed, got {name!r}")
+        name = one_line(name.strip())
+        if not name:
+            raise ValueError("a tag needs a name")
         if name not in self.tags and len(self.tags) >= MOST_TAGS:
             raise ValueError(f"{name!r} would be tag number {MOST_TAGS + 1}; {MOST_TAGS} are enough, remove one first")
         self.tags[name] = self.brain.experience_map.active

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import time
 from pathlib import Path
 
@@ -56,9 +57,8 @@ def _check(path: Path) -> int:
         check_formulas(lesson)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    print(
-        f"{path}: {lesson.title}: all is right; `ratslam lessons --run {path}` tells whether it keeps what it promises"
-    )
+    command = shlex.join(["ratslam", "lessons", "--run", str(path)])
+    print(f"{path}: {lesson.title}: all is right; `{command}` tells whether it keeps what it promises")
     return 0
 
 

@@ -19,6 +19,7 @@ from app.runs.recorded import recorded
 from app.runs.world_edits import edited
 from app.session import Session
 from disk.state_reading import words_of
+from disk.words import one_line
 from ratslam_core import load_brain
 from sim2d import world_from_json
 
@@ -167,9 +168,9 @@ def _take(run: KeptRun, line: dict[str, Any]) -> None:
 
 
 def _words(value: object) -> str:
-    if not isinstance(value, str) or len(value) > MOST_WORDS or not value.isprintable():
+    if not isinstance(value, str) or len(value) > MOST_WORDS:
         raise ValueError(f"it must hold a line of at most {MOST_WORDS} characters, got {str(value)[:40]!r}")
-    return value
+    return one_line(value)
 
 
 def _again(session: Session, order: Order) -> None:

@@ -10,15 +10,16 @@ import json
 import zlib
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from app.config import Config, Value
+from disk.words import one_line
 from web.messages.situation import Look
 
 FORMAT = "ratslam situation/1"
 MOST_TICKS = 10_000_000  # eleven days
 MOST_ORDERS = 2_000_000
-_Short = Annotated[str, Field(max_length=200)]
+_Short = Annotated[str, Field(max_length=200), AfterValidator(one_line)]
 _Hash = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 
