@@ -10,7 +10,7 @@ from app.comparing import Comparing
 from app.config import Config, Value
 from app.evaluation import Evaluation
 from app.hand_packet import put_packet
-from app.order_book import Order, order
+from app.order_book import UNCHANGED, Order, order
 from app.pilot import Mode, Pilot
 from app.pilot.goal_place import nearest_to, of_its_place
 from disk.words import one_line
@@ -92,9 +92,10 @@ class Orders(Comparing):
         self.pilot.set_mode(mode)
 
     @order
-    def drive(self, speed: float, yaw_rate: float) -> None:
-        """Drive by hand, m/s forwards and rad/s counter-clockwise, until the next such order."""
-        self.pilot.drive(speed, yaw_rate)
+    def drive(self, speed: float, yaw_rate: float) -> object:
+        """Drive by hand, m/s forwards and rad/s counter-clockwise, until the next such order. Who holds a key gives the same
+        order sixty times a second: it is one order."""
+        return None if self.pilot.drive(speed, yaw_rate) else UNCHANGED
 
     @order
     def kidnap(self, x: float | None = None, y: float | None = None, heading_rad: float | None = None) -> None:

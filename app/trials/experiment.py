@@ -214,9 +214,9 @@ class Experiment(_Part):
 
     def check(self) -> None:
         """ValueError says what does not fit together: a parameter, a place, a world, a score, a figure."""
+        check_figures(self)
         self._check_scores()
         self._check_watch()
-        check_figures(self)
         self.make_trials()
         for trial in self.make_trials(trials=1):
             trial.begin()

@@ -96,6 +96,8 @@ def add_situations(app: FastAPI, situations: Situations | None, cameras: Cameras
             except OSError as error:
                 reason = f"the brain that the run began with cannot be read: {error.strerror or error}"
                 raise Malformed([wrong(None, None, reason)]) from None
+            except ValueError as error:
+                raise Malformed([wrong(None, None, str(error))]) from None
         return json_response(to_json(made.model_dump()))
 
     @app.post("/api/situation/open", tags=["situation"], openapi_extra=takes(OpenMoment),
