@@ -102,7 +102,7 @@ def _open(trial_id: str, store_file: Path | None) -> int:
     from app.experiments.opening import open_trial
     from app.experiments.store import Store
 
-    with Store(store_file) as store:
+    with Store(store_file, reading=True) as store:
         opened = open_trial(trial_id, store)
     for words in opened.warnings:
         print(f"ratslam: note: {words}", file=sys.stderr)
