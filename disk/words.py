@@ -4,8 +4,11 @@ file, a line of code or the reader's eye would take for something else. And how 
 
 from __future__ import annotations
 
+import re
 import unicodedata
 
+LONGEST_WORD = 1000
+_ENDLESS = re.compile(rf"\S{{{LONGEST_WORD + 1},}}")
 _JOINERS = "\u200c\u200d"  # without them Persian and many emoji are misspelt
 # Control and format characters, the bidirectional ones among them; lone surrogates; what is private or unassigned, in
 # part no XML; line and paragraph separators.
@@ -23,8 +26,9 @@ def lines(text: str) -> str:
 
 
 def shown(text: str) -> str:
-    """For a terminal or a log: what no text may hold is written as an escape, as \\x1b."""
-    return "".join(c if _is_fit(c, "\n\t") else ascii(c)[1:-1] for c in text)
+    """For a terminal or a log: what no text may hold is written as an escape, as \\x1b, and words without an end are cut."""
+    short = _ENDLESS.sub(lambda word: f"{word[0][:LONGEST_WORD]}...", text)
+    return "".join(c if _is_fit(c, "\n\t") else ascii(c)[1:-1] for c in short)
 
 
 def plain(text: str, most: int = 300) -> str:

@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 from app.cli.options import Verbs, checked_seed
+from disk.words import shown
 
 
 def add_lessons(commands: Verbs) -> None:
@@ -43,7 +44,7 @@ def _list() -> int:
         print(f"{number:2}  {lesson.name:18} {lesson.title} ({lesson.paper})")
         print(f"    {'':18} {lesson.idea}")
     for path, found in own_lessons():
-        print(f"{path.name}: " + (found if isinstance(found, str) else f"yours, in {own_folder()}"))
+        print(shown(f"{path.name}: " + (found if isinstance(found, str) else f"yours, in {own_folder()}")))
     return 0
 
 

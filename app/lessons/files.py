@@ -47,7 +47,7 @@ def _find_world(path: Path, tree: dict[str, Any]) -> None:
     """A world may be a file beside the lesson's."""
     scene = tree.get("scene")
     name = cast("dict[str, object]", scene).get("world") if isinstance(scene, dict) else None
-    if isinstance(name, str) and (beside := path.parent / name).is_file():
+    if isinstance(name, str) and os.path.isfile(beside := path.parent / name):  # False also for what can be no name
         cast("dict[str, object]", scene)["world"] = str(beside)
 
 

@@ -15,7 +15,7 @@ from app.lessons.conditions import Until
 from app.lessons.findings import Finding
 from app.lessons.second import OF_SECOND
 from app.lessons.steps import LessonStep
-from app.trials.steps import Line, Seconds, Text, Values
+from app.trials.steps import Line, Seconds, Text, Values, WorldName
 from disk.words import lines
 from web.messages import Command
 from web.messages.command import Name
@@ -68,7 +68,7 @@ class Scene(_Part):
     view: which plates are looked at; tab: of the panel; speed: at which the rest is shown.
     """
 
-    world: str = "office"
+    world: WorldName = "office"
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 1
     engine: Literal["ours", "paper-2004", "paper-2005", "paper-2006"] = "ours"
     set: Settings = {}

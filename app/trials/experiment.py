@@ -17,7 +17,21 @@ from app.trials.code_version import code_version
 from app.trials.figure_options import check_figures
 from app.trials.measures import MEASURES
 from app.trials.scores import Counted, unknown_score
-from app.trials.steps import Drive, Explore, Kidnap, Line, Move, Repeat, Step, Text, Tour, Values, Visit, Wait
+from app.trials.steps import (
+    Drive,
+    Explore,
+    Kidnap,
+    Line,
+    Move,
+    Repeat,
+    Step,
+    Text,
+    Tour,
+    Values,
+    Visit,
+    Wait,
+    WorldName,
+)
 from app.trials.trial import Trial, text_of
 from disk.limits import AXES, CELLS, TRIAL_S, TRIALS
 from disk.words import one_line
@@ -26,7 +40,6 @@ from web.messages.command import Label
 
 EngineName = Literal["paper", "ours"]
 Labelled = Annotated[Label, Field(min_length=1)]
-WorldName = Annotated[str, Field(min_length=1, max_length=4096), AfterValidator(one_line)]  # or the path of a file
 _CATALOGUE = Path(__file__).with_name("catalogue")
 
 

@@ -13,6 +13,7 @@ Line = Annotated[str, Field(min_length=1, max_length=160), AfterValidator(one_li
 Text = Annotated[str, Field(min_length=1, max_length=700), AfterValidator(lines)]
 Seconds = Annotated[float, Field(gt=0, le=1e6)]
 Metres = Annotated[float, Field(gt=0, le=1e4)]
+WorldName = Annotated[str, Field(min_length=1, max_length=4096), AfterValidator(one_line)]  # or the path of a file
 Where = Name | tuple[float, float]  # a place of the world by name, or (x, y) in metres, office frame
 Values = dict[Line, float | int | bool | Line]  # parameters by dotted names
 

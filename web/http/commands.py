@@ -89,7 +89,7 @@ def check(document: dict[str, Any]) -> Command:
 
 def wrong(field: str | None, value: object, reason: str) -> dict[str, Any]:
     """One entry of an error's `detail`, safe to send: long or odd values are shortened to text."""
-    return {"field": field, "value": _echo(value), "reason": reason}
+    return {"field": field, "value": _echo(value), "reason": shown(reason)}
 
 
 def problem(reason: str) -> bytes:

@@ -15,7 +15,7 @@ from app.experiments.figures import draw
 from app.experiments.figures.canvas import svg_of
 from app.experiments.report import check_drawing
 from app.experiments.result_table import table_of
-from app.lessons.files import read_lesson
+from app.lessons.files import check_lesson, read_lesson
 from app.order_book import Order
 from app.runs.bookmarks import Bookmarks
 from app.runs.header import Beginning, header_of, read_header, written
@@ -27,6 +27,7 @@ from app.startup.ending import ended
 from app.trials.experiment import Level, Score, read_experiment
 from disk.words import plain, shown
 from sim2d import load_world, world_from_json, world_to_json
+from sim2d.importers import open_world
 from tests.unit.app.made_trials import experiment, figure, trials
 from tests.unit.app.made_trials import material as made_material
 from tests.unit.app.test_experiment_files import LEAST
@@ -198,3 +199,14 @@ def test_an_error_that_repeats_foreign_text_leaves_the_terminal_alone(capsys: py
     assert ended(refuse) == 2
     assert capsys.readouterr().err == "ratslam: unknown key '\\x1b[31m\\u202e'\n"
     assert plain("a\nb\x1b[0m") == "a b?[0m"
+
+
+def test_names_without_an_end_are_refused_in_a_sentence_of_some_length(tmp_path: Path) -> None:
+    """A world of a hundred thousand letters was a file name too long for the system."""
+    text = LESSON.replace('world = "office"', f'world = "{"a" * 3000}"', 1)
+    (tmp_path / "mine.toml").write_text(text, "utf-8")
+    with pytest.raises(ValueError, match="no world 'aaa"):
+        check_lesson(read_lesson(tmp_path / "mine.toml"))
+    with pytest.raises(ValueError, match="no world 'aaa"):
+        open_world("a" * 100_000)
+    assert len(shown(f"key {'a' * 100_000}: unknown")) < 1100
