@@ -10,6 +10,7 @@ from app.evaluation import Evaluation
 from app.order_book import Order, order
 from app.recordings.scan_ties import ScanTies
 from disk import copy_state
+from disk.words import one_line
 from ratslam_core import Estimate, RatSlam
 from sim2d import Truth
 
@@ -65,7 +66,7 @@ class Comparing:
         """
         names = first.strip(), name.strip()
         for given in names:
-            if not 0 < len(given) <= LONGEST_NAME or not given.isprintable():
+            if not 0 < len(one_line(given)) <= LONGEST_NAME:
                 raise ValueError(
                     f"a brain that is compared needs a name of 1 to {LONGEST_NAME} characters, got {given!r}"
                 )

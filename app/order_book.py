@@ -10,6 +10,8 @@ from typing import Any, Protocol, TypeVar, cast
 
 from sim2d import Box, World, world_from_json, world_to_json
 
+UNCHANGED = object()  # what a method of Session returns when the order was in force already
+_SETTING = frozenset(("cancel_goal", "set_mode", "set_door", "set_lamp", "tag"))  # given twice, they do what one does
 Method = TypeVar("Method", bound=Callable[..., object])
 
 
@@ -25,6 +27,13 @@ class Order:
     values: dict[str, Any]
 
 
+def overtakes(later: Order, before: Order) -> bool:
+    """Whether the later of two orders, with none between them, does alone what both do: who keeps orders keeps that one."""
+    if later.tick != before.tick or later.name != before.name:
+        return False
+    return later.name == "drive" or (later.name in _SETTING and later.values == before.values)
+
+
 class Ordered(Protocol):
     """Who has orders: tells `on_order` of each that was carried out."""
 
@@ -36,7 +45,8 @@ class Ordered(Protocol):
 
 
 def order(method: Method) -> Method:
-    """A method of Session that is an order: once it is carried out, `session.on_order` is told. A refused one is none."""
+    """A method of Session that is an order: once it is carried out, `session.on_order` is told. One that is refused, or that
+    changes nothing, is none."""
     told_as = inspect.signature(method)
 
     @functools.wraps(method)
@@ -48,6 +58,8 @@ def order(method: Method) -> Method:
             answer = method(self, *args, **kwargs)
         finally:
             self.under_orders = False
+        if answer is UNCHANGED:
+            return None
         _, *values = told_as.bind(self, *args, **kwargs).arguments.items()
         self.on_order(Order(self.tick_count, method.__name__, {name: _as_json(value) for name, value in values}))
         return answer

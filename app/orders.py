@@ -10,9 +10,10 @@ from app.comparing import Comparing
 from app.config import Config, Value
 from app.evaluation import Evaluation
 from app.hand_packet import put_packet
-from app.order_book import Order, order
+from app.order_book import UNCHANGED, Order, order
 from app.pilot import Mode, Pilot
 from app.pilot.goal_place import nearest_to, of_its_place
+from disk.words import one_line
 from ratslam_core import RatSlam
 from sim2d import Box, SensorFrame, Simulator, World
 
@@ -69,9 +70,9 @@ class Orders(Comparing):
     def tag(self, name: str) -> int:
         """Name the place where the robot believes itself to be, as "the kitchen", to send it there later. A name that is
         given again moves. Returns the active experience. IROS 2005 IV."""
-        name = name.strip()
-        if not name or not name.isprintable():
-            raise ValueError(f"a tag needs a name that can be printed, got {name!r}")
+        name = one_line(name.strip())
+        if not name:
+            raise ValueError("a tag needs a name")
         if name not in self.tags and len(self.tags) >= MOST_TAGS:
             raise ValueError(f"{name!r} would be tag number {MOST_TAGS + 1}; {MOST_TAGS} are enough, remove one first")
         self.tags[name] = self.brain.experience_map.active
@@ -91,9 +92,10 @@ class Orders(Comparing):
         self.pilot.set_mode(mode)
 
     @order
-    def drive(self, speed: float, yaw_rate: float) -> None:
-        """Drive by hand, m/s forwards and rad/s counter-clockwise, until the next such order."""
-        self.pilot.drive(speed, yaw_rate)
+    def drive(self, speed: float, yaw_rate: float) -> object:
+        """Drive by hand, m/s forwards and rad/s counter-clockwise, until the next such order. Who holds a key gives the same
+        order sixty times a second: it is one order."""
+        return None if self.pilot.drive(speed, yaw_rate) else UNCHANGED
 
     @order
     def kidnap(self, x: float | None = None, y: float | None = None, heading_rad: float | None = None) -> None:

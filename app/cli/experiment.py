@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from app.cli.options import Verbs
 from disk import require_writable
+from disk.limits import TRIALS
+
+if TYPE_CHECKING:
+    from app.trials.experiment import Experiment
 
 _RESERVED = ("all", "check", "open", "results")
-_MOST_TRIALS = 100_000
 
 
 def add_experiment(commands: Verbs) -> None:
@@ -78,8 +82,8 @@ def _experiment(args: argparse.Namespace) -> int:
 
 
 def _check(args: argparse.Namespace) -> None:
-    if args.trials is not None and not 1 <= args.trials <= _MOST_TRIALS:
-        raise ValueError(f"--trials must be from 1 to {_MOST_TRIALS}, got {args.trials}")
+    if args.trials is not None and not 1 <= args.trials <= TRIALS:
+        raise ValueError(f"--trials must be from 1 to {TRIALS}, got {args.trials}")
     if args.workers is not None and not 1 <= args.workers <= 1024:
         raise ValueError(f"--workers must be from 1 to 1024, got {args.workers}")
     if args.scheduler is not None and args.workers is not None:
@@ -98,7 +102,7 @@ def _open(trial_id: str, store_file: Path | None) -> int:
     from app.experiments.opening import open_trial
     from app.experiments.store import Store
 
-    with Store(store_file) as store:
+    with Store(store_file, reading=True) as store:
         opened = open_trial(trial_id, store)
     for words in opened.warnings:
         print(f"ratslam: note: {words}", file=sys.stderr)
@@ -117,13 +121,24 @@ def _results(args: argparse.Namespace) -> int:
     return 0
 
 
+def check_whole(experiment: Experiment) -> None:
+    """What a file of one's own must stand before any of it is run. ValueError says what does not fit together."""
+    from app.experiments.report import check_drawing
+
+    experiment.check()
+    check_drawing(experiment)
+
+
 def _check_file(file: str) -> int:
     from app.trials.experiment import read_experiment
 
     experiment = read_experiment(Path(file))
     if experiment.name in _RESERVED:
         raise ValueError(f"{file}: name: {experiment.name!r} is a word of the command; choose another")
-    experiment.check()
+    try:
+        check_whole(experiment)
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None
     cells, trials = len(experiment.cells()), len(experiment.make_trials())
     print(f"{file}: {experiment.title}: {cells} {'cell' if cells == 1 else 'cells'}, {trials} trials; all is right")
     return 0

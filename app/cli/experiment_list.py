@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import sys
 import textwrap
+from pathlib import Path
 
 from app.experiments.cluster import cores
 from app.experiments.durations import duration_of, time_words
 from app.experiments.store import Store, default_path
-from app.trials.experiment import Experiment, catalogue
+from app.trials.experiment import Experiment, catalogue, names
 
 WIDTH = 100
 
@@ -17,19 +19,28 @@ def list_experiments(args: argparse.Namespace) -> int:
     """Print them. Durations are measured where trials were run before."""
     workers, total_s = args.workers or cores(), 0.0
     path = args.store or default_path()
-    store = Store(path) if path.is_file() else None
+    measured_of = _measured(path, args.quick)
     for experiment in catalogue():
-        measured = {} if store is None else store.seconds(experiment.name, args.quick)
+        measured = measured_of.get(experiment.name, {})
         duration = duration_of(experiment, experiment.make_trials(trials=args.trials, quick=args.quick), measured)
         total_s += duration.seconds / workers
         _tell(experiment, f"{duration.trials} trials, {duration.words(workers)}")
-    if store is not None:
-        store.close()
     print(f"\nAll together: {time_words(total_s)} with {workers} {'worker' if workers == 1 else 'workers'}.")
     print(
         "`ratslam experiment NAME` runs one, `ratslam experiment all` every one; what was run before is not run again."
     )
     return 0
+
+
+def _measured(path: Path, quick: bool) -> dict[str, dict[str, float]]:
+    """Wall seconds of a trial by experiment and engine. A store that cannot be read is told of, and nothing is known then."""
+    try:
+        if path.is_file():
+            with Store(path, reading=True) as store:
+                return {name: store.seconds(name, quick) for name in names()}
+    except ValueError as error:
+        print(f"ratslam: note: {error}", file=sys.stderr)
+    return {}
 
 
 def _tell(experiment: Experiment, duration: str) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from app.cli.experiment import check_whole
 from app.cli.progress import compile_first
 from app.experiments.durations import Duration, duration_of, time_words
 from app.experiments.export import write_parquet
@@ -42,7 +43,7 @@ def run_one(name: str, args: argparse.Namespace) -> int:
     """ValueError says what is wrong with the experiment, before anything is run."""
     experiment = find_experiment(name)
     if name.endswith(".toml"):
-        experiment.check()
+        check_whole(experiment)
     folder = make_folder(args.out or OUT / experiment.name)
     with Store(args.store) as store, _workers(args) as workers:
         plan = _planned(experiment, args, store)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import time
 from pathlib import Path
 
 from app.cli.options import Verbs, checked_seed
+from disk.words import shown
 
 
 def add_lessons(commands: Verbs) -> None:
@@ -42,7 +44,7 @@ def _list() -> int:
         print(f"{number:2}  {lesson.name:18} {lesson.title} ({lesson.paper})")
         print(f"    {'':18} {lesson.idea}")
     for path, found in own_lessons():
-        print(f"{path.name}: " + (found if isinstance(found, str) else f"yours, in {own_folder()}"))
+        print(shown(f"{path.name}: " + (found if isinstance(found, str) else f"yours, in {own_folder()}")))
     return 0
 
 
@@ -56,9 +58,8 @@ def _check(path: Path) -> int:
         check_formulas(lesson)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    print(
-        f"{path}: {lesson.title}: all is right; `ratslam lessons --run {path}` tells whether it keeps what it promises"
-    )
+    command = shlex.join(["ratslam", "lessons", "--run", str(path)])
+    print(f"{path}: {lesson.title}: all is right; `{command}` tells whether it keeps what it promises")
     return 0
 
 

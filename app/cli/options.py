@@ -9,6 +9,7 @@ from typing import TypeAlias
 
 from app.config import Config, Value, from_toml, parse_value
 from app.config.presets import PRESETS, preset
+from app.config.toml_file import read_text
 from ratslam_core import RatSlam, load_brain
 from sim2d import DEFAULT_WORLD, World
 from sim2d.importers import open_world
@@ -40,9 +41,7 @@ def config_of(args: argparse.Namespace, config: Config) -> Config:
         config = preset(args.preset, config)
     if args.config is not None:
         try:
-            config = from_toml(args.config.read_text(encoding="utf-8"), config)
-        except OSError as error:
-            raise ValueError(f"--config {args.config}: {error.strerror or error}") from None
+            config = from_toml(read_text(args.config), config)
         except ValueError as error:
             raise ValueError(f"--config {args.config}: {error}") from None
     values: dict[str, Value] = {}

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from app.situations import Situation, read_situation
 from app.situations.writing import KEY
+from disk.limits import SITUATION_BYTES
 
 
 def situation_in(name: str) -> Situation:
@@ -13,7 +14,8 @@ def situation_in(name: str) -> Situation:
     if f"{KEY}=" in name:
         return read_situation(name)
     try:
-        text = Path(name).read_text(encoding="utf-8")
+        with Path(name).open("rb") as file:
+            text = file.read(SITUATION_BYTES + 1).decode()
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is no text"
         raise ValueError(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from app.cli.options import Verbs, tell_beside
 from disk import write_whole
+from disk.words import shown
 from sim2d import WorldError, load_world, own_worlds, world_names, world_to_json
 from sim2d.importers import import_file
 from sim2d.world.world_file import complaints, parse_json, schema_text
@@ -47,7 +48,7 @@ def _list(_args: argparse.Namespace) -> int:
 def _check(args: argparse.Namespace) -> int:
     found = _complaints(args.file, args.scale)
     for complaint in found:
-        print(f"ratslam: {complaint}", file=sys.stderr)
+        print(shown(f"ratslam: {complaint}"), file=sys.stderr)
     if not found:
         print(f"{args.file}: nothing is wrong with it")
     return 2 if found else 0

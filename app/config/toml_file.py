@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import Field, fields
+from pathlib import Path
 from typing import Any, cast
 
 import tomlkit
 
 from app.config.tree import Config, Value
+from disk.limits import LEVELS, TOML_BYTES
 from sim2d.world.json_lines import deeper_than
-
-_MOST_LEVELS = 20
 
 
 def to_toml(config: Config) -> str:
@@ -42,10 +42,7 @@ def _about(item: Field[Any]) -> str:
 
 def from_toml(text: str, base: Config | None = None) -> Config:
     """A config from TOML; what is left out is as in `base`, or default. ValueError lists the valid keys."""
-    try:
-        tree = _toml(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"not valid TOML: {error}") from None
+    tree = toml_tree(text)
     config, values = base or Config(), dict[str, Value]()
     sections = [item.name for item in fields(config)]
     for section, table in tree.items():
@@ -70,12 +67,33 @@ def parse_value(text: str) -> Value:
     return value
 
 
+def read_text(path: Path) -> str:
+    """The text of a file in TOML. ValueError says why it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            return file.read(4 * TOML_BYTES).decode()  # of what is longer, enough to tell
+    except OSError as error:
+        raise ValueError(error.strerror or str(error)) from None
+    except UnicodeDecodeError as error:
+        raise ValueError(f"not valid TOML: {error}") from None
+
+
+def toml_tree(text: str) -> dict[str, Any]:
+    """The tables of a file. ValueError says why they cannot be read: every file in TOML is read here."""
+    try:
+        return _toml(text)
+    except ValueError as error:
+        raise ValueError(f"not valid TOML: {error}") from None
+
+
 def _toml(text: str) -> dict[str, Any]:
     """The parsed text. ValueError also if it is nested so deeply that reading it would exhaust the stack."""
+    if len(text) > TOML_BYTES:
+        raise ValueError(f"it has more than {TOML_BYTES // 1000} kB")
     try:
         tree = tomllib.loads(text)
-        if not deeper_than(_MOST_LEVELS, tree):
+        if not deeper_than(LEVELS, tree):
             return tree
     except RecursionError:
         pass
-    raise ValueError(f"nested too deeply; at most {_MOST_LEVELS} tables or lists can lie within one another")
+    raise ValueError(f"nested too deeply; at most {LEVELS} tables or lists can lie within one another")

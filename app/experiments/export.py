@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
@@ -16,6 +17,8 @@ from disk import whole_file, write_whole
 _FIRST = ["id", "engine"]
 _LAST = ["seed", "version", "quick", "simulated_s", "wall_s", "moment_s", "moment", "error"]
 
+_FORMULA = ("=", "+", "-", "@")
+_NUMBER = re.compile(r"[+-]?[0-9.]+( [^ =@+-]*)?")  # with a unit
 Cell = str | int | float | bool | None
 
 
@@ -24,9 +27,16 @@ def write_csv(path: Path, experiment: Experiment, trials: Sequence[StoredTrial])
     columns, rows = table_of(experiment, trials)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(rows)
+    writer.writerow([_no_formula(column) for column in columns])
+    writer.writerows([_no_formula(cell) for cell in row] for row in rows)
     write_whole(path, text.getvalue())
+
+
+def _no_formula(cell: Cell) -> Cell:
+    """A spreadsheet would calculate a text that begins like a formula. Numbers, also as text, stay as they are."""
+    if not isinstance(cell, str) or not cell.startswith(_FORMULA) or _NUMBER.fullmatch(cell):
+        return cell
+    return f"'{cell}"
 
 
 def write_parquet(path: Path, experiment: Experiment, trials: Sequence[StoredTrial]) -> None:

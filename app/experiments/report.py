@@ -6,15 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.experiments.figures import draw, wanted
+from app.experiments.figures import NEED_TRACES, draw, wanted
 from app.experiments.figures.canvas import png_of, svg_of
 from app.experiments.figures.material import Drawn, Material
 from app.experiments.page.page import Entry, index_of, page_of, picture_of
+from app.experiments.result_table import table_of
 from app.experiments.sentences import found
 from app.experiments.stored_trial import StoredTrial
 from app.trials.experiment import Experiment
 from app.trials.trace import Trace
 from app.trials.trial import Trial
+from disk.state_reading import words_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +58,36 @@ def write_report_page(
     page.write_text(page_of(material, drawn, command, [t for t in trials if t.error]), encoding="utf-8")
     picture = picture_of(drawn[0], experiment.name) if drawn else ""
     return Report(page, written, Entry(experiment, page.name, found(experiment, material.cells), picture, len(good)))
+
+
+def check_drawing(experiment: Experiment) -> None:
+    """Draw what it will draw, of scores that are made up. ValueError: a figure or the page cannot be drawn.
+
+    Figures of single trials are left out: they need runs.
+    """
+    good = _made_up(experiment)
+    specs = [spec for spec in experiment.figures if spec.kind not in NEED_TRACES]
+    material = Material(experiment, good)
+    table_of(experiment, material.cells)
+    drawn: list[Drawn] = []
+    for spec in specs:
+        try:
+            drawn.append(draw(spec, material))
+            png_of(drawn[-1].figure)
+        except Exception as error:  # whatever matplotlib raises
+            raise ValueError(f"figure {spec.title or spec.kind!r} cannot be drawn: {words_of(error)}") from None
+    page_of(material, drawn, "", [])
+
+
+def _made_up(experiment: Experiment) -> list[StoredTrial]:
+    """Two trials in each cell, which have all scores."""
+    names = {str(name) for score in experiment.scores for name in (score.score, *(score.rate or ())) if name}
+    cells = [tuple(level.label for level in cell) for cell in experiment.cells()]
+    keys = [(engine, levels, seed) for seed in (1, 2) for engine in experiment.engines for levels in cells]
+    return [
+        StoredTrial(f"{number:016x}", engine, levels, seed, dict.fromkeys(names, float(seed)), 1.0, "made up")
+        for number, (engine, levels, seed) in enumerate(keys)
+    ]
 
 
 def write_index(reports: list[Report], out: Path, command: str) -> Path:

@@ -6,7 +6,8 @@ import sqlite3
 from pathlib import Path
 
 VERSION = 1  # of these tables, kept as the file's user_version
-BUSY_S = 60.0  # how long a command waits for another that is writing
+BUSY_S = 60.0  # how long a command that writes waits for another that does
+READ_BUSY_S = 0.5  # and one that only reads: the file's journal lets it read meanwhile, unless somebody locks it whole
 
 _TABLES = """
 CREATE TABLE definitions (
@@ -41,6 +42,41 @@ CREATE TABLE scores (
 """
 
 
+def broken(path: Path, error: sqlite3.Error) -> ValueError:
+    """What is wrong with the file, and the way out."""
+    if "locked" in str(error) or "busy" in str(error):
+        return ValueError(
+            f"--store {path}: another program has locked it; end that one, or name another file by --store"
+        )
+    return ValueError(
+        f"--store {path}: {error}; name a file that `ratslam experiment` has made, or a new one; or move this one away, and a "
+        "new one is begun in its place"
+    )
+
+
+def opened(path: Path) -> sqlite3.Connection:
+    """A file that exists, to be read only and without waiting. ValueError if it cannot be, or is something else."""
+    try:
+        connection = sqlite3.connect(
+            f"{path.absolute().as_uri()}?mode=ro",
+            uri=True,
+            timeout=READ_BUSY_S,
+            isolation_level=None,
+            check_same_thread=False,
+        )
+    except sqlite3.Error as error:
+        raise broken(path, error) from None
+    try:
+        _require_ours(connection, path)
+    except sqlite3.Error as error:
+        connection.close()
+        raise broken(path, error) from None
+    except ValueError:
+        connection.close()
+        raise
+    return connection
+
+
 def connected(path: Path) -> sqlite3.Connection:
     """The file, made if it does not exist. ValueError if it is something else, or of a newer program."""
     try:
@@ -57,9 +93,7 @@ def connected(path: Path) -> sqlite3.Connection:
         _make_tables(connection, path)
     except sqlite3.Error as error:
         connection.close()
-        raise ValueError(
-            f"--store {path}: {error}; name a file that `ratslam experiment` has made, or a new one"
-        ) from None
+        raise broken(path, error) from None
     except ValueError:
         connection.close()
         raise
@@ -75,7 +109,12 @@ def _make_tables(connection: sqlite3.Connection, path: Path) -> None:
             connection.execute(statement)
         connection.execute(f"PRAGMA user_version = {VERSION}")
     connection.execute("COMMIT")
-    if found == 0 and not empty:
+    _require_ours(connection, path)
+
+
+def _require_ours(connection: sqlite3.Connection, path: Path) -> None:
+    found = connection.execute("PRAGMA user_version").fetchone()[0]
+    if found == 0:
         raise ValueError(f"--store {path}: this is another program's database; name a new file")
     if found > VERSION:
         raise ValueError(

@@ -15,7 +15,7 @@ from typing import Any
 
 from app.experiments.definition import definition_of, trial_from
 from app.experiments.outcome import Outcome
-from app.experiments.schema import connected
+from app.experiments.schema import broken, connected, opened
 from app.experiments.stored_trial import StoredTrial
 from app.trials.trial import Trial
 from disk import kept_folder
@@ -35,10 +35,11 @@ def default_path() -> Path:
 class Store:
     """One process writes; others may read and, when it is their turn, write as well."""
 
-    def __init__(self, path: Path | None = None) -> None:
-        """ValueError: the file cannot be made, or is something else."""
+    def __init__(self, path: Path | None = None, *, reading: bool = False) -> None:
+        """reading: nothing is added, and nobody waited for; the file must exist then. ValueError, here and from everything that
+        is asked of it: the file cannot be made or read, or is something else."""
         self.path = path or default_path()
-        self._db = connected(self.path)
+        self._db = opened(self.path) if reading else connected(self.path)
 
     def __enter__(self) -> Store:
         return self
@@ -93,9 +94,17 @@ class Store:
                 raise ValueError(
                     f"{self.path}: {error}; what was kept before is safe, and the same command goes on"
                 ) from None
+            if isinstance(error, sqlite3.DatabaseError) and not isinstance(error, sqlite3.IntegrityError):
+                raise broken(self.path, error) from None
             raise
 
     # ------------------------------------------------------------ reading
+
+    def _ask(self, question: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
+        try:
+            return self._db.execute(question, values).fetchall()
+        except sqlite3.DatabaseError as error:
+            raise broken(self.path, error) from None
 
     def done(self, ids: Iterable[str]) -> set[str]:
         """Which of these trials have scores."""
@@ -113,38 +122,38 @@ class Store:
     def of_experiment(self, name: str) -> list[StoredTrial]:
         """All trials ever run for an experiment, by any version of the program."""
         order = "ORDER BY made_at, engine, levels, seed"
-        rows = self._db.execute(f"SELECT {_COLUMNS} FROM trials WHERE experiment = ? {order}", (name,)).fetchall()
+        rows = self._ask(f"SELECT {_COLUMNS} FROM trials WHERE experiment = ? {order}", (name,))
         scores = self._scores([row[0] for row in rows])
         return [_stored(row, scores, row[1], tuple(json.loads(row[2]))) for row in rows]
 
     def counts(self) -> dict[str, int]:
         """How many trials each experiment has that did not fail."""
-        return dict(self._db.execute("SELECT experiment, count(*) FROM trials WHERE error = '' GROUP BY experiment"))
+        return dict(self._ask("SELECT experiment, count(*) FROM trials WHERE error = '' GROUP BY experiment"))
 
     def seconds(self, name: str, quick: bool) -> dict[str, float]:
         """Wall seconds of a trial of this experiment, on average, by engine; measured on whatever machine it ran."""
-        rows = self._db.execute(
+        rows = self._ask(
             "SELECT engine, avg(wall_s) FROM trials WHERE experiment = ? AND quick = ? AND error = '' GROUP BY engine",
             (name, quick),
         )
-        return dict(rows.fetchall())
+        return dict(rows)
 
     def trial(self, trial_id: str) -> Trial:
         """The trial with this id, or whose id alone begins so. ValueError lists ids that are close."""
-        rows = self._db.execute(_MADE_AGAIN, (len(trial_id), trial_id)).fetchall()
+        rows = self._ask(_MADE_AGAIN, (len(trial_id), trial_id))
         if len(rows) == 1 and trial_id:
             return trial_from(*rows[0])
         raise ValueError(self._unknown(trial_id, several=len(rows) > 1))
 
     def moment(self, trial_id: str) -> tuple[float, str]:
         """When a trial was decided (simulated s), and by what, in words."""
-        row = self._db.execute("SELECT moment_s, moment FROM trials WHERE id = ?", (trial_id,)).fetchone()
-        if row is None:
+        rows = self._ask("SELECT moment_s, moment FROM trials WHERE id = ?", (trial_id,))
+        if not rows:
             raise ValueError(self._unknown(trial_id))
-        return row
+        return rows[0][0], rows[0][1]
 
     def _unknown(self, trial_id: str, several: bool = False) -> str:
-        ids = [row[0] for row in self._db.execute("SELECT id FROM trials ORDER BY id")]
+        ids = [row[0] for row in self._ask("SELECT id FROM trials ORDER BY id")]
         if not ids:
             return f"there is no trial {trial_id!r}: {self.path} is empty; run an experiment first"
         same = next((n for n in range(len(trial_id), 0, -1) if any(each.startswith(trial_id[:n]) for each in ids)), 0)
@@ -161,7 +170,7 @@ class Store:
     def _asked(self, question: str, ids: Sequence[str]) -> Generator[tuple[Any, ...]]:
         for start in range(0, len(ids), _AT_ONCE):
             some = ids[start : start + _AT_ONCE]
-            yield from self._db.execute(f"{question} ({','.join('?' * len(some))})", some)
+            yield from self._ask(f"{question} ({','.join('?' * len(some))})", some)
 
 
 def _stored(

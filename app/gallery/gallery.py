@@ -33,16 +33,25 @@ class StoredGallery:
 
     def cards(self) -> list[Card]:
         code_version()  # takes a second the first time: better here than when somebody presses "Watch it"
-        counts = self._read(lambda store: store.counts()) or {}
+        counts: dict[str, int] = {}
+        with contextlib.suppress(ValueError):  # each experiment says what is wrong with the store
+            counts = self._read(lambda store: store.counts()) or {}
         return [self._card(experiment, counts.get(experiment.name, 0)) for experiment in catalogue()]
 
     def detail(self, name: str) -> Detail | None:
         experiment = _experiments().get(name)
         if experiment is None:
             return None
-        trials = self._read(lambda store: store.of_experiment(name)) or []
+        why = ""
+        try:
+            trials = self._read(lambda store: store.of_experiment(name)) or []
+        except ValueError as error:
+            trials, why = [], str(error)
         done = sum(not trial.error for trial in trials)
-        return Detail(card=self._card(experiment, done), results=results_of(experiment, trials, _published(name)))
+        results = results_of(experiment, trials, _published(name))
+        if why:
+            results.note = f"The trials that were run here cannot be shown: {why}. {results.note}".strip()
+        return Detail(card=self._card(experiment, done), results=results)
 
     def picture(self, name: str) -> Path | None:
         """The newest figure drawn here, the first of its experiment; else the one that comes with the program."""
@@ -63,12 +72,16 @@ class StoredGallery:
         return self._path.parent / FIGURES
 
     def _read(self, question: Callable[[Store], _T]) -> _T | None:
-        """The store's answer; None if nothing was run yet, and then no file is made."""
-        with contextlib.suppress(ValueError):  # it is something else than a store; `ratslam experiment` says so
-            if self._path.is_file():
-                with Store(self._path) as store:
-                    return question(store)
-        return None
+        """The store's answer; None if nothing was run yet, and then no file is made. ValueError says why it cannot be read."""
+        if not self._has_store():
+            return None
+        with Store(self._path, reading=True) as store:
+            return question(store)
+
+    def _has_store(self) -> bool:
+        with contextlib.suppress(ValueError):  # there is no home, and so no store
+            return self._path.is_file()
+        return False
 
     def _card(self, experiment: Experiment, done: int) -> Card:
         world = _world(experiment.world)

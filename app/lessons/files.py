@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, cast
 
 from pydantic import ValidationError
 
+from app.config.toml_file import read_text, toml_tree
 from app.lessons.lines import line_of
 from app.lessons.performance import Performance, session_of
 from app.lessons.schema import Lesson
@@ -17,7 +17,6 @@ from app.views.history import History
 
 _CATALOGUE = Path(__file__).with_name("catalogue")
 ENVIRONMENT = "RATSLAM_LESSONS"
-MOST_BYTES = 200_000
 
 
 def own_folder() -> Path:
@@ -28,16 +27,10 @@ def own_folder() -> Path:
 def read_lesson(path: Path) -> Lesson:
     """ValueError: file, line, name, value, and what would be right."""
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise ValueError(f"{path}: a lesson has at most {MOST_BYTES // 1000} kB")
-        text = path.read_text(encoding="utf-8")
-        tree = tomllib.loads(text)
-    except OSError as error:
-        raise ValueError(f"{path}: {error.strerror or error}") from None
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ValueError(f"{path}: not valid TOML: {error}") from None
-    except RecursionError:
-        raise ValueError(f"{path}: not valid TOML: its brackets are nested too deeply") from None
+        text = read_text(path)
+        tree = toml_tree(text)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
     _find_world(path, tree)
     try:
         return Lesson.model_validate(tree)
@@ -54,7 +47,7 @@ def _find_world(path: Path, tree: dict[str, Any]) -> None:
     """A world may be a file beside the lesson's."""
     scene = tree.get("scene")
     name = cast("dict[str, object]", scene).get("world") if isinstance(scene, dict) else None
-    if isinstance(name, str) and (beside := path.parent / name).is_file():
+    if isinstance(name, str) and os.path.isfile(beside := path.parent / name):  # False also for what can be no name
         cast("dict[str, object]", scene)["world"] = str(beside)
 
 

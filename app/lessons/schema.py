@@ -15,14 +15,14 @@ from app.lessons.conditions import Until
 from app.lessons.findings import Finding
 from app.lessons.second import OF_SECOND
 from app.lessons.steps import LessonStep
-from app.trials.steps import Seconds, Values
+from app.trials.steps import Line, Seconds, Text, Values, WorldName
+from disk.words import lines
 from web.messages import Command
+from web.messages.command import Name
 
 Plate = Literal["office", "map"]  # where something is marked or drawn; frames: the simulator's own, the map's own
 MarkKind = Literal["closure", "snap", "lost", "recovered", "kidnap", "arrived", "false", "packet", "link", "reached"]
 PairName = Annotated[str, AfterValidator(require_pair)]
-Text = Annotated[str, Field(min_length=1, max_length=700)]
-Line = Annotated[str, Field(min_length=1, max_length=160)]
 _COMMAND: TypeAdapter[Command] = TypeAdapter(Command)
 
 
@@ -56,7 +56,7 @@ class Symbol(_Part):
 class Formula(_Part):
     """A formula as in the paper, in LaTeX."""
 
-    latex: Annotated[str, Field(min_length=1, max_length=400)]
+    latex: Annotated[str, Field(min_length=1, max_length=400), AfterValidator(lines)]
     says: Line
     source: Line  # such as "A eq. 4"
     symbols: list[Symbol] = []
@@ -68,7 +68,7 @@ class Scene(_Part):
     view: which plates are looked at; tab: of the panel; speed: at which the rest is shown.
     """
 
-    world: str = "office"
+    world: WorldName = "office"
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 1
     engine: Literal["ours", "paper-2004", "paper-2005", "paper-2006"] = "ours"
     set: Settings = {}
@@ -180,7 +180,7 @@ class Try(_Part):
     """Something to try afterwards: a sentence, and what its button does, as commands of the API."""
 
     words: Line
-    button: Annotated[str, Field(min_length=1, max_length=40)] | None = None
+    button: Name | None = None
     commands: list[dict[str, Any]] = []
 
     @model_validator(mode="after")

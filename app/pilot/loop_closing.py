@@ -35,6 +35,11 @@ class LoopCloser:
         self._tried: list[tuple[int, float, float]] = []  # where it set out: m, in the frame of an experience
         self._tried_s: list[float] = []  # and when
 
+    @property
+    def rests(self) -> bool:
+        """Whether to stop it would change nothing."""
+        return not (self.road or self._there)
+
     def stop(self) -> None:
         """Something else is wanted of the robot."""
         self.road, self._there = [], False

@@ -113,16 +113,24 @@ class Pilot:
         self.mode = mode
         self._hand = (0.0, 0.0)
 
-    def drive(self, speed: float, yaw_rate: float) -> None:
-        """Drive by hand, until the next order. The engine ends an order that is not renewed in time."""
+    def drive(self, speed: float, yaw_rate: float) -> bool:
+        """Drive by hand, until the next order. The engine ends an order that is not renewed in time. Returns whether anything
+        has changed by it."""
+        if self.mode == "manual" and self._hand == (speed, yaw_rate) and self._seeker.rests and not self._has_arrived:
+            return False
         self._leave_goal()
         self._seeker.stop()
         self.mode = "manual"
         self._hand = (speed, yaw_rate)
+        return True
+
+    @property
+    def _has_arrived(self) -> bool:
+        return self._follower is not None and self._follower.state == "arrived"
 
     def _leave_goal(self) -> None:
         """Drop a goal that has been reached. One that was interrupted stays: the robot can go on to it later."""
-        if self._follower is not None and self._follower.state == "arrived":
+        if self._has_arrived:
             self._follower = None
 
     # ------------------------------------------------------------ each tick

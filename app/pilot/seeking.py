@@ -64,6 +64,12 @@ class Seeker:
         """Whether it drives into a far opening, over new ground."""
         return self.follower is not None and (self._far or bool(self._closer.road)) and self._into_s >= 0.0
 
+    @property
+    def rests(self) -> bool:
+        """Whether to stop it would change nothing."""
+        plans = self.follower is not None or self._opening is not None or self._far or self._wander_s != 0.0
+        return not plans and self._closer.rests
+
     def stop(self) -> None:
         """Something else is wanted of the robot."""
         self.follower, self._opening, self._far, self._wander_s = None, None, False, 0.0

@@ -147,7 +147,7 @@ def _archive(path: Path, opening: Opening) -> Recording:
 
 def _file(path: Path, opening: Opening) -> Recording:
     with open_whole(path):
-        if is_archive(path):
+        if not has_bag(path) and is_archive(path):
             return _archive(path, opening)
     with open_whole(path) as file:
         try:

@@ -6,10 +6,11 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import AfterValidator, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as checked
 
 from disk import whole_file
+from disk.words import one_line
 from web.messages import Bookmark
 
 FILE = "bookmarks.json"
@@ -20,7 +21,7 @@ MOST = 100
 class _Row:
     tick: Annotated[int, Field(ge=0)]
     time_s: Annotated[float, Field(ge=0, allow_inf_nan=False)]
-    name: Annotated[str, Field(min_length=1, max_length=60)]
+    name: Annotated[str, Field(min_length=1, max_length=60), AfterValidator(one_line)]
 
 
 _ROWS = TypeAdapter(list[_Row])
@@ -34,9 +35,9 @@ class Bookmarks:
 
     def put(self, tick: int, time_s: float, name: str) -> None:
         """Name a moment, or name it otherwise. ValueError says what is wrong with the name."""
-        name = name.strip()
-        if not name or not name.isprintable():
-            raise ValueError(f"a bookmark needs a name that can be printed, got {name!r}")
+        name = one_line(name.strip())
+        if not name:
+            raise ValueError("a bookmark needs a name")
         others = [row for row in self.rows if row.tick != tick]
         if len(others) >= MOST:
             raise ValueError(f"{name!r} would be bookmark number {MOST + 1}; {MOST} are enough, delete one first")

@@ -63,14 +63,15 @@ def delete(folder: Path) -> None:
 
 
 def tidy(budget_mb: float = BUDGET_MB, most: int = MOST_RUNS) -> None:
-    """Delete the oldest runs until the rest is within the budget. Runs that go on and what cannot be deleted stay."""
+    """Delete the oldest runs until the rest is within the budget. The newest, runs that go on and what cannot be deleted
+    stay."""
     room, runs = budget_mb * 1e6, all_runs()
     for number, folder in enumerate(runs):
         if number >= MOST_STATES and not is_open(folder):
             with contextlib.suppress(OSError):
                 (folder / STATE).unlink(missing_ok=True)
         room -= sum(_sizes(folder))
-        if (room < 0 or number >= most) and not is_open(folder):
+        if number and (room < 0 or number >= most) and not is_open(folder):
             with contextlib.suppress(OSError, ValueError):
                 delete(folder)
 

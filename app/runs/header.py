@@ -10,19 +10,19 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as checked
 
 from app.config import Config, Value
 from app.played_session import PlayedSession
 from app.recordings.fingerprint import fingerprint
-from app.recordings.formats.problems import plain
 from app.session import Session
 from app.trials.code_version import code_version
 from disk.state_reading import words_of
+from disk.words import one_line, plain
 
 FORMAT = "ratslam run/1"
-_Words = Annotated[str, Field(max_length=200)]
+_Words = Annotated[str, Field(max_length=200), AfterValidator(one_line)]
 _Moment = Annotated[float, Field(ge=0, le=1e11)]  # up to the year 5138
 _RATE = "robot.sensor_rate_hz"
 
@@ -59,7 +59,7 @@ class KeptRecording:
     """path: where it lay; digest: its fingerprint; dt: s between two of its moments, in the mean."""
 
     path: Annotated[str, Field(max_length=4096)]
-    digest: Annotated[str, Field(max_length=64)]
+    digest: Annotated[str, Field(max_length=64), AfterValidator(one_line)]
     dt: Annotated[float, Field(ge=0, le=1e6, allow_inf_nan=False)]
 
 
@@ -125,9 +125,6 @@ def read_header(line: dict[str, Any]) -> Header:
         ) from None
     if header.format != FORMAT:
         raise ValueError(f"its format is {header.format!r}; this program reads {FORMAT!r}")
-    shown = (header.version, header.python, header.numpy, header.platform, header.world_name, header.trial)
-    if odd := next((words for words in shown if not words.isprintable()), None):
-        raise ValueError(f"its header holds {odd[:40]!r}, which is no line of text")
     rate = header.values.get(_RATE, 10.0)
     if isinstance(rate, str) or not 0 < rate <= 1e4:
         raise ValueError(f"{_RATE} must be above 0 and at most 10000, got {str(rate)[:40]!r}")

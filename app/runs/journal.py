@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from app.runs.folder import LINES, lock
-from app.runs.lines import line_of
+from app.runs.lines import line_of, too_much
 
 MOST_WAITING = 16 << 20  # bytes that wait for a disk that takes nothing
 
@@ -25,18 +25,25 @@ class Journal:
         self._file.truncate(size)
 
     def add(self, value: dict[str, Any]) -> None:
-        line, self._check = line_of(value, self._check)
-        self._waiting += line
+        """ValueError, before anything of it is written: no reader would take such a line, or so long a file."""
+        line, check = line_of(value, self._check)
+        why = too_much(line, self._size + len(self._waiting) + len(line))
+        if why:
+            raise ValueError(f"{why}; it is kept up to there")
+        self._waiting, self._check = self._waiting + line, check
         self.flush()
 
     def flush(self) -> None:
         """Write what waits. A full disk takes a part of a line first and fails then; the rest follows when there is room."""
-        if len(self._waiting) > MOST_WAITING:
-            raise ValueError("the disk has taken nothing for too long")
-        while self._waiting:
-            self._file.seek(self._size)
-            written = self._file.write(self._waiting) or 0
-            self._size, self._waiting = self._size + written, self._waiting[written:]
+        try:
+            while self._waiting:
+                self._file.seek(self._size)
+                written = self._file.write(self._waiting) or 0
+                self._size, self._waiting = self._size + written, self._waiting[written:]
+        except OSError:
+            if len(self._waiting) > MOST_WAITING:
+                raise ValueError("the disk has taken nothing for too long") from None
+            raise
 
     def close(self) -> None:
         self._file.close()

@@ -11,11 +11,11 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError,
 from app.order_book import Order
 from app.orders import Orders
 from sim2d import Box, World
+from web.messages.command import Name as _Name
 
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 _Size = Annotated[float, Field(ge=0.05, le=20.0)]  # as of the page's boxes
 _Byte = Annotated[int, Field(ge=0, le=255)]
-_Name = Annotated[str, Field(min_length=1, max_length=40)]
 LARGEST = 1e9  # no number of an order, be it a place, a speed or a parameter, comes near it
 
 

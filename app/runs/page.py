@@ -57,7 +57,8 @@ class Page:
             return
         self._states.finish(STATES_PATIENCE_S)
         self.write()
-        self._try(self._lines.end, self._end)
+        if not self._given_up:  # what comes after an order that is missing cannot be run again
+            self._try(self._lines.end, self._end)
         self._journal.close()
         if self._lines.is_empty:
             shutil.rmtree(self._folder, ignore_errors=True)
@@ -72,7 +73,9 @@ class Page:
         if isinstance(beginning, KeptRun):
             self._folder = beginning.folder
             self._journal = Journal(self._folder, beginning.size, beginning.check)
-            self._lines = LineBook(self._journal, beginning.world_text, beginning.last_tick)
+            self._lines = LineBook(
+                self._journal, beginning.world_text, beginning.last_tick, len(beginning.orders), beginning.edited_bytes
+            )
         else:
             self._folder = new_folder()
             self._journal = Journal(self._folder)

@@ -9,16 +9,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
-from app.order_book import SMALLEST_M, Order, carry_out
+from app.order_book import SMALLEST_M, Order, carry_out, overtakes
 from app.runs.folder import BRAIN, LINES, all_runs, runs_folder
 from app.runs.header import Header, read_header
-from app.runs.lines import read_lines
+from app.runs.lines import Lines
 from app.runs.order_check import check_order
 from app.runs.pulse import SIZE
 from app.runs.recorded import recorded
-from app.runs.world_edits import edited
+from app.runs.world_edits import edited, require_room
 from app.session import Session
 from disk.state_reading import words_of
+from disk.words import one_line
 from ratslam_core import load_brain
 from sim2d import world_from_json
 
@@ -47,6 +48,7 @@ class KeptRun:
     size: int = 0  # bytes and checksum up to the last whole line
     check: int = 0
     world_text: str = ""  # as last edited
+    edited_bytes: int = 0  # of all texts of edited worlds
 
     @property
     def name(self) -> str:
@@ -100,23 +102,30 @@ class KeptRun:
 def open_run(name: str | Path) -> KeptRun:
     """A run by its id, by `last`, or by the path of its folder or file. ValueError says why it cannot be opened."""
     folder = _found(name)
+    lines = Lines(folder / LINES)
+    values = iter(lines)
     try:
-        lines = read_lines(folder / LINES)
+        first = next(values, None)
+        if first is None:
+            raise ValueError(f"{lines.path} is no run: it does not begin with a whole line")
+        run = _begun(folder, first, lines.path)
+        for line in values:
+            try:
+                _take(run, line)
+            except (ValueError, TypeError, KeyError, AttributeError) as error:
+                raise ValueError(f"{lines.path}, line {lines.count}: {words_of(error)}") from None
     except OSError as error:
-        raise ValueError(f"{folder / LINES}: {error.strerror or error}") from None
-    if not lines.values:
-        raise ValueError(f"{folder / LINES} is no run: it does not begin with a whole line")
-    try:
-        run = KeptRun(folder, read_header(lines.values[0]), damage=lines.damage, size=lines.size, check=lines.check)
-    except ValueError as error:
-        raise ValueError(f"{folder / LINES} is no run that can be read: {error}") from None
-    run.world_text = run.header.world
-    for number, line in enumerate(lines.values[1:], start=2):
-        try:
-            _take(run, line)
-        except (ValueError, TypeError, KeyError, AttributeError) as error:
-            raise ValueError(f"{folder / LINES}, line {number}: {words_of(error)}") from None
+        raise ValueError(f"{lines.path}: {error.strerror or error}") from None
+    run.damage, run.size, run.check = lines.damage, lines.size, lines.check
     return run
+
+
+def _begun(folder: Path, line: dict[str, Any], path: Path) -> KeptRun:
+    try:
+        header = read_header(line)
+    except ValueError as error:
+        raise ValueError(f"{path} is no run that can be read: {error}") from None
+    return KeptRun(folder, header, world_text=header.world)
 
 
 def _found(name: str | Path) -> Path:
@@ -158,7 +167,8 @@ def _take(run: KeptRun, line: dict[str, Any]) -> None:
             raise ValueError(f"the values of an order must be an object, got {str(values)[:40]!r}")
         if "edit" in line:
             run.world_text = values["world"] = edited(run.world_text, line["edit"])
-        run.orders.append(Order(tick, _words(line["order"]), cast("dict[str, Any]", values)))
+            run.edited_bytes += len(run.world_text)
+        _order(run, Order(tick, _words(line["order"]), cast("dict[str, Any]", values)))
     elif "again" in line:
         run.again.append((tick, _words(line["again"])))
         run.end = ""
@@ -166,10 +176,18 @@ def _take(run: KeptRun, line: dict[str, Any]) -> None:
         run.end = _words(line["end"])
 
 
+def _order(run: KeptRun, order: Order) -> None:
+    """Earlier programs also wrote what the next order undid, or repeated."""
+    if run.orders and overtakes(order, run.orders[-1]):
+        run.orders.pop()
+    run.orders.append(order)
+    require_room(len(run.orders), run.edited_bytes)
+
+
 def _words(value: object) -> str:
-    if not isinstance(value, str) or len(value) > MOST_WORDS or not value.isprintable():
+    if not isinstance(value, str) or len(value) > MOST_WORDS:
         raise ValueError(f"it must hold a line of at most {MOST_WORDS} characters, got {str(value)[:40]!r}")
-    return value
+    return one_line(value)
 
 
 def _again(session: Session, order: Order) -> None:

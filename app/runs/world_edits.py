@@ -5,6 +5,8 @@ from __future__ import annotations
 import zlib
 from typing import Any
 
+from disk.limits import EDITED_BYTES, ORDERS
+
 
 def edit_of(before: str, after: str) -> dict[str, Any]:
     """The lines `from` to `to` of `before` become the lines `put`; `check` is the checksum of `after`."""
@@ -28,6 +30,14 @@ def edited(before: str, edit: dict[str, Any]) -> str:
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"an edit of the world cannot be made again: {error}") from None
     return after
+
+
+def require_room(orders: int, edited_bytes: int) -> None:
+    """ValueError: no run has so many orders, or so many edits of so large a world. Who writes one and who reads it ask here."""
+    if orders > ORDERS:
+        raise ValueError(f"a run has at most {ORDERS:,} orders")
+    if edited_bytes > EDITED_BYTES:
+        raise ValueError(f"the worlds of a run, one for each edit, have at most {EDITED_BYTES >> 20} MiB together")
 
 
 def _check(text: str) -> int:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import pprint
 from typing import Any
 
 from app.situations.situation import Situation
 from app.situations.writing import changed_values, is_ours
+from disk.words import plain
 
 WIDE = 120  # characters of a line
 _AS_OBJECTS = {"edit_world", "put_box"}  # orders whose values are the texts of objects
@@ -15,9 +17,12 @@ _AS_OBJECTS = {"edit_world", "put_box"}  # orders whose values are the texts of 
 def python_lines(situation: Situation, file_name: str) -> str:
     """Lines to be run where the package is installed. They end with the session `session`, and say whether it is the same.
 
+    Names in them come from others: as text they stand as Python's own literals, in comments on one line.
+
     A brain, a world or boxes of its own would fill pages: such a run is read from its file. file_name: of that.
     """
-    head = [f"# {situation.header.world_name}, seed {situation.header.seed}, up to tick {situation.tick}"]
+    made = situation.header
+    head = [f"# {plain(made.world_name)}, seed {made.seed}, up to tick {situation.tick}"]
     if (
         situation.brain is not None
         or not is_ours(situation)
@@ -28,10 +33,10 @@ def python_lines(situation: Situation, file_name: str) -> str:
         body = _from_the_beginning(situation)
     end = [
         "",
-        f'assert session.state_hash() == "{situation.state_hash}", "not the same: this is another version"',
+        f'assert session.state_hash() == {_literal(situation.state_hash)}, "not the same: this is another version"',
         *_second(situation),
-        f"# Made by version {situation.header.version}, Python {situation.header.python}, numpy {situation.header.numpy}, "
-        f"{situation.header.platform}.",
+        f"# Made by version {plain(made.version)}, Python {plain(made.python)}, numpy {plain(made.numpy)}, "
+        f"{plain(made.platform)}.",
     ]
     return "\n".join([*head, *body, *end]) + "\n"
 
@@ -39,7 +44,9 @@ def python_lines(situation: Situation, file_name: str) -> str:
 def _second(situation: Situation) -> list[str]:
     if situation.second_hash is None:
         return []
-    return [f'assert session.companion.digest() == "{situation.second_hash}", "the second brain is not the same"']
+    return [
+        f'assert session.companion.digest() == {_literal(situation.second_hash)}, "the second brain is not the same"'
+    ]
 
 
 def _from_file(file_name: str) -> list[str]:
@@ -49,7 +56,7 @@ def _from_file(file_name: str) -> list[str]:
         "",
         "from app.situations import read_situation",
         "",
-        f'session = read_situation(Path("{file_name}").read_text()).play()',
+        f"session = read_situation(Path({_literal(file_name)}).read_text()).play()",
     ]
 
 
@@ -62,7 +69,7 @@ def _from_the_beginning(situation: Situation) -> list[str]:
         "from app.session import Session",
         "from sim2d import load_world",
         "",
-        f'session = Session(load_world("{header.world_name}"), {header.seed}, {config})',
+        f"session = Session(load_world({_literal(header.world_name)}), {header.seed}, {config})",
     ]
     if situation.orders:
         rows = [f"    ({order.tick}, {order.name!r}, {_shown(order.values)})," for order in situation.orders]
@@ -70,6 +77,10 @@ def _from_the_beginning(situation: Situation) -> list[str]:
         lines += ["for tick, order, values in orders:", *_ticks("tick", "    ")]
         lines += ["    getattr(session, order)(**values)"]
     return [*lines, *_ticks(str(situation.tick), "")]
+
+
+def _literal(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)  # in double quotes; each escape that is left is one of Python, too
 
 
 def _ticks(until: str, indent: str) -> list[str]:

@@ -6,23 +6,24 @@ import base64
 import binascii
 import zlib
 
-from app.order_book import SMALLEST_M, Order
+import msgspec
+
+from app.order_book import SMALLEST_M, Order, overtakes
 from app.runs.header import FORMAT as RUN
 from app.runs.header import Header
 from app.runs.order_check import check_order
-from app.runs.world_edits import edited
-from app.situations.document import FORMAT, Document, check_of, check_of_defaults, defaults, document_in
+from app.runs.world_edits import edited, require_room
+from app.situations.document import FORMAT, Document, check_of, check_of_defaults, defaults, document_in, order_in
 from app.situations.situation import Situation
 from app.situations.writing import KEY, text_of_ours
+from disk.limits import LINK_BYTES
 from sim2d import world_from_json
-
-MOST_BYTES = 16 << 20  # of a link that is unpacked
 
 
 def read_situation(text: str) -> Situation:
     """text: of a file, or a link: a whole address, or its end from `run=` on. ValueError says what is wrong with it."""
     text = text.strip()
-    document = document_in(text if text.startswith("{") else _unpacked(text))
+    document, orders = document_in(text if text.startswith("{") else _unpacked(text))
     if document.format != FORMAT:
         raise ValueError(f"its format is {document.format!r}; this program reads {FORMAT!r}")
     notes: list[str] = []
@@ -36,7 +37,7 @@ def read_situation(text: str) -> Situation:
     )  # fmt: skip
     _ = header.config  # ValueError: there is no such parameter, or not such a value
     return Situation(
-        header, _orders_of(document, world), document.tick, document.state_hash, document.look, _brain_of(document),
+        header, _orders_of(document, orders, world), document.tick, document.state_hash, document.look, _brain_of(document),
         tuple(notes), document.second_hash,
     )  # fmt: skip
 
@@ -49,11 +50,11 @@ def _unpacked(text: str) -> bytes:
     try:
         raw = base64.b64decode(packed + "=" * (-len(packed) % 4), altchars=b"-_", validate=True)
         opening = zlib.decompressobj()
-        document = opening.decompress(raw, MOST_BYTES)
+        document = opening.decompress(raw, LINK_BYTES)
     except (binascii.Error, ValueError, zlib.error):
         raise ValueError("the link is damaged: what follows run= cannot be unpacked; copy it whole") from None
     if not opening.eof:
-        too_long = "is longer than any run" if len(document) >= MOST_BYTES else "is cut off; copy it whole"
+        too_long = "is longer than any run" if len(document) >= LINK_BYTES else "is cut off; copy it whole"
         raise ValueError(f"the link {too_long}")
     return document
 
@@ -70,21 +71,28 @@ def _world_of(document: Document) -> str:
     return text
 
 
-def _orders_of(document: Document, world: str) -> tuple[Order, ...]:
+def _orders_of(document: Document, rows: list[msgspec.Raw], world: str) -> tuple[Order, ...]:
     orders: list[Order] = []
-    last = 0
-    for number, (tick, name, values) in enumerate(document.orders, start=1):
+    last = edited_bytes = 0
+    for number, raw in enumerate(rows, start=1):
+        try:
+            tick, name, values = order_in(raw)
+        except ValueError as error:
+            raise ValueError(f"order {number}: {error}") from None
         if not last <= tick <= document.tick:
             raise ValueError(f"order {number} is of tick {tick}; it must be from {last} to {document.tick}")
-        values = dict(values)
         try:
             if "edit" in values:
                 world = values["world"] = edited(world, values.pop("edit"))
+                edited_bytes += len(world)
             order = Order(tick, name, values)
             check_order(order)
+            if orders and overtakes(order, orders[-1]):
+                orders.pop()
+            orders.append(order)
+            require_room(len(orders), edited_bytes)
         except ValueError as error:
             raise ValueError(f"order {number}, of tick {tick}: {error}") from None
-        orders.append(order)
         last = tick
     return tuple(orders)
 

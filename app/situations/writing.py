@@ -7,9 +7,11 @@ import json
 import zlib
 from typing import Any
 
+from app.runs.lines import parts_of
 from app.runs.world_edits import edit_of
-from app.situations.document import FORMAT, Document, check_of, check_of_defaults, defaults
+from app.situations.document import FORMAT, MOST_PARTS, Document, check_of, check_of_defaults, defaults
 from app.situations.situation import Situation
+from disk.limits import LINK_BYTES, SITUATION_BYTES
 from sim2d import load_world, world_names, world_to_json
 
 LONGEST_LINK = 8000  # characters; longer addresses are cut by mail programs and chats
@@ -18,11 +20,16 @@ KEY = "run"
 
 def file_of(situation: Situation) -> str:
     """The text of its file, an order a line: whatever the program that reads it has as worlds and defaults, this is the
-    same."""
+    same. ValueError: it would be longer than what can be read again."""
     document = _document(situation, short=False).model_dump(mode="json", exclude=_left_out(situation))
-    orders = ",\n  ".join(json.dumps(order) for order in document["orders"])
-    lines = [f'"{key}": {json.dumps(value)}' for key, value in document.items() if key != "orders"]
-    return "{" + ",\n ".join([*lines, f'"orders": [\n  {orders}]' if orders else '"orders": []']) + "}\n"
+    orders = ",\n  ".join(map(json.dumps, _orders(situation)))
+    lines = [f'"{key}": {json.dumps(value)}' for key, value in document.items()]
+    text = "{" + ",\n ".join([*lines, f'"orders": [\n  {orders}]' if orders else '"orders": []']) + "}\n"
+    if len(text) > SITUATION_BYTES or parts_of(text.encode(), MOST_PARTS) > MOST_PARTS:
+        raise ValueError(
+            f"the run is too long for a situation: {len(situation.orders):,} orders, {len(text) >> 20} MiB"
+        )
+    return text
 
 
 def link_of(situation: Situation) -> tuple[str | None, str]:
@@ -30,7 +37,11 @@ def link_of(situation: Situation) -> tuple[str | None, str]:
     if situation.brain is not None:
         size = f"{len(situation.brain) / 1e6:.1f} MB"
         return None, f"The run began with a brain of its own, {size}, which fits into no link; the file has it."
-    packed = zlib.compress(_document(situation, short=True).model_dump_json(exclude=_left_out(situation)).encode(), 9)
+    document = _document(situation, short=True).model_dump_json(exclude=_left_out(situation)).removesuffix("}")
+    text = f'{document},"orders":{json.dumps(_orders(situation), separators=(",", ":"))}}}'.encode()
+    if len(text) > LINK_BYTES:
+        return None, f"The run has {len(situation.orders):,} orders, too many for a link; the file has them."
+    packed = zlib.compress(text, 9)
     link = f"{KEY}={base64.urlsafe_b64encode(packed).decode().rstrip('=')}"
     if len(link) <= LONGEST_LINK:
         return link, ""
@@ -82,7 +93,6 @@ def _document(situation: Situation, *, short: bool) -> Document:
         seed=header.seed,
         values=changed_values(situation) if short else header.values,
         defaults=check_of_defaults() if short else None,
-        orders=_orders(situation),
         tick=situation.tick,
         state_hash=situation.state_hash,
         second_hash=situation.second_hash,

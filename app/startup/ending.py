@@ -95,8 +95,10 @@ def _words(error: OSError) -> str:
 
 
 def _say(words: str) -> None:
+    from disk.words import shown  # not before it is needed: numpy comes with it
+
     with contextlib.suppress(OSError):  # there may be nobody to tell
-        print(f"ratslam: {words}", file=sys.stderr)
+        print(shown(f"ratslam: {words}"), file=sys.stderr)
 
 
 def _settle(stream: TextIO | None) -> None:

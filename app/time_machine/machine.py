@@ -10,7 +10,7 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.order_book import Order
+from app.order_book import Order, overtakes
 from app.session import Session
 from app.time_machine.branch import Branch, Keyframe
 from app.time_machine.chunks import Chunks
@@ -60,7 +60,11 @@ class TimeMachine:
         return self._chunks.shelf_nbytes
 
     def told(self, order: Order) -> None:
-        self.live.orders.append(order)
+        orders = self.live.orders
+        if orders and overtakes(order, orders[-1]):
+            orders[-1] = order
+        else:
+            orders.append(order)
 
     def ticked(self) -> None:
         if self._is_due():

@@ -3,23 +3,43 @@
 from __future__ import annotations
 
 import itertools
-import tomllib
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from app.config import Config
 from app.config.presets import values_of
+from app.config.toml_file import read_text, toml_tree
 from app.trials.code_version import code_version
 from app.trials.figure_options import check_figures
 from app.trials.measures import MEASURES
-from app.trials.steps import Drive, Explore, Move, Repeat, Step, Tour, Values, Visit, Wait
+from app.trials.scores import Counted, unknown_score
+from app.trials.steps import (
+    Drive,
+    Explore,
+    Kidnap,
+    Line,
+    Move,
+    Repeat,
+    Step,
+    Text,
+    Tour,
+    Values,
+    Visit,
+    Wait,
+    WorldName,
+)
 from app.trials.trial import Trial, text_of
+from disk.limits import AXES, CELLS, TRIAL_S, TRIALS
+from disk.words import one_line
 from sim2d.importers import open_world
+from web.messages.command import Label
 
 EngineName = Literal["paper", "ours"]
+Labelled = Annotated[Label, Field(min_length=1)]
 _CATALOGUE = Path(__file__).with_name("catalogue")
 
 
@@ -30,32 +50,37 @@ class _Part(BaseModel):
 class EngineSpec(_Part):
     """An engine: a preset, and what is set over it."""
 
-    preset: str = "ours"
+    preset: Line = "ours"
     set: Values = {}
 
 
 class Level(_Part):
     """One setting on an axis."""
 
-    label: str
+    label: Labelled
     set: Values = {}
-    world: str | None = None  # instead of the experiment's
+    world: WorldName | None = None  # instead of the experiment's
 
 
 class Axis(_Part):
     """Something that is varied. Every level of each axis meets every level of the others."""
 
-    name: str
-    levels: Annotated[list[Level], Field(min_length=1)]
+    name: Labelled
+    levels: Annotated[list[Level], Field(min_length=1, max_length=CELLS)]
+
+    @model_validator(mode="after")
+    def _told_apart(self) -> Axis:
+        _require_different([level.label for level in self.levels], f"axis {self.name!r}: two levels are labelled")
+        return self
 
 
 class Score(_Part):
     """A column of the table: a number of each trial, or a rate, such as goals reached of all goals."""
 
-    label: str
-    score: str | None = None
-    rate: tuple[str, str] | None = None
-    unit: str = ""
+    label: Labelled
+    score: Line | None = None
+    rate: tuple[Line, Line] | None = None
+    unit: Label = ""
 
     @model_validator(mode="after")
     def _one_of(self) -> Score:
@@ -67,17 +92,17 @@ class Score(_Part):
 class Original(_Part):
     """What the paper found, to be drawn beside ours: the value of a score at these levels."""
 
-    score: str  # its label
-    levels: list[str] = []
+    score: Labelled  # its label
+    levels: list[Labelled] = []
     value: float
-    source: str
+    source: Line
 
 
 class FigureSpec(_Part):
     """A figure. What each kind shows, and its options: figure_options.py."""
 
-    kind: str
-    title: str = ""
+    kind: Line
+    title: Annotated[str, Field(max_length=160), AfterValidator(one_line)] = ""
     options: dict[str, Any] = {}
 
 
@@ -93,23 +118,23 @@ class Experiment(_Part):
     """An experiment. `trials` makes its trials."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,39}$")]
-    title: str
-    paper: str  # and figure, table or section
-    asks: str  # what the experiment asks, in a sentence
-    found: str  # what the paper found, in a sentence
-    world: str = "office"
-    trials: Annotated[int, Field(ge=1, le=100_000)] = 5
+    title: Line
+    paper: Line  # and figure, table or section
+    asks: Text  # what the experiment asks, in a sentence
+    found: Text  # what the paper found, in a sentence
+    world: WorldName = "office"
+    trials: Annotated[int, Field(ge=1, le=TRIALS)] = 5
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 1  # of the first trial; the next one has the next
     set: Values = {}  # for every engine
     engines: dict[EngineName, EngineSpec]
-    axes: list[Axis] = []
+    axes: Annotated[list[Axis], Field(max_length=AXES)] = []
     protocol: Annotated[list[Step], Field(min_length=1)]
-    measures: list[str] = []
+    measures: list[Line] = []
     scores: Annotated[list[Score], Field(min_length=1)]
     original: list[Original] = []
-    figures: list[FigureSpec] = []
+    figures: Annotated[list[FigureSpec], Field(max_length=100)] = []
     quick: Quick = Quick()
-    watch: list[str] = []  # the levels at which "Watch it" begins; left out: the first of each axis
+    watch: list[Label] = []  # the levels at which "Watch it" begins; left out: the first of each axis
 
     @model_validator(mode="after")
     def _consistent(self) -> Experiment:
@@ -118,10 +143,36 @@ class Experiment(_Part):
             raise ValueError(f"measures: unknown {unknown[0]!r}; expected one of: {', '.join(sorted(MEASURES))}")
         if not self.engines:
             raise ValueError("engines: give [engines.paper], [engines.ours] or both")
+        _require_different([axis.name for axis in self.axes], "axes: two are named")
+        _require_different([score.label for score in self.scores], "scores: two are labelled")
+        self._require_room()
         for original in self.original:
             if original.score not in {score.label for score in self.scores}:
                 raise ValueError(f"original: there is no score labelled {original.score!r}")
         return self
+
+    def _require_room(self) -> None:
+        """The product of all axes is known before anything of it is made."""
+        cells = math.prod(len(axis.levels) for axis in self.axes)
+        if cells > CELLS:
+            raise ValueError(f"axes: their levels make {cells:,} cells; there may be {CELLS:,}")
+        if (seconds := self.seconds()) > TRIAL_S:
+            raise ValueError(f"protocol: a trial takes {seconds:.3g} simulated s; it may take {TRIAL_S:.3g}")
+
+    def _check_scores(self) -> None:
+        counted = Counted(_count(self.protocol, _visits), _count(self.protocol, _kidnaps))
+        for score in self.scores:
+            for name in (score.score,) if score.rate is None else score.rate:
+                why = unknown_score(str(name), self.measures, counted)
+                if why:
+                    raise ValueError(f"score {score.label!r}: {why}")
+
+    def _check_watch(self) -> None:
+        if self.watch and len(self.watch) != len(self.axes):
+            raise ValueError(f"watch: {len(self.watch)} levels; give one of each of the {len(self.axes)} axes")
+        for axis, level in zip(self.axes, self.watch, strict=False):
+            if level not in (known := [each.label for each in axis.levels]):
+                raise ValueError(f"watch: {axis.name} has no level {level!r}; expected one of: {', '.join(known)}")
 
     def cells(self, quick: bool = False) -> list[tuple[Level, ...]]:
         """Every combination of levels."""
@@ -140,6 +191,11 @@ class Experiment(_Part):
         engines: all by default. trials: in each cell.
         """
         count = trials or (self.quick.trials if quick else self.trials)
+        in_all = count * len(self.cells(quick)) * len(engines or self.engines)
+        if in_all > TRIALS:
+            raise ValueError(
+                f"{self.name}: {in_all:,} trials in all cells; there may be {TRIALS:,}, so give --trials N"
+            )
         protocol = tuple(shortened(step, self.quick.share) if quick else step for step in self.protocol)
         texts = {world: self._text_of(world) for world in {self.world_of(cell) for cell in self.cells(quick)}}
         return [
@@ -170,14 +226,36 @@ class Experiment(_Part):
         return values
 
     def check(self) -> None:
-        """ValueError says what does not fit together: a parameter, a place, a world, a figure."""
+        """ValueError says what does not fit together: a parameter, a place, a world, a score, a figure."""
         check_figures(self)
+        self._check_scores()
+        self._check_watch()
+        self.make_trials()
         for trial in self.make_trials(trials=1):
             trial.begin()
 
     def seconds(self, quick: bool = False) -> float:
         """About how long one trial is, in simulated seconds."""
         return sum(duration_s(shortened(step, self.quick.share) if quick else step) for step in self.protocol)
+
+
+def _require_different(labels: list[str], what: str) -> None:
+    twice = next((label for number, label in enumerate(labels) if label in labels[:number]), None)
+    if twice is not None:
+        raise ValueError(f"{what} {twice!r}")
+
+
+def _count(steps: Iterable[Step], of: Callable[[Step], int]) -> int:
+    """So often something is done in all steps."""
+    return sum(step.times * _count(step.steps, of) if isinstance(step, Repeat) else of(step) for step in steps)
+
+
+def _visits(step: Step) -> int:
+    return len(step.places) if isinstance(step, Visit) else step.visits if isinstance(step, Tour) else 0
+
+
+def _kidnaps(step: Step) -> int:
+    return int(isinstance(step, Kidnap))
 
 
 def shortened(step: Step, share: float) -> Step:
@@ -232,11 +310,9 @@ def duration_s(step: Step) -> float:
 def read_experiment(path: Path) -> Experiment:
     """An experiment from its file. ValueError names the file, the line of the tree, and what is wrong there."""
     try:
-        tree = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ValueError(f"{path}: {error.strerror or error}") from None
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ValueError(f"{path}: not valid TOML: {error}") from None
+        tree = toml_tree(read_text(path))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
     try:
         return Experiment.model_validate(tree)
     except ValidationError as error:

@@ -230,3 +230,17 @@ MEASURES: dict[str, Callable[[Course], Measure]] = {
     "goal memory routes": GoalMemoryRoutes,
     "arbitration": Arbitration,
 }
+SCORES: dict[str, tuple[str, ...]] = {  # that each measure gives, or some of them where they apply
+    "packets": ("packets_at_most", "rival_s", "one_won_s"),
+    "false snaps": ("false_snaps", "true_snaps"),
+    "phenomena": ("places", "multiple_representations", "hash_collisions"),
+    "residual": ("residual_m", "residual_at_most_m"),
+    "covered": ("covered",),
+    "turn of the cells": ("turned_in_cells_deg", "turned_deg", "turn_kept"),
+    "end point": ("end_off_m",),
+    "ways apart": ("ways_apart_m", "ways_apart_at_most_m"),
+    "way taken": ("lower_way",),
+    "consistency": ("longest_off_s", "farthest_off_m"),
+    "goal memory routes": ("route_off_m", "route_off_at_most_m", "route_cells"),
+    "arbitration": ("chosen_off_m", "others_off_m"),
+}

@@ -2,10 +2,50 @@
 
 from __future__ import annotations
 
+import difflib
 import math
+import re
 import statistics
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 from app.trials.course import Course
+from app.trials.measures import SCORES
+
+_ALWAYS = (
+    "error_m", "odometry_m", "path_m", "simulated_s", "old_ground", "views", "experiences", "links", "snaps",
+    "false_positives", "consistent",
+)  # fmt: skip
+_OF_VISITS = ("goals", "reached")
+_OF_KIDNAPS = ("kidnaps", "recovered", "kidnap_median_s")
+_OF_ONE = re.compile(r"(goal|kidnap)_([1-9][0-9]{0,6})_(s|m|miss_m)")
+
+
+@dataclass(frozen=True, slots=True)
+class Counted:
+    """How often a protocol sends the robot somewhere, and carries it away."""
+
+    visits: int
+    kidnaps: int
+
+
+def unknown_score(name: str, measures: Sequence[str], counted: Counted) -> str:
+    """Why no trial can have this score; empty if one can."""
+    one = _OF_ONE.fullmatch(name)
+    if one is not None and one[1] + one[3] != "kidnapmiss_m":
+        what, most = ("visit", counted.visits) if one[1] == "goal" else ("kidnap", counted.kidnaps)
+        return "" if int(one[2]) <= most else f"{name!r} is of {what} {one[2]}; the protocol has {most}"
+    known = [*_ALWAYS, *(score for measure in measures for score in SCORES[measure])]
+    known += [*_OF_VISITS, "goal_1_s", "goal_1_m", "goal_1_miss_m"] if counted.visits else []
+    known += [*_OF_KIDNAPS, "kidnap_1_s", "kidnap_1_m"] if counted.kidnaps else []
+    if name in known:
+        return ""
+    by = next((measure for measure, scores in SCORES.items() if name in scores), None)
+    if by is not None:
+        return f"{name!r} is measured by {by!r}: put that into measures"
+    near = difflib.get_close_matches(name, known, 1)
+    meant = f"did you mean {near[0]!r}? " if near else ""
+    return f"no trial of this protocol has the score {name!r}; {meant}expected one of: {', '.join(sorted(known))}"
 
 
 def scores_of(course: Course) -> dict[str, float]:

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
+from disk.words import lines, one_line
+from web.messages.command import Name
+
+Line = Annotated[str, Field(min_length=1, max_length=160), AfterValidator(one_line)]
+Text = Annotated[str, Field(min_length=1, max_length=700), AfterValidator(lines)]
 Seconds = Annotated[float, Field(gt=0, le=1e6)]
 Metres = Annotated[float, Field(gt=0, le=1e4)]
-Where = str | tuple[float, float]  # a place of the world by name, or (x, y) in metres, office frame
-Values = dict[str, float | int | bool | str]  # parameters by dotted names
+WorldName = Annotated[str, Field(min_length=1, max_length=4096), AfterValidator(one_line)]  # or the path of a file
+Where = Name | tuple[float, float]  # a place of the world by name, or (x, y) in metres, office frame
+Values = dict[Line, float | int | bool | Line]  # parameters by dotted names
 
 
 class _Step(BaseModel):
@@ -65,7 +71,7 @@ class Tag(_Step):
     """From now on: the first time that the robot comes near each of these places, what it experiences there is tagged."""
 
     do: Literal["tag"]
-    places: Annotated[list[str], Field(min_length=1)]
+    places: Annotated[list[Name], Field(min_length=1)]
     within_m: Metres = 1.0
 
 
@@ -73,14 +79,14 @@ class TagHere(_Step):
     """What the robot experiences now is tagged, by this name."""
 
     do: Literal["tag here"]
-    name: Annotated[str, Field(min_length=1)]
+    name: Name
 
 
 class Send(_Step):
     """The robot is sent to a tagged place, and for so long at most: the next goal finds it on the way."""
 
     do: Literal["send"]
-    place: str
+    place: Name
     seconds: Seconds
 
 
@@ -88,7 +94,7 @@ class Visit(_Step):
     """The robot is sent to these tagged places, one after the other. It has reached one if it says so and truly is near."""
 
     do: Literal["visit"]
-    places: Annotated[list[str], Field(min_length=1)]
+    places: Annotated[list[Name], Field(min_length=1)]
     timeout_s: Seconds = 180.0
     near_m: Metres = 1.0
 
@@ -124,7 +130,7 @@ class Door(_Step):
     """A door of the office is opened or shut."""
 
     do: Literal["door"]
-    name: str
+    name: Name
     open: bool
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path, PurePath
 from typing import cast
 
@@ -111,7 +112,7 @@ def open_world(
         if scale_m is not None:
             raise WorldError(f"{name_or_path}: got a scale of {scale_m:g} m a pixel; only plain pictures take one")
         return load_world(name_or_path, robot_radius_m)
-    if not path.is_file():
+    if not os.path.isfile(path):  # False also for what can be no name
         return load_world(name_or_path, robot_radius_m)
     return import_file(path, scale_m, seed, robot_radius_m, tell)
 

@@ -9,6 +9,7 @@ from pathlib import PurePath
 import numpy as np
 from numpy.typing import NDArray
 
+from disk.words import plain
 from sim2d.world.world import Start, Wall, World
 from sim2d.world.world_check import Fault, check_world
 from sim2d.world.world_file import WorldError
@@ -25,7 +26,7 @@ def plan_world(name: str, walls: tuple[Wall, ...], starts: NDArray[np.float64], 
     world = World(
         name=stem,
         title=f"{stem}, {size[0]:.0f} x {size[1]:.0f} m",
-        source=f"imported from {what}, {PurePath(name).name}"[:200],
+        source=plain(f"imported from {what}, {PurePath(name).name}", 200),
         walls=walls,
         starts=tuple(
             Start(

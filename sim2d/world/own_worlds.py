@@ -10,6 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from disk import kept_folder, sweep, whole_file, write_whole
+from disk.words import plain
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,39}")
 NAME_RULE = "1 to 40 letters, digits, - and _, beginning with a letter or digit"
@@ -107,11 +108,11 @@ def _title(path: Path) -> str:
     try:
         about = path.stat()
         return _title_in(path, about.st_mtime_ns, about.st_size, about.st_ino)
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return f"{path.stem} (cannot be read)"
 
 
 @lru_cache(maxsize=256)
 def _title_in(path: Path, *_changed: int) -> str:
     """The title in a file, read again only after a change: the editor asks for all titles often."""
-    return str(json.loads(path.read_text("utf-8"))["title"])
+    return plain(json.loads(path.read_text("utf-8"))["title"], 80)

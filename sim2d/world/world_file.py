@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -153,7 +154,7 @@ def _find(name_or_path: str | Path) -> Path:
         return own_worlds.folder() / f"{text}.json"
     known += own
     path = Path(name_or_path)
-    if path.suffix == ".json" and path.is_file():
+    if path.suffix == ".json" and os.path.isfile(path):
         return path
     raise WorldError(f"no world {text!r}; expected one of: {', '.join(known)}; or the path of a .json file")
 

@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from disk.words import lines, one_line
 from sim2d.world.elements import Action, Box, Daylight, Door, Event, Lamp, Person, Rgb, SlowZone
 from sim2d.world.texture import Texture
 from sim2d.world.world import Panel, Place, Start, Wall, World
@@ -33,7 +34,8 @@ _Level = Annotated[float, Field(ge=0, le=3)]
 _Degrees = Annotated[float, Field(ge=-360, le=360)]
 _Point = Annotated[list[_Number], Field(min_length=2, max_length=2)]
 _Colour = Annotated[str, Field(pattern=r"^#[0-9a-fA-F]{6}$")]
-_Name = Annotated[str, Field(min_length=1, max_length=40)]
+_Name = Annotated[str, Field(min_length=1, max_length=40), AfterValidator(one_line)]
+_NameOrNone = Annotated[str, Field(max_length=40), AfterValidator(one_line)]
 
 
 class _PanelItem(_Item):
@@ -56,7 +58,7 @@ class _WallItem(_Item):
     outer: bool = False
     bottom: Annotated[float, Field(ge=0, le=20)] = 0.0
     panels: Annotated[list[_PanelItem], Field(max_length=2000)] = []
-    name: Annotated[str, Field(max_length=40)] = ""
+    name: _NameOrNone = ""
     reflection: Annotated[float, Field(ge=0, le=1)] = 0.25
 
 
@@ -136,7 +138,7 @@ class _ZoneItem(_Item):
 class _EventItem(_Item):
     at_s: _Seconds
     do: Action
-    name: Annotated[str, Field(max_length=40)] = ""
+    name: _NameOrNone = ""
     level: _Level = 1.0
 
 
@@ -148,10 +150,10 @@ class WorldFile(_Item):
 
     format: Literal[1]
     name: _Name
-    title: Annotated[str, Field(min_length=1, max_length=80)]
-    source: str
-    paper: Annotated[str, Field(max_length=40)] = ""
-    about: Annotated[str, Field(max_length=300)] = ""
+    title: Annotated[str, Field(min_length=1, max_length=80), AfterValidator(one_line)]
+    source: Annotated[str, Field(max_length=2000), AfterValidator(lines)]
+    paper: _NameOrNone = ""
+    about: Annotated[str, Field(max_length=300), AfterValidator(lines)] = ""
     floor_colour: _Colour
     ceiling_colour: _Colour
     walls: Annotated[list[_WallItem], Field(min_length=3, max_length=MOST_WALLS)]

@@ -8,13 +8,14 @@ from typing import Annotated, Any, TypeVar
 import orjson
 from fastapi import Request
 from fastapi.responses import Response
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
+from disk.words import one_line
 from web.http.commands import Declined, Malformed, Problem, read_object, wrong
 from web.http.security import MAX_BODY_BYTES, Limits
 
-Name = Annotated[str, Field(min_length=1, max_length=200)]
-Title = Annotated[str, Field(min_length=1, max_length=80)]
+Name = Annotated[str, Field(min_length=1, max_length=200), AfterValidator(one_line)]
+Title = Annotated[str, Field(min_length=1, max_length=80), AfterValidator(one_line)]
 ERRORS: dict[int | str, dict[str, Any]] = {status: {"model": Problem} for status in (413, 422, 429, 503)}
 
 

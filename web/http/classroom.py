@@ -16,6 +16,7 @@ from web.http.class_door import Classroom
 from web.http.commands import CommandAccepted, Declined, Problem, check, read_object
 from web.http.security import MAX_VOTE_BYTES, VOTE_PATH, Limits
 from web.http.state import to_json
+from web.messages.command import Label
 
 NONE = "no class can reach this program; start it with `ratslam run --class`"
 
@@ -23,8 +24,8 @@ NONE = "no class can reach this program; start it with `ratslam run --class`"
 class VoteBody(Body):
     """As the command `vote`: an option by its number, or a point on the plan. voter: a text that each page makes up."""
 
-    lesson: Annotated[str, Field(max_length=64)]
-    voter: Annotated[str, Field(min_length=8, max_length=64)]
+    lesson: Label
+    voter: Annotated[Label, Field(min_length=8)]
     choice: int | None = None
     x: float | None = None
     y: float | None = None

@@ -7,6 +7,7 @@ from typing import Any, get_args
 import orjson
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
+from disk.words import shown
 from sim2d.world.json_lines import deeper_than
 from web.messages import Command
 
@@ -88,7 +89,7 @@ def check(document: dict[str, Any]) -> Command:
 
 def wrong(field: str | None, value: object, reason: str) -> dict[str, Any]:
     """One entry of an error's `detail`, safe to send: long or odd values are shortened to text."""
-    return {"field": field, "value": _echo(value), "reason": reason}
+    return {"field": field, "value": _echo(value), "reason": shown(reason)}
 
 
 def problem(reason: str) -> bytes:
@@ -140,7 +141,7 @@ def _rule(command: str, kind: str, limits: dict[str, Any], message: str, value: 
 
 
 def _shown(value: object) -> str:
-    return orjson.dumps(_echo(value), option=orjson.OPT_SERIALIZE_NUMPY).decode()
+    return shown(orjson.dumps(_echo(value), option=orjson.OPT_SERIALIZE_NUMPY).decode())
 
 
 def _echo(value: object) -> Any:

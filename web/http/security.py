@@ -8,7 +8,7 @@ therefore pure ASGI: it runs before a websocket is accepted, which ordinary HTTP
   whoever leaves it out is a program and can add it); other requests may come without, as curl's do.
 - What is costly to make (a brain, a whole map, a world) is not read for another site (Sec-Fetch-Site).
 - A request that is neither GET nor HEAD must not be cross-site (Sec-Fetch-Site) and must carry JSON of at most 64 KiB,
-  24 MiB with plans and 128 MiB with situations; a brain that is uploaded is application/octet-stream (no form can send
+  24 MiB with plans and 256 MiB with situations; a brain that is uploaded is application/octet-stream (no form can send
   that either) of at most 256 MiB. So is a recording, of at most 900 MB, which goes to a file part by part.
 - A page that only looks on changes nothing; its requests carry its id (X-Page).
 """
@@ -23,6 +23,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from disk.limits import SITUATION_BYTES
 from web.http.commands import Declined, problem, wrong
 from web.http.watching import NO, PAGE_HEADER, looks_on
 
@@ -30,7 +31,7 @@ MAX_BODY_BYTES = 64 * 1024
 BRAIN_PATH, MAX_BRAIN_BYTES = "/api/brain", 256 * 1024 * 1024
 RECORDING_PATH, MAX_RECORDING_BYTES = "/api/recordings", 900_000_000
 PLAN_PATH, MAX_PLAN_BYTES = "/api/worlds/open", 24 * 1024 * 1024  # a picture of 16 MB in base64
-OPEN_SITUATION_PATH, MAX_SITUATION_BYTES = "/api/situation/open", 128 * 1024 * 1024  # with a brain, in base64
+OPEN_SITUATION_PATH, MAX_SITUATION_BYTES = "/api/situation/open", 2 * SITUATION_BYTES  # as a text in JSON
 COSTLY_PATHS = (
     BRAIN_PATH,
     "/api/state",

@@ -16,6 +16,7 @@ from web.http.proxy import Cameras
 from web.http.security import MAX_SITUATION_BYTES, Limits
 from web.http.state import to_json
 from web.messages import CameraAt, Look, OpenSituation, ReadSituation
+from web.messages.command import Label
 from web.messages.situation import Plate
 
 READ_TIMEOUT_S = 20.0  # the engine makes a hash of its whole state
@@ -26,8 +27,8 @@ class AskMoment(Body):
     """What the page shows, to be shown again. page: the page's own id, whose camera is looked up."""
 
     plate: Plate = "all"
-    tab: Annotated[str, Field(max_length=20)] | None = None
-    page: Annotated[str, Field(max_length=64)] = ""
+    tab: Annotated[Label, Field(max_length=20)] | None = None
+    page: Label = ""
 
 
 class OpenMoment(Body):
@@ -95,6 +96,8 @@ def add_situations(app: FastAPI, situations: Situations | None, cameras: Cameras
             except OSError as error:
                 reason = f"the brain that the run began with cannot be read: {error.strerror or error}"
                 raise Malformed([wrong(None, None, reason)]) from None
+            except ValueError as error:
+                raise Malformed([wrong(None, None, str(error))]) from None
         return json_response(to_json(made.model_dump()))
 
     @app.post("/api/situation/open", tags=["situation"], openapi_extra=takes(OpenMoment),

@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from web.messages.command import CommandModel, Finite
+from web.messages.command import Label as _Label
 from web.messages.command import Name as _Name
 from web.messages.lesson_orders import LessonOrder
 from web.messages.office_orders import EditOrder, OfficeOrder
@@ -109,14 +110,14 @@ class Reset(CommandModel):
     """Start anew. Fields that are left out keep their values."""
 
     type: Literal["reset"]
-    world: Annotated[str, Field(max_length=64)] | None = None
+    world: _Label | None = None
     seed: Annotated[int, Field(ge=0, le=2**32 - 1)] | None = None
 
 
 class SetParameter(CommandModel):
     type: Literal["set_parameter"]
-    name: Annotated[str, Field(max_length=64)]
-    value: float | int | bool | Annotated[str, Field(max_length=64)]
+    name: _Label
+    value: float | int | bool | _Label
 
 
 class StepStage(CommandModel):
@@ -154,9 +155,6 @@ class Inspect(CommandModel):
     event: Annotated[int, Field(ge=1)] | None = None
 
 
-_Label = Annotated[str, Field(max_length=64)]
-
-
 class WatchExperiment(CommandModel):
     """Begin a trial of an experiment and watch it. What is left out is as the experiment's file says.
 
@@ -187,7 +185,7 @@ class CompareBrains(CommandModel):
     pair: _Name | None = None
     values: (
         Annotated[
-            dict[Annotated[str, Field(max_length=64)], float | int | bool | Annotated[str, Field(max_length=64)]],
+            dict[_Label, float | int | bool | _Label],
             Field(min_length=1, max_length=200),
         ]
         | None

@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from web.messages.command import CommandModel, Finite
-
-_Label = Annotated[str, Field(max_length=64)]
+from web.messages.command import Label as _Label
 
 
 class BeginLesson(CommandModel):
@@ -34,7 +33,7 @@ class Vote(CommandModel):
 
     type: Literal["vote"]
     lesson: _Label
-    voter: Annotated[str, Field(min_length=8, max_length=64)]
+    voter: Annotated[_Label, Field(min_length=8)]
     choice: Annotated[int, Field(ge=0, le=9)] | None = None
     x: Finite | None = None
     y: Finite | None = None

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+from disk.words import one_line
 
 Number = Annotated[float, Field(ge=-1e4, le=1e4, allow_inf_nan=False)]
 Vector = tuple[Number, Number, Number]
@@ -26,7 +28,7 @@ class Look(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
     plate: Plate = "all"
-    tab: Annotated[str, Field(max_length=20)] | None = None
+    tab: Annotated[str, Field(max_length=20), AfterValidator(one_line)] | None = None
     camera: CameraAt | None = None
 
 

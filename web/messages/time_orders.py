@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
+from disk.words import one_line
 from web.messages.command import CommandModel
 
 _Moment = Annotated[float, Field(ge=0, le=1e9)]
@@ -65,7 +66,7 @@ class PutBookmark(CommandModel):
     """Name the moment that is shown, to come back to it; with a tick: give the bookmark there another name."""
 
     type: Literal["put_bookmark"]
-    name: Annotated[str, Field(min_length=1, max_length=60)]
+    name: Annotated[str, Field(min_length=1, max_length=60), AfterValidator(one_line)]
     tick: Annotated[int, Field(ge=0, le=10**9)] | None = None
 
 

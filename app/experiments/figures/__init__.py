@@ -18,13 +18,13 @@ KINDS: dict[str, Callable[[FigureSpec, Any, Material], Drawn]] = {
     "series": series.draw,
     "survival": survival.draw,
 }
-_NEED_TRACES: dict[str, Callable[[Any, Material], list[Pick]]] = {"maps": maps.wanted, "series": series.wanted}
+NEED_TRACES: dict[str, Callable[[Any, Material], list[Pick]]] = {"maps": maps.wanted, "series": series.wanted}
 
 
 def wanted(spec: FigureSpec, material: Material) -> list[str]:
     """The ids of the trials that have to be run again for a figure."""
     options = options_of(material.experiment, spec)
-    picks = _NEED_TRACES[spec.kind](options, material) if spec.kind in _NEED_TRACES else []
+    picks = NEED_TRACES[spec.kind](options, material) if spec.kind in NEED_TRACES else []
     return list(dict.fromkeys(pick.trial.id for pick in picks))
 
 

@@ -17,6 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter
 from numpy.typing import NDArray
 
 _STYLE = Path(__file__).with_name("ratslam.mplstyle")
@@ -69,6 +70,21 @@ def _settle(figure: Figure) -> None:
         FigureCanvasAgg(figure)
         figure.draw_without_rendering()
         figure.set_layout_engine("none")
+
+
+def go_by_powers(axes: Axes, which: str) -> None:
+    """Make an axis, "x" or "y", logarithmic, with numbers that need no formula."""
+    (axes.set_xscale if which == "x" else axes.set_yscale)("log")
+    axis = axes.xaxis if which == "x" else axes.yaxis
+    axis.set_major_formatter(_Powers())
+    axis.set_minor_formatter(_Powers())
+
+
+class _Powers(LogFormatter):
+    """0.1, 1, 10, and what lies between them where there is room."""
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return f"{x:g}" if super().__call__(x, pos) else ""
 
 
 def grid_lines(axes: Axes, which: str = "y") -> None:

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 from numpy.typing import NDArray
 
-from app.experiments.figures.canvas import WIDTH_IN, grid_lines, panels
+from app.experiments.figures.canvas import WIDTH_IN, go_by_powers, grid_lines, panels
 from app.experiments.figures.material import Drawn, Material
 from app.experiments.figures.palette import CYCLE, INK, MARKERS
 from app.experiments.summary import CellSummary
@@ -138,7 +138,7 @@ def _look(panel: Axes, chart: _Chart) -> None:
     words, unit = _without_unit(chart.labels)
     panel.set_xlabel(f"{chart.options.along} ({unit})" if unit else chart.options.along)
     if chart.options.spacing == "log":
-        panel.set_xscale("log")
+        go_by_powers(panel, "x")
     panel.set_xticks(chart.places, words)
     panel.minorticks_off()
     if chart.options.spacing == "even":
@@ -157,7 +157,7 @@ def finish_score(axes: list[Axes], score: Score, log: bool, *, lying: bool = Fal
         set_limits(-0.03, 1.05)
         axis.set_major_formatter(PercentFormatter(1.0, decimals=0, symbol=" %"))
     elif log:
-        (first.set_xscale if lying else first.set_yscale)("log")
+        go_by_powers(first, "x" if lying else "y")
     elif limits[0] > -0.1 * limits[1]:
         set_limits(0, limits[1])
 

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from app.experiments.figures.canvas import WIDTH_IN, grid_lines, panels
+from app.experiments.figures.canvas import WIDTH_IN, go_by_powers, grid_lines, panels
 from app.experiments.figures.material import Drawn, Material, Pick, trial_gid
 from app.experiments.figures.palette import BLUE, CYCLE, ENGINE_COLOUR, FAINT, INK, SOFT, VERMILION
 from app.trials.experiment import FigureSpec
@@ -75,7 +75,7 @@ def draw(spec: FigureSpec, options: Series, material: Material) -> Drawn:
                 _channel(panel, trace, channel, clock, colours[number % len(colours)], label)
             panel.set_xlim(clock.least, clock.most)
             if options.log and channel != "packets":
-                panel.set_yscale("log")
+                go_by_powers(panel, "y")
             grid_lines(panel)
             if len(together) == 1:
                 _mark(panel, traces[0], clock, words=row == 0)

@@ -4,6 +4,7 @@ of each source was read, which is counted where it comes in and again where it i
 from __future__ import annotations
 
 from app.recordings.recording import Count
+from disk.words import plain as plain  # of what is wrong, too
 
 TOLD = 10  # sentences of one kind
 
@@ -52,10 +53,3 @@ class Problems:
     def sentences(self) -> tuple[str, ...]:
         lines = [sentence for told in self._told.values() for sentence in told]
         return (*lines, *(f"and {count} more: {kind}" for kind, count in self._more.items()))
-
-
-def plain(text: str, most: int = 300) -> str:
-    """On one line, short, and without anything that would change a terminal."""
-    line = " ".join(str(text).split())
-    shown = "".join(c if c.isprintable() else "?" for c in line[: most + 1])
-    return shown if len(shown) <= most else shown[:most] + "..."

@@ -17,6 +17,7 @@ from app.trials.experiment import (
     read_experiment,
     shortened,
 )
+from app.trials.measures import MEASURES, SCORES
 from app.trials.steps import Drive, Explore, Repeat, Tour, Visit, Wait
 from ratslam_core.params.additions import ADDITIONS
 
@@ -163,3 +164,57 @@ def test_each_step_can_be_made_short() -> None:
     assert shortened(Drive(do="drive", path=[(0, 0)], laps=3), 0.01).laps == 1  # type: ignore[union-attr]
     assert shortened(Visit(do="visit", places=["a"], timeout_s=100), 0.5).timeout_s == 50  # type: ignore[union-attr]
     assert duration_s(shortened(Wait(do="wait", seconds=10), 0.2)) == 2.0
+
+
+@pytest.mark.parametrize(
+    ("also", "message"),
+    [
+        ("x = " + "[" * 5000 + "]" * 5000, "nested too deeply"),
+        ("".join(f'[[axes]]\nname = "a{n}"\nlevels = [{{label = "0"}}, {{label = "1"}}]\n' for n in range(30)), "axes: .*8"),
+        (
+            "".join(
+                f'[[axes]]\nname = "a{n}"\nlevels = [{", ".join(f"{{label = {k!r}}}" for k in map(str, range(40)))}]\n'
+                for n in range(8)
+            ),
+            "6,553,600,000,000 cells; there may be 1,000",
+        ),
+        ('[[axes]]\nname = "a"\nlevels = [{label = "0"}, {label = "0"}]', "axis 'a': two levels are labelled '0'"),
+        ('[[axes]]\nname = "a"\nlevels = [{label = "0"}]\n' * 2, "axes: two are named 'a'"),
+        ('[[scores]]\nlabel = "map error"\nscore = "views"', "scores: two are labelled 'map error'"),
+        ('[[scores]]\nlabel = "x"\nscore = "__class__"', "score 'x': no trial of this protocol has the score '__class__'"),
+        ('[[scores]]\nlabel = "x"\nscore = "eror_m"', r"no .* score 'eror_m'; did you mean 'error_m'\?"),
+        ('[[scores]]\nlabel = "x"\nscore = "rival_s"', "score 'x': 'rival_s' is measured by 'packets'"),
+        ('[[scores]]\nlabel = "x"\nscore = "goal_2_s"', "score 'x': 'goal_2_s' is of visit 2; the protocol has 0"),
+        ('[[scores]]\nlabel = "x"\nrate = ["recovered", "kidnaps"]', "score 'x': no trial of this protocol has .*'recovered'"),
+        (
+            '[[protocol]]\ndo = "repeat"\ntimes = 10000\n'
+            'steps = [{do = "repeat", times = 10000, steps = [{do = "wait", seconds = 1}]}]',
+            r"a trial takes 1e\+08 simulated s; it may take 1e\+06",
+        ),
+        ("x = 1" + "0" * 5000, "not valid TOML"),
+        ("# " + "x" * 300_000, "more than 200 kB"),
+    ],
+)  # fmt: skip
+def test_what_no_run_can_do_is_refused_before_anything_is_made_of_it(tmp_path: Path, also: str, message: str) -> None:
+    """Each of these was called right, or ended in a traceback or without memory."""
+    with pytest.raises(ValueError, match=message):
+        read_experiment(written(tmp_path, f"{LEAST}\n{also}\n")).check()
+
+
+def test_trials_of_all_cells_have_one_limit(tmp_path: Path) -> None:
+    labels = ", ".join(f'{{label = "{n}"}}' for n in range(1000))
+    path = written(
+        tmp_path, f'{LEAST}\n[[axes]]\nname = "a"\nlevels = [{labels}]\n'.replace("world", "trials = 200\nworld")
+    )
+    with pytest.raises(ValueError, match="mine: 200,000 trials in all cells; there may be 100,000"):
+        read_experiment(path).make_trials()
+
+
+def test_each_measure_gives_the_scores_that_are_listed() -> None:
+    """By that list a file's scores are checked."""
+    course = find_experiment("trial").make_trials(trials=1)[0].begin()
+    assert set(SCORES) == set(MEASURES)
+    for name, measure in MEASURES.items():
+        assert set(measure(course).scores()) <= set(SCORES[name])
+    for experiment in catalogue():
+        experiment._check_scores()  # pyright: ignore[reportPrivateUsage]

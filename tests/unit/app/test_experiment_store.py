@@ -10,6 +10,8 @@ import pytest
 
 from app.experiments.outcome import Outcome
 from app.experiments.store import Store, default_path
+from app.gallery.gallery import StoredGallery
+from app.trials.experiment import catalogue, names
 from tests.unit.app.trial_makers import make_outcome, make_trial, score_of
 
 
@@ -161,3 +163,49 @@ def test_where_trials_are_kept_by_default(monkeypatch: pytest.MonkeyPatch, tmp_p
     assert default_path() == tmp_path / ".ratslam" / "experiments.sqlite"
     monkeypatch.setenv("RATSLAM_EXPERIMENTS", str(tmp_path / "x.sqlite"))
     assert default_path() == tmp_path / "x.sqlite"
+
+
+def test_a_store_that_is_spoilt_or_locked_says_so_at_once_with_the_way_out(path: Path) -> None:
+    """It was a traceback in the command, 500 on the page, and a minute of waiting."""
+    experiment = next(catalogue())
+    with Store(path) as store:
+        store.add((trial, make_outcome(trial)) for trial in map(make_trial, range(200)))
+        store._db.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    whole = path.read_bytes()
+    asked = [
+        lambda store: store.counts(),
+        lambda store: store.of_experiment("small"),
+        lambda store: store.seconds("small", False),
+        lambda store: store.trial("ff"),
+        lambda store: store.done(["ff"]),
+    ]
+    for spoilt in (b"x" * 5000, whole[:100] + b"\xff" * (len(whole) - 100), whole[:5000]):
+        path.write_bytes(spoilt)
+        for question in asked:
+            with (
+                pytest.raises(ValueError, match=r"--store .*trials.sqlite: .* or move this one away"),
+                Store(path, reading=True) as store,
+            ):
+                question(store)
+        detail = StoredGallery(path).detail(experiment.name)
+        assert detail is not None
+        assert "cannot be shown: --store" in detail.results.note
+        assert len(StoredGallery(path).cards()) == len(names())
+    path.write_bytes(whole)
+    locking = sqlite3.connect(path, isolation_level=None)
+    locking.execute("PRAGMA journal_mode = DELETE")
+    locking.execute("BEGIN EXCLUSIVE")
+    with pytest.raises(ValueError, match="another program has locked it"), Store(path, reading=True) as store:
+        store.counts()
+    locking.close()
+
+
+def test_whoever_reads_waits_for_nobody_who_writes(path: Path) -> None:
+    with Store(path) as store:
+        store.add([(make_trial(1), make_outcome(make_trial(1)))])
+        store._db.execute("BEGIN IMMEDIATE")
+        with Store(path, reading=True) as reading:
+            assert reading.counts() == {"small": 1}
+            with pytest.raises(ValueError, match="readonly"):
+                reading.add([(make_trial(2), make_outcome(make_trial(2)))])
+        store._db.execute("ROLLBACK")

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from app.recordings.formats.clock import BREAK_S, GOES_ON_S, Clock
 from app.recordings.formats.held import HELD_S, Held
-from app.recordings.formats.image_folder import by_number
+from app.recordings.formats.lying import by_number
 from app.recordings.formats.pictures import read_picture, unpacked, within
 from app.recordings.formats.problems import TOLD, Problems, plain
 from app.recordings.formats.sensed import Rates, ns_of

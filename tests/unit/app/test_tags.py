@@ -49,7 +49,7 @@ def test_a_name_is_a_goal_and_the_goal_can_be_changed_on_the_way() -> None:
 def test_names_that_cannot_be() -> None:
     session = a_session(3)
     for bad in ("", "  ", "two\nlines"):
-        with pytest.raises(ValueError, match="a tag needs a name that can be printed"):
+        with pytest.raises(ValueError, match=r"a tag needs a name|no control or bidirectional"):
             session.tag(bad)
     for order in (session.untag, session.go_to_tag):
         with pytest.raises(ValueError, match="there is no tag 'kitchen'; it must be given first"):

@@ -11,7 +11,7 @@ import pytest
 from app.cli.command_line import main
 from app.runs.folder import LINES, STATE, all_runs, delete, is_open, tidy
 from app.runs.journal import Journal
-from app.runs.lines import line_of, read_lines
+from app.runs.lines import Lines, line_of
 from app.runs.replay import ReplayError, newest_state, replay, resumed
 from app.runs.run_file import KeptRun, open_run
 from app.session import Session
@@ -87,7 +87,7 @@ def test_it_goes_on_in_the_same_file(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 def _driving_at(run: KeptRun, speed: float) -> None:
     """Another version writes this speed into its order, and signs it."""
-    lines = read_lines(run.folder / LINES).values
+    lines = list(Lines(run.folder / LINES))
     lines[0]["run"]["version"] = "000000000000"
     order = next(line for line in lines if line.get("order") == "drive")
     order["values"]["speed"] = speed
@@ -186,10 +186,10 @@ def test_what_a_full_disk_did_not_take_is_written_when_there_is_room(tmp_path: P
     for number in range(3):
         with pytest.raises(OSError, match="No space"):
             journal.add({"n": number})
-    assert read_lines(tmp_path / "run" / LINES).values == []
+    assert list(Lines(tmp_path / "run" / LINES)) == []
     full.room = 10**6
     journal.add({"n": 3})
-    assert [value["n"] for value in read_lines(tmp_path / "run" / LINES).values] == [0, 1, 2, 3]
+    assert [value["n"] for value in list(Lines(tmp_path / "run" / LINES))] == [0, 1, 2, 3]
 
 
 def test_a_folder_that_cannot_be_made_is_told_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.runs.lines import line_of, read_lines
+from app.runs.lines import Lines, line_of
 
 VALUES = st.lists(st.dictionaries(st.text(max_size=5), st.integers() | st.text(max_size=20), max_size=3), max_size=8)
 
@@ -28,8 +28,8 @@ def test_a_file_cut_off_anywhere_opens_up_to_its_last_whole_line(tmp_path_factor
     at = min(at, len(data))
     path: Path = tmp_path_factory.mktemp("lines") / "file"
     path.write_bytes(data[:at])
-    lines, whole = read_lines(path), sum(end <= at for end in ends)
-    assert lines.values == values[:whole]
+    lines, whole = Lines(path), sum(end <= at for end in ends)
+    assert list(lines) == values[:whole]
     assert lines.size == (ends[whole - 1] if whole else 0)
     assert bool(lines.damage) == (lines.size < at)
 
@@ -42,8 +42,8 @@ def test_a_damaged_byte_ends_what_is_read_and_nothing_else_is_read(
     at %= len(data)
     path: Path = tmp_path_factory.mktemp("lines") / "file"
     path.write_bytes(data[:at] + bytes([data[at] ^ flip]) + data[at + 1 :])
-    lines = read_lines(path)
-    assert lines.values == [*values, {"last": 1}][: sum(end <= at for end in ends)]
+    lines = Lines(path)
+    assert list(lines) == [*values, {"last": 1}][: sum(end <= at for end in ends)]
     assert lines.damage
 
 
@@ -54,14 +54,14 @@ def test_a_line_that_is_missing_or_twice_is_noticed(tmp_path_factory, values: li
     begin, end = (ends[number - 1] if number else 0), ends[number]
     path: Path = tmp_path_factory.mktemp("lines") / "file"
     path.write_bytes(whole[:begin] + whole[begin:end] * times + whole[end:])
-    lines = read_lines(path)
+    lines = Lines(path)
+    assert len(list(lines)) <= number + 1
     assert lines.damage
-    assert len(lines.values) <= number + 1
 
 
 def test_a_line_of_more_values_than_a_world_has_is_not_even_parsed(tmp_path: Path) -> None:
     line, _ = line_of({"tick": 0, "end": [[]] * 600_000}, 0)
     (tmp_path / "lines").write_bytes(line)
-    lines = read_lines(tmp_path / "lines")
-    assert (lines.values, lines.size) == ([], 0)
+    lines = Lines(tmp_path / "lines")
+    assert (list(lines), lines.size) == ([], 0)
     assert lines.damage == "line 1 is cut off or damaged; what follows is left out"
