@@ -4,7 +4,7 @@
 import { $, find } from "../elements/dom.js";
 import { toast } from "../elements/toasts.js";
 
-const ANEW_MS = 500;
+const ANEW_MS = 1000; // a picture costs the server some hundredths of a second
 const FADE_MS = 400;
 const UNITS = 500; // of the picture, from its middle to its upper edge
 
