@@ -192,9 +192,12 @@ def turn_theme(page: Page) -> None:
     calm(page)
 
 
-def on_screen(page: Page, view: View | Camera, at: tuple[float, float, float]) -> tuple[float, float]:
-    """Where a point of the scene is on the page when the camera is at a view, or has been turned from there."""
-    canvas = box_of(page.frame_locator("#stage").locator("canvas").first)
+def on_screen(
+    page: Page, view: View | Camera, at: tuple[float, float, float], canvas: FloatRect | None = None
+) -> tuple[float, float]:
+    """Where a point of the scene is on the page when the camera is at a view, or has been turned from there. canvas: where the
+    picture is, if not viser's."""
+    canvas = canvas or box_of(page.frame_locator("#stage").locator("canvas").first)
     camera = view if isinstance(view, Camera) else camera_for(view, canvas["width"] / canvas["height"])
     forward = camera.look_at - camera.position
     forward /= np.linalg.norm(forward)

@@ -133,6 +133,9 @@ class FakeViewer:
     def replay(self, event: int) -> None:
         self.replayed.append(event)
 
+    def press(self, _client_id: int, _at: object, _inspecting: bool, tell: Callable[[str | None], None]) -> None:
+        tell(None)
+
     def turned(self, _client_id: int) -> Camera | None:
         return None
 

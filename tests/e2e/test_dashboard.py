@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import cv2
 import numpy as np
 import pytest
 
@@ -269,22 +270,51 @@ def test_another_theme_leaves_a_turned_camera_where_it_is(program, browser):
         patience.until(lambda: page.wait_for_timeout(50) or math.dist(eye_of(page), turned) < 0.1)
 
 
-def test_the_page_comes_back_after_the_server(browser):
-    first = Program("--port", "0", "--seed", "1")
+HIDDEN = """(on) => {
+    Object.defineProperty(document, "hidden", { get: () => on, configurable: true });
+    document.dispatchEvent(new Event("visibilitychange"));
+}"""  # as beneath another window
+
+
+def plates_of(page) -> np.ndarray:
+    """What the stage shows, once it has been the same twice."""
+    shots = [b"", b""]
+
+    def at_rest() -> bool:
+        shots[:] = shots[1], page.frame_locator("#stage").locator("canvas").first.screenshot()
+        page.wait_for_timeout(1000)
+        return shots[0] == shots[1]
+
+    patience.until(at_rest, "the plates rest")
+    return cv2.imdecode(np.frombuffer(shots[1], np.uint8), cv2.IMREAD_GRAYSCALE).astype(float)
+
+
+def test_a_page_that_is_open_while_the_program_is_restarted_shows_the_new_one(browser):
+    """Another seed, another world, on the same port, while nobody looks at the page: the plates are those of a page that is
+    opened now."""
+    first = Program("--port", "0", "--seed", "1", "--paused")
+    first.command("step", ticks=200)
     with open_page(browser, first.url, gone=True) as page:
-        sockets = []
-        page.on("websocket", lambda socket: sockets.append(socket))
+        show(page, "office")
+        old = plates_of(page)
+        page.evaluate("() => { document.getElementById('stage').contentWindow.old = true; }")
+        page.evaluate(HIDDEN, True)
         assert first.stop() == 0
         told(page, "Connection lost")
-        second = Program("--port", str(first.port), "--seed", "2")
+        second = Program("--port", str(first.port), "--seed", "2", "--world", "loop", "--paused")
         try:
             told(page, "Connected again")
+            page.evaluate(HIDDEN, False)
             until(page, "() => document.getElementById('seed').textContent === '2'")
-            for path in ("/api/stream", "/viser/ws/"):  # the stage comes back as well
-                there = lambda path=path: any(path in socket.url and not socket.is_closed() for socket in sockets)  # noqa: E731
-                patience.until(lambda there=there: page.wait_for_timeout(50) or there(), path)
-            page.keyboard.press("Space")
-            second.wait(lambda state: not state["running"])
+            until(page, "() => !document.getElementById('stage').contentWindow.old")
+            page.wait_for_selector("#stage.awake")
+            with open_page(browser, second.url) as fresh:
+                show(fresh, "office")
+                wanted = plates_of(fresh)
+            now = plates_of(page)
+            assert np.abs(now - wanted).mean() < 0.2 * np.abs(old - wanted).mean()
+            page.click("#play")
+            second.wait(lambda state: state["running"])
         finally:
             assert second.stop() == 0
 

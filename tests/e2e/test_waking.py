@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import re
+import shutil
 
+import numpy as np
 import pytest
 from playwright.sync_api import Route
 
-from tests.e2e.browser import PATIENCE_MS, open_page, until
+from tests.e2e.browser import PATIENCE_MS, box_of, on_screen, open_page, told, until
 from tests.e2e.program import Program
 from tests.e2e.test_touch import await_
+from web.viewer.camera_views import MAP_AT, camera_for
+from web.viewer.fits.map_fit import MapFit, refit
+from web.viewer.plates.map_plate import NODE_Z
 
 FRAME = re.compile(r"/viser/\?")
 LOOK = """() => {
@@ -53,3 +59,61 @@ def test_the_page_says_which_tabs_are_open(program: Program, browser) -> None:
         await_(page, lambda: truth in told)
         page.keyboard.press("p")
         await_(page, lambda: told[-1] == '{"type":"tabs","names":[]}')  # nobody sees what is hidden
+
+
+def drawn(page) -> str:
+    return page.inner_html("#waiting .picture")
+
+
+def test_without_webgl_the_drawing_stays_goes_on_and_can_be_clicked(program: Program, browser) -> None:
+    program.command("step", ticks=100)
+    blind = browser.browser_type.launch(
+        executable_path=shutil.which("chromium"), args=["--disable-3d-apis", "--no-sandbox"], timeout=PATIENCE_MS
+    )
+    with open_page(blind, program.url, stage=False) as page:
+        page.wait_for_selector("#waiting.pictured")
+        words = page.inner_text("#waiting .words")
+        assert "No WebGL" in words
+        assert "hardware acceleration" in words
+        before = drawn(page)
+        program.command("step", ticks=20)
+        await_(page, lambda: drawn(page) != before)
+        page.click("[data-view=map]")
+        before = drawn(page)
+        await_(page, lambda: drawn(page) != before)
+        state = program.state(full=True)
+        node = np.array(state["map"]["xy"])[0]
+        fit = refit(MapFit(), np.array(state["map"]["xy"]), state["map"]["turn_rad"])
+        x, y = fit.to_plate(node)[0]
+        box = box_of(page.locator("#waiting"))
+        place = (MAP_AT[0] + x, MAP_AT[1] + y, NODE_Z)
+        page.mouse.click(*on_screen(page, camera_for("map", box["width"] / box["height"]), place, box))
+        goal = program.wait(lambda now: now["goal"] is not None)["goal"]
+        assert math.dist((goal["x"], goal["y"]), node) < 0.2
+        page.mouse.click(box["x"] + 4, box["y"] + box["height"] / 2)
+        told(page, "No goal set")
+        program.command("cancel_goal")
+    blind.close()
+
+
+CONTEXT = """(what) => {
+    const canvas = [...document.getElementById("stage").contentDocument.querySelectorAll("canvas")].find((one) => one.width);
+    window.held ??= canvas.getContext("webgl2").getExtension("WEBGL_lose_context");
+    held[what]();
+}"""
+
+
+def test_a_context_that_is_lost_leaves_the_drawing_and_one_that_comes_back_the_stage(program: Program, browser) -> None:
+    with open_page(browser, program.url) as page:
+        until(page, "() => document.getElementById('waiting').hidden")
+        page.evaluate(CONTEXT, "loseContext")
+        page.wait_for_selector("#waiting.pictured:not(.over)")
+        assert page.locator("#stage.awake").count() == 0
+        assert "taken the graphics away" in page.inner_text("#waiting .words")
+        before = drawn(page)
+        program.command("step", ticks=20)
+        await_(page, lambda: drawn(page) != before)
+        page.evaluate(CONTEXT, "restoreContext")
+        page.wait_for_selector("#stage.awake")
+        until(page, "() => document.getElementById('waiting').hidden")
+        assert len(page.frame_locator("#stage").locator("canvas").first.screenshot()) > 20_000

@@ -26,6 +26,7 @@ from web.http.watching import is_look
 from web.switches import Switches
 from web.themes import Theme, Themes
 from web.viewer.camera_views import Camera
+from web.viewer.pointer import NOT_THERE
 from web.viewer.viser_server import SECRET_HEADER, client_page
 
 VIEWS = ("all", "office", "pose", "map")
@@ -34,6 +35,8 @@ PAGE_ID = re.compile(r"[A-Za-z0-9_-]{22,64}")
 SEND_TIMEOUT_S = 10.0
 CLOSE_TIMEOUT_S = 1.0
 PAIRING_S = 2.0
+CLICK_S = 5.0
+AGAIN_S = 0.5  # a browser that was let in tries again without waiting
 MOST_CLIENTS = 32
 
 
@@ -50,6 +53,9 @@ class ViewerLike(Protocol):
     def fly(self, client_id: int, view: str, at_once: bool = False, turned: Camera | None = None) -> None: ...
     def follow(self, client_id: int, on: bool) -> None: ...
     def replay(self, event: int) -> None: ...
+    def press(
+        self, client_id: int, at: tuple[float, float], inspecting: bool, tell: Callable[[str | None], None]
+    ) -> None: ...  # calls `tell` once, from a thread of its own: None, or why nothing came of the click
     def turned(self, client_id: int) -> Camera | None: ...  # where somebody has turned this camera by hand
 
 
@@ -102,6 +108,25 @@ class Cameras:
         """Play the correction after this loop closure again, in the viewer that this page looks at."""
         if page in self._client_of:
             self._client_of[page][0].replay(event)
+
+    async def press(self, page: str, at: tuple[float, float], inspecting: bool) -> str | None:
+        """A click on what this page's camera shows: why nothing came of it, None when it was carried out."""
+        if page not in self._client_of:
+            return NOT_THERE
+        loop = asyncio.get_running_loop()
+        said: asyncio.Future[str | None] = loop.create_future()
+
+        def settle(why: str | None) -> None:
+            if not said.done():
+                said.set_result(why)
+
+        viewer, client_id = self._client_of[page]
+        viewer.press(client_id, at, inspecting, lambda why: _call(loop, settle, why))
+        try:
+            async with asyncio.timeout(CLICK_S):
+                return await said
+        except TimeoutError:
+            return f"The click was not answered within {CLICK_S:g} s; it may still take effect"
 
     async def turn(self, page: str, view: str, camera: Camera) -> None:
         """Fly this page's camera to where it had been turned from a view; remembered as in `show`."""
@@ -202,11 +227,13 @@ class ViserProxy:
     async def relay(self, browser: WebSocket, page: str, watches: bool = False) -> None:
         """Relay both directions until one side ends or the page wants another look; its browser then reconnects at once.
 
-        watches: it only looks on; viser hears where its camera stands, and no click or drag. The guard has checked Host
-        and Origin before this.
+        It is accepted before anything else: viser's client gives up what is not open within a second, and a viewer that has
+        still to be built, or a busy machine, takes longer each time. watches: it only looks on; viser hears where its camera
+        stands, and no drag. The guard has checked Host and Origin before this.
         """
         self._open += 1
         try:
+            await browser.accept(subprotocol=spoken(browser)[0])
             with self._themes.shown(page) as (look, turned):
                 viewer = await asyncio.to_thread(self._viewers.of, *look)
                 await self._relay(browser, page, viewer, turned, watches)
@@ -214,7 +241,8 @@ class ViserProxy:
             OSError,
             websockets.InvalidHandshake,
             WebSocketDisconnect,
-        ):  # viser is gone or going: the browser tries again
+        ):  # viser is gone or going: the browser tries again, at once
+            await asyncio.sleep(AGAIN_S)
             with contextlib.suppress(WebSocketDisconnect):  # unless it has gone, too
                 await browser.close(1013)
         finally:
@@ -227,7 +255,7 @@ class ViserProxy:
         self._cameras.listen(viewer)
         async with websockets.connect(
             f"ws://127.0.0.1:{viewer.port}/",
-            subprotocols=spoken(browser),
+            subprotocols=spoken(browser)[:1],
             additional_headers={SECRET_HEADER: viewer.secret},
             compression=None,
             max_size=None,
@@ -236,7 +264,6 @@ class ViserProxy:
             close_timeout=CLOSE_TIMEOUT_S,
             proxy=None,
         ) as viser:
-            await browser.accept(subprotocol=viser.subprotocol)
             tasks = {
                 asyncio.create_task(self._to_viser(browser, viser, page, viewer, watches)),
                 asyncio.create_task(_to_browser(viser, browser)),

@@ -7,7 +7,8 @@ framed with arrays (web/panel); {"type": "answer", "id", ...} to every message t
 /api/commands` with an optional "id". Messages that concern this page alone: {"type": "view", "name"}, {"type": "follow",
 "on"}: its camera goes with the robot; {"type": "theme", "name"}; {"type": "tabs", "names"}: the open tabs of the panel, since
 only those are sent; {"type": "camera", "name", "at"}: where a camera had been turned from a view. {"type": "replay",
-"event"} plays the correction of a loop closure again, for all pages of its theme.
+"event"} plays the correction of a loop closure again, for all pages of its theme. {"type": "click", "at", "shift", "drawn"}: on
+the plates, or on the drawing in their place; it does what a pointer there means, and its answer says if not, and why.
 {"type": "switch", "name", "on"} concerns all pages, and {"type": "present", "on"} those that only look on: they hear
 {"type": "presenting", "on"}, and may say what concerns themselves alone. Each browser has its own sender, and the newest
 state wins. A browser that takes nothing for five seconds is disconnected. A page that connects with `got=1` says
@@ -33,11 +34,12 @@ from web.http.proxy import VIEWS, Cameras, close_quietly, end_all
 from web.http.state import StateText, event_fields, to_json
 from web.http.watching import must_look
 from web.latest import Latest
-from web.messages import CameraAt, Command, Drive, Snapshot
+from web.messages import CameraAt, Command, Drawn, Drive, Inspect, SetGoal, Snapshot, StageClick
 from web.panel.panel import TABS, Panel, PanelReader
 from web.switches import NAMES, Switches
 from web.themes import THEMES, Themes
 from web.viewer.camera_views import Camera
+from web.viewer.picture import meant
 
 PERIOD_S = 0.045  # at x1 the engine ticks ten times a second; the effect of a command is shown sooner
 MOST_CLIENTS = 32
@@ -173,33 +175,9 @@ class Stream:
         client.limits.pass_on(kind if isinstance(kind, str) else "")
         if client.watches:
             must_look(kind)
-        if kind == "view":
-            client.background(self._cameras.show(client.page, _choice(document, VIEWS)))
-            await self._confirm(client, identity)
-        elif kind == "follow":
-            self._cameras.follow(client.page, _flag(document))
-            await self._confirm(client, identity)
-        elif kind == "replay":
-            self._cameras.replay(client.page, _event(document))
-            await self._confirm(client, identity)
-        elif kind == "camera":
-            view, camera = _turned(document)
-            client.background(self._cameras.turn(client.page, view, camera))
-            await self._confirm(client, identity)
-        elif kind == "theme":
-            self._themes.choose(client.page, "light" if _choice(document, THEMES) == "light" else "dark")
-            await self._confirm(client, identity)
-        elif kind == "tabs":
-            client.reader.tabs = _tabs(document)
-            client.news.set()
-            await self._confirm(client, identity)
-        elif kind == "present":
-            client.presents = _flag(document)
-            self._themes.enlarge(client.page, client.presents)
-            self._wake()
-            await self._confirm(client, identity)
-        elif kind == "switch":
-            self._turn(document)
+        if kind == "click":
+            client.background(self._click(client, document, identity))
+        elif self._page_says(client, kind, document):
             await self._confirm(client, identity)
         else:
             command = check(document)
@@ -207,6 +185,32 @@ class Stream:
                 client.moving = command.speed != 0 or command.yaw_rate != 0
                 self._driver = client
             client.background(self._command(client, command, identity))
+
+    def _page_says(self, client: Client, kind: object, document: dict[str, Any]) -> bool:
+        """Do what concerns pages alone; False when the message is none of these."""
+        page = client.page
+        if kind == "view":
+            client.background(self._cameras.show(page, _choice(document, VIEWS)))
+        elif kind == "follow":
+            self._cameras.follow(page, _flag(document))
+        elif kind == "replay":
+            self._cameras.replay(page, _event(document))
+        elif kind == "camera":
+            client.background(self._cameras.turn(page, *_turned(document)))
+        elif kind == "theme":
+            self._themes.choose(page, "light" if _choice(document, THEMES) == "light" else "dark")
+        elif kind == "tabs":
+            client.reader.tabs = _tabs(document)
+            client.news.set()
+        elif kind == "present":
+            client.presents = _flag(document)
+            self._themes.enlarge(page, client.presents)
+            self._wake()
+        elif kind == "switch":
+            self._turn(document)
+        else:
+            return False
+        return True
 
     async def _command(self, client: Client, command: Command, identity: object) -> None:
         try:
@@ -216,6 +220,34 @@ class Stream:
             return
         if identity is not None:
             await client.send(_text({"type": "answer", "id": identity, "accepted": True, "tick": answer.tick}))
+
+    async def _click(self, client: Client, document: dict[str, Any], identity: object) -> None:
+        """On the stage. It is answered: carried out, or why not."""
+        try:
+            click = StageClick.model_validate(document)
+        except ValidationError as error:
+            reason = f"click takes at, shift and drawn: {error.errors()[0]['msg']}"
+            await client.send(_answer(identity, Malformed([wrong("at", None, reason)])))
+            return
+        if click.drawn is None:
+            why = await self._cameras.press(client.page, click.at, click.shift)
+        else:
+            order = self._meant(click, click.drawn)
+            if not isinstance(order, str):
+                await self._command(client, order, identity)
+                return
+            why = order
+        if why is None:
+            await self._confirm(client, identity)
+        else:
+            await client.send(_answer(identity, Declined.of(422, why)))
+
+    def _meant(self, click: StageClick, drawn: Drawn) -> SetGoal | Inspect | str:
+        _, snapshot = self._latest.get()
+        if snapshot is None:
+            return "No goal set: the robot has not begun yet"
+        inspecting = click.shift or self._switches.is_on("click_inspects")
+        return meant(snapshot, drawn.view, drawn.aspect, click.at, inspecting)
 
     def _turn(self, document: dict[str, Any]) -> None:
         name, on = document.get("name"), document.get("on")

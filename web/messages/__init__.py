@@ -115,7 +115,16 @@ from web.messages.reports import (
     ViewReport,
     WhyReport,
 )
-from web.messages.situation import CameraAt, Look, OpenSituation, ReadSituation, SituationState, SituationView
+from web.messages.situation import (
+    CameraAt,
+    Drawn,
+    Look,
+    OpenSituation,
+    ReadSituation,
+    SituationState,
+    SituationView,
+    StageClick,
+)
 from web.messages.snapshot import Event, EventKind, Parameter, Series, Snapshot
 from web.messages.tick import TickStage, TickWalk, Timing
 from web.messages.time import Bookmark, BranchView, Side, TimeView
@@ -157,6 +166,7 @@ __all__ = [
     "CompareBrains",
     "CompareBranch",
     "Difference",
+    "Drawn",
     "Drive",
     "EditOrder",
     "EditStep",
@@ -248,6 +258,7 @@ __all__ = [
     "SnapCause",
     "Snapshot",
     "Spread",
+    "StageClick",
     "Step",
     "StepStage",
     "Tag",

@@ -32,6 +32,24 @@ class Look(BaseModel):
     camera: CameraAt | None = None
 
 
+class Drawn(BaseModel):
+    """The drawing of the stage that stands on a page where viser draws nothing."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    view: Plate
+    aspect: Annotated[float, Field(gt=0, le=20, allow_inf_nan=False)]
+
+
+class StageClick(BaseModel):
+    """A click on the stage: where on what the page shows, from its middle to the right and upwards, in halves of its height."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    type: Literal["click"]
+    at: tuple[Number, Number]
+    shift: bool = False
+    drawn: Drawn | None = None  # None: viser's picture
+
+
 SituationState = Literal["playing", "same", "other", "stopped"]
 
 

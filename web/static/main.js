@@ -32,7 +32,6 @@ import { Presenter } from "./presenter/presenter.js";
 import { Source } from "./recordings/source.js";
 import { Viewer } from "./viewer/viewer.js";
 import { Theming } from "./header/theming.js";
-import { showPicture } from "./viewer/waking.js";
 import { Timeline } from "./timeline/timeline.js";
 import { dismissToast, toast } from "./elements/toasts.js";
 import { Watched } from "./experiments/watched.js";
@@ -284,5 +283,3 @@ function on(id, action) {
     if (/** @type {MouseEvent} */ (event).detail > 0) $(id).blur(); // after a mouse click, the space bar plays and pauses again
   });
 }
-
-showPicture(viewer.view, theme.name);

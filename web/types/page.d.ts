@@ -285,10 +285,12 @@ type Results = { score: string; is_rate: boolean; note: string; cells: Cell[] };
 type ExperimentDetail = { card: Card; results: Results };
 type WorldTitles = { yours: Record<string, string>; ours: Record<string, string> };
 
+type Drawn = { view: ViewName; aspect: number }; // the drawing that was clicked; null: viser's picture
 // What concerns one page alone.
 type PageMessage =
   | { type: "got" }
   | { type: "view"; name: ViewName }
+  | { type: "click"; at: Point; shift: boolean; drawn: Drawn | null }
   | { type: "follow"; on: boolean }
   | { type: "replay"; event: number }
   | { type: "camera"; name: ViewName; at: CameraAt }

@@ -13,7 +13,7 @@ import viser
 from web.messages import BesideView, MapLayer, PoseCellLayer
 from web.throttle import Throttle
 from web.viewer.camera_views import stands
-from web.viewer.plates.map_plate import NODE_Z, MapPlate
+from web.viewer.plates.map_plate import NODE_Z, MapPlate, on_sheet
 from web.viewer.plates.plate import point_on_plane
 from web.viewer.plates.pose_cell_plate import PoseCellPlate
 from web.viewer.primitives.palette import BRAINS, Palette
@@ -67,7 +67,7 @@ class Beside:
         if self.map is None or not self.two:
             return False
         at = point_on_plane(np.array(origin), np.array(direction), self.map.origin, NODE_Z)
-        return at is not None and self.map.on_sheet(at)
+        return at is not None and on_sheet(at)
 
     def _arrange(self, *, office: bool, two: bool) -> None:
         self._stands = office, two

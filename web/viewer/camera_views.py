@@ -26,6 +26,7 @@ class Camera:
 
 
 Points = NDArray[np.float64]  # (n, 3)
+Point3 = tuple[float, float, float]
 At = tuple[float, float]  # x, y of a plate
 OFFICE_AT, MAP_AT, CELLS_AT = (-5.85, -2.2), (5.85, -2.2), (0.0, 8.5)
 
@@ -138,14 +139,28 @@ def _fitted(
 
 def seen_by(camera: Camera, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(n, 2) right and up in the plane through `look_at`, and (n,) how much larger each point appears than in that plane."""
-    ahead = camera.look_at - camera.position
-    distance = float(np.linalg.norm(ahead))
-    ahead = ahead / distance
-    right = np.cross(ahead, (0.0, 0.0, 1.0))
-    right /= np.linalg.norm(right)
+    ahead, right, up = _axes(camera)
     offset = points - camera.position
-    larger = distance / (offset @ ahead)
-    return np.column_stack([offset @ right, offset @ np.cross(right, ahead)]) * larger[:, None], larger
+    larger = float(np.linalg.norm(camera.look_at - camera.position)) / (offset @ ahead)
+    return np.column_stack([offset @ right, offset @ up]) * larger[:, None], larger
+
+
+def ray_through(camera: Camera, at: tuple[float, float]) -> tuple[Point3, Point3]:
+    """Origin and direction of the ray through a place of what the camera shows: from the middle to the right and
+    upwards, in halves of its height."""
+    ahead, right, up = _axes(camera)
+    x, y, z = (ahead + math.tan(camera.fov_rad / 2) * (at[0] * right + at[1] * up)).tolist()
+    eye_x, eye_y, eye_z = camera.position.tolist()
+    return (eye_x, eye_y, eye_z), (x, y, z)
+
+
+def _axes(camera: Camera) -> tuple[Points, Points, Points]:
+    """Unit vectors (3,): ahead, to the right, upwards."""
+    ahead = camera.look_at - camera.position
+    ahead = ahead / np.linalg.norm(ahead)
+    right = np.cross(ahead, (0.0, 0.0, 1.0))
+    right = right / np.linalg.norm(right)
+    return ahead, right, np.cross(right, ahead)
 
 
 @dataclass

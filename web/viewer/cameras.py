@@ -89,6 +89,11 @@ class Cameras:
         camera, end = _standing(client.camera), self._framed(view, client.camera)
         return None if _near(camera, end.position, end.look_at) else camera
 
+    def standing(self, client_id: int) -> Camera | None:
+        """Where a camera is, as its browser told last; None for one that is not there."""
+        client = self._server.get_clients().get(client_id)
+        return None if client is None else _standing(client.camera)
+
     def take_off(
         self, client_id: int | None, view: str, now_s: float | None = None, turned: Camera | None = None
     ) -> None:

@@ -12,15 +12,18 @@ from collections.abc import Callable, Collection
 import numpy as np
 from numpy.typing import NDArray
 
-from web.messages import ExperienceReport, Pose, Snapshot
+from web.messages import ExperienceReport, Inspect, Pose, SetGoal, Snapshot
 from web.switches import Name
-from web.viewer.camera_views import At, Camera, View, camera_for, seen_by, stands
+from web.viewer.camera_views import At, Camera, View, camera_for, ray_through, seen_by, stands
 from web.viewer.fits.cell_fit import HEIGHT, SIDE, CellFit
 from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.fits.office_fit import OfficeFit
 from web.viewer.fits.overlaid import Overlaid, overlaid
 from web.viewer.marks.inspected import links_of, spots_of
 from web.viewer.marks.robot_model import ENLARGED, SMALLEST
+from web.viewer.plates.map_plate import NODE_Z, nearest, on_sheet
+from web.viewer.plates.plate import point_on_plane
+from web.viewer.pointer import BESIDE_MAP, NOTHING_THERE, OTHER_BRAIN
 from web.viewer.primitives import meshes
 from web.viewer.primitives.palette import BRAINS, Palette, Rgb, mix
 from web.viewer.vector.subject import snapshot_of_second
@@ -56,6 +59,27 @@ def picture(snapshot: Snapshot, view: View, aspect: float, palette: Palette, on:
     for (seen, laid), where in zip(brains, at.maps, strict=True):
         _map(sketch, seen, where, laid)
     return sketch.text(aspect)
+
+
+def meant(
+    snapshot: Snapshot, view: View, aspect: float, at: tuple[float, float], inspecting: bool
+) -> SetGoal | Inspect | str:
+    """What a click on this picture asks for, or why it asks for nothing. at: as in `ray_through`."""
+    office, two = snapshot.world is not None, snapshot.beside is not None
+    origin, direction = ray_through(camera_for(view, aspect, office, two), at)
+    ray = np.array(origin), np.array(direction)
+    plates = [point_on_plane(*ray, (*where, 0.0), NODE_Z) for where in stands(office=office, two=two).maps]
+    if two and plates[1] is not None and on_sheet(plates[1]):
+        return OTHER_BRAIN
+    if plates[0] is None or not on_sheet(plates[0]):
+        return NOTHING_THERE
+    if abs(plates[0][0]) > WIDTH / 2 or abs(plates[0][1]) > DEPTH / 2:
+        return BESIDE_MAP
+    fit = refit(MapFit(), snapshot.map.extent_xy, snapshot.map_turn_rad)
+    x, y = fit.to_map(np.array([plates[0]]))[0].tolist()
+    if not inspecting:
+        return SetGoal(type="set_goal", x=x, y=y)
+    return Inspect(type="inspect", experience=nearest(snapshot.map, (x, y), fit))
 
 
 class _Sketch:
@@ -140,7 +164,7 @@ def _map(sketch: _Sketch, snapshot: Snapshot, at: At, laid: Overlaid) -> None:
     if laid.occupancy is not None:
         met = laid.occupancy.draw_map()
         low = np.array(met.origin_xy_m) - met.cell_m / 2
-        _floor(sketch, _met(met.probability, palette), lambda xy: fit.to_plate(xy * met.cell_m + low) + at)
+        _floor(sketch, _met(met.probability, palette), lambda xy: _on_floor(fit.to_plate(xy * met.cell_m + low)) + at)
     every = -(-len(places) // MOST_DOTS)
     sketch.lines(places[layer.links][: 2 * MOST_DOTS], palette.link, 1.0)
     seconds = snapshot.times.seconds[: len(places)]
@@ -155,6 +179,11 @@ def _map(sketch: _Sketch, snapshot: Snapshot, at: At, laid: Overlaid) -> None:
         sketch.dots(flag, np.array([palette.goal], np.uint8), 0.3)
     _inspected(sketch, laid, places)
     sketch.area(_arrow(snapshot.estimate, fit, at), palette.robot)
+
+
+def _on_floor(places: Points) -> Points:
+    """(n, 2) on the map's plate, none beside its floor."""
+    return np.clip(places, (-WIDTH / 2, -DEPTH / 2), (WIDTH / 2, DEPTH / 2))
 
 
 def _arrow(pose: Pose, fit: MapFit, at: At) -> Points:

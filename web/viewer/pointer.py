@@ -15,7 +15,7 @@ import numpy as np
 
 from web.messages import Accepted, Closure, Command, Inspect, Kidnap, KnownPlace, Refused, SetDoor, SetGoal, Snapshot
 from web.viewer.marks.place_names import Z as NAMES_Z
-from web.viewer.plates.map_plate import NODE_Z, MapPlate
+from web.viewer.plates.map_plate import NODE_Z, MapPlate, on_sheet
 from web.viewer.plates.office_plate import OfficePlate
 from web.viewer.plates.plate import point_on_plane
 
@@ -25,11 +25,22 @@ GRIP_Z = 0.15
 DOOR_Z = 0.25  # half the height of a leaf
 
 
+BESIDE_MAP = "No goal set: that is beside the map; click on the map itself"
+NOT_THERE = "The click did not arrive: the stage is still waking; click again in a moment"
+NOTHING_THERE = "No goal set: there is nothing to click; click on the map"
+OTHER_BRAIN = "No goal set: this is the other brain's map; the robot goes by the first one's"
+
+
 @dataclass(frozen=True)
 class Click:
-    client_id: int
+    """A ray, and who is told once what came of it: None when it was carried out, else why not."""
+
     origin: tuple[float, float, float]
     direction: tuple[float, float, float]
+    tell: Callable[[str | None], None]
+
+    def answered(self, answer: Answer, title: str) -> None:
+        self.tell(f"{title}: {answer.reason}" if isinstance(answer, Refused) else None)
 
 
 @dataclass(frozen=True)
@@ -57,40 +68,39 @@ class Pointer:
         name of a place asks for the way there."""
         name = self._name_at(click, office) or self._name_at(click, plate)
         if name is not None:
-            self._go_to(name, places, click.client_id, plate, now_s)
+            self._go_to(name, places, click, plate, now_s)
             return
         if self._click_door(click, office):
             return
         on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
         place = None if on_plate is None else plate.map_place(on_plate)
         if place is None:
-            if on_plate is not None and plate.on_sheet(on_plate):
-                self._complain(click.client_id, "No goal set", "that is beside the map; click on the map itself")
+            click.tell(BESIDE_MAP if on_plate is not None and on_sheet(on_plate) else NOTHING_THERE)
             return
-        self._ask(place, click.client_id, plate, now_s)
+        self._ask(place, click, plate, now_s)
 
     def _name_at(self, click: Click, plate: MapPlate | OfficePlate) -> str | None:
         at = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NAMES_Z)
         return None if at is None or not plate.frame.visible else plate.names.at(at)
 
-    def _go_to(self, name: str, places: tuple[KnownPlace, ...], client_id: int, plate: MapPlate, now_s: float) -> None:
+    def _go_to(self, name: str, places: tuple[KnownPlace, ...], click: Click, plate: MapPlate, now_s: float) -> None:
         """The place of the map that is known by this name becomes the goal."""
         known = next((place.map_xy for place in places if place.name == name), None)
         if known is None:
-            self._complain(client_id, "No goal set", f"the map does not know the {name}: the robot has not been there")
+            click.tell(f"No goal set: the map does not know the {name}: the robot has not been there")
             return
-        self._ask(known, client_id, plate, now_s)
+        self._ask(known, click, plate, now_s)
 
-    def _ask(self, place: tuple[float, float], client_id: int, plate: MapPlate, now_s: float) -> None:
+    def _ask(self, place: tuple[float, float], click: Click, plate: MapPlate, now_s: float) -> None:
         self._asked = (place, now_s, None)
         plate.show_click(place)
 
         def answered(answer: Answer) -> None:
             if isinstance(answer, Refused):
                 self._forget_click(plate)
-                self._complain(client_id, "No goal set", answer.reason)
             elif self._asked is not None and self._asked[0] == place:
                 self._asked = (place, now_s, answer.tick)
+            click.answered(answer, "No goal set")
 
         self._send(SetGoal(type="set_goal", x=place[0], y=place[1]), answered)
 
@@ -100,12 +110,8 @@ class Pointer:
         door = None if at is None else office.things.door_at(at, office.fit)
         if door is None:
             return False
-
-        def answered(answer: Answer) -> None:
-            if isinstance(answer, Refused):
-                self._complain(click.client_id, "The door stays as it is", answer.reason)
-
-        self._send(SetDoor(type="set_door", name=door[0], open=door[1]), answered)
+        order = SetDoor(type="set_door", name=door[0], open=door[1])
+        self._send(order, lambda answer: click.answered(answer, "The door stays as it is"))
         return True
 
     def experience_at(self, click: Click, plate: MapPlate) -> int | None:
@@ -119,14 +125,10 @@ class Pointer:
         on_plate = point_on_plane(np.array(click.origin), np.array(click.direction), plate.origin, NODE_Z)
         return None if on_plate is None else plate.closures.at(on_plate)
 
-    def inspect(self, client_id: int, **wish: int | None) -> None:
+    def inspect(self, click: Click, **wish: int | None) -> None:
         """Chooses what is inspected, by the fields of `Inspect`; the panel then shows it."""
-
-        def answered(answer: Answer) -> None:
-            if isinstance(answer, Refused):
-                self._complain(client_id, "Nothing to inspect", answer.reason)
-
-        self._send(Inspect(type="inspect", **wish), answered)  # type: ignore[arg-type]
+        order = Inspect(type="inspect", **wish)  # type: ignore[arg-type]
+        self._send(order, lambda answer: click.answered(answer, "Nothing to inspect"))
 
     def settle(self, snapshot: Snapshot, plate: MapPlate, now_s: float) -> None:
         """Removes the clicked marker when its goal is set, or when it has not been set in time."""

@@ -21,11 +21,11 @@ from web.messages import Accepted, Command, Refused, Snapshot
 from web.switches import Switches
 from web.themes import Theme
 from web.viewer.beside import Beside
-from web.viewer.camera_views import VIEWS, Camera
+from web.viewer.camera_views import VIEWS, Camera, ray_through
 from web.viewer.cameras import Cameras, Robots
 from web.viewer.judged_layers import JudgedLayers
 from web.viewer.layers import Layers
-from web.viewer.pointer import Answer, Click, Drag, Pointer, ask
+from web.viewer.pointer import NOT_THERE, OTHER_BRAIN, Answer, Click, Drag, Pointer, ask
 from web.viewer.primitives.palette import Palette, palette_of
 from web.viewer.replay import Replay
 from web.viewer.scenery import Scenery
@@ -104,6 +104,20 @@ class Viewer:
         """Plays the correction after this loop closure again, slowly, for all who look at this viewer."""
         self._inbox.put(lambda: self._replay.find(self._snapshot, event, self._now_s))
 
+    def press(
+        self, client_id: int, at: tuple[float, float], inspecting: bool, tell: Callable[[str | None], None]
+    ) -> None:
+        """Somebody has clicked on what this browser's camera shows: `at` as in `ray_through`. tell: as in `Click`."""
+
+        def pressed() -> None:
+            camera = self._cameras.standing(client_id)
+            if camera is None:
+                tell(NOT_THERE)
+            else:
+                self._click(Click(*ray_through(camera, at), tell), inspecting)
+
+        self._inbox.put(pressed)
+
     def click(self, click: Click, inspecting: bool = False) -> None:
         """Somebody has clicked on the plates. inspecting: with shift."""
         self._inbox.put(lambda: self._click(click, inspecting))
@@ -166,13 +180,8 @@ class Viewer:
     def _listen(self) -> None:
         self.server.on_client_connect(self._connected)
         self.server.on_client_disconnect(self._disconnected)
-        self.server.scene.on_click()(self._clicked)
-        self.server.scene.on_click(modifier="shift")(self._clicked)
 
     # ------------------------------------------------------------ callbacks of viser: post, never draw
-
-    def _clicked(self, event: viser.SceneClickEvent) -> None:
-        self.click(Click(event.client_id, event.ray_origin, event.ray_direction), event.modifier == "shift")
 
     def _dragged(self, turning: bool) -> Callable[[DragEvent], Coroutine[Any, Any, None]]:
         async def dragged(event: DragEvent) -> None:  # async: keeps their order
@@ -193,20 +202,19 @@ class Viewer:
         lesson = None if self._snapshot is None or inspecting else self._snapshot.lesson
         predicted = self._scenery.lesson.predicted(lesson, click.origin, click.direction)
         if predicted is not None:
-            self._send(predicted, lambda _: None)  # it is open, and the server compares
+            self._send(predicted, lambda answer: click.answered(answer, "Nothing predicted"))
             return
         if self._beside.holds(click.origin, click.direction):
-            self._complain(
-                click.client_id, "No goal set", "this is the other brain's map; the robot goes by the first one's"
-            )
+            click.tell(OTHER_BRAIN)
             return
         column = self._scenery.cells.column_at(np.array(click.origin), np.array(click.direction))
         if column is not None:
-            self._pointer.inspect(click.client_id, x=column[0], y=column[1])
+            self._pointer.inspect(click, x=column[0], y=column[1])
         elif not inspecting and (closure := self._pointer.closure_at(click, self._scenery.map)) is not None:
             self._replay.start(closure, self._now_s)
+            click.tell(None)
         elif inspecting or self._switches.is_on("click_inspects"):
-            self._pointer.inspect(click.client_id, experience=self._pointer.experience_at(click, self._scenery.map))
+            self._pointer.inspect(click, experience=self._pointer.experience_at(click, self._scenery.map))
         else:
             places = self._snapshot.places if self._snapshot is not None else ()
             self._pointer.click(click, self._scenery.map, self._now_s, self._scenery.office, places)

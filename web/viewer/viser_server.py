@@ -32,7 +32,6 @@ SECRET_HEADER = "X-Stage-Secret"
 # store for good that any form was touched.
 HEARD: set[type[Any]] = {
     _messages.ViewerCameraMessage,
-    _messages.ScenePointerMessage,
     _messages.SceneNodeClickMessage,
     _messages.SceneNodeDragMessage,
 }

@@ -41,6 +41,7 @@ class Bench:
         self.now_s = 100.0
         self.sent: list[Any] = []
         self.complaints: list[tuple[int, str]] = []
+        self.told: list[str | None] = []  # what came of each click: None when it was carried out
         self.viewer.on_complaint = lambda *complaint: self.complaints.append(complaint)
         server = self.viewer.server._websock_server
         pass_on = server.queue_message
@@ -106,7 +107,7 @@ class Bench:
     def click(self, at: tuple[float, float, float], shift: bool = False) -> None:
         """A click from above, slightly slanted, at a place of the scene; then one round."""
         aim, eye = np.array(at), np.array([2.0, -20.0, 25.0])
-        self.viewer.click(Click(7, tuple(eye), tuple(aim - eye)), shift)
+        self.viewer.click(Click(tuple(eye), tuple(aim - eye), self.told.append), shift)
 
     def drag(self, at: tuple[float, float, float], phase: Any, turning: bool = False) -> None:
         """Drag with the pointer over a place of the scene."""

@@ -58,6 +58,7 @@ class StubViewer:
     calls: list[tuple[Any, ...]] = field(default_factory=list)
     called: threading.Event = field(default_factory=threading.Event)
     cameras: dict[int, Camera] = field(default_factory=dict)  # those that have been turned
+    comes_of_clicks: list[str | None] = field(default_factory=list)  # then nothing is said of them
 
     def _note(self, *call: Any) -> None:
         self.calls.append(call)
@@ -71,6 +72,13 @@ class StubViewer:
 
     def replay(self, event: int) -> None:
         self._note("replay", event)
+
+    def press(
+        self, client_id: int, at: tuple[float, float], inspecting: bool, tell: Callable[[str | None], None]
+    ) -> None:
+        self._note("press", client_id, at, inspecting)
+        if self.comes_of_clicks:
+            tell(self.comes_of_clicks.pop(0))
 
     def turned(self, client_id: int) -> Camera | None:
         return self.cameras.get(client_id)

@@ -52,7 +52,7 @@ def corners(name: str, plate: Plate) -> np.ndarray:
 
 def click_on(bench: Bench, plate: Plate) -> None:
     x, y, _ = plate.origin
-    bench.viewer.click(Click(1, (x + 1.0, y, 20.0), (0.0, 0.0, -1.0)))
+    bench.viewer.click(Click((x + 1.0, y, 20.0), (0.0, 0.0, -1.0), bench.told.append))
     bench.show(None)
 
 
@@ -122,7 +122,7 @@ def test_the_first_ones_map_is_for_goals_and_the_other_one_says_so(bench: Bench)
     stand = plates(bench)
     click_on(bench, stand["map_2"])
     assert bench.engine.commands == []
-    assert bench.complaints == [(1, "No goal set: this is the other brain's map; the robot goes by the first one's")]
+    assert bench.told[-1] == "No goal set: this is the other brain's map; the robot goes by the first one's"
     click_on(bench, stand["map"])
     assert [type(command) for command in bench.engine.commands] == [SetGoal]
 

@@ -61,7 +61,7 @@ def office(shared: Office) -> Office:
     shared.settle()
     shared.engine.commands.clear()
     shared.engine.answers.clear()
-    shared.complaints.clear()
+    shared.told.clear()
     return shared
 
 
@@ -121,7 +121,7 @@ def test_a_click_on_a_leaf_opens_or_shuts_it(office: Office) -> None:
         SetDoor(type="set_door", name="hall", open=False),
     ]
     office.answer(Refused("name", "hall", "no door named 'hall'"))
-    assert office.complaints == [(7, "The door stays as it is: no door named 'hall'")]
+    assert office.told == ["The door stays as it is: no door named 'hall'"]
     click(office, 5.0, 6.0)  # far from any
     assert len(office.engine.commands) == 2
 

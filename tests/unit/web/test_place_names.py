@@ -26,7 +26,7 @@ def bench(shared: Bench) -> Bench:
     shared.show(named(), 10.0)
     shared.settle()
     shared.engine.commands.clear()
-    shared.complaints.clear()
+    shared.told.clear()
     return shared
 
 
@@ -52,7 +52,7 @@ def test_a_click_on_a_name_sends_the_robot_where_the_map_has_the_place(bench: Be
 def test_of_a_place_that_the_map_does_not_know_a_sentence_says_so(bench: Bench) -> None:
     press(bench, "office", "attic")
     assert bench.engine.commands == []
-    assert bench.complaints == [(7, "No goal set: the map does not know the attic: the robot has not been there")]
+    assert bench.told == ["No goal set: the map does not know the attic: the robot has not been there"]
     assert [box[0] for box in bench.viewer._scenery.map.names._boxes] == ["kitchen"]
 
 

@@ -18,7 +18,7 @@ from web.viewer.plates.map_plate import NODE_Z
 from web.viewer.plates.map_plate import ORIGIN as MAP_AT
 from web.viewer.plates.office_plate import ORIGIN as OFFICE_AT
 from web.viewer.plates.pose_cell_plate import ORIGIN as CELLS_AT
-from web.viewer.pointer import Click, Drag, ask
+from web.viewer.pointer import BESIDE_MAP, NOT_THERE, NOTHING_THERE, Click, Drag, ask
 
 SKY = (0.0, 0.0, 9.0)
 
@@ -31,6 +31,7 @@ def bench(shared: Bench) -> Bench:
     shared.engine.commands.clear()
     shared.engine.answers.clear()
     shared.complaints.clear()
+    shared.told.clear()
     return shared
 
 
@@ -85,7 +86,7 @@ def test_a_refused_goal_takes_its_marker_away_and_says_why(bench: Bench) -> None
     press(bench, 0.0, 0.0)
     bench.answer(Refused("x", 0.0, "no experience is near"))
     assert not bench.visible("/map/clicked/ring_0")
-    assert bench.complaints == [(7, "No goal set: no experience is near")]
+    assert bench.told == ["No goal set: no experience is near"]
 
 
 def test_a_marker_does_not_wait_for_ever(bench: Bench) -> None:
@@ -93,32 +94,35 @@ def test_a_marker_does_not_wait_for_ever(bench: Bench) -> None:
     press(bench, 0.0, 0.0)
     bench.show(None, 10)
     assert not bench.visible("/map/clicked/ring_0")
-    bench.answer(Accepted(1))  # too late to matter
-    assert not bench.complaints
+    bench.answer(Accepted(1))  # too late for the marker, but it was carried out
+    assert bench.told == [None]
 
 
-@pytest.mark.parametrize("at", [(0.0, -6.6), (-12.0, 0.0)])
-def test_a_click_elsewhere_does_nothing(bench: Bench, at: tuple[float, float]) -> None:
+@pytest.mark.parametrize(
+    ("at", "why"),
+    [((0.0, -6.6), NOTHING_THERE), ((-12.0, 0.0), NOTHING_THERE), ((5.2, 0.0), BESIDE_MAP), ((0.0, -4.6), BESIDE_MAP)],
+)
+def test_a_click_that_hits_nothing_says_so(bench: Bench, at: tuple[float, float], why: str) -> None:
     press(bench, *at)
-    assert bench.engine.commands == bench.complaints == []
+    assert (bench.engine.commands, bench.told) == ([], [why])
 
 
-@pytest.mark.parametrize("at", [(5.2, 0.0), (0.0, -4.6)])
-def test_a_click_beside_the_map_says_so(bench: Bench, at: tuple[float, float]) -> None:
-    press(bench, *at)
-    assert bench.engine.commands == []
-    assert bench.complaints == [(7, "No goal set: that is beside the map; click on the map itself")]
-
-
-def test_a_click_at_the_sky_does_nothing(bench: Bench) -> None:
-    bench.viewer.click(Click(7, SKY, (0.0, 1.0, 0.1)))
+def test_a_click_at_the_sky_says_so(bench: Bench) -> None:
+    bench.viewer.click(Click(SKY, (0.0, 1.0, 0.1), bench.told.append))
     bench.show(None, 0.05)
-    assert bench.engine.commands == []
+    assert (bench.engine.commands, bench.told) == ([], [NOTHING_THERE])
+
+
+def test_a_click_on_a_browser_that_is_not_there_says_so(bench: Bench) -> None:
+    bench.viewer.press(99, (0.0, 0.0), False, bench.told.append)
+    bench.show(None, 0.05)
+    assert (bench.engine.commands, bench.told) == ([], [NOT_THERE])
 
 
 def test_complaints_before_anybody_listens_are_nobody_s(bench: Bench) -> None:
     listener, bench.viewer.on_complaint = bench.viewer.on_complaint, None
-    press(bench, 5.2, 0.0)
+    bench.viewer.drag(Drag(7, "end", False, SKY, (0.0, 1.0, 9.5)))
+    bench.show(None, 0.05)
     bench.viewer.on_complaint = listener
     assert bench.complaints == []
 
@@ -161,7 +165,7 @@ def test_what_cannot_be_inspected_is_a_complaint(bench: Bench) -> None:
     bench.click((CELLS_AT[0] - 3.4, CELLS_AT[1] - 3.4, CELLS_AT[2]))
     bench.show(None, 0.05)
     bench.answer(Refused("x", 0, "there is no such cell"))
-    assert bench.complaints == [(7, "Nothing to inspect: there is no such cell")]
+    assert bench.told == ["Nothing to inspect: there is no such cell"]
 
 
 # ---------------------------------------------------------------- drags

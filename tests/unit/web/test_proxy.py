@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import asyncio
+import math
+import threading
 from typing import ClassVar
 
+import numpy as np
 import orjson
 import pytest
 from starlette.testclient import WebSocketDenialResponse
 from starlette.websockets import WebSocketDisconnect, WebSocketState
 
+from tests.fake_snapshots import fake_snapshot
 from tests.patience import PATIENCE_S
 from tests.unit.web.doubles import OURS, PAGE, StubViewer, StubViewers, house, viser_double
+from tests.unit.web.frames import until
 from web.http import proxy as module
 from web.http.proxy import Cameras, ViserProxy, _call
 from web.themes import Themes
+from web.viewer.camera_views import MAP_AT, camera_for, seen_by
+from web.viewer.fits.map_fit import MapFit, refit
+from web.viewer.plates.map_plate import NODE_Z
+from web.viewer.pointer import NOT_THERE
 from web.viewer.viser_server import client_page
 
 PROTOCOL = "viser-v1.1.1"
@@ -135,9 +144,68 @@ def test_of_several_subprotocols_viser_s_is_taken(behind):
 def test_without_the_secret_the_browser_may_try_again(behind):
     server, _ = behind
     server.stage.secret += "?"  # as it would be with another server on viser's port
-    with pytest.raises(WebSocketDisconnect) as refused, connect(server):
-        pass
+    with connect(server) as socket, pytest.raises(WebSocketDisconnect) as refused:
+        socket.receive_bytes()
     assert refused.value.code == 1013
+
+
+def test_it_is_accepted_before_its_viewer_is_there(behind, monkeypatch):
+    """viser's client breaks off what is not open within a second and begins anew: with a viewer that is built for longer than
+    that, each time, the stage would never come back."""
+    server, _ = behind
+    built = threading.Event()
+    plain = StubViewers.of
+
+    def of(*look):
+        assert built.wait(PATIENCE_S)
+        return plain(*look)
+
+    monkeypatch.setattr(StubViewers, "of", of)
+    with connect(server) as socket:  # it is open
+        socket.send_bytes(b"camera")
+        built.set()
+        assert socket.receive_bytes() == b"camera"
+
+
+def test_a_click_on_the_stage_is_answered(behind, monkeypatch):
+    """Done, refused, on a stage that is not there, or not heard of again: its page is told each time."""
+    server, _ = behind
+    click = {"type": "click", "at": [0.25, -0.5], "shift": True, "drawn": None}
+
+    def said(number: int, **other: object) -> dict:
+        stream.send_text(orjson.dumps(click | other | {"id": number}).decode())
+        answer = until(stream, "answer", id=number)
+        return answer if answer["accepted"] else answer["detail"][0]["reason"]
+
+    with server.stream() as stream:
+        assert said(1) == NOT_THERE
+        with connect(server) as socket:
+            socket.send_bytes(b"camera")
+            socket.receive_bytes()
+            server.stage.comes_of_clicks = [None, "No goal set: that is beside the map"]
+            assert said(2)["accepted"]
+            assert server.stage.calls[-1] == ("press", 0, (0.25, -0.5), True)
+            assert said(3, shift=False) == "No goal set: that is beside the map"
+            monkeypatch.setattr(module, "CLICK_S", 0.05)
+            assert "not answered" in said(4)
+        assert "Input should be" in said(5, at="here")
+
+
+def test_a_click_on_the_drawing_is_one_on_the_map(behind):
+    server, _ = behind
+    snapshot, drawn = fake_snapshot(12), {"view": "map", "aspect": 1.5}
+    x, y = refit(MapFit(), snapshot.map.extent_xy, snapshot.map_turn_rad).to_plate(snapshot.map.xy[:1])[0]
+    camera = camera_for("map", 1.5)
+    half = math.tan(camera.fov_rad / 2) * float(np.linalg.norm(camera.look_at - camera.position))
+    at = (seen_by(camera, np.array([[MAP_AT[0] + x, MAP_AT[1] + y, NODE_Z]]))[0][0] / half).tolist()
+    with server.stream() as stream:
+        for number, (where, shift) in enumerate([(at, False), (at, True), ([3.0, 3.0], False)]):
+            message = {"type": "click", "at": where, "shift": shift, "drawn": drawn, "id": number}
+            stream.send_text(orjson.dumps(message).decode())
+            assert until(stream, "answer", id=number)["accepted"] == (number < 2)
+    goal, inspected = server.engine.commands
+    assert (goal.x, goal.y) == pytest.approx(tuple(snapshot.map.xy[0]), abs=1e-4)
+    assert np.hypot(*(snapshot.map.xy[inspected.experience] - snapshot.map.xy[0])) < 0.05
 
 
 @pytest.mark.parametrize("page", ["short", "..%5c..%5cetc", "p" * 65])
@@ -291,6 +359,9 @@ def test_a_browser_that_has_gone_before_its_stage_is_open_is_no_error():
     class Gone:
         client_state = WebSocketState.DISCONNECTED
         scope: ClassVar = {"subprotocols": ["viser-v1.1.1"]}
+
+        async def accept(self, subprotocol: str) -> None:
+            assert subprotocol == PROTOCOL
 
         async def close(self, _code: int) -> None:
             raise WebSocketDisconnect(1006)

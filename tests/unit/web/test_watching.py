@@ -22,7 +22,7 @@ def server():
         yield made
 
 
-@pytest.mark.parametrize("kind", [*MODELS, "switch", "replay", "present", "anything", None])
+@pytest.mark.parametrize("kind", [*MODELS, "switch", "replay", "click", "present", "anything", None])
 def test_every_message_that_is_more_than_a_look_is_refused(server, kind):
     with server.stream(WATCHED) as socket:
         socket.send_text(orjson.dumps({"type": kind, "id": 1}).decode())

@@ -4,7 +4,12 @@
 
 const SHARE = 0.75;
 
-export const inSoftware = drawnInSoftware();
+const drawer = whoDraws();
+
+/** Whether this browser draws in three dimensions at all. */
+export const hasWebgl = drawer !== null;
+
+const inSoftware = /swiftshader|llvmpipe|software/i.test(drawer ?? "");
 
 /** viser's own setting of how many pixels it draws. */
 export const fewerPixels = () => (inSoftware ? `&fixedDpr=${SHARE * devicePixelRatio}` : "");
@@ -31,10 +36,11 @@ export function spareSoftware(inside) {
   return () => made;
 }
 
-function drawnInSoftware() {
+function whoDraws() {
   const gl = document.createElement("canvas").getContext("webgl2");
-  const info = gl?.getExtension("WEBGL_debug_renderer_info");
-  const drawer = info && gl ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|software/i.test(drawer);
+  if (!gl) return null;
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return name;
 }

@@ -1,11 +1,23 @@
-// The plates in 3-D: viser's client in a frame of our own origin, and the view buttons.
+// The plates in 3-D: viser's client in a frame of our own origin, and the view buttons. The frame belongs to one program and one
+// graphics context; when either is another, it is thrown away and built anew. While it has drawn nothing, the drawing stands there.
 
 import { $ } from "../elements/dom.js";
-import { freeFingers } from "./fingers.js";
+import { toast } from "../elements/toasts.js";
+import { takeClicks } from "./clicks.js";
+import { Drawing } from "./drawing.js";
 import { takePinches } from "./pinch.js";
 import { restBetweenFrames } from "./resting.js";
-import { fewerPixels, spareSoftware } from "./software.js";
-import { fadeDrawing, firstFrame } from "./waking.js";
+import { fewerPixels, hasWebgl, spareSoftware } from "./software.js";
+import { firstFrame } from "./waking.js";
+
+const LATE_MS = 20_000;
+const ON = "turn on hardware acceleration in the browser's settings and load this page again.";
+const WORDS = {
+  waking: "Waking the stage",
+  late: `The stage has drawn nothing yet; until it does, this is a drawing. If it stays so, ${ON}`,
+  off: `No WebGL in this browser, so this is a drawing; a click on the map sets a goal all the same. For the stage in 3-D, ${ON}`,
+  lost: "The browser has taken the graphics away; until they are back, this is a drawing.",
+};
 
 export const phone = window.matchMedia("(max-width: 760px), (pointer: coarse) and (max-height: 500px)");
 
@@ -24,15 +36,34 @@ export class Viewer extends EventTarget {
     for (const button of this.buttons)
       button.addEventListener("click", () => this.show(/** @type {ViewName} */ (button.dataset.view)));
     this.mark();
+    this.drawing = new Drawing(link, this);
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this.late = undefined;
     this.frame.addEventListener("load", () => this.loaded());
-    this.frame.src = `/viser/?websocket=ws://${location.host}/viser/ws/${link.page}&hideViserLogo${fewerPixels()}`;
+    this.build();
     link.on("hello", (/** @type {{ launch: number | string }} */ detail) => this.hello(detail));
+  }
+
+  build() {
+    clearTimeout(this.late);
+    this.frame.classList.remove("awake");
+    this.drawing.show(hasWebgl ? WORDS.waking : WORDS.off);
+    if (!hasWebgl) return;
+    this.late = setTimeout(() => this.drawing.say(WORDS.late), LATE_MS);
+    const path = `/viser/?websocket=ws://${location.host}/viser/ws/${this.link.page}&hideViserLogo${fewerPixels()}`;
+    this.frame.contentWindow?.location.replace(path); // not a page more to go back through
+  }
+
+  lost() {
+    this.frame.classList.remove("awake");
+    this.drawing.show(WORDS.lost);
   }
 
   /** @param {ViewName} view @param {CameraAt | null} camera where it had been turned from there */
   show(view, camera = null) {
     this.view = view;
     this.mark();
+    this.drawing.draw();
     this.dispatchEvent(new Event("view"));
     this.link.tell(camera ? { type: "camera", name: view, at: camera } : { type: "view", name: view });
   }
@@ -42,10 +73,21 @@ export class Viewer extends EventTarget {
     for (const button of this.buttons) button.setAttribute("aria-pressed", String(button.dataset.view === this.view));
   }
 
-  // A server that has started anew knows no view. After a mere loss of the connection, it still shows the same one.
+  /** Where, in halves of the height from the middle. Resolves when it is answered. @param {Point} at @param {boolean} shift @param {Drawn | null} drawn */
+  async click(at, shift, drawn = null) {
+    const answer = await this.link.ask({ type: "click", at, shift, drawn });
+    if (!answer.accepted && !answer.detail.length)
+      toast("The click did not arrive: the connection is lost. Click again.", { bad: true });
+  }
+
+  // A program that has started anew knows no view. After a mere loss of the connection, it still shows the same one.
   /** @param {{ launch: number | string }} hello */
   hello({ launch }) {
     if (launch === this.launch) return;
+    if (this.launch !== null) {
+      this.drawing.forget();
+      this.build();
+    }
     this.launch = launch;
     this.link.tell({ type: "view", name: this.view });
   }
@@ -54,14 +96,16 @@ export class Viewer extends EventTarget {
     const inside = /** @type {(Window & typeof globalThis) | null} */ (this.frame.contentWindow);
     const paper = this.frame.contentDocument;
     if (!paper || !inside || inside.location.href === "about:blank") return;
-    // viser reconnects only while its own frame has the focus, but people look at the page as a whole.
-    paper.hasFocus = () => !document.hidden;
+    // viser reconnects only if its own frame has the focus when the connection goes; people may look elsewhere by then.
+    paper.hasFocus = () => true;
+    inside.addEventListener("webglcontextlost", () => this.lost(), true);
+    inside.addEventListener("webglcontextrestored", () => this.build(), true);
     firstFrame(inside).then(() => this.wake(paper)); // it looks at every frame, before the loop of them may rest
     const editor = $("editor");
     const wake = restBetweenFrames(inside, () => !editor.hidden, spareSoftware(inside));
     new MutationObserver(wake).observe(editor, { attributeFilter: ["hidden"] });
     takePinches(inside);
-    freeFingers(inside);
+    if (!this.link.watches) takeClicks(inside, (at, shift) => this.click(at, shift));
     this.keys.listen(inside);
     this.dispatchEvent(new Event("inside"));
     // viser prevents the default of a press on a draggable thing in a passive listener. That has no effect, but the
@@ -80,8 +124,9 @@ export class Viewer extends EventTarget {
 
   /** @param {Document} paper */
   wake(paper) {
+    clearTimeout(this.late);
     this.frame.classList.add("awake");
-    fadeDrawing();
+    this.drawing.fade();
     let looks = 20;
     const timer = setInterval(() => {
       const slow = dismissSlowNotice(paper);

@@ -214,11 +214,7 @@ class MapPlate(Plate):
         self.mark.show(report, self._layer, self.fit)
 
     def nearest(self, place: tuple[float, float]) -> int | None:
-        """The experience nearest to a place of the map, None when none is within half a unit of it on the plate."""
-        if self._layer is None or not len(self._layer.xy):
-            return None
-        away = np.hypot(*(self._layer.xy - place).T) * self.fit.scale
-        return int(self._layer.ids[away.argmin()]) if away.min() < NEAR else None
+        return None if self._layer is None else nearest(self._layer, place, self.fit)
 
     def map_place(self, plate_xy: tuple[float, float]) -> tuple[float, float] | None:
         """The map-frame place under a point of the plate; None beside the floor."""
@@ -227,10 +223,19 @@ class MapPlate(Plate):
         x, y = self.fit.to_map(np.array([plate_xy]))[0]
         return float(x), float(y)
 
-    def on_sheet(self, plate_xy: tuple[float, float]) -> bool:
-        """Whether a point is on the plate, floor or not."""
-        width, depth, centre_y, _ = SHEET
-        return abs(plate_xy[0]) <= width / 2 and abs(plate_xy[1] - centre_y) <= depth / 2
+
+def nearest(layer: MapLayer, place: tuple[float, float], fit: MapFit) -> int | None:
+    """The experience nearest to a place of the map, None when none is within half a unit of it on the plate."""
+    if not len(layer.xy):
+        return None
+    away = np.hypot(*(layer.xy - place).T) * fit.scale
+    return int(layer.ids[away.argmin()]) if away.min() < NEAR else None
+
+
+def on_sheet(plate_xy: tuple[float, float]) -> bool:
+    """Whether a point is on the plate, floor or not."""
+    width, depth, centre_y, _ = SHEET
+    return abs(plate_xy[0]) <= width / 2 and abs(plate_xy[1] - centre_y) <= depth / 2
 
 
 def grid_step_m(scale: float) -> int:
