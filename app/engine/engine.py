@@ -52,7 +52,7 @@ class Engine(OtherRuns):
         over = live and self.run.session.over and self._pause_at_end()
         hung = self._watchdog.end()
         if hung:
-            self.run.event_log.note("fault", f"a tick took more than {self._watchdog.limit_s:g} s")
+            self.run.event_log.note("fault", f"a tick took more than {self._watchdog.limit_s:g} s", "slow tick")
         return hung or over or pauses or self.trial_plays != playing
 
     def step(self) -> bool:

@@ -19,6 +19,7 @@ from app.pilot.route_following import Progress, RouteFollower
 from app.pilot.seeking import Seeker
 from disk import kind
 from ratslam_core import ExperienceMap, Odometry
+from web.messages import GoalState
 
 Mode = Literal["explore", "manual", "goal"]
 
@@ -55,7 +56,7 @@ class Pilot:
         return tuple(self._follower.goals) if self._follower else ()
 
     @property
-    def goal_state(self) -> tuple[int, str] | None:
+    def goal_state(self) -> tuple[int, GoalState] | None:
         return (self._follower.goal, self._follower.state) if self._follower else None
 
     @property
@@ -200,7 +201,7 @@ class Pilot:
         self, follower: RouteFollower, odometry: Odometry, experiences: ExperienceMap
     ) -> tuple[float, float] | None:
         """The drive towards the goal. None: no route is known, so explore."""
-        target = follower.step(experiences, self._local, odometry.dt, self.params)
+        target = follower.step(experiences, self._local, odometry.dt, self.params, sure=not experiences.lost)
         if follower.state == "arrived":
             self.behaviour = Behaviour.AT_THE_GOAL
             self._freeing.at_rest()

@@ -75,15 +75,19 @@ class RouteFollower:
             return False
         self.failed, self._route, self._age_s, self._plan_in_s = False, None, math.inf, 0.0
         self._nearest_m, self._since_nearer_s = math.inf, 0.0
-        self.state = self._state_on_the_way(dt, p)
+        self.state = self._state_on_the_way(dt, p, sure=not experiences.lost)
         return True
 
     def step(
-        self, experiences: ExperienceMap, local: LocalMovement, dt: float, p: PilotParams
+        self, experiences: ExperienceMap, local: LocalMovement, dt: float, p: PilotParams, *, sure: bool = True
     ) -> tuple[float, float] | None:
-        """The next point to head for, metres in the robot's frame. None: it has arrived, or no route is known."""
+        """The next point to head for, metres in the robot's frame. None: it has arrived, or no route is known.
+
+        sure: [ours] a robot that is lost only believes to be at the goal. It looks around until it knows where it is.
+        test_routes.py::test_who_is_lost_has_not_arrived.
+        """
         self.failed = False
-        if self.state == "arrived":
+        if self.state == "arrived" and sure:
             return None
         goal = self._goal_from_robot(experiences)
         self._age_s += dt
@@ -91,24 +95,27 @@ class RouteFollower:
         away = math.hypot(*goal)
         blocked = self._watch_headway(p)
         if self._there(away, dt, p) or (blocked and away < p.good_enough_m):
-            self.state = "arrived"
-            return None
+            if sure:
+                self.state = "arrived"
+                return None
+            self._look_around_s = p.look_around_s
         if blocked:
             self._fail(experiences, p)
         if self._plan_in_s <= 0:
             self._plan_in_s = p.replan_s
             self.plan(experiences, local, p)
-        self.state = self._state_on_the_way(dt, p)
+        self.state = self._state_on_the_way(dt, p, sure=sure)
         aim = self._aim(experiences, p) if self.state in ("tracking", "coasting") else None
         if aim is not None and self._free_to(goal, local, p):
             aim = goal
         self._headway.head_for(aim)
         return aim
 
-    def _state_on_the_way(self, dt: float, p: RouteParams) -> GoalState:
+    def _state_on_the_way(self, dt: float, p: RouteParams, *, sure: bool) -> GoalState:
+        """sure: who does not know where it is cannot say that no way leads from there."""
         if self._route is None or self._age_s > p.coast_s:
             self._no_route_s += dt
-            return "unreachable" if self._no_route_s > p.lost_s else "exploring"
+            return "unreachable" if sure and self._no_route_s > p.lost_s else "exploring"
         self._no_route_s = 0.0
         if self._look_around_s > 0:
             return "exploring"

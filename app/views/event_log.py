@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from app.session import Session
 from web.messages import Closure, Event, EventKind, WhyReport
 
@@ -18,12 +20,18 @@ class EventLog:
         self.why: dict[int, WhyReport] = {}  # by the numbers of events
         self.closures: tuple[Closure, ...] = ()  # of late, with the map before and after each
         self._number = 0
+        self._counted: list[Event] = []  # those in whose place a newer one of their line stands, for the past
         self._of_ticks: set[int] = set()
 
-    def note(self, kind: EventKind, text: str) -> Event:
+    def note(self, kind: EventKind, text: str, line: str = "") -> Event:
+        """line: a name for what repeats. The event then takes the place of the last one of this line, and counts it."""
         self._number += 1
-        event = Event(self._number, self._session.time_s, kind, text)
-        self.events = (*self.events[-MOST_EVENTS:], event)
+        event = Event(self._number, self._session.time_s, kind, text, line)
+        last = next((other for other in reversed(self.events) if line and other.line == line), None)
+        if last is not None:
+            event = replace(event, count=last.count + 1, since_s=last.time_s if last.since_s is None else last.since_s)
+            self._counted = [*self._counted[-MOST_EVENTS:], last]
+        self.events = (*(other for other in self.events[-MOST_EVENTS:] if other is not last), event)
         if self.of_tick:
             self._of_ticks.add(self._number)
         return event
@@ -32,7 +40,11 @@ class EventLog:
         """Another log, of this session, with the events up to the end of the tick at this simulated time, without those of
         the orders after it."""
         cut = EventLog(session)
-        cut.events = tuple(event for event in self.events if self._is_before(event, time_s))
+        known = sorted((*self._counted, *self.events), key=lambda event: event.number)
+        known = [event for event in known if self._is_before(event, time_s)]
+        newest = {event.line or event.number: event for event in known}
+        cut.events = tuple(event for event in known if newest[event.line or event.number] is event)
+        cut._counted = [event for event in known if newest[event.line or event.number] is not event]
         cut.why = {event.number: self.why[event.number] for event in cut.events if event.number in self.why}
         kept = {event.number for event in cut.events}
         cut.closures = tuple(closure for closure in self.closures if closure.event in kept)

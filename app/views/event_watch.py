@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 from app.session import Session, is_lost
 from app.views.closures import Closures
 from app.views.event_log import EventLog
@@ -9,7 +11,8 @@ from app.views.reasons import Reasons
 from app.views.snap_causes import words_of
 from disk import kind
 from ratslam_core import find_places
-from web.messages import Packet, Snap
+from web.messages import GoalState, Packet, Snap
+from web.messages.told import goal_meaning
 
 FALSE_EVERY_S = 5.0  # false positives are marked no more often
 PLACES_EVERY_S = 10.0
@@ -17,7 +20,7 @@ NEW_GROUND, LONG_AGO_S = 20, 30.0  # after so many new experiences, one that was
 DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
-@kind("event_watch/1")
+@kind("event_watch/2")
 class EventWatch:
     """Call `watch` after each tick."""
 
@@ -31,7 +34,7 @@ class EventWatch:
         self.last_snap: Snap | None = None
         self.lost = False
         self._before = session.brain.pose_cells.winner
-        self._goal_state: tuple[int, str] | None = None
+        self._goal_state: tuple[int | None, str] = None, ""  # the goal, and what was last true of it
         self._false_marked, self._false_due_s = 0, 0.0
         self._recovered = self._multiple = self._collisions = 0
         self._dropped = len(session.brain.experience_map.dropped_links)
@@ -92,16 +95,20 @@ class EventWatch:
         self.lost = lost
 
     def _watch_goal(self) -> None:
-        follower_state = self._session.pilot.goal_state
-        if follower_state == self._goal_state:
+        """Marks what is true of the goal. What a robot that is lost believes of it waits until it knows where it is."""
+        told = self._session.pilot.goal_state
+        if told is None or told[0] != self._goal_state[0]:
+            self._goal_state = (None if told is None else told[0], "")
+        if told is None:
             return
-        self._goal_state = follower_state
-        if follower_state is None:
+        goal, state = told
+        meaning = goal_meaning(state, lost=self.lost, followed=self._session.pilot.mode == "goal")
+        if meaning not in get_args(GoalState) or meaning == self._goal_state[1]:
             return
-        goal, state = follower_state
-        if state == "arrived":
+        self._goal_state = goal, meaning
+        if meaning == "arrived":
             self._log.note("arrived", f"at experience {goal}")
-        elif state == "unreachable":
+        elif meaning == "unreachable":
             self._log.note("unreachable", f"no way to experience {goal} is known; exploring for one")
 
     def _watch_kidnaps(self) -> None:
@@ -132,7 +139,9 @@ class EventWatch:
         if dropped:
             i, j = dropped[0]
             more = f" and {len(dropped) - 1} more" if len(dropped) > 1 else ""
-            self._log.note("link", f"deleted: from experience {i} to {j}{more}, tried too often in vain")
+            self._log.note(
+                "link", f"deleted: from experience {i} to {j}{more}, tried too often in vain", "deleted links"
+            )
             self._dropped += len(dropped)
 
     def _watch_places(self) -> None:
@@ -143,9 +152,13 @@ class EventWatch:
         found = find_places(self._session.brain.experience_map)
         multiple, collisions = len(found.multiple_representations), len(found.hash_collisions)
         if multiple > self._multiple:
-            self._log.note("place", f"places with several representations in the pose cells: {multiple}")
+            self._log.note(
+                "place", f"places with several representations in the pose cells: {multiple}", "places held twice"
+            )
         if collisions > self._collisions:
-            self._log.note("place", f"states of the pose cells that stand for several places: {collisions}")
+            self._log.note(
+                "place", f"states of the pose cells that stand for several places: {collisions}", "states in common"
+            )
         self._multiple, self._collisions = max(multiple, self._multiple), max(collisions, self._collisions)
 
     def _watch_correction(self) -> None:
@@ -154,6 +167,8 @@ class EventWatch:
         if self._diverged and not was and session.time_s >= self._diverged_due_s:
             rate = session.config.experience_map.correction
             self._log.note(
-                "warning", f"the map has diverged: a correction rate of {rate:g} is too high for all links at once"
+                "warning",
+                f"the map has diverged: a correction rate of {rate:g} is too high for all links at once",
+                "diverged",
             )
             self._diverged_due_s = session.time_s + DIVERGED_EVERY_S

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.session import Session
+from app.session import Session, is_lost
 from app.views.arrays import frozen
 from web.messages import Goal, TaggedPlace
 
@@ -20,6 +20,7 @@ def goal_view(session: Session) -> Goal | None:
         progress.experience, goal.x, goal.y, progress.state, progress.eta_s, progress.remaining_m,
         frozen(xy.astype(np.float32)), frozen(progress.arrival_s.astype(np.float32)),
         frozen(experiences.poses[list(session.pilot.goals), :2].astype(np.float32)),
+        is_lost(session), session.pilot.mode == "goal",
     )  # fmt: skip
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from app.config.presets import PRESETS
-from app.session import SECOND, Session
+from app.session import SECOND, Session, is_lost
 from app.views.actors import ActorsView
 from app.views.belief import belief_of
 from app.views.beside import BesideDrawn
@@ -120,7 +120,7 @@ class Snapshots:
             real_time_factor=real_time_factor,
             seed=session.seed,
             fault=fault,
-            lost=history.events.lost,
+            lost=is_lost(session),
             world=self._drawn.look(session.simulator)
             if recorded is None
             else self._floor.look(session, history.trails),

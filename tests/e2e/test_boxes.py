@@ -153,6 +153,29 @@ def test_nothing_is_covered_cut_or_too_small(
         assert not wrong, "\n".join(wrong)
 
 
+def test_enlarged_four_times_the_plates_are_seen_and_the_panel_can_be_opened(
+    program: Program, browser: Browser
+) -> None:
+    """1280 x 1024 at 400 %: half of the page is the plates', and nothing lies over them but the line of views."""
+    program.command("reset", world="office", seed=5)
+    with open_page(browser, program.url, 640, 512, stage=False) as page:
+        page.set_viewport_size({"width": 320, "height": 256})
+        page.evaluate("() => document.querySelectorAll('.toast').forEach((toast) => toast.remove())")
+        calm(page)
+        assert page.evaluate(WRONG, [PARTS, 24]) == []
+        (_, stage_y, _, stage_height), (_, views_y, _, views_height) = (
+            page.evaluate(
+                "(part) => Object.values(document.querySelector(part).getBoundingClientRect().toJSON())", part
+            )[:4]
+            for part in ("#stage", ".views")
+        )
+        assert stage_height >= 128
+        assert views_y + views_height <= stage_y + stage_height / 3
+        page.click("#panels")
+        expect(page.locator("#panel")).to_be_in_viewport(ratio=0.99)
+        page.click("#panel .close")
+
+
 SMALL = """() => [...document.querySelectorAll("button, select, summary, [role=tab], label.check, .pop a, .option")]
     .filter((part) => part.checkVisibility({ visibilityProperty: true }) && !part.closest(".gone"))
     .map((part) => [part, part.getBoundingClientRect()])

@@ -26,7 +26,7 @@ PLAIN = {"time_s": 45_296.0, "goal": None, "mode": "explore", "lost": False, "ru
 PLAIN |= {"pose_cells": CALM.pose_cells, "worlds": (("office", "Open-plan office, 10 x 8 m"),)}
 STATES: dict[str, dict[str, Any]] = {
     "exploring": {},
-    "lost: 2 packets": {"lost": True, "pose_cells": TORN.pose_cells, "goal": FAR, "mode": "goal"},
+    "lost: 2 packets": {"lost": True, "pose_cells": TORN.pose_cells, "goal": replace(FAR, lost=True), "mode": "goal"},
     "going to the goal": {"goal": FAR, "mode": "goal"},
     "by dead reckoning": {"goal": replace(FAR, state="coasting"), "mode": "goal"},
     "looking for a way": {"goal": replace(FAR, state="exploring"), "mode": "goal"},

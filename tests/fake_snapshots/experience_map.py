@@ -84,7 +84,7 @@ def _near(second: int, nodes: int) -> int:
 
 
 @lru_cache(maxsize=4)
-def goal_layer(tick: int, nodes: int, estimate: Pose) -> Goal:
+def goal_layer(tick: int, nodes: int, estimate: Pose, lost: bool) -> Goal:
     second = tick // 10
     target = _goal_row(nodes)
     seconds, before = _search(second, nodes, target)
@@ -104,4 +104,5 @@ def goal_layer(tick: int, nodes: int, estimate: Pose) -> Goal:
         remaining_m=float(np.hypot(*np.diff(route, axis=0).T).sum()),
         route_xy=frozen(route),
         route_arrival_s=frozen(arrival),
+        lost=lost,
     )

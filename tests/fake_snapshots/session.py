@@ -50,7 +50,7 @@ def fake_snapshot(tick: int, goal: bool = True, *, nodes: int = NODES, run: int 
         pose_cells=pose_cell_layer(tick, truth, lost),
         map=fresh,
         times=times,
-        goal=goal_layer(tick, nodes, estimate) if goal else None,
+        goal=goal_layer(tick, nodes, estimate, lost) if goal else None,
         views=min(nodes, 600 + tick // 10),
         experiences=nodes,
         links=len(fresh.links),

@@ -23,13 +23,8 @@ from web.http.run_state import (
     trial_fields,
 )
 from web.http.stage_state import stage_fields
-from web.messages import (
-    Event,
-    Goal,
-    LivingLayer,
-    MapLayer,
-    Snapshot,
-)
+from web.messages import Event, Goal, LivingLayer, MapLayer, Snapshot
+from web.messages.told import Facts, goal_told, robot_told
 
 _OPTIONS = orjson.OPT_SERIALIZE_NUMPY
 
@@ -78,7 +73,7 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
     return {
         "run": snapshot.run,
         "doing": snapshot.doing,
-        "lost": snapshot.lost,
+        "told": _told(snapshot),
         "fault": snapshot.fault,
         "real_time_factor": snapshot.real_time_factor,
         "title": title(snapshot),
@@ -95,6 +90,18 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
     }
 
 
+def _told(snapshot: Snapshot) -> dict[str, Any]:
+    """The robot's sentence and the goal's."""
+    goal, time, situation = snapshot.goal, snapshot.time, snapshot.situation
+    facts = Facts(
+        snapshot.lost, len(snapshot.pose_cells.packets), snapshot.mode, None if goal is None else goal.state,
+        running=snapshot.running, past=time is not None and time.past, faulty=snapshot.fault is not None,
+        over=snapshot.recording is not None and snapshot.recording.over,
+        played_ahead=situation is not None and situation.state == "playing",
+    )  # fmt: skip
+    return {"robot": asdict(robot_told(facts)), "goal": None if goal is None else asdict(goal_told(goal))}
+
+
 def title(snapshot: Snapshot) -> str:
     """Of the office, or of the recording."""
     if snapshot.recording is not None:
@@ -103,7 +110,11 @@ def title(snapshot: Snapshot) -> str:
 
 
 def event_fields(event: Event) -> dict[str, Any]:
-    return {"number": event.number, "time_s": event.time_s, "kind": event.kind, "text": event.text}
+    since_s = event.time_s if event.since_s is None else event.since_s
+    return {
+        "number": event.number, "time_s": event.time_s, "kind": event.kind, "text": event.text,
+        "line": event.line, "count": event.count, "since_s": since_s,
+    }  # fmt: skip
 
 
 def to_json(document: object) -> bytes:

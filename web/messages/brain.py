@@ -189,3 +189,5 @@ class Goal:
         default_factory=lambda: np.zeros((0, 2), np.float32)
     )  # (k, 2) map frame, of all
     # experiences that stand for the goal
+    lost: bool = False  # the robot does not know where it is, and so only believes what it says of the goal
+    followed: bool = True  # the robot is on its way there, or there: nobody drives it, nor was it told to explore

@@ -48,12 +48,15 @@ EventKind = Literal[
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """One mark on the timeline."""
+    """One mark on the timeline. What repeats is one line that counts: with each time it gets a new number, time and text."""
 
     number: int
     time_s: float
     kind: EventKind
     text: str
+    line: str = ""  # its name, where it repeats: the newest event of a line stands for all
+    count: int = 1
+    since_s: float | None = None  # when the first of them happened, where they are more than one
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from web.messages import Belief, Goal, PoseCellLayer, Snap, Snapshot
+from web.messages.told import goal_told
 from web.panel.part import Content
 from web.panel.words import clock, counted, number, often, percent, table, thousands
 
@@ -95,7 +96,7 @@ def _goal(goal: Goal | None) -> dict[str, Any]:
         return table("Goal", [], "none: click on the map and the robot goes there")
     others = len(goal.places_xy) - 1
     rows = [
-        ("state", goal.state),
+        ("state", goal_told(goal).words),
         ("experience", f"#{goal.experience}" + (f" or {others} others" if others > 0 else "")),
     ]
     rows += [("time to get there", number(goal.eta_s, "s", 0)), ("way to go", number(goal.remaining_m, "m"))]

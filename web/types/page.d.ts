@@ -148,10 +148,13 @@ type Moving = { walkers: Record<string, [number, number, number]>; boxes: string
 type Walk = { at: number; of: number; title: string; words: string };
 type OfficeFields = { edition: number; undo: string | null; redo: string | null; saved: boolean };
 type RecordingFields = { name: string; format: string; moments: number; seconds: number; has: string[]; over: boolean };
+// web/messages/told.py
+type Chip = { icon: string; tone: string; words: string };
+type GoalChip = { icon: string; words: string; short: string; metres: string; seconds: string };
 type PageFields = {
   run: number;
   doing: string;
-  lost: boolean;
+  told: { robot: Chip; goal: GoalChip | null };
   fault: string | null;
   real_time_factor: number;
   title: string;
@@ -244,7 +247,8 @@ type SideFields = {
   robot: Pose;
   turn_rad: number;
 };
-type TimelineEvent = { number: number; time_s: number; kind: string; text: string };
+// `line`: the name of what repeats; the newest event of a line stands for `count` of them since `since_s`.
+type TimelineEvent = { number: number; time_s: number; kind: string; text: string; line: string; count: number; since_s: number };
 type Wrong = { field: string | null; value: unknown; reason: string };
 // `wrong`: sentences, where something was.
 type Told = { [key: string]: any; wrong?: string; field?: string | null };

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -25,6 +26,13 @@ def observed(session: Session, ticks: int) -> History:
         session.tick()
         history.watch()
     return history
+
+
+def at(session: Session, time_s: float) -> None:
+    """The session stands at another time."""
+    frame: Any = session.frame
+    rest = {name: getattr(frame, name) for name in frame.__slots__ if name not in ("tick", "time_s")}
+    session.frame = type(frame)(**rest, tick=round(10 * time_s), time_s=time_s)
 
 
 def kinds(history: History) -> list[str]:
@@ -94,9 +102,7 @@ def test_a_long_series_is_thinned_evenly() -> None:
     session = a_session()
     history = History(session)
     for second in range(1, 2 * SERIES_POINTS + 300):
-        session.frame = type(session.frame)(**{
-            name: getattr(session.frame, name) for name in session.frame.__slots__ if name not in ("tick", "time_s")
-        }, tick=10 * second, time_s=float(second))  # fmt: skip
+        at(session, float(second))
         history.watch()
         assert len(history.series.series.time_s) <= SERIES_POINTS
     steps = np.diff(history.series.series.time_s)
@@ -158,6 +164,44 @@ def test_arrival_and_unreachable_goals_are_noted_once() -> None:
     history.events._watch_goal()
     history.events._watch_goal()
     assert kinds(history).count("unreachable") == 1
+
+
+def test_of_a_goal_only_what_is_true_is_noted() -> None:
+    """While the robot is lost it has not arrived; as soon as it knows where it is, it has, and this is noted once."""
+    session = a_session(100)
+    history = History(session)
+    session.pilot.set_goal(0)
+    follower = session.pilot._follower
+    assert follower is not None
+    for state, lost in [("tracking", True), ("arrived", True), ("unreachable", True), ("exploring", True)]:
+        follower.state, history.events.lost = state, lost  # type: ignore[assignment]
+        history.events._watch_goal()
+        assert history.log.events == ()
+    for lost in (True, False, True, False):
+        follower.state, history.events.lost = "arrived", lost
+        history.events._watch_goal()
+    assert kinds(history) == ["arrived"]
+
+
+def test_what_repeats_is_one_line_that_counts() -> None:
+    """Also at any moment of the past: there the line counts what had happened by then."""
+    session = a_session()
+    log = History(session).log
+    for tick in range(5):
+        at(session, float(tick))
+        log.of_tick = True
+        log.note("place", f"several: {tick}", "several")
+        log.note("snap", f"snap {tick}")
+    (line,) = (event for event in log.events if event.kind == "place")
+    assert (line.text, line.count, line.since_s, line.time_s) == ("several: 4", 5, 0.0, 4.0)
+    assert [event.number for event in log.events] == sorted(event.number for event in log.events)
+    assert sum(event.kind == "snap" for event in log.events) == 5
+    for tick in range(5):
+        past = log.until(float(tick), session)
+        (line,) = (event for event in past.events if event.kind == "place")
+        assert (line.text, line.count, line.time_s) == (f"several: {tick}", tick + 1, float(tick))
+        past.note("place", "several: again", "several")
+        assert [event.count for event in past.events if event.kind == "place"] == [tick + 2]
 
 
 def test_deleted_links_are_noted_once_a_tick() -> None:

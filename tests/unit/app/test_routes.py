@@ -255,6 +255,37 @@ def test_carried_away_from_the_goal_it_looks_for_the_way_back() -> None:
     assert math.dist(run.truth, (1.0, 0.6)) < 0.2
 
 
+def test_who_is_lost_has_not_arrived() -> None:
+    """It only believes to be at its goal: it looks around, and has arrived when it knows where it is. Nor does it say that there
+    is no way, as long as it does not know from where."""
+    map_ = HandMadeMap(*chain((1.0, 0.6), (3.0, 0.6)))
+    run = Run(Simulator(room(start=(1.0, 0.6, 0.0)), EXACT), a_pilot(), map_)
+    map_.lost = True
+    run.pilot.set_goal(len(map_) - 1)
+    told: set[str] = set()
+    places: set[tuple[float, float]] = set()
+    for _ in range(600):
+        run.tick()
+        assert run.pilot.goal_state is not None
+        told.add(run.pilot.goal_state[1])
+        places.add((round(run.truth[0], 1), round(run.truth[1], 1)))
+    assert told == {"tracking", "exploring"}
+    assert len(places) > 20
+    map_.lost = False
+    run.run(60.0)
+    assert run.pilot.goal_state == (len(map_) - 1, "arrived")
+    map_.lost = True
+    run.run(1.0)
+    assert run.pilot.goal_state == (len(map_) - 1, "exploring")
+    map_.landed, map_.robot = 1, Pose2(1.0, 0.6, 0.0)  # it is on an island, the goal is not
+    follower = RouteFollower(len(map_) - 1)
+    for lost, state in ((True, "exploring"), (False, "unreachable")):
+        map_.lost = lost
+        for _ in range(600):
+            assert follower.carried_away(map_, DT, PilotParams())  # type: ignore[arg-type]
+        assert follower.state == state
+
+
 def test_the_last_metre_is_driven_straight() -> None:
     """The route comes to the goal by a way round; where the sonars see that nothing lies between, the robot cuts it."""
     map_ = HandMadeMap(*chain((0.0, 0.0), (0.0, 3.0), (0.8, 3.0), (0.8, 0.0)))

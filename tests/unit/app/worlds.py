@@ -39,6 +39,7 @@ class HandMadeMap:
         self.params = ExperienceMapParams()
         self.pace = 0.0  # links take as long as `link_times` says, whatever their length
         self.trials: list[tuple[int, int, bool]] = []
+        self.lost = False
         self.landed = 10**9  # experiences from this one on lie on an island of their own
 
     def tried(self, i: int, j: int, reached: bool) -> bool:

@@ -2,7 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { directionOf, meaningOf } from "../../../web/static/model/key_meanings.js";
+import { meaningOf } from "../../../web/static/model/key_meanings.js";
+import { GROUPS, actOf } from "../../../web/static/model/key_table.js";
 
 const NOWHERE = { typing: false, arrows: false, pressing: false, dialog: false };
 /** @param {string} code @param {string} key @param {object} [rest] */
@@ -16,11 +17,104 @@ const pressed = (code, key, rest = {}) => ({
   ...rest,
 });
 
-test("arrows and W A S D drive, by where they lie on the keyboard", () => {
-  const drives = ["ArrowUp", "KeyW", "ArrowDown", "KeyS", "ArrowLeft", "KeyA", "ArrowRight", "KeyD"];
-  assert.deepEqual(drives.map(directionOf), ["up", "up", "down", "down", "left", "left", "right", "right"]);
-  assert.deepEqual(meaningOf(pressed("KeyW", "z"), NOWHERE), { drive: "up" }); // a French keyboard
-  assert.deepEqual(meaningOf(pressed("KeyZ", "w"), NOWHERE), { act: "w" });
+// What layouts write in the places of a US keyboard, row by row: alone, and with shift; and with AltGr by place.
+const CODES = [
+  ...[..."1234567890"].map((digit) => `Digit${digit}`),
+  ...[..."QWERTYUIOP"].map((letter) => `Key${letter}`),
+  ...["BracketLeft", "BracketRight"],
+  ...[..."ASDFGHJKL"].map((letter) => `Key${letter}`),
+  "Semicolon",
+  ...[..."ZXCVBNM"].map((letter) => `Key${letter}`),
+  ...["Comma", "Period", "Slash", "Backslash", "Minus"],
+];
+/** @type {Record<string, { alone: string, shift: string, third?: Record<string, string> }>} */
+const LAYOUTS = {
+  QWERTY: {
+    alone: "1234567890qwertyuiop[]asdfghjkl;zxcvbnm,./\\-",
+    shift: "!@#$%^&*()QWERTYUIOP{}ASDFGHJKL:ZXCVBNM<>?|_",
+  },
+  QWERTZ: {
+    alone: "1234567890qwertzuiopü+asdfghjklöyxcvbnm,.-#ß",
+    shift: `!"§$%&/()=QWERTZUIOPÜ*ASDFGHJKLÖYXCVBNM;:_'?`,
+    third: { Digit8: "[", Digit9: "]" },
+  },
+  AZERTY: {
+    alone: `&é"'(-è_çàazertyuiop^$qsdfghjklmwxcvbn,;:!*)`,
+    shift: "1234567890AZERTYUIOP¨£QSDFGHJKLMWXCVBN?./§µ°",
+    third: { Digit5: "[", Minus: "]" },
+  },
+  Dvorak: {
+    alone: `1234567890',.pyfgcrl/=aoeuidhtns;qjkxbmwvz\\[`,
+    shift: `!@#$%^&*()"<>PYFGCRL?+AOEUIDHTNS:QJKXBMWVZ|{`,
+    third: { Equal: "]" },
+  },
+  Russian: {
+    alone: "1234567890йцукенгшщзхъфывапролджячсмитьбю.\\-",
+    shift: `!"№;%:?*()ЙЦУКЕНГШЩЗХЪФЫВАПРОЛДЖЯЧСМИТЬБЮ,/_`,
+  },
+  Greek: {
+    alone: "1234567890;ςερτυθιοπ[]ασδφγηξκλ΄ζχψωβνμ,./\\-",
+    shift: "!@#$%^&*():΅ΕΡΤΥΘΙΟΠ{}ΑΣΔΦΓΗΞΚΛ¨ΖΧΨΩΒΝΜ<>?|_",
+  },
+  Arabic: {
+    alone: "1234567890ضصثقفغعهخحجدشسيبلاتنمكئءؤرﻻىةوزظ\\-",
+    shift: "!@#$%^&*()ًٌَُإ×؛<>:ٍِ]ْلأـ،/ِْآلآ’,.؟|_",
+  },
+};
+
+/** All that can be pressed on a layout. @param {string} name */
+function* strokes(name) {
+  const { alone, shift, third = {} } = LAYOUTS[name];
+  for (const [k, code] of CODES.entries()) {
+    yield pressed(code, [...alone][k] ?? "Dead");
+    yield pressed(code, [...shift][k] ?? "Dead", { shiftKey: true });
+  }
+  for (const [code, key] of Object.entries(third)) {
+    yield pressed(code, key, { ctrlKey: true, altKey: true }); // Windows
+    yield pressed(code, key, { getModifierState: (/** @type {string} */ state) => state === "AltGraph" });
+    yield pressed(code, key, { altKey: true }); // a Mac
+  }
+  for (const key of ["Escape", "PageUp", "PageDown", "ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight"])
+    yield pressed(key, key);
+  yield pressed("Space", " ");
+}
+
+/** What a stroke does, in one word. @param {ReturnType<typeof pressed>} stroke */
+function deed(stroke) {
+  const meaning = meaningOf(stroke, NOWHERE);
+  return !meaning
+    ? "nothing"
+    : "act" in meaning
+      ? meaning.act
+      : `${stroke.code.startsWith("Arrow") ? "Arr" : "Key"} ${meaning.drive}`;
+}
+
+const HELP = GROUPS.flatMap(({ rows }) => rows.flatMap(({ keys }) => keys.map(String)));
+const DRIVING = ["Key up", "Key down", "Key left", "Key right", "Arr up", "Arr down", "Arr left", "Arr right"];
+
+for (const layout of Object.keys(LAYOUTS))
+  test(`${layout}: every key of the help is there, and means what is written on it`, () => {
+    assert.equal(CODES.length, [...LAYOUTS[layout].alone].length, layout);
+    const all = [...strokes(layout)];
+    const deeds = new Set(all.map(deed));
+    const unmet = [...HELP, ...DRIVING].filter((key) => !deeds.has(key));
+    assert.deepEqual(unmet, []);
+    for (const stroke of all) {
+      const written = stroke.key.length > 1 ? stroke.key : stroke.key.toLowerCase();
+      if (actOf(written)) assert.equal(deed(stroke), written); // it never drives
+    }
+  });
+
+test("W A S D drive by their letters, and by place where no Latin letter is written", () => {
+  for (const [code, key] of [
+    ["KeyW", "w"],
+    ["KeyZ", "w"], // a French keyboard
+    ["KeyW", "ц"],
+    ["KeyW", "ς"],
+  ])
+    assert.deepEqual(meaningOf(pressed(code, key), NOWHERE), { drive: "up" });
+  assert.deepEqual(meaningOf(pressed("KeyW", "z"), NOWHERE), { act: "z" });
+  assert.deepEqual(meaningOf(pressed("KeyA", "q"), NOWHERE), { act: "q" });
 });
 
 test("an arrow is the slider's, a letter drives also there", () => {

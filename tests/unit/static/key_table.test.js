@@ -1,7 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { directionOf } from "../../../web/static/model/key_meanings.js";
 import { GROUPS, actOf, written } from "../../../web/static/model/key_table.js";
 
 const rows = GROUPS.flatMap((group) => group.rows.map((row) => row));
@@ -9,7 +8,7 @@ const rows = GROUPS.flatMap((group) => group.rows.map((row) => row));
 test("no key has two meanings, and none of them drives", () => {
   const keys = rows.flatMap((row) => [...row.keys]);
   assert.equal(new Set(keys).size, keys.length);
-  for (const key of keys) assert.equal(directionOf(`Key${key.toUpperCase()}`), undefined, key);
+  for (const key of keys) assert.ok(!["w", "a", "s", "d"].includes(key), key);
 });
 
 test("every key does what the help says", () => {

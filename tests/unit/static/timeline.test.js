@@ -6,6 +6,7 @@ import { clock, tickTimes, tickTimesIn } from "../../../web/static/model/clock.j
 import { kinds, markOf, nameOf, weightOf } from "../../../web/static/model/event_kinds.js";
 import { frameOf, lying } from "../../../web/static/model/side_maps.js";
 import {
+  counted,
   fine,
   labelsOf,
   marksOf,
@@ -20,7 +21,15 @@ import { EVENT_KINDS } from "../../../web/static/shared.js";
 import { chance } from "./chance.js";
 
 /** @param {number} number @param {number} time_s @param {string} kind @returns {TimelineEvent} */
-const event = (number, time_s, kind) => ({ number, time_s, kind, text: "x" });
+const event = (number, time_s, kind) => ({
+  number,
+  time_s,
+  kind,
+  text: "x",
+  line: "",
+  count: 1,
+  since_s: time_s,
+});
 const next = chance(5);
 const many = Array.from({ length: 300 }, (_, k) =>
   event(k, k + next(), EVENT_KINDS[Math.floor(next() * EVENT_KINDS.length)]),
@@ -92,6 +101,23 @@ test("names are within the timeline and none lies over another; what counts most
 
 test("an event is told with its time and its name", () => {
   assert.equal(words({ ...event(1, 61, "unreachable"), text: "to 5" }), "1:01 no way: to 5");
+});
+
+test("what repeats is one line that counts, wherever it came from", () => {
+  const line = (/** @type {number} */ number) => ({
+    ...event(number, 10 * number, "place"),
+    line: "several",
+    count: number,
+  });
+  const news = [line(1), event(2, 15, "snap"), line(2), event(3, 21, "snap"), { ...line(3), since_s: 10 }];
+  for (let k = 0; k <= news.length; k++) {
+    const told = counted([...counted(news.slice(0, k)), ...news.slice(k)]); // in two messages of any length
+    assert.deepEqual(
+      told.map(({ number }) => number),
+      [2, 3, 3],
+    );
+    assert.equal(words(told[2]), "0:30 places: x, 3 times since 0:10");
+  }
 });
 
 test("a span keeps its middle when it is made shorter, stays in the whole, and becomes the whole again", () => {

@@ -169,13 +169,19 @@ def test_a_larger_world_is_scaled_and_low(bench: Bench) -> None:
         ("exploring", None, "? s"),
         ("arrived", 0.0, "arrived"),
         ("unreachable", None, "no way known"),
+        ("arrived", 0.0, "arrived?"),
     ],
 )
 def test_the_flag_says_how_long(bench: Bench, state: str, eta: float | None, words: str) -> None:
     s = fake_snapshot(435)
     assert s.goal is not None
     short = replace(
-        s.goal, state=state, eta_s=eta, route_xy=s.goal.route_xy[:1], route_arrival_s=s.goal.route_arrival_s[:1]
+        s.goal,
+        state=state,
+        eta_s=eta,
+        route_xy=s.goal.route_xy[:1],
+        route_arrival_s=s.goal.route_arrival_s[:1],
+        lost=words.endswith("?"),
     )
     bench.show(replace(s, goal=short))
     assert bench.says("/map/flag/pill", words)

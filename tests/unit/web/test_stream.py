@@ -32,7 +32,7 @@ def test_greets_then_tells_the_state_and_the_events(server):
         assert set(state["page"]) == {
             "run",
             "doing",
-            "lost",
+            "told",
             "fault",
             "real_time_factor",
             "title",

@@ -1,7 +1,7 @@
 // Handles keys before viser sees them, in the page and in the viewer's frame.
 
 import { within } from "../elements/dom.js";
-import { directionOf, meaningOf } from "../model/key_meanings.js";
+import { meaningOf } from "../model/key_meanings.js";
 
 // Widgets that use arrows, space or letters themselves.
 const TYPING =
@@ -19,9 +19,11 @@ export class Keys {
    */
   constructor({ drive, act, allUp }) {
     this.calls = { drive, act, allUp };
+    /** @type {Map<string, Direction>} */
+    this.driving = new Map(); // by place: when it is let go, a key may write something else
     this.listen(window);
-    document.addEventListener("visibilitychange", () => document.hidden && allUp());
-    window.addEventListener("pagehide", allUp);
+    document.addEventListener("visibilitychange", () => document.hidden && this.allUp());
+    window.addEventListener("pagehide", () => this.allUp());
   }
 
   /** @param {Window} target */
@@ -29,7 +31,7 @@ export class Keys {
     target.addEventListener("keydown", (event) => this.down(event), true);
     target.addEventListener("keyup", (event) => this.up(event), true);
     // Focus that only moves between the page and its frame is not lost: we listen to both.
-    target.addEventListener("blur", () => setTimeout(() => document.hasFocus() || this.calls.allUp()), true);
+    target.addEventListener("blur", () => setTimeout(() => document.hasFocus() || this.allUp()), true);
   }
 
   /** @param {KeyboardEvent} event */
@@ -41,14 +43,22 @@ export class Keys {
     if (!meaning) return;
     if ("drive" in meaning) {
       swallow(event);
-      if (!event.repeat) this.calls.drive(meaning.drive, true);
+      if (event.repeat) return;
+      this.driving.set(event.code, meaning.drive);
+      this.calls.drive(meaning.drive, true);
     } else if (!event.repeat && this.calls.act(meaning.act)) swallow(event);
+  }
+
+  allUp() {
+    this.driving.clear();
+    this.calls.allUp();
   }
 
   /** @param {KeyboardEvent} event */
   up(event) {
-    const drive = directionOf(event.code);
-    if (drive) this.calls.drive(drive, false);
+    const drive = this.driving.get(event.code);
+    if (!drive || !this.driving.delete(event.code)) return;
+    if (![...this.driving.values()].includes(drive)) this.calls.drive(drive, false);
   }
 }
 

@@ -8,6 +8,7 @@ import { WorldClient } from "./world_client.js";
 import { Plan } from "./plan.js";
 import { Pointer } from "./pointer.js";
 import { SaveDialog } from "./save_dialog.js";
+import { nameOfKey } from "../model/key_meanings.js";
 import { away } from "../model/geometry.js";
 import { followingLines } from "../model/script.js";
 import { kindOf } from "../model/things.js";
@@ -129,7 +130,14 @@ export class Editor {
     if (!this.open || !(event.ctrlKey || event.metaKey) || event.altKey || document.querySelector("dialog[open]"))
       return;
     if (within(event, "input:not([type=checkbox]), textarea")) return;
-    const key = event.key.toLowerCase();
+    const key = nameOfKey({
+      code: event.code,
+      key: event.key,
+      ctrlKey: false,
+      metaKey: false,
+      altKey: false,
+      isComposing: false,
+    });
     if (key !== "z" && key !== "y") return;
     event.preventDefault();
     if (key === "y" || event.shiftKey) this.redo();

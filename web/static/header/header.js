@@ -3,7 +3,7 @@
 import { $, find } from "../elements/dom.js";
 import { setIcon } from "../elements/icons.js";
 import { clock } from "../model/clock.js";
-import { goalWords, statusOf } from "../model/status.js";
+import { sentence } from "../model/sentences.js";
 import { toast } from "../elements/toasts.js";
 
 export class Header {
@@ -26,8 +26,8 @@ export class Header {
     if (document.activeElement !== $("speed")) choose($("speed"), String(state.speed));
     $("seed").textContent = String(state.seed);
     this.showWorlds(state.world, page);
-    this.showStatus(state, page);
-    this.showGoal(state.goal);
+    this.showStatus(page);
+    this.showGoal(page.told.goal);
     this.showWalk(page.walk);
     this.showFault(page.fault, state.running);
   }
@@ -51,9 +51,9 @@ export class Header {
     if (document.activeElement !== $("world")) $("world").value = world ?? "";
   }
 
-  /** @param {State} state @param {PageFields} page */
-  showStatus(state, page) {
-    const [icon, tone, text] = statusOf(state, page);
+  /** @param {PageFields} page */
+  showStatus(page) {
+    const { icon, tone, words: text } = page.told.robot;
     const chip = $("status");
     setIcon(chip, icon);
     chip.dataset.tone = tone;
@@ -87,18 +87,17 @@ export class Header {
     find(box, ".words").textContent = walk.words;
   }
 
-  /** @param {Goal | null} goal */
+  /** @param {GoalChip | null} goal */
   showGoal(goal) {
     const chip = $("goal");
     chip.hidden = goal === null;
     if (goal === null) return;
-    const words = goalWords(goal);
-    setIcon(chip, words.icon);
-    chip.title = words.title;
-    find(chip, ".what").textContent = words.what;
-    find(chip, ".what").classList.toggle("always", !words.metres && !words.seconds);
-    find(chip, ".metres").textContent = words.metres;
-    find(chip, ".seconds").textContent = words.seconds;
+    setIcon(chip, goal.icon);
+    chip.title = sentence(goal.words);
+    find(chip, ".what").textContent = goal.short;
+    find(chip, ".what").classList.toggle("always", !goal.metres && !goal.seconds);
+    find(chip, ".metres").textContent = goal.metres;
+    find(chip, ".seconds").textContent = goal.seconds;
   }
 }
 

@@ -10,7 +10,16 @@ const APART_PX = 5; // a second mark of the same kind within this distance would
 /** @typedef {(time_s: number) => number} Axis where a time is, pixels */
 
 /** @param {TimelineEvent} event */
-export const words = (event) => `${clock(event.time_s)} ${nameOf(event.kind)}: ${event.text}`;
+export const words = (event) => `${clock(event.time_s)} ${nameOf(event.kind)}: ${event.text}${times(event)}`;
+
+/** How often what repeats has happened, "" for once. @param {Pick<TimelineEvent, "count" | "since_s">} event */
+export const times = ({ count, since_s }) => (count > 1 ? `, ${count} times since ${clock(since_s)}` : "");
+
+/** Of what repeats only the newest, which counts the others. @param {TimelineEvent[]} events oldest first */
+export function counted(events) {
+  const newest = new Map(events.map((event) => [event.line, event]));
+  return events.filter((event) => !event.line || newest.get(event.line) === event);
+}
 
 /**
  * The marks to draw. Those that count most come last, and so on top.

@@ -5,6 +5,7 @@ import { make } from "../elements/elements.js";
 import { svg } from "../elements/icons.js";
 import { clock } from "../model/clock.js";
 import { nameOf } from "../model/event_kinds.js";
+import { times } from "../model/timeline.js";
 import { markAt } from "./events.js";
 
 const MOST = 200; // rows
@@ -68,8 +69,9 @@ export class EventList {
   }
 
   /** @param {TimelineEvent} event */
-  row({ kind, time_s, text }) {
-    const words = make("span", {}, make("b", { textContent: nameOf(kind) }), ` ${text}`);
+  row(event) {
+    const { kind, time_s, text } = event;
+    const words = make("span", {}, make("b", { textContent: nameOf(kind) }), ` ${text}${times(event)}`);
     const button = make(
       "button",
       { type: "button" },

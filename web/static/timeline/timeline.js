@@ -6,7 +6,7 @@ import { make } from "../elements/elements.js";
 import { svg } from "../elements/icons.js";
 import { clock, tickTimesIn } from "../model/clock.js";
 import { nameOf } from "../model/event_kinds.js";
-import { fine, labelsOf, marksOf, parted, whole, within, words, zoomed } from "../model/timeline.js";
+import { counted, fine, labelsOf, marksOf, parted, whole, within, words, zoomed } from "../model/timeline.js";
 import { Bookmarks } from "./bookmarks.js";
 import { Comparison } from "./comparison.js";
 import { EventList } from "./event_list.js";
@@ -84,7 +84,7 @@ export class Timeline {
 
   /** @param {{ fresh: boolean, events: TimelineEvent[] }} news */
   add({ fresh, events }) {
-    this.events = (fresh ? events : this.events.concat(events)).slice(-MOST);
+    this.events = counted(fresh ? events : this.events.concat(events)).slice(-MOST);
     this.latest.replaceChildren(...this.events.slice(-12).map((event) => make("li", { textContent: words(event) })));
     this.list.draw();
     this.redraw(true);

@@ -20,6 +20,7 @@ from web.messages import (
     TaggedPlace,
     TimesLayer,
 )
+from web.messages.told import goal_told, seconds_words
 from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.marks.closures import ClosureMarks
 from web.viewer.marks.goal_flag import GoalFlag
@@ -243,19 +244,14 @@ def grid_step_m(scale: float) -> int:
     return 1 if scale > 0.35 else 5 if scale > 0.08 else 25
 
 
-def seconds_words(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
-
-
 def _in_steps(seconds: NDArray[np.float32], longest: float) -> NDArray[np.float32]:
     return np.asarray(np.rint(seconds * (TIME_STEPS / longest)) * (longest / TIME_STEPS), np.float32)
 
 
 def promise(goal: Goal) -> str:
-    """When it will be there, or why not."""
-    if goal.state in ("arrived", "unreachable") or goal.eta_s is None or not math.isfinite(goal.eta_s):
-        return {"arrived": "arrived", "unreachable": "no way known"}.get(goal.state, "? s")
-    return seconds_words(goal.eta_s)
+    """When it will be there, or how it stands with it."""
+    told = goal_told(goal)
+    return told.seconds or {"no way yet": "? s", "goal": "? s", "no way": "no way known"}.get(told.short, told.short)
 
 
 def _arrow(size: float, z: float) -> meshes.Mesh:

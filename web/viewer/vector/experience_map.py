@@ -8,12 +8,13 @@ from collections.abc import Sized
 import numpy as np
 from numpy.typing import NDArray
 
+from web.messages.told import seconds_words
 from web.viewer.fits.judged import wheels_alone, wheels_path
 from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.fits.poses import on_plate
 from web.viewer.marks.place_names import MOST
 from web.viewer.marks.route import pill_stops
-from web.viewer.plates.map_plate import NO_MAP, grid_step_m, promise, round_up, seconds_words
+from web.viewer.plates.map_plate import NO_MAP, grid_step_m, promise, round_up
 from web.viewer.vector import judged
 from web.viewer.vector.ground import draw_occupancy
 from web.viewer.vector.inspected import mark_on_map

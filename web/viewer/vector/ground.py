@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from web.messages.told import seconds_words
 from web.viewer.fits.map_fit import MapFit
 from web.viewer.plates import overlays
-from web.viewer.plates.map_plate import seconds_words
 from web.viewer.primitives.palette import Palette, mix
 from web.viewer.vector.sheet import Entry, Sheet
 from web.viewer.vector.subject import Subject

@@ -1,0 +1,89 @@
+"""The two sentences, of the robot and of its goal, over all that can be: they never contradict each other."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import Any, Literal, get_args
+
+import numpy as np
+import pytest
+
+from web.messages import Goal, GoalState
+from web.messages.told import Facts, goal_meaning, goal_told, robot_told
+
+STATES: tuple[GoalState, ...] = get_args(GoalState)
+MODES: tuple[Literal["explore", "manual", "goal", "recorded"], ...] = ("explore", "manual", "goal", "recorded")
+FLAGS = ("lost", "running", "past", "faulty", "over", "played_ahead")
+
+
+def a_goal(
+    state: GoalState,
+    eta_s: float | None = 61.4,
+    remaining_m: float | None = 12.34,
+    *,
+    lost: bool = False,
+    followed: bool = True,
+) -> Goal:
+    nothing: Any = np.zeros((0, 2), np.float32)
+    return Goal(7, 1.0, 2.0, state, eta_s, remaining_m, nothing, nothing[:, 0], lost=lost, followed=followed)
+
+
+def test_the_robot_and_its_goal_never_contradict_each_other() -> None:
+    """One walk over the product of the facts."""
+    flags = [dict(zip(FLAGS, on, strict=True)) for on in product((False, True), repeat=len(FLAGS))]
+    for packets, mode, state, on in product((1, 2), MODES, (None, *STATES), flags):
+        facts = Facts(packets=packets, mode=mode, goal=state, **on)
+        robot = robot_told(facts)
+        stands_still = facts.past or facts.faulty or facts.over or not facts.running
+        assert ("lost" in robot.words) is (facts.lost and not stands_still)
+        if state is None:
+            assert "goal" not in robot.words
+            continue
+        goal = goal_told(a_goal(state, lost=facts.lost, followed=mode == "goal"))
+        if facts.lost:  # it knows neither that it is there nor that no way leads there
+            assert goal.short not in ("arrived", "no way", "no way yet")
+            assert goal.words not in ("at the goal", "no way to the goal", "looking for a way", "going to the goal")
+        if mode != "goal" and state != "arrived":  # nobody goes there
+            assert goal.words == "the goal waits"
+        if mode == "goal" and not facts.lost and not stands_still:  # one state, worded once
+            assert robot.words == goal.words
+        assert bool(goal.metres) is bool(goal.seconds)
+        assert not goal.metres or "arrived" not in goal.short
+
+
+def test_each_meaning_has_words_of_its_own() -> None:
+    cases = list(product(STATES, (False, True), (False, True)))
+    meanings = {goal_meaning(state, lost=lost, followed=followed) for state, lost, followed in cases}
+    words = {goal_told(a_goal(state, lost=lost, followed=followed)).words for state, lost, followed in cases}
+    assert len(words) == len(meanings) == len(STATES) + 4
+
+
+def test_what_counts_most_is_said() -> None:
+    lost: dict[str, Any] = {"lost": True, "goal": "tracking", "mode": "goal"}
+    assert robot_told(Facts(**lost, past=True, faulty=True)).words == "the past, played"
+    assert robot_told(Facts(**lost, faulty=True)).words == "in a long tick"
+    assert robot_told(Facts(**lost, faulty=True, running=False)).words == "stopped by a fault"
+    assert robot_told(Facts(**lost, running=False)).words == "paused"
+    assert robot_told(Facts(**lost, running=False, played_ahead=True)).words == "playing up to a moment"
+    assert robot_told(Facts(**lost, packets=2)).words == "lost: 2 packets"
+    assert robot_told(Facts(mode="manual", goal="tracking")).words == "driving by hand"
+    assert robot_told(Facts(mode="recorded")).words == "playing a recording"
+    assert robot_told(Facts(mode="recorded", running=False, over=True)).words == "the recording has ended"
+    assert robot_told(Facts(goal="tracking")).words == "exploring"
+
+
+@pytest.mark.parametrize(
+    ("goal", "metres", "seconds"),
+    [
+        (a_goal("tracking"), "12.3 m", "61 s"),
+        (a_goal("tracking", 3600.0, 100.0), "100 m", "60 min"),
+        (a_goal("coasting", None, None), "", ""),
+        (a_goal("tracking", 119.4, 99.96), "100.0 m", "119 s"),
+        (a_goal("arrived", 0.0, 0.0), "", ""),
+        (a_goal("arrived", 0.0, 0.0, lost=True), "", ""),
+        (a_goal("unreachable"), "", ""),
+    ],
+)
+def test_how_far_and_how_long_is_told_while_there_is_a_way_to_go(goal: Goal, metres: str, seconds: str) -> None:
+    told = goal_told(goal)
+    assert (told.metres, told.seconds) == (metres, seconds)
