@@ -73,7 +73,7 @@ def test_opening_can_be_called_off(tmp_path: Path) -> None:
 
 def test_too_much_memory_is_the_readers_fault_alone(tmp_path: Path) -> None:
     path = made(tmp_path, "mcap")
-    with pytest.raises(ValueError, match="MemoryError|memory"):
+    with pytest.raises(ValueError, match=r"MemoryError|memory"):
         ReadApart(path, most=Most(memory=1 << 20))
 
 
