@@ -111,10 +111,11 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     try:
         dashboard.run()
     finally:
-        keeper.stop()
+        keeper.leave()
         waking.stop(ENGINE_PATIENCE_S)
         if runs is not None:
             runs.stop()
+        keeper.stop()
     if engine.stillborn is not None:
         raise ValueError(f"the engine could not begin: {engine.stillborn}")
     return 0

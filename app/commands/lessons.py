@@ -35,7 +35,8 @@ def vote(engine: Engine, command: m.Vote) -> Outcome:
         lesson = _open(engine)
         if lesson.teaching.lesson.name != command.lesson:
             raise ValueError(f"the lesson is {lesson.teaching.lesson.name!r} now, not {command.lesson!r}")
-        lesson.teaching.vote(command.voter, m.LessonPrediction(command.choice, command.x, command.y))
+        prediction = m.LessonPrediction(command.choice, command.x, command.y)
+        lesson.teaching.vote(command.voter, prediction, command.sender)
 
     return attempt("choice", command.choice, go) or m.Accepted(engine.shown.session.tick_count)
 

@@ -12,6 +12,7 @@ from app.lessons.schema import Lesson
 from web.messages import LessonOutcome, LessonPrediction, LessonVotes
 
 MOST_VOTERS = 500
+MOST_FROM_ONE = 60  # of an address, behind which a whole class may be; one phone alone cannot take all places
 
 
 @dataclass(slots=True)
@@ -25,6 +26,7 @@ class Teaching:
     prediction: LessonPrediction | None = None
     outcome: LessonOutcome | None = None
     _votes: dict[str, LessonPrediction] = field(default_factory=dict[str, LessonPrediction])
+    _senders: dict[str, str] = field(default_factory=dict[str, str])  # the address of each voter
     _found: list[tuple[str, Values]] = field(default_factory=list[tuple[str, Values]])
 
     @property
@@ -36,11 +38,15 @@ class Teaching:
         self._check(prediction)
         self.prediction = prediction
 
-    def vote(self, voter: str, prediction: LessonPrediction) -> None:
-        """ValueError: it is not what the lesson asks for."""
+    def vote(self, voter: str, prediction: LessonPrediction, sender: str = "") -> None:
+        """sender: the address it comes from. ValueError: it is not what the lesson asks for, or there is no place left."""
         self._check(prediction)
-        if voter not in self._votes and len(self._votes) >= MOST_VOTERS:
-            raise ValueError(f"{MOST_VOTERS} have voted already")
+        if voter not in self._votes:
+            if len(self._votes) >= MOST_VOTERS:
+                raise ValueError(f"{MOST_VOTERS} have voted already")
+            if sum(other == sender for other in self._senders.values()) >= MOST_FROM_ONE:
+                raise ValueError(f"{MOST_FROM_ONE} have voted from this address already")
+            self._senders[voter] = sender
         self._votes[voter] = prediction
 
     @property

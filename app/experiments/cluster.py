@@ -84,12 +84,15 @@ def _begun(workers: int) -> Any:
     """A cluster with all its workers. If one dies before it has begun, which nobody starts again, all are begun anew."""
     from distributed import LocalCluster
 
+    # Whoever reaches a scheduler has it run what they like. Keys of this run alone, in memory, keep other users out.
+    security: Any = import_module("distributed.security")  # it has no types
+    keys = security.Security.temporary()
     for more in range(BEGIN_TRIES - 1, -1, -1):
         try:
             return LocalCluster(
                 n_workers=workers, threads_per_worker=1, processes=True, host=HERE, memory_limit=0,
                 dashboard_address=f"{HERE}:0", scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL,
-                preload=["app.experiments.batch"],
+                preload=["app.experiments.batch"], security=keys,
             )  # fmt: skip
         except RuntimeError as error:
             if not more:

@@ -17,7 +17,7 @@ from web.latest import Latest
 EVERY_S = 60.0
 LEAST_S = 60.0  # simulated time; a younger brain is soon learnt again, and would push out an older one
 PATIENCE_S = 10.0  # how long to wait for the engine, which may be in a long tick
-LEAVING_S = 5.0  # how long leaving waits for the disk
+LEAVING_S = 1.5  # how long leaving waits for the disk, and before that for the engine, once each
 
 Submit = Callable[[m.Command | m.EngineRequest], "Future[m.Accepted | m.Refused]"]
 
@@ -30,14 +30,21 @@ class BrainKeeper:
         self._name = f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}"
         self._kept: tuple[int, int] | None = None  # run and tick
         self._complained: str | None = None
-        self._leaving = threading.Event()
+        self._leaving, self._read = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._work, name="brain keeper", daemon=True)
 
     def start(self) -> None:
         self._thread.start()
 
+    def leave(self) -> None:
+        """Read the brain once more before the engine ends. What is written takes longer; `stop` waits for that."""
+        self._leaving.set()
+        if self._thread.ident is not None:
+            self._read.wait(LEAVING_S)
+
     def stop(self) -> None:
-        """Keep the brain once more before the engine ends. If writing takes too long, the file kept last stays."""
+        """To be called when the engine has ended, which leaves the writing more of the machine. If it takes too long, the file
+        kept last stays."""
         self._leaving.set()
         self._thread.join(LEAVING_S)
         if self._thread.is_alive():
@@ -47,6 +54,7 @@ class BrainKeeper:
         while not self._leaving.wait(EVERY_S):
             self.keep_now()
         self.keep_now()
+        self._read.set()
 
     def keep_now(self) -> None:
         """Keep the brain if it has changed, is old enough and its session has no fault."""
@@ -63,6 +71,8 @@ class BrainKeeper:
         if not (isinstance(answer, m.Accepted) and isinstance(answer.result, RatSlam)):
             return
         brain = answer.result
+        if self._leaving.is_set():
+            self._read.set()
         about = About(now.world.name, now.seed, now.time_s, len(brain.experience_map), time.time())
         try:
             warning = keep(f"{self._name}-{now.run}", brain, about)

@@ -22,7 +22,7 @@ from app.runs.states import States
 from app.trials.code_version import code_version
 from disk import encode, whole_file, write_state
 
-STATES_PATIENCE_S = 2.0
+STATES_PATIENCE_S = 0.5  # a run is whole without its newest hash and state
 _numbers = count(1)
 
 

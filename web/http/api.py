@@ -14,6 +14,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 
 from web.http.asking import Submit, told
 from web.http.bodies import body_of, json_response
@@ -274,6 +275,11 @@ def _add_errors(app: FastAPI) -> None:
         return json_response(
             problem(sentence.get(error.status_code, str(error.detail))), error.status_code, error.headers
         )
+
+    @app.exception_handler(ClientDisconnect)
+    async def gone(_request: Request, _error: ClientDisconnect) -> Response:
+        """Somebody went before all of the request was sent: nobody reads this, and it is nobody's fault."""
+        return Response(status_code=400)
 
     @app.exception_handler(Declined)
     async def declined(_: Request, error: Declined) -> Response:

@@ -52,7 +52,8 @@ def add_classroom(app: FastAPI, classroom: Classroom | None, submit: Submit) -> 
         """One vote of a class on the prediction; the same voter may change it until it is shown."""
         document = read_object(await body_of(request, MAX_VOTE_BYTES))
         limits.pass_on("vote")
-        answer = await told(submit, check({**document, "type": "vote"}))
+        sender = request.client.host if request.client else ""
+        answer = await told(submit, check({**document, "type": "vote", "sender": sender}))
         return json_response(to_json({"accepted": True, "tick": answer.tick}))
 
     @app.get("/api/class", tags=["lessons"], responses={200: {"model": ClassAddress}})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ipaddress
 import socket
 
+WAITING = 2048  # connections that the system keeps until they are accepted; what it drops comes again after a second
 Address = ipaddress.IPv4Address | ipaddress.IPv6Address
 
 
@@ -29,7 +30,7 @@ def _bound(address: Address, port: int, option: str) -> socket.socket:
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listener.bind((str(address), port))
-        listener.listen(128)  # at once: until then a second one could bind the same port
+        listener.listen(WAITING)  # at once: until then a second one could bind the same port
     except OverflowError:
         listener.close()
         raise CannotListen(

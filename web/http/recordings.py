@@ -20,11 +20,12 @@ from web.http.bodies import ERRORS, json_response
 from web.http.commands import Declined, Malformed, wrong
 from web.http.run_state import recording_fields
 from web.http.security import MAX_RECORDING_BYTES, Limits
-from web.http.sent_folder import Room, SentFolder, plain
+from web.http.sent_folder import Room, SentFolder, kept, plain
 from web.http.state import to_json
 from web.messages import PlayRecording, RecordingView
 
 PLAY_TIMEOUT_S = 60.0
+MOST_ARRIVING = 4  # recordings in one file that are being sent at once
 TOKEN = "^[0-9a-f]{8,64}$"  # which page sends what
 Opener = Callable[[Path], object]  # what plays the recording in a file; ValueError says what is wrong with it
 
@@ -52,27 +53,30 @@ class SentRecordings:
     def __init__(self, opener: Opener, submit: Submit) -> None:
         self._open, self._submit = opener, submit
         self._limits, self._one = Limits(), asyncio.Lock()
+        self._arriving = 0
         self._folder: str | None = None
         self._coming: SentFolder | None = None
 
     async def take(self, request: Request, name: str) -> bytes:
         """A recording in one file."""
         self._limits.pass_on("recording")
-        async with self._one:
-            folder = await asyncio.to_thread(tempfile.mkdtemp, prefix="ratslam-recording-")
+        if self._arriving >= MOST_ARRIVING:
+            raise Declined.of(429, f"{MOST_ARRIVING} recordings are being sent already; wait until one is there")
+        self._arriving += 1
+        try:
+            home = await asyncio.to_thread(_new_folder)
             try:
-                path = Path(folder) / plain(name)
+                path = Path(home) / plain(name)
                 whole = Room(MAX_RECORDING_BYTES)
                 await _write(request, path, whole)
                 if whole.left == MAX_RECORDING_BYTES:
                     raise Malformed([wrong("recording", path.name, f"{path.name} is empty")])
-                view = await self._play(path)
+                return await self._play_instead(path, home)
             except BaseException:
-                shutil.rmtree(folder, ignore_errors=True)
+                shutil.rmtree(home, ignore_errors=True)
                 raise
-            self._forget_played()
-            self._folder = folder
-        return to_json(recording_fields(view))
+        finally:
+            self._arriving -= 1
 
     async def take_part(self, request: Request, token: str, of: str, name: str) -> bytes:
         """A file of the folder `of`. The first one with another token begins another folder."""
@@ -87,20 +91,22 @@ class SentRecordings:
     async def take_folder(self, token: str) -> bytes:
         """All files of the folder have been sent: play it."""
         self._limits.pass_on("recording")
+        coming = self._coming
+        if coming is None or coming.token != token:
+            raise Malformed([wrong("folder", token, "no file of this folder has been sent, or another came after it")])
+        self._coming = None
+        try:
+            return await self._play_instead(coming.path, coming.home)
+        except BaseException:
+            coming.forget()
+            raise
+
+    async def _play_instead(self, path: Path, home: str) -> bytes:
+        """Play what lies there, one after the other; then what played before is deleted."""
         async with self._one:
-            coming = self._coming
-            if coming is None or coming.token != token:
-                raise Malformed(
-                    [wrong("folder", token, "no file of this folder has been sent, or another came after it")]
-                )
-            self._coming = None
-            try:
-                view = await self._play(coming.path)
-            except BaseException:
-                coming.forget()
-                raise
+            view = await self._play(path)
             self._forget_played()
-            self._folder = coming.home
+            self._folder = home
         return to_json(recording_fields(view))
 
     def forget(self) -> None:
@@ -162,10 +168,12 @@ def add_recordings(app: FastAPI, opener: Opener | None, submit: Submit) -> SentR
 
 async def _write(request: Request, path: Path, room: Room) -> None:
     """The body into a file, part by part. Raises Declined when there is no room for it or the disk is full."""
-    try:
-        with contextlib.closing(await asyncio.to_thread(path.open, "wb")) as file:
-            async for part in request.stream():
-                room.take(len(part))
-                await asyncio.to_thread(file.write, part)
-    except OSError as error:
-        raise Declined.of(507, f"the recording cannot be kept: {error.strerror or error}") from None
+    with kept(), contextlib.closing(await asyncio.to_thread(path.open, "wb")) as file:
+        async for part in request.stream():
+            room.take(len(part))
+            await asyncio.to_thread(file.write, part)
+
+
+def _new_folder() -> str:
+    with kept():
+        return tempfile.mkdtemp(prefix="ratslam-recording-")

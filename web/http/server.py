@@ -19,6 +19,7 @@ from starlette.types import ASGIApp
 
 from web.http.api import create_app
 from web.http.class_door import ClassDoor, Classroom
+from web.http.connections import Connection, Door, Places, places
 from web.http.experiments import Gallery
 from web.http.export import Exports
 from web.http.handshake import MAX_HEADER_BYTES, WebSocketProtocol
@@ -34,6 +35,9 @@ from web.latest import Latest
 from web.messages import Snapshot
 
 MAX_FRAME_BYTES = 64 * 1024
+MAIN_SHARE = 3 / 16  # of the descriptors: 192 connections of the usual 1024 ...
+CLASS_SHARE, CLASS_FROM_ONE = 1 / 8, 1 / 2  # ... and 128, half of which one address can have
+LOOK_EVERY = 10  # of uvicorn's ticks, which take 0.1 s
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -108,13 +112,14 @@ class Dashboard:
         try:
             self._viewers.start()
             guard = self._guard()
-            beside: list[tuple[uvicorn.Server, socket.socket]] = []
+            beside: list[_DoorServer] = []
             if self.classroom is not None and self._class_socket is not None:
                 door = _config(ClassDoor(guard.app, self.classroom), lifespan="off")
-                beside.append((_BesideServer(door), self._class_socket))
-            self._server = _Server(_config(guard), self._announce, beside)
+                beside.append(_BesideServer(door, self._class_socket, places(CLASS_SHARE, CLASS_FROM_ONE)))
+            room = places(MAIN_SHARE)
+            self._server = _Server(_config(guard), self._socket, room, self._announce, beside)
             self._server.should_exit = self._ended
-            self._server.run([self._socket])
+            self._server.run()
         finally:
             self._socket.close()
             if self._class_socket is not None:
@@ -141,41 +146,70 @@ class Dashboard:
 def _config(app: ASGIApp, lifespan: Literal["auto", "off"] = "auto") -> uvicorn.Config:
     return uvicorn.Config(
         app,
+        loop="asyncio",
+        http=Connection,
         ws=WebSocketProtocol,
         lifespan=lifespan,
         h11_max_incomplete_event_size=MAX_HEADER_BYTES,
         ws_max_size=MAX_FRAME_BYTES,
         ws_per_message_deflate=False,
         timeout_graceful_shutdown=1,
-        limit_concurrency=256,
         access_log=False,
-        log_level="warning",
+        log_level="error",  # what others do wrong is told to them, and fills no log
         server_header=False,
         proxy_headers=False,
     )
 
 
-class _Server(uvicorn.Server):
-    """A uvicorn server that says when it listens, and that ends quietly on a signal instead of raising it again."""
+class _DoorServer(uvicorn.Server):
+    """A uvicorn server that takes its connections through a door of its own."""
+
+    def __init__(self, config: uvicorn.Config, listener: socket.socket, room: Places) -> None:
+        super().__init__(config)
+        self._listener, self._room = listener, room
+        self._door: Door | None = None
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:  # noqa: ARG002
+        await super().startup([])
+        self._door = Door(self._listener, self._room, self._connection, self.server_state.connections)
+
+    async def on_tick(self, counter: int) -> bool:
+        if self._door is not None and counter % LOOK_EVERY == 0:
+            self._door.look()
+        return await super().on_tick(counter)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        if self._door is not None:
+            await self._door.close()
+        await super().shutdown(sockets)
+
+    def _connection(self) -> Connection:
+        return Connection(self.config, self.server_state, self.lifespan.state)
+
+
+class _Server(_DoorServer):
+    """One that says when it listens, and that ends quietly on a signal instead of raising it again."""
 
     def __init__(
         self,
         config: uvicorn.Config,
+        listener: socket.socket,
+        room: Places,
         on_ready: Callable[[], None],
-        beside: Sequence[tuple[uvicorn.Server, socket.socket]] = (),
+        beside: Sequence[uvicorn.Server] = (),
     ) -> None:
-        """beside: servers that begin and end with this one, each with its socket."""
-        super().__init__(config)
+        """beside: servers that begin and end with this one."""
+        super().__init__(config, listener, room)
         self._on_ready, self._beside = on_ready, beside
         self._serving: list[asyncio.Task[None]] = []
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
-        self._serving = [asyncio.create_task(server.serve([listener])) for server, listener in self._beside]
+        self._serving = [asyncio.create_task(server.serve()) for server in self._beside]
         await asyncio.to_thread(self._on_ready)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        for server, _ in self._beside:
+        for server in self._beside:
             server.should_exit = True
         await asyncio.gather(super().shutdown(sockets), *self._serving)
 
@@ -195,7 +229,7 @@ class _Server(uvicorn.Server):
         self.should_exit = True
 
 
-class _BesideServer(uvicorn.Server):
+class _BesideServer(_DoorServer):
     """One that leaves signals to the server that it stands beside."""
 
     @contextlib.contextmanager

@@ -86,10 +86,11 @@ def add_worlds(app: FastAPI, latest: Latest[Snapshot], submit: Submit) -> None:
               responses={200: {"model": Opened}, **ERRORS})  # fmt: skip
     async def open_files(request: Request) -> Response:
         """Begin anew in a world or plan. When that is not possible, the session stays as it was."""
+        wish = await checked_body(request, OpenFiles, limits, MAX_PLAN_BYTES)  # one that stalls holds up no other
         if importing.locked():
             raise Declined.of(429, "another plan is being imported; wait until it is there")
         async with importing:
-            return json_response(await _open(request, latest, submit, limits))
+            return json_response(await _open(wish, latest, submit))
 
     @app.post("/api/worlds/new", tags=["worlds"], openapi_extra=takes(NewWorld),
               responses={200: {"model": Opened}, **ERRORS})  # fmt: skip
@@ -105,8 +106,7 @@ async def _read(submit: Submit, text: WorldText) -> bytes:
     return head[:-1] + b',"world":' + written.encode() + b"}"
 
 
-async def _open(request: Request, latest: Latest[Snapshot], submit: Submit, limits: Limits) -> bytes:
-    wish = await checked_body(request, OpenFiles, limits, MAX_PLAN_BYTES)
+async def _open(wish: OpenFiles, latest: Latest[Snapshot], submit: Submit) -> bytes:
     files = {_plain(file.name): _bytes(file) for file in wish.files}
     _, snapshot = latest.get()
     office = None if snapshot is None or snapshot.recording is not None else snapshot.world

@@ -29,11 +29,13 @@ class Predict(CommandModel):
 
 
 class Vote(CommandModel):
-    """As `predict`, by one of a class: voter is a text that each page makes up for itself, and each voter counts once."""
+    """As `predict`, by one of a class: voter is a text that each page makes up for itself, and each voter counts once.
+    sender: the address it comes from, which the server tells."""
 
     type: Literal["vote"]
     lesson: _Label
     voter: Annotated[_Label, Field(min_length=8)]
+    sender: Annotated[str, Field(max_length=64)] = ""
     choice: Annotated[int, Field(ge=0, le=9)] | None = None
     x: Finite | None = None
     y: Finite | None = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -13,8 +14,11 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+import dask
 import psutil
 import pytest
+from distributed import Client
+from distributed.security import Security
 
 from app.experiments.cluster import connected_to
 from app.experiments.outcome import Outcome
@@ -130,12 +134,35 @@ def _grandchildren() -> set[int]:
     return {worker.pid for child in psutil.Process().children() for worker in child.children()}
 
 
-def test_a_cluster_that_exists_is_used_by_its_address(client: Any, store: Store) -> None:
+def keys_of(client: Any) -> Any:
+    """Dask's configuration as whoever has the keys of a cluster writes it."""
+    keys, part = client.cluster.security, "distributed.comm.tls"
+    mine = {f"{part}.client.key": keys.tls_client_key, f"{part}.client.cert": keys.tls_client_cert}
+    return dask.config.set({f"{part}.ca-file": keys.tls_ca_file, **mine})
+
+
+def test_a_cluster_that_exists_is_used_by_its_address_and_with_its_keys(client: Any, store: Store) -> None:
     trials = fake_trials.trials(20)
-    with connected_to(client.cluster.scheduler_address, None) as other:
+    with keys_of(client), connected_to(client.cluster.scheduler_address, None) as other:
         run_trials(trials, store, other, run=fake_trials.run, expected_s=0.1)
     assert_all_right(store, trials)
     assert len(client.nthreads()) == 2  # it lives on
+
+
+def test_nobody_without_the_keys_of_the_run_is_heard_by_any_process_of_our_cluster(client: Any) -> None:
+    """Dask executes what it is sent, so every port of it is closed to other users: to those who speak plainly, and to
+    those who bring keys of their own."""
+    workers = client.scheduler_info(n_workers=-1)["workers"]
+    doors = [client.scheduler.address, *workers, *(worker["nanny"] for worker in workers.values())]
+    assert len(doors) == 5
+    for address in doors:
+        with pytest.raises(OSError):
+            Client(address, security=Security.temporary(), timeout="3s", set_as_default=False)
+        host, port = address.removeprefix("tls://").split(":")
+        with socket.create_connection((host, int(port)), timeout=PATIENCE_S) as plain:
+            plain.sendall(b"\0" * 64)
+            with contextlib.suppress(ConnectionResetError):
+                assert len(plain.recv(4096)) < 100  # an alert of TLS at most, no greeting of Dask
 
 
 def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -150,6 +177,7 @@ def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch: pytest.MonkeyP
 def test_workers_of_another_version_are_refused(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.experiments.cluster._here", lambda: "0123456789ab")
     with (
+        keys_of(client),
         pytest.raises(ValueError, match=r"runs version .* of this program, not 0123456789ab"),
         connected_to(client.cluster.scheduler_address, None),
     ):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -20,6 +21,7 @@ from app.kept_brains.files import MOST_KEPT, About, folder, keep, newest
 from app.kept_brains.keeper import BrainKeeper
 from disk import archive, copy_state, encode, state_codec
 from ratslam_core import Odometry, RatSlam, load_brain
+from tests.patience import PATIENCE_S
 from tests.unit.disk.full import full_after
 
 from .engine_threads import accept, snapshot, step
@@ -190,6 +192,31 @@ def test_leaving_keeps_it_once_more_and_does_not_wait_for_ever(
     assert "cannot be written in time; the one kept last stays" in capsys.readouterr().err
     keeper._thread.join()
     assert snapshot(engine).fault is None
+
+
+def test_the_engine_need_not_go_on_until_the_brain_is_written(
+    start: Callable[..., EngineThread], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Leaving waits until the brain is read. It is written when the engine has ended, which makes it quicker."""
+    alive, over = start(running=False), threading.Event()
+    accept(alive, step(1))
+    kept: list[str] = []
+
+    def slowly(name: str, *_about: object) -> None:
+        assert over.wait(PATIENCE_S)
+        kept.append(name)
+
+    monkeypatch.setattr(brain_keeper, "keep", slowly)
+    monkeypatch.setattr(brain_keeper, "LEAST_S", 0.0)
+    monkeypatch.setattr(brain_keeper, "LEAVING_S", PATIENCE_S)
+    keeper = BrainKeeper(alive.latest, alive.submit)
+    keeper.start()
+    keeper.leave()
+    alive.stop()
+    assert kept == []
+    over.set()
+    keeper.stop()
+    assert len(kept) == 1
 
 
 def test_what_cannot_be_resumed_is_a_sentence(brain: RatSlam, capsys: pytest.CaptureFixture[str]) -> None:

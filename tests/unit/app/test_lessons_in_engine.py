@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.engine.engine import Engine
-from app.engine.teaching import Teaching
+from app.engine.teaching import MOST_FROM_ONE, Teaching
 from app.lessons.files import find_lesson
 from app.lessons.performance import perform, perform_round, set_scene
 from app.lessons.schema import Lesson
@@ -113,6 +113,19 @@ def test_votes_count_once_for_each_voter_and_only_before_it_is_shown() -> None:
     tell(engine, type="show_lesson")
     with pytest.raises(ValueError, match="predictions come first"):
         tell(engine, type="vote", lesson="short", voter="voter one", choice=1)
+
+
+def test_one_phone_cannot_take_the_places_of_all() -> None:
+    engine = begun(short_lesson())
+    play(engine)
+    for number in range(MOST_FROM_ONE):
+        tell(engine, type="vote", lesson="short", voter=f"made up {number}", sender="192.168.1.66", choice=0)
+    with pytest.raises(ValueError, match="60 have voted from this address already"):
+        tell(engine, type="vote", lesson="short", voter="made up again", sender="192.168.1.66", choice=0)
+    tell(engine, type="vote", lesson="short", voter="made up 0", sender="192.168.1.66", choice=1)  # it changes its mind
+    for number in range(2, 32):
+        tell(engine, type="vote", lesson="short", voter=f"pupil {number:02}", sender=f"192.168.1.{number}", choice=1)
+    assert view(engine).votes.counts == (MOST_FROM_ONE - 1, 31)
 
 
 def test_play_lets_it_happen_too() -> None:

@@ -169,7 +169,7 @@ def test_a_vote_counts_at_both_doors(school):
     assert school.vote().json() == {"accepted": True, "tick": 5}
     headers = {"Origin": MAIN_ORIGIN, "Content-Type": "application/json"}
     assert school.main.post("/api/vote", content=orjson.dumps(BALLOT), headers=headers).status_code == 200
-    assert school.engine.commands == [Vote(type="vote", **BALLOT)] * 2
+    assert school.engine.commands == [Vote(type="vote", sender="testclient", **BALLOT)] * 2
 
 
 @pytest.mark.parametrize(
@@ -177,6 +177,7 @@ def test_a_vote_counts_at_both_doors(school):
     [
         ({"type": "kidnap"}, {}, 422),
         ({**BALLOT, "type": "reset"}, {}, 200),  # it is a vote, whatever it calls itself
+        ({**BALLOT, "sender": "another phone"}, {}, 200),  # and from here, whatever it says
         ({**BALLOT, "voter": "me"}, {}, 422),
         ({**BALLOT, "seed": 1}, {}, 422),
         ([BALLOT], {}, 422),
@@ -188,7 +189,7 @@ def test_a_vote_counts_at_both_doors(school):
 )
 def test_nothing_but_a_vote_is_taken(school, ballot, headers, status):
     assert school.vote(ballot, **headers).status_code == status
-    assert {asked.type for asked in school.engine.commands} <= {"vote"}
+    assert {(asked.type, asked.sender) for asked in school.engine.commands} <= {("vote", "testclient")}
 
 
 def test_who_asks_too_often_is_told_so_and_the_others_go_on(monkeypatch):

@@ -1,10 +1,14 @@
-"""Browsers that come and go leave nothing behind, and one that reads nothing keeps nobody waiting."""
+"""Browsers that come and go leave nothing behind; one that reads nothing, or a crowd that says nothing, keeps nobody waiting."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
+import logging
 import socket
+import subprocess
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -20,9 +24,9 @@ from tests.fake_snapshots import fake_snapshot
 from tests.patience import PATIENCE_S, until
 from tests.unit.web.doubles import StubEngine, StubViewer, StubViewers, viser_double
 from tests.unit.web.test_viser_server import PROTOCOL, camera
-from web.http import proxy
+from web.http import connections, proxy, server
 from web.http.proxy import ViewersLike
-from web.http.server import Dashboard
+from web.http.server import Dashboard, ForClass
 from web.latest import Latest
 from web.viewer import Viewers
 
@@ -33,7 +37,8 @@ ROUNDS, AT_ONCE = 50, 10
 def served(stages: ViewersLike) -> Iterator[Dashboard]:
     latest, ready = Latest(), threading.Event()
     latest.put(fake_snapshot(3))
-    made = Dashboard(latest, StubEngine().submit, stages, port=0, on_ready=lambda _url: ready.set())
+    room = ForClass("127.0.0.1", 0)
+    made = Dashboard(latest, StubEngine().submit, stages, port=0, on_ready=lambda _url: ready.set(), for_class=room)
     thread = threading.Thread(target=made.run)
     thread.start()
     try:
@@ -47,7 +52,7 @@ def served(stages: ViewersLike) -> Iterator[Dashboard]:
 def left_behind(made: Dashboard) -> dict[str, int]:
     """What the process holds for connections: threads except asyncio's own pool, tasks of the server's loop, open files."""
     assert made._server is not None
-    loop = made._server.servers[0].get_loop()
+    loop = made._server._door._task.get_loop()  # type: ignore[union-attr]
     return {
         "threads": sum(not thread.name.startswith("asyncio_") for thread in threading.enumerate()),
         "tasks": len(asyncio.all_tasks(loop)),
@@ -142,3 +147,147 @@ def narrow_line(made: Dashboard) -> socket.socket:
     line.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 65536)
     line.connect(("127.0.0.1", made._port))
     return line
+
+
+# ---------------------------------------------------------------- those that say nothing, or not enough
+
+DOORS = """
+import resource, threading
+resource.setrlimit(resource.RLIMIT_NOFILE, (160, 160))
+from tests.unit.web.test_connections import served
+from tests.unit.web.doubles import StubViewers
+with served(StubViewers()) as made:
+    print(made._port, made.classroom.port, flush=True)
+    input()
+    open("/dev/null")  # there is still a descriptor for whoever needs one
+"""
+
+
+def asked(port: int, path: str = "/", origin: str = "127.0.0.1") -> bytes:
+    """The first line of the answer to a request that is sent at once."""
+    with socket.create_connection(("127.0.0.1", port), PATIENCE_S, (origin, 0)) as line:
+        line.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
+        return line.recv(12)
+
+
+def test_more_connections_than_there_are_descriptors_hold_up_neither_door() -> None:
+    """The door of the class, and the main one; with nothing, a part of the headers, and a part of a body."""
+    asks = "POST /api/vote HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\nOrigin: http://127.0.0.1:{0}\r\nContent-Type: application/json\r\n"
+    parts = ("", "GET / HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\nX: ", asks + "Content-Length: 99\r\n\r\n{{")
+    program = subprocess.Popen(
+        [sys.executable, "-c", DOORS], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        assert program.stdout is not None
+        main, room = map(int, program.stdout.readline().split())
+        for port in (room, main):
+            for part in parts:
+                with contextlib.ExitStack() as held:
+                    for _ in range(200):
+                        line = held.enter_context(socket.create_connection(("127.0.0.1", port), PATIENCE_S))
+                        with contextlib.suppress(OSError):  # it had to go already
+                            line.sendall(part.format(port).encode())
+                    assert asked(main) == asked(room) == b"HTTP/1.1 200", (port, part)
+        _, said = program.communicate("\n", timeout=PATIENCE_S)
+        assert (program.returncode, said) == (0, "")
+    finally:
+        program.kill()
+        program.communicate()
+
+
+def open_to(port: int, origin: str = "127.0.0.1", said: str = "") -> socket.socket:
+    line = socket.create_connection(("127.0.0.1", port), PATIENCE_S, (origin, 0))
+    line.sendall(said.format(port).encode())
+    return line
+
+
+def ended(line: socket.socket) -> bool:
+    """Whether the server has closed it, which is waited for."""
+    try:
+        while line.recv(65536):
+            pass
+    except ConnectionResetError:
+        return True
+    except TimeoutError:
+        return False
+    return True
+
+
+def test_who_has_many_connections_takes_no_place_from_another_address(monkeypatch) -> None:
+    monkeypatch.setattr(server, "CLASS_SHARE", 16 / 1024)
+    with served(StubViewers()) as made, contextlib.ExitStack() as held:
+        assert made.classroom is not None
+        port = made.classroom.port
+        other = held.enter_context(open_to(port, "127.0.0.2"))
+        crowd = [held.enter_context(open_to(port)) for _ in range(100)]
+        assert asked(port) == b"HTTP/1.1 200"  # when the crowd is in
+        assert all(ended(line) for line in crowd[:-8])  # those of its own half, who came first
+        other.settimeout(0.1)
+        assert not ended(other)
+        with held.enter_context(open_to(port, "127.0.0.2", "GET / HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\n\r\n")) as theirs:
+            assert theirs.recv(12) == b"HTTP/1.1 200"
+
+
+HEAD = "POST /api/commands HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\nContent-Type: application/json\r\nContent-Length: 99\r\n"
+
+
+def test_headers_bodies_and_goodbyes_have_a_time_limit_and_a_page_that_is_open_has_none(monkeypatch) -> None:
+    monkeypatch.setattr(connections, "HEADERS_S", 0.5)
+    monkeypatch.setattr(connections, "STALLED_S", 0.5)
+    monkeypatch.setattr(server, "LOOK_EVERY", 1)
+    with served(StubViewers()) as made, contextlib.ExitStack() as held:
+        url = f"{ours(made).replace('http', 'ws')}/api/stream?page={'p' * 22}"
+        page = held.enter_context(connect_now(url, origin=ours(made)))  # type: ignore[arg-type]
+        silent = held.enter_context(open_to(made._port))
+        slow = held.enter_context(open_to(made._port, said="GET / HTTP/1.1\r\nX: "))
+        stalled = held.enter_context(open_to(made._port, said=HEAD + "\r\n{{"))
+        again = held.enter_context(open_to(made._port, said="GET / HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\n\r\nGET"))
+
+        def drip() -> None:
+            with contextlib.suppress(OSError):
+                while not over.wait(0.05):
+                    slow.sendall(b"x")
+
+        over = threading.Event()
+        dripping = threading.Thread(target=drip)
+        dripping.start()
+        try:
+            assert [ended(line) for line in (silent, slow, stalled, again)] == [True] * 4
+        finally:
+            over.set()
+            dripping.join()
+        page.send('{"type": "tabs", "names": [], "id": 5}')
+        while '"id":5' not in str(page.recv(timeout=PATIENCE_S)):
+            pass
+
+
+def test_a_connection_that_cannot_be_accepted_is_told_of_once_and_tried_again(monkeypatch, caplog) -> None:
+    monkeypatch.setattr(connections, "BACK_OFF_S", 0.0)
+
+    async def full() -> bytes:
+        loop, tries = asyncio.get_running_loop(), iter(range(50))
+        accept = loop.sock_accept
+
+        async def refused(listener: socket.socket) -> Any:
+            if next(tries, None) is not None:
+                raise OSError(errno.EMFILE, "Too many open files")
+            return await accept(listener)
+
+        monkeypatch.setattr(loop, "sock_accept", refused)
+        listener = connections_socket()
+        made: Any = asyncio.Protocol
+        door = connections.Door(listener, connections.Places(9, 9), made, set())
+        reader, writer = await asyncio.open_connection(*listener.getsockname())
+        writer.close()
+        left = await reader.read()
+        await door.close()
+        return left
+
+    with caplog.at_level(logging.WARNING):
+        assert asyncio.run(full()) == b""
+    (said,) = caplog.messages
+    assert "Too many open files" in said
+
+
+def connections_socket() -> socket.socket:
+    return server.listening_socket("127.0.0.1", 0)

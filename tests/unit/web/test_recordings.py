@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import tempfile
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,10 @@ import pytest
 from starlette.testclient import TestClient
 
 from tests.fake_snapshots import fake_snapshot
+from tests.patience import PATIENCE_S
 from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers
 from web.http.api import create_app
-from web.http.recordings import MAX_RECORDING_BYTES
+from web.http.recordings import MAX_RECORDING_BYTES, SentRecordings
 from web.latest import Latest
 from web.messages import Accepted, PlayRecording, RecordingView, Refused, Snapshot
 
@@ -173,3 +175,64 @@ def test_a_folder_has_limits(sender: Sender, monkeypatch: pytest.MonkeyPatch) ->
     assert sender.put("e", b"good", **{"Content-Type": "text/plain"}).status_code == 415
     assert sender.put("e", b"good", **{"Sec-Fetch-Site": "cross-site"}).status_code == 403
     assert sender.put("e", b"good", folder="../..").status_code == 422
+
+
+NAMES = [
+    "a/b",
+    "/",
+    "a/",
+    "..",
+    "\u4e16" * 200,
+    "\U0001f600" * 190 + ".mcap",
+    "x" * 200,
+    "\\",
+    ". .",
+    "a\u202e.bag",
+    " ",
+]
+
+
+@pytest.mark.parametrize("name", NAMES, ids=range(len(NAMES)))
+def test_whatever_it_is_called_it_plays_or_is_refused_and_leaves_nothing(sender: Sender, name: str) -> None:
+    """As a file, as a folder, and as a file or a folder in one; the fixture looks for what is left behind."""
+    assert sender.send(name, b"good").status_code == 200
+    for at, (of, inside) in enumerate(((name, "a"), ("tub", name), ("tub", f"{name}/a"), ("tub", "a"), ("tub", "a/b"))):
+        params = {"name": inside, "of": of, "folder": f"0123abc{at // 3}"}
+        answer = sender.client.put("/api/recordings", params=params, content=b"good", headers=KIND)
+        assert answer.status_code in (200, 422), answer.text
+    assert sender.play_folder("0123abc1").status_code == 200
+
+
+class Body:
+    """A request's, in two parts; the second one comes when it may."""
+
+    def __init__(self, may: asyncio.Event) -> None:
+        self._may, self.began = may, asyncio.Event()
+
+    async def stream(self) -> AsyncIterator[bytes]:
+        yield b"good"
+        self.began.set()
+        await self._may.wait()
+        yield b"bye"
+
+
+def test_an_upload_that_stalls_holds_up_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    engine = StubEngine()
+    engine.answer = Accepted(0, VIEW)
+    sent = SentRecordings(opened, engine.submit)
+
+    async def two() -> None:
+        never, now = asyncio.Event(), asyncio.Event()
+        now.set()
+        body: Any = Body(never)
+        stalled = asyncio.create_task(sent.take(body, "stalled.bag"))
+        await body.began.wait()
+        after: Any = Body(now)
+        async with asyncio.timeout(PATIENCE_S):
+            await sent.take(after, "next.bag")
+        stalled.cancel()  # as when its connection is ended
+        await asyncio.wait({stalled})
+
+    asyncio.run(two())
+    assert [path.name for path in tmp_path.rglob("*.bag")] == ["next.bag"]
