@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.options import Verbs
+from app.cli.options import Verbs, port_number
 from disk import require_writable
 from disk.limits import TRIALS
 
@@ -26,7 +26,7 @@ def add_experiment(commands: Verbs) -> None:
         "all                 runs every experiment that comes with the program\n"
         "open ID             opens a trial in the dashboard, at the moment that decided it\n"
         "check FILE.toml     says whether a file of your own is right\n"
-        "results             writes results.md and results.json from the stored trials (--out, default docs)",
+        "results             writes results.md and results.json from the stored trials (--out, default ./docs)",
     )
     parser.add_argument("what", nargs="*", metavar="NAME|FILE.toml|all|open ID|check FILE", help="see below")
     parser.add_argument(
@@ -47,6 +47,12 @@ def add_experiment(commands: Verbs) -> None:
     parser.add_argument(
         "--parquet", type=Path, metavar="FILE", help="also write all stored trials of the experiment to FILE"
     )
+    parser.add_argument(
+        "--port",
+        type=port_number,
+        default=8000,
+        help="with open: as for `ratslam run` (default 8000, 0 = any free one)",
+    )
     parser.set_defaults(do=_experiment)
 
 
@@ -58,7 +64,7 @@ def _experiment(args: argparse.Namespace) -> int:
 
             return list_experiments(args)
         case ["open", trial_id]:
-            return _open(trial_id, args.store)
+            return _open(trial_id, args)
         case ["check", file]:
             return _check_file(file)
         case ["open" | "check" as verb, *_]:
@@ -95,28 +101,31 @@ def _check(args: argparse.Namespace) -> None:
     require_writable("--parquet", args.parquet)
 
 
-def _open(trial_id: str, store_file: Path | None) -> int:
+def _open(trial_id: str, args: argparse.Namespace) -> int:
     import sys
 
     from app.cli.run import run_with_trial
+    from app.cli.serving import Serving
     from app.experiments.opening import open_trial
     from app.experiments.store import Store
 
-    with Store(store_file, reading=True) as store:
+    with Store(args.store, reading=True) as store:
         opened = open_trial(trial_id, store)
     for words in opened.warnings:
         print(f"ratslam: note: {words}", file=sys.stderr)
-    return run_with_trial(opened.trial, opened.moment_s)
+    return run_with_trial(opened.trial, opened.moment_s, serving=Serving(args.port))
 
 
 def _results(args: argparse.Namespace) -> int:
+    from app.experiments.outputs import make_folder
     from app.experiments.results import write_results
     from app.experiments.store import Store
     from app.trials.experiment import catalogue
 
+    folder = make_folder(args.out or Path("docs"))
     with Store(args.store) as store:
         runs = [(experiment, store.stored(experiment.make_trials())) for experiment in catalogue()]
-    for path in write_results(runs, args.out or Path("docs")):
+    for path in write_results(runs, folder):
         print(path)
     return 0
 

@@ -53,6 +53,14 @@ def config_of(args: argparse.Namespace, config: Config) -> Config:
     return config.with_values(values)
 
 
+def port_number(text: str) -> int:
+    """For argparse: a port, 0 for any free one."""
+    port = int(text) if text.isdigit() else -1
+    if not 0 <= port <= 65535:
+        raise argparse.ArgumentTypeError(f"a port is a whole number from 0 to 65535, got {text!r}")
+    return port
+
+
 def checked_seed(seed: int) -> int:
     """The seed. ValueError says which are possible."""
     if not 0 <= seed < 2**32:

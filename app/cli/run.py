@@ -17,7 +17,7 @@ from app.cli.beginnings import (
     resumed_run,
 )
 from app.cli.for_class import add_class_options, for_class
-from app.cli.options import Verbs, add_session_options
+from app.cli.options import Verbs, add_session_options, port_number
 from app.cli.serving import PAST_DISK_MB, PAST_MB, Serving, serve
 from app.runs.folder import BUDGET_MB
 
@@ -30,7 +30,9 @@ LEAST_PAST_MB = 20.0  # the copy of the last moment alone takes some
 def add_run(commands: Verbs) -> None:
     run = commands.add_parser("run", help="open the dashboard (this is what `ratslam` alone does)")
     add_session_options(run)
-    run.add_argument("--port", type=_port, default=8000, help="port on 127.0.0.1; 0 = any free one (default 8000)")
+    run.add_argument(
+        "--port", type=port_number, default=8000, help="port on 127.0.0.1; 0 = any free one (default 8000)"
+    )
     add_class_options(run)
     run.add_argument("--no-browser", action="store_true", help="only print the address")
     run.add_argument("--paused", action="store_true", help="start paused")
@@ -66,13 +68,6 @@ def add_run(commands: Verbs) -> None:
     run.add_argument("--engine", choices=("ours", "paper"), help="with --experiment: our rules or the paper's")
     run.add_argument("--levels", nargs="+", metavar="LEVEL", help="with --experiment: one level of each of its axes")
     run.set_defaults(do=_run, seed=None)
-
-
-def _port(text: str) -> int:
-    port = int(text) if text.isdigit() else -1
-    if not 0 <= port <= 65535:
-        raise argparse.ArgumentTypeError(f"a port is a whole number from 0 to 65535, got {text!r}")
-    return port
 
 
 def _run(args: argparse.Namespace) -> int:

@@ -15,12 +15,11 @@ from typing import Any, cast
 
 from app.experiments.intervals import Estimate
 from app.experiments.sentences import found
-from app.experiments.store import Store
 from app.experiments.stored_trial import StoredTrial
 from app.experiments.summary import CellSummary, summarise, words
 from app.experiments.words import ENGINE_WORDS, words_of
 from app.trials.code_version import code_version
-from app.trials.experiment import Experiment, catalogue
+from app.trials.experiment import Experiment
 
 DOCS = Path(__file__).parents[2] / "docs"
 _HEADING = """# Results
@@ -210,15 +209,3 @@ def _number(value: float) -> float | int | None:
 
 def _ends(seeds: list[int]) -> list[int]:
     return [seeds[0], seeds[-1]]
-
-
-def main() -> None:
-    """Write docs/results.json and docs/results.md from what this machine has stored."""
-    with Store() as store:
-        runs = [(experiment, store.stored(experiment.make_trials())) for experiment in catalogue()]
-    for path in write_results(runs, DOCS):
-        print(path)
-
-
-if __name__ == "__main__":
-    main()

@@ -81,12 +81,15 @@ def test_a_file_of_ones_own_is_checked(capsys: pytest.CaptureFixture[str], own: 
 def test_a_trial_opens_at_the_moment_that_decided_it(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, store: Path
 ) -> None:
-    trial, shown = make_trial(1), list[tuple[object, float]]()
-    monkeypatch.setattr("app.cli.run.run_with_trial", lambda trial, moment_s: shown.append((trial, moment_s)) or 0)
+    trial, shown = make_trial(1), list[tuple[object, float, int]]()
+    monkeypatch.setattr(
+        "app.cli.run.run_with_trial",
+        lambda trial, moment_s, serving: shown.append((trial, moment_s, serving.port)) or 0,
+    )
     with Store(store) as kept:
         kept.add([(trial, make_outcome(trial))])
-    assert main(["experiment", "open", trial.id[:8]]) == 0
-    assert shown == [(trial, 0.5)]
+    assert main(["experiment", "open", trial.id[:8], "--port", "0"]) == 0
+    assert shown == [(trial, 0.5, 0)]
     assert "note: the trial was run by version v1" in capsys.readouterr().err
     assert f"expected an id, such as {trial.id}" in refused(capsys, "open", "0000")
 

@@ -24,7 +24,7 @@ from tests.unit.app.made_trials import experiment, figure, trials
 def test_the_results_in_the_docs_are_current():
     data, experiments = read_results(results.DOCS / "results.json"), list(catalogue())
     assert (results.DOCS / "results.md").read_text(encoding="utf-8") == results_markdown(data, experiments), (
-        "run `python -m app.experiments.results`"
+        "run `ratslam experiment results`"
     )
     assert outdated(data, experiments) == [], "these experiments have changed: run them again, then write the results"
 
