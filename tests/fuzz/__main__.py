@@ -6,14 +6,18 @@ With NUMBA_BOUNDSCHECK=1 and a NUMBA_CACHE_DIR of its own, a kernel that would w
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
+import os
 import select
 import subprocess
 import sys
+import tempfile
 import time
 from collections import Counter
 from collections.abc import Iterator
 
+from app.startup.ending import command
 from tests.fuzz.inputs import KINDS
 from tests.fuzz.messages import BATCH, MESSAGES
 
@@ -23,7 +27,7 @@ SOUND = ("taken", "refused")
 
 
 class Worker:
-    """A process that is started again when it dies."""
+    """A process that is started again when it dies, with a temporary folder of its own."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[str] | None = None
@@ -31,9 +35,10 @@ class Worker:
 
     def ask(self, kind: str, seed: int) -> dict[str, object]:
         if self._process is None:
+            self._temporary = tempfile.TemporaryDirectory(prefix="ratslam-fuzz-")
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "tests.fuzz.worker"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL, text=True,
+                stderr=subprocess.DEVNULL, text=True, env={**os.environ, "TMPDIR": self._temporary.name},
             )  # fmt: skip
             self._fresh = True
         process, limit = self._process, START_S if self._fresh else 6 * MOST_S
@@ -42,22 +47,24 @@ class Worker:
         process.stdin.write(json.dumps([kind, seed]) + "\n")
         process.stdin.flush()
         if not select.select([process.stdout], [], [], limit)[0]:
-            self.end()
+            self.close()
             return {"outcome": "hangs", "words": "", "seconds": limit, "mib": 0}
         line = process.stdout.readline()
         if not line:
             code = process.wait()
-            self._process = None
+            self.close()
             return {"outcome": f"died with {code}", "words": "", "seconds": 0.0, "mib": 0}
         answer, answer_fresh = json.loads(line), self._fresh
         self._fresh = False
         return {**answer, "seconds": 0.0} if answer_fresh else answer
 
-    def end(self) -> None:
+    def close(self) -> None:
+        """What a process that is killed leaves behind goes with it."""
         if self._process is not None:
             self._process.kill()
             self._process.wait()
             self._process = None
+            self._temporary.cleanup()
 
 
 def main() -> int:
@@ -69,7 +76,13 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", choices=[*KINDS, *MESSAGES], help="nothing else")
     args = parser.parse_args()
-    worker, counts, faults = Worker(), Counter[tuple[str, str]](), 0
+    with contextlib.closing(Worker()) as worker:
+        return tried(worker, args)
+
+
+def tried(worker: Worker, args: argparse.Namespace) -> int:
+    """Ask the worker about each case, and tell what came of them. The exit code."""
+    counts, faults = Counter[tuple[str, str]](), 0
     slowest, largest, began = 0.0, 0, time.monotonic()
     for kind, seed in cases(args):
         answer = worker.ask(kind, seed)
@@ -78,13 +91,12 @@ def main() -> int:
             outcome = "slow"
         if outcome in SOUND and int(str(answer["mib"])) > MOST_MIB:
             outcome = "memory"
-            worker.end()
+            worker.close()
         slowest, largest = max(slowest, float(str(answer["seconds"]))), max(largest, int(str(answer["mib"])))
         counts[kind, outcome] += 1
         if outcome not in SOUND:
             faults += 1
             print(f"{kind}, seed {seed}: {outcome}\n{answer['words']}", flush=True)
-    worker.end()
     for (kind, outcome), count in sorted(counts.items()):
         print(f"{kind:12} {outcome:12} {count:6}")
     print(
@@ -106,4 +118,4 @@ def cases(args: argparse.Namespace) -> Iterator[tuple[str, int]]:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(command(main))

@@ -32,11 +32,17 @@ ROUTES = ("/api/worlds/open", "/api/worlds/new", "/api/worlds/save", "/api/world
 @cache
 def client() -> TestClient:
     """One client for as long as the process lives, without limits of rate, since the content of messages is tested here."""
-    os.environ["RATSLAM_WORLDS"] = tempfile.mkdtemp(prefix="ratslam-fuzz-")
+    os.environ["RATSLAM_WORLDS"] = _own_worlds().name
     security.Bucket.take = lambda _: True  # type: ignore[method-assign]
     engine = EngineThread(load_world("loop"), 1, Config(), speed=4.0)
     engine.start()
     return TestClient(create_app(engine.latest, engine.submit, StubViewers(), PORT), base_url=ORIGIN).__enter__()
+
+
+@cache
+def _own_worlds() -> tempfile.TemporaryDirectory[str]:
+    """Removed when the process ends; when it is killed, by who started it."""
+    return tempfile.TemporaryDirectory(prefix="ratslam-fuzz-")
 
 
 def http(rng: Random) -> str:

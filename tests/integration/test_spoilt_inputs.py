@@ -5,6 +5,7 @@ They run in a process of their own, since the faults that are looked for may end
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 
 import pytest
@@ -27,9 +28,8 @@ SHARES = {
 
 @pytest.fixture(scope="module")
 def worker() -> Iterator[Worker]:
-    made = Worker()
-    yield made
-    made.end()
+    with contextlib.closing(Worker()) as made:
+        yield made
 
 
 @pytest.mark.parametrize("kind", [*KINDS, *MESSAGES])
