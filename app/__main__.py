@@ -1,17 +1,14 @@
-"""The command `ratslam`, also `python -m app`. Imports take a second, so they run inside `ended`: it handles Ctrl+C."""
+"""The command `ratslam`, also `python -m app`. Imports take a second, so they run inside `command`: it handles Ctrl+C."""
 
 from __future__ import annotations
 
 import sys
 
-from app.startup.ending import ended, last_words, obey_signals
+from app.startup.ending import command
 
 
 def main() -> int:
-    obey_signals()
-    code = ended(_command)
-    last_words()
-    return code
+    return command(_command)
 
 
 def _command() -> int:

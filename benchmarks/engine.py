@@ -32,6 +32,7 @@ from ratslam_core import (
     Packet,
     PoseCellParams,
     PoseCells,
+    PoseFilterParams,
     RatSlam,
     Recognition,
     ViewLinks,
@@ -40,23 +41,25 @@ from ratslam_core.pose_cells.attractor_kernels import gaussian
 
 Row = dict[str, Any]
 SEEN = Recognition(0, False, 0, 2.0)
+QUICK = 100  # how many times smaller things are in a quick run
 
 
-def rows() -> Iterator[Row]:
-    """The rows, each as soon as it has been measured."""
-    yield from _pose_cells()
-    yield from _pose_cell_memory()
-    yield from _views()
+def rows(quick: bool = False) -> Iterator[Row]:
+    """The rows, each as soon as it has been measured. quick: of a hundredth of the size, to see that all of it works."""
+    part = QUICK if quick else 1
+    yield from _pose_cells((21, 61) if quick else (21, 61, 150, 540))
+    yield from _memory()
+    yield from _views(50_000 // part)
     yield _hebbian()
-    yield from _map(50_000, 60_000)
+    yield from _map(50_000 // part, 60_000 // part)
     for views, bar in ((5_000, 0.5), (50_000, 1.5)):
-        yield whole_step(views, bar)
-    yield _start()
+        yield whole_step(views // part, bar)
+    yield _start(1 if quick else 3)
 
 
-def _pose_cells() -> Iterator[Row]:
+def _pose_cells(sizes: tuple[int, ...]) -> Iterator[Row]:
     flat = None
-    for n in (21, 61, 150, 540):
+    for n in sizes:
         cells = _settled(n, packets=1)
         ms = _median(lambda c=cells: c.step(speed=0.3, yaw_rate=0.1, dt=0.1), 400)
         flat = flat or ms
@@ -80,7 +83,7 @@ def _pose_cells() -> Iterator[Row]:
     )  # fmt: skip
 
 
-def _pose_cell_memory() -> Iterator[Row]:
+def _memory() -> Iterator[Row]:
     """The memory of a network that has driven. The bytes are in the column size, since they are not a time."""
     n = 540
     bytes_a_cell = _settled(n, packets=1).memory_bytes / (n * n * 36)
@@ -134,9 +137,9 @@ def _dense(n: int, repetitions: int) -> float:
     return _median(convolve, repetitions)
 
 
-def _views() -> Iterator[Row]:
+def _views(views: int) -> Iterator[Row]:
     rng = np.random.default_rng(1)
-    known = rng.integers(0, 256, (50_000, 96), dtype=np.uint8)
+    known = rng.integers(0, 256, (views, 96), dtype=np.uint8)
     image = rng.integers(0, 256, (8, 12), dtype=np.uint8)
     flat = np.ascontiguousarray(image.T).reshape(1, -1)
     bare = _median(lambda: cv2.batchDistance(flat, known, cv2.CV_32S, normType=cv2.NORM_L1, K=1), 40)
@@ -145,7 +148,7 @@ def _views() -> Iterator[Row]:
         view._templates, view._count = known.copy(), len(known)
         ms = _median(lambda v=view: v.observe(image), 40)
         name = f"view match 12 x 8, shifts +-{shift}"
-        yield _row(name, "50,000 views", ms, "bare batchDistance", bare, f"{most:g} times", ms <= most * bare)
+        yield _row(name, f"{views:,} views", ms, "bare batchDistance", bare, f"{most:g} times", ms <= most * bare)
 
 
 def _hebbian() -> Row:
@@ -199,17 +202,27 @@ def _map(experiences: int, links: int) -> Iterator[Row]:
 
 def _linked_and_asked(made: ExperienceMap, rng: np.random.Generator) -> None:
     """A loop is closed, then the times are asked for. They are updated, not computed anew."""
-    a, b = (int(v) for v in rng.integers(0, len(made), 2))
+    _close(made, rng, Odometry(0.3, 0.05, 0.1))
+    made.temporal_map.times_to(7)
+
+
+def _close(made: ExperienceMap, rng: np.random.Generator, odometry: Odometry) -> None:
+    """A closure between two of its experiences, chosen at random."""
+    before, (a, b) = len(made), (int(v) for v in rng.integers(0, len(made), 2))
     x, y, _theta, view = made.cell_state(b)
     made.active = a
-    made.step(Packet(x, y, 0.0, 1.0), Recognition(view, False, view, 2.0), Odometry(0.3, 0.05, 0.1))
-    made.temporal_map.times_to(7)
+    made.step(Packet(x, y, 0.0, 1.0), Recognition(view, False, view, 2.0), odometry)
+    if len(made) > before:
+        raise AssertionError(f"a look from {a} to {b} made a new experience where a loop was to be closed")
 
 
 def _long_map(experiences: int, links: int) -> ExperienceMap:
     """A map of so many experiences from a random walk, with closures between random pairs."""
     rng = np.random.default_rng(3)
-    made = ExperienceMap((36, 64, 64), 0.25)
+    believing = PoseFilterParams(
+        gate=False
+    )  # or looks at places far away would be held back, and closures be new places
+    made = ExperienceMap((36, 64, 64), 0.25, filter_params=believing)
     odometry = Odometry(0.3, 0.05, 0.1)
     for k in range(experiences):
         made.step(
@@ -217,11 +230,8 @@ def _long_map(experiences: int, links: int) -> ExperienceMap:
             Recognition(k, True, -1, 0.0),
             odometry,
         )
-    for _ in range(links - made.link_count):
-        a, b = (int(v) for v in rng.integers(0, experiences, 2))
-        x, y, _theta, view = made.cell_state(b)
-        made.active = a
-        made.step(Packet(x, y, 0.0, 1.0), Recognition(view, False, view, 2.0), odometry)
+    while made.link_count < links:
+        _close(made, rng, odometry)
     made.params = type(made.params)(solve_every=0)
     return made
 
@@ -241,7 +251,7 @@ def whole_step(views: int, bar: float) -> Row:
     return _row("whole RatSlam.step", f"{views:,} views and experiences", ms, "-", None, f"{bar:g} ms", ms <= bar)
 
 
-def _start() -> Row:
+def _start(repetitions: int) -> Row:
     code = (
         "import numpy as np; from ratslam_core import RatSlam, Odometry; "
         "RatSlam().step(np.zeros((48, 64), np.uint8), Odometry(0.1, 0.0, 0.1))"
@@ -250,7 +260,7 @@ def _start() -> Row:
         warm = {**os.environ, "PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": bytecode}
 
         def start(code: str) -> float:
-            return _median(lambda: subprocess.run([sys.executable, "-c", code], check=True, env=warm), 3)
+            return _median(lambda: subprocess.run([sys.executable, "-c", code], check=True, env=warm), repetitions)
 
         ms, bare = start(code), start("import numpy, numba, cv2")
     return _row("import and first step, warm cache", "-", ms, "its libraries alone", bare, "1500 ms", ms <= 1500)

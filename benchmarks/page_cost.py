@@ -29,6 +29,7 @@ from playwright.sync_api import Page, sync_playwright
 
 from app.config import Config
 from app.engine_thread import EngineThread
+from benchmarks.machine import verdict
 from sim2d import load_world
 from tests.e2e.browser import launch, open_page
 from tests.e2e.program import Program
@@ -76,7 +77,8 @@ def main() -> int:
         options.world, options.seconds, options.after, options.experiences, two=options.two
     )
     if options.only != "traffic":
-        met &= frames(options.world, options.seconds, options.after, options.picture, options.experiences)
+        quick = frames(options.world, options.seconds, options.after, options.picture, options.experiences)
+        print(f"the page's own script: {verdict(quick)}")
     print("met" if met else "MISSED")
     return not met
 

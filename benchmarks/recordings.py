@@ -1,7 +1,7 @@
 """The bars for recordings of real robots: `python -m benchmarks.recordings --data ../shared/data [office airsim intel]`.
 
 `variants` and `held-out` play laser logs that nobody tuned on (laser_variants.py); `--without NAME` does without a rule of
-`app/recordings/scan_rules.py`, `--only WORDS` plays those whose names contain the words.
+`app/recordings/scan_rules.py`, `--only WORDS` plays those alone whose names contain the words.
 """
 
 from __future__ import annotations
@@ -220,19 +220,26 @@ def intel(data: Path, _picture: Path | None) -> None:
         print(f"intel: {name} {metres:.3f} m, {degrees:.1f} degrees (bar 0.5 m)")
 
 
+RECORDINGS = {"office": office, "airsim": airsim, "intel": intel}
+WHICH = (*RECORDINGS, "variants", "held-out")
+
+
 def main(words: Iterable[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--picture", type=Path, help="a PNG of the car's laps in the map and by odometry alone")
     parser.add_argument("--without", action="append", default=[], choices=[f.name for f in fields(ScanRules)])
-    parser.add_argument("--only", default="", help="variants whose names contain this")
-    parser.add_argument("which", nargs="*", default=["office", "airsim", "intel"])
+    parser.add_argument("--only", default="", help="recordings and variants whose names contain this")
+    parser.add_argument("which", nargs="*", default=list(RECORDINGS), metavar="WHICH", help=f"of: {', '.join(WHICH)}")
     args = parser.parse_args(None if words is None else list(words))
+    for name in args.which:
+        if name not in WHICH:
+            parser.error(f"there is no {name!r}; expected some of: {', '.join(WHICH)}")
     for name in args.which:
         if name in ("variants", "held-out"):
             variants(args, name == "held-out")
-        else:
-            {"office": office, "airsim": airsim, "intel": intel}[name](args.data, args.picture)
+        elif args.only in name:
+            RECORDINGS[name](args.data, args.picture)
 
 
 if __name__ == "__main__":

@@ -34,6 +34,7 @@ from tests.patience import PATIENCE_S
 
 TAKES = re.compile(r"A tick takes ([\d.]+)")
 WORST = re.compile(r"worst ([\d.]+) ms")
+FIRST_S = 1.0
 TROUBLE = (BrowserError, OSError, TimeoutError, psutil.Error)
 
 
@@ -224,6 +225,8 @@ def until_over(run: Soak, options: argparse.Namespace, came: list[int], complain
             complain(f"{type(error).__name__}: {error}")
 
     began, turn = time.monotonic(), 0
+    run.wait(FIRST_S, came)
+    attempt(run.look)  # however soon it ends, there is something to compare with
     while not came and run.alive:
         left_s = 60 * options.minutes - (time.monotonic() - began)
         if left_s <= 0:
@@ -254,6 +257,8 @@ def main() -> int:
     if options.json is not None:
         report = {"rows": [asdict(row) for row in rows], "findings": findings.lines, "wrong": findings.wrong}
         options.json.write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
+    if came:
+        return 128 + came[0]
     return bool(findings.wrong)
 
 

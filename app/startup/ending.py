@@ -13,7 +13,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
-from types import FrameType
+from types import FrameType, TracebackType
 from typing import TextIO
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -33,6 +33,35 @@ def ended(work: Callable[[], int]) -> int:
     for stream in (sys.stdout, sys.stderr):
         _settle(stream)
     return code
+
+
+def command(work: Callable[[], int]) -> int:
+    """The whole life of a command: obey signals, do `work`, and return the exit code, which nothing changes any more."""
+    obey_signals()
+    code = ended(work)
+    last_words()
+    return code
+
+
+def end_in_words() -> None:
+    """For a module that is run by itself (`python -m`): whatever ends it, also while it is being imported, ends it as in
+    `ended`."""
+    obey_signals()
+    usual = sys.excepthook
+
+    def hook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        def again() -> int:
+            raise error.with_traceback(trace)
+
+        try:
+            code = ended(again)
+        except BaseException:
+            usual(kind, error, trace)
+            code = 1
+        last_words()
+        raise SystemExit(code)
+
+    sys.excepthook = hook
 
 
 def obey_signals() -> None:

@@ -39,8 +39,17 @@ class Program:
             text=True,
             env={**os.environ, "PYTHONUNBUFFERED": "1", **kept, **environment},
         )
-        assert self.process.stdout is not None
         self.said: list[str] = []
+        try:
+            self._begin()
+        except BaseException:  # nobody else could stop it, after Ctrl+C neither
+            self.process.kill()
+            self.process.wait()
+            self._brains.cleanup()
+            raise
+
+    def _begin(self) -> None:
+        assert self.process.stdout is not None
         for line in self.process.stdout:
             self.said.append(line)
             found = re.search(r"alive at (http://\S+:(\d+)/)", line)

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from app.cli import command_line as cli
-from app.cli import progress, run
+from app.cli import progress
+from app.cli.options import port_number
 from app.config import Config, from_toml
 from sim2d.world.world_file import WORLDS
 
@@ -204,11 +205,11 @@ def test_what_argparse_refuses_ends_with_two(command: list[str], capsys: pytest.
 
 
 def test_a_port_is_a_whole_number() -> None:
-    assert run._port("0") == 0
-    assert run._port("65535") == 65535
+    assert port_number("0") == 0
+    assert port_number("65535") == 65535
     for text in ("65536", "-1", "8000.0", ""):
         with pytest.raises(argparse.ArgumentTypeError, match="a port is a whole number from 0 to 65535, got"):
-            run._port(text)
+            port_number(text)
 
 
 def test_help_is_not_a_run(capsys: pytest.CaptureFixture[str]) -> None:
@@ -266,9 +267,9 @@ def test_progress_is_counted_beyond_what_was_expected(monkeypatch: pytest.Monkey
 def test_bench_prints_and_writes_its_rows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    rows = [{"work": "sweep", "ms": 0.1}, {"work": "match", "ms": 0.2}]
-    monkeypatch.setattr("benchmarks.engine.rows", lambda: iter(rows[:1]))
-    monkeypatch.setattr("benchmarks.office.rows", lambda: iter(rows[1:]))
+    rows = [{"work": "sweep", "ms": 0.1, "holds": True}, {"work": "match", "ms": 0.2, "holds": True}]
+    monkeypatch.setattr("benchmarks.engine.rows", lambda _quick: iter(rows[:1]))
+    monkeypatch.setattr("benchmarks.office.rows", lambda _quick: iter(rows[1:]))
     monkeypatch.setattr("benchmarks.engine.line", lambda row: f"{row['work']}: {row['ms']}")
     file = tmp_path / "bench.json"
     assert cli.main(["bench", "--json", str(file)]) == 0

@@ -124,8 +124,10 @@ def bench(path: Path) -> list[str]:
 
 @pytest.fixture
 def quick_bench(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("benchmarks.engine.rows", lambda: iter([{"work": "sweep " * 20, "ms": 0.1}]))
-    monkeypatch.setattr("benchmarks.office.rows", lambda: iter([]))
+    monkeypatch.setattr(
+        "benchmarks.engine.rows", lambda _quick: iter([{"work": "sweep " * 20, "ms": 0.1, "holds": True}])
+    )
+    monkeypatch.setattr("benchmarks.office.rows", lambda _quick: iter([]))
     monkeypatch.setattr("benchmarks.engine.line", lambda row: row["work"])
 
 
@@ -152,7 +154,7 @@ def test_where_nothing_can_be_written_is_said_before_the_work(
     command: Callable[[Path], list[str]], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
 ) -> None:
     monkeypatch.setattr("app.headless.run_headless", lambda *_, **__: pytest.fail("the work was begun"))
-    monkeypatch.setattr("benchmarks.engine.rows", lambda: pytest.fail("the work was begun"))
+    monkeypatch.setattr("benchmarks.engine.rows", lambda _quick: pytest.fail("the work was begun"))
     assert cli.main(command(tmp_path / "no" / "file")) == 2
     assert f"there is no folder {tmp_path / 'no'}" in capsys.readouterr().err
     assert cli.main(command(tmp_path)) == 2
