@@ -96,8 +96,11 @@ class Program:
             return orjson.loads(answer.read())
 
     def command(self, kind: str, **fields: Any) -> dict[str, Any]:
-        body = orjson.dumps({"type": kind, **fields})
-        request = urllib.request.Request(f"{self.url}api/commands", body, {"Content-Type": "application/json"})
+        return self.post("commands", {"type": kind, **fields})
+
+    def post(self, route: str, body: dict[str, Any]) -> dict[str, Any]:
+        where, json = f"{self.url}api/{route}", {"Content-Type": "application/json"}
+        request = urllib.request.Request(where, orjson.dumps(body), json)
         while True:
             try:
                 with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
