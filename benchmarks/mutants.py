@@ -219,6 +219,9 @@ def main() -> None:
     files = [path for path in sorted((ROOT / "ratslam_core").rglob("*.py")) if not set(path.parts) & set(NOT_MUTATED)]
     every = [mutant for path in files if args.only in str(path) for mutant in mutants_of(path)]
     chosen = random.Random(args.seed).sample(every, min(args.count, len(every)))
+    if not chosen:
+        print(f"none tried, of {len(every)} there are")
+        return
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(args.jobs) as pool:
         bench = Bench(Path(folder))
         tried = {pool.submit(bench.survives, mutant): mutant for mutant in chosen}
