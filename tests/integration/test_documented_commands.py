@@ -89,7 +89,7 @@ SMALLEST = {
     "page_cost": "--seconds 1 --after 1 --only traffic", "random_drive": "--hours 0.01 loop",
     "recognition": "loop --minutes 0.5 --seeds 401 --rows {row}", "recordings": "--data {data} --only office",
     "seeking": "--hours 0.01 --count 3", "server_load": "--seconds 3", "soak": "--minutes 0.2",
-    "trials": "--trials 10 --workers 1", "true_map": "office --seeds 1 --data {here} --workers 1 --help",
+    "trials": "--trials 10 --workers 1", "true_map": "office --seeds 1 --workers 1",
 }  # fmt: skip
 
 
