@@ -19,8 +19,8 @@ Tell = Callable[[str], None]  # is given a sentence about something that was tak
 _NEEDED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 _KEYS = (*_NEEDED, "mode")
 _MODES = ("trinary", "scale", "raw")
-_WORDS: dict[str, str] = dict.fromkeys(("true", "yes", "on", "y"), "1")
-_WORDS |= dict.fromkeys(("false", "no", "off", "n"), "0")
+_YES, _NO = ("true", "yes", "on", "y"), ("false", "no", "off", "n")
+_WORDS: dict[str, str] = {**dict.fromkeys(_YES, "1"), **dict.fromkeys(_NO, "0")}
 SCALES_M = (0.001, 1.0)  # metres per pixel, least and most
 
 
