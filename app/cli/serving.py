@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
+import threading
 import webbrowser
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -121,12 +122,12 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     return 0
 
 
-def _opened(path: Path) -> object:
+def _opened(path: Path, called_off: threading.Event) -> object:
     """What plays the recording in a file. ValueError says what is wrong with it."""
     from app.recordings.apart import ReadApart
     from app.recordings.playing import Player
 
-    return Player(ReadApart(path), 1, path=path)
+    return Player(ReadApart(path, called_off=called_off), 1, path=path)
 
 
 def _tell(serving: Serving, dashboard: Dashboard, url: str) -> None:

@@ -7,6 +7,7 @@ import contextlib
 import os
 import shutil
 import tempfile
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -27,7 +28,9 @@ from web.messages import PlayRecording, RecordingView
 PLAY_TIMEOUT_S = 60.0
 MOST_ARRIVING = 4  # recordings in one file that are being sent at once
 TOKEN = "^[0-9a-f]{8,64}$"  # which page sends what
-Opener = Callable[[Path], object]  # what plays the recording in a file; ValueError says what is wrong with it
+LOOK_S = 0.5  # whether whoever sent it is still there, while it is opened
+# What plays the recording in a file; ValueError says what is wrong with it. The event calls it off.
+Opener = Callable[[Path, threading.Event], object]
 
 
 class Played(BaseModel):
@@ -71,7 +74,7 @@ class SentRecordings:
                 await _write(request, path, whole)
                 if whole.left == MAX_RECORDING_BYTES:
                     raise Malformed([wrong("recording", path.name, f"{path.name} is empty")])
-                return await self._play_instead(path, home)
+                return await self._play_instead(request, path, home)
             except BaseException:
                 shutil.rmtree(home, ignore_errors=True)
                 raise
@@ -88,7 +91,7 @@ class SentRecordings:
         await _write(request, path, coming.room)
         return to_json({"room": coming.room.left})
 
-    async def take_folder(self, token: str) -> bytes:
+    async def take_folder(self, request: Request, token: str) -> bytes:
         """All files of the folder have been sent: play it."""
         self._limits.pass_on("recording")
         coming = self._coming
@@ -96,15 +99,15 @@ class SentRecordings:
             raise Malformed([wrong("folder", token, "no file of this folder has been sent, or another came after it")])
         self._coming = None
         try:
-            return await self._play_instead(coming.path, coming.home)
+            return await self._play_instead(request, coming.path, coming.home)
         except BaseException:
             coming.forget()
             raise
 
-    async def _play_instead(self, path: Path, home: str) -> bytes:
+    async def _play_instead(self, request: Request, path: Path, home: str) -> bytes:
         """Play what lies there, one after the other; then what played before is deleted."""
         async with self._one:
-            view = await self._play(path)
+            view = await self._play(request, path)
             self._forget_played()
             self._folder = home
         return to_json(recording_fields(view))
@@ -124,15 +127,27 @@ class SentRecordings:
             self._coming.forget()
             self._coming = None
 
-    async def _play(self, path: Path) -> RecordingView:
+    async def _play(self, request: Request, path: Path) -> RecordingView:
         try:
-            player = await asyncio.to_thread(self._open, path)
+            player = await self._opened(request, path)
         except ValueError as error:
             reason = str(error).replace(f"{path.parent}{os.sep}", "")
             raise Malformed([wrong("recording", path.name, reason)]) from None
         view = (await told(self._submit, PlayRecording(player), PLAY_TIMEOUT_S)).result
         assert isinstance(view, RecordingView)
         return view
+
+    async def _opened(self, request: Request, path: Path) -> object:
+        """What plays it. Nobody waits behind a recording whose sender has left: opening it is called off."""
+        called_off = threading.Event()
+        opening = asyncio.ensure_future(asyncio.to_thread(self._open, path, called_off))
+        try:
+            while not (await asyncio.wait({opening}, timeout=LOOK_S))[0]:
+                if await request.is_disconnected():
+                    called_off.set()
+            return opening.result()
+        finally:
+            called_off.set()
 
 
 def add_recordings(app: FastAPI, opener: Opener | None, submit: Submit) -> SentRecordings | None:
@@ -151,7 +166,7 @@ def add_recordings(app: FastAPI, opener: Opener | None, submit: Submit) -> SentR
     ) -> Response:  # fmt: skip
         """Play a recording of a robot, in one file or in a folder that was sent before. One that cannot be played is
         refused, and the session goes on."""
-        return json_response(await (sent.take(request, name) if folder is None else sent.take_folder(folder)))
+        return json_response(await (sent.take(request, name) if folder is None else sent.take_folder(request, folder)))
 
     @app.put("/api/recordings", tags=["recordings"], openapi_extra={"requestBody": body},
              responses={200: {"model": Left}, **ERRORS})  # fmt: skip

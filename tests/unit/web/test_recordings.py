@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import asyncio
 import tempfile
+import threading
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from starlette.requests import Request
 from starlette.testclient import TestClient
 
 from tests.fake_snapshots import fake_snapshot
 from tests.patience import PATIENCE_S
 from tests.unit.web.doubles import ORIGIN, PORT, StubEngine, StubViewers
+from web.http import recordings
 from web.http.api import create_app
+from web.http.commands import Malformed
 from web.http.recordings import MAX_RECORDING_BYTES, SentRecordings
 from web.latest import Latest
 from web.messages import Accepted, PlayRecording, RecordingView, Refused, Snapshot
@@ -43,10 +47,10 @@ class Sender:
         return sorted(path.name for path in self.folder.rglob("*") if path.is_file())
 
 
-def opened(path: Path) -> object:
+def opened(path: Path, called_off: threading.Event) -> object:
     """A file that begins with `good` can be played, and a folder with such a file in it."""
     if path.is_dir():
-        return [opened(file) for file in sorted(path.rglob("*")) if file.is_file()]
+        return [opened(file, called_off) for file in sorted(path.rglob("*")) if file.is_file()]
     if not path.read_bytes().startswith(b"good"):
         raise ValueError(f"{path}: line 1 is no recording")
     return path.name
@@ -215,6 +219,9 @@ class Body:
         await self._may.wait()
         yield b"bye"
 
+    async def is_disconnected(self) -> bool:
+        return False
+
 
 def test_an_upload_that_stalls_holds_up_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
@@ -236,3 +243,23 @@ def test_an_upload_that_stalls_holds_up_no_other(tmp_path: Path, monkeypatch: py
 
     asyncio.run(two())
     assert [path.name for path in tmp_path.rglob("*.bag")] == ["next.bag"]
+
+
+def test_whoever_leaves_while_it_is_opened_calls_it_off(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Or nobody could open a recording after one that is read without an end."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(recordings, "LOOK_S", 0.01)
+
+    def endless(path: Path, called_off: threading.Event) -> object:
+        called_off.wait()
+        raise ValueError(f"{path}: called off")
+
+    said = iter([{"type": "http.request", "body": b"good", "more_body": False}])
+
+    async def receive() -> dict[str, object]:
+        return next(said, {"type": "http.disconnect"})
+
+    request = Request({"type": "http", "method": "POST", "headers": []}, receive)
+    with pytest.raises(Malformed, match="called off"):
+        asyncio.run(SentRecordings(endless, StubEngine().submit).take(request, "endless.db3"))
+    assert not list(tmp_path.iterdir())
