@@ -176,8 +176,6 @@ def db3_packets(path: Path, problems: Problems) -> Iterator[Packet]:
     try:
         base.text_factory = _text
         base.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MOST_CHUNK)
-        steps = [0]
-        base.set_progress_handler(lambda: _count(steps), 10_000_000)
         topics, definitions = _topics(base), _definitions(base)
         for id_, time, data in base.execute("SELECT topic_id, timestamp, data FROM messages ORDER BY timestamp, id"):
             number += 1
@@ -213,9 +211,3 @@ def _definitions(base: sqlite3.Connection) -> dict[str, str]:
 
 def _text(data: bytes) -> str:
     return data.decode(errors="replace")
-
-
-def _count(steps: list[int]) -> int:
-    """Ends a query that goes on for ever, as one of a view that somebody put in the place of a table."""
-    steps[0] += 1
-    return int(steps[0] > 100_000)
