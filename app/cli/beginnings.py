@@ -65,14 +65,14 @@ def _refuse(args: argparse.Namespace, names: tuple[str, ...], option: str) -> No
 def resumed_run(args: argparse.Namespace) -> First:
     """Go on with a run where it was left; what led there is run again first."""
     from app.cli.progress import compile_first, with_progress
-    from app.runs.folder import is_open
+    from app.runs.folder import busy_words, is_open
     from app.runs.replay import resumed
     from app.runs.run_file import open_run
 
     _refuse(args, _NOT_WITH_A_RUN, "--resume: the run has its own")
     kept = open_run(args.resume)
     if is_open(kept.folder):
-        raise ValueError(f"the run {kept.name} is going on in another program")
+        raise ValueError(f"the run {kept.name} {busy_words(kept.folder)}")
     compile_first()
     session = with_progress(
         kept.length_s, lambda tell: resumed(kept, lambda s: tell(s, "running again what led there"))

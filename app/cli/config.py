@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 
 from app.cli.options import Verbs, add_config_options, config_of
-from app.config import Config, additions_markdown, to_markdown, to_toml
 
 
 def add_config(commands: Verbs) -> None:
@@ -20,6 +19,8 @@ def add_config(commands: Verbs) -> None:
 
 
 def _config(args: argparse.Namespace) -> int:
+    from app.config import Config, additions_markdown, to_markdown, to_toml
+
     config = config_of(args, Config())
     text = additions_markdown() if args.additions else to_markdown(config) if args.table else to_toml(config)
     print(text, end="")

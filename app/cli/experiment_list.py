@@ -18,11 +18,10 @@ WIDTH = 100
 def list_experiments(args: argparse.Namespace) -> int:
     """Print them. Durations are measured where trials were run before."""
     workers, total_s = args.workers or cores(), 0.0
-    path = args.store or default_path()
-    measured_of = _measured(path, args.quick)
+    measured_of = _measured(args.store, args.quick)
     for experiment in catalogue():
         measured = measured_of.get(experiment.name, {})
-        duration = duration_of(experiment, experiment.make_trials(trials=args.trials, quick=args.quick), measured)
+        duration = duration_of(experiment, experiment.how_many(args.trials, args.quick), measured, args.quick)
         total_s += duration.seconds / workers
         _tell(experiment, f"{duration.trials} trials, {duration.words(workers)}")
     print(f"\nAll together: {time_words(total_s)} with {workers} {'worker' if workers == 1 else 'workers'}.")
@@ -32,9 +31,10 @@ def list_experiments(args: argparse.Namespace) -> int:
     return 0
 
 
-def _measured(path: Path, quick: bool) -> dict[str, dict[str, float]]:
+def _measured(path: Path | None, quick: bool) -> dict[str, dict[str, float]]:
     """Wall seconds of a trial by experiment and engine. A store that cannot be read is told of, and nothing is known then."""
     try:
+        path = path or default_path()
         if path.is_file():
             with Store(path, reading=True) as store:
                 return {name: store.seconds(name, quick) for name in names()}

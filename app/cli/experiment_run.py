@@ -6,6 +6,7 @@ import argparse
 import shlex
 import shutil
 import sys
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -80,7 +81,8 @@ def _planned(experiment: Experiment, args: argparse.Namespace, store: Store) -> 
     engines: list[EngineName] | None = None if args.engine == "both" else [args.engine]
     trials = experiment.make_trials(engines, args.trials, args.quick)
     measured = store.seconds(experiment.name, args.quick)
-    return _Plan(experiment, trials, duration_of(experiment, pending(trials, store), measured))
+    waiting = Counter(trial.engine for trial in pending(trials, store))
+    return _Plan(experiment, trials, duration_of(experiment, waiting, measured, args.quick))
 
 
 def _run(plan: _Plan, args: argparse.Namespace, store: Store, workers: Workers) -> None:

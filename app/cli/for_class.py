@@ -24,9 +24,9 @@ def add_class_options(run: argparse.ArgumentParser) -> None:
 
 def for_class(args: argparse.Namespace) -> ForClass | None:
     """Where a class is let in. ValueError: an option says where, but not that."""
-    from web.http.server import ForClass
-
     if args.for_class:
+        from web.http.server import ForClass
+
         return ForClass(args.class_address, PORT if args.class_port is None else args.class_port)
     for name in ("class-address", "class-port"):
         if getattr(args, name.replace("-", "_")) is not None:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from app.config import Config, Value, from_toml, parse_value
 from app.config.presets import PRESETS, preset
 from app.config.toml_file import read_text
-from ratslam_core import RatSlam, load_brain
-from sim2d import DEFAULT_WORLD, World
-from sim2d.importers import open_world
+from app.config.tree import Config, Value
+from sim2d import DEFAULT_WORLD
+
+if TYPE_CHECKING:
+    from ratslam_core import RatSlam
+    from sim2d import World
 
 Verbs: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"  # pyright: ignore[reportPrivateUsage]
 
@@ -37,6 +39,8 @@ def add_config_options(parser: argparse.ArgumentParser) -> None:
 
 
 def config_of(args: argparse.Namespace, config: Config) -> Config:
+    from app.config import from_toml, parse_value
+
     if args.preset is not None:
         config = preset(args.preset, config)
     if args.config is not None:
@@ -74,6 +78,9 @@ def tell_beside(sentence: str) -> None:
 
 
 def session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None]:
+    from ratslam_core import load_brain
+    from sim2d.importers import open_world
+
     checked_seed(args.seed)
     brain = None if args.brain is None else load_brain(args.brain)
     config = config_of(args, Config() if brain is None else Config().with_engine(brain.params))

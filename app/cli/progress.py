@@ -6,8 +6,6 @@ import sys
 from collections.abc import Callable
 from typing import TypeVar
 
-from app.startup.compiling import Compiling, say_how_far
-
 Result = TypeVar("Result")
 
 
@@ -46,6 +44,8 @@ def share_said(seconds: float, work: Callable[[Callable[[float, str], None]], Re
 
 def compile_first() -> None:
     """Compile what is not compiled yet, and say how far that is, before the run's own progress begins."""
+    from app.startup.compiling import Compiling, say_how_far
+
     compiling = Compiling()
     try:
         compiling.wait(say_how_far)

@@ -7,21 +7,13 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.beginnings import (
-    First,
-    chosen_experiment,
-    first_of_trial,
-    new_run,
-    opened_situation,
-    played_recording,
-    resumed_run,
-)
 from app.cli.for_class import add_class_options, for_class
 from app.cli.options import Verbs, add_session_options, port_number
 from app.cli.serving import PAST_DISK_MB, PAST_MB, Serving, serve
 from app.runs.folder import BUDGET_MB
 
 if TYPE_CHECKING:
+    from app.cli.beginnings import First
     from app.trials.trial import Trial
 
 LEAST_PAST_MB = 20.0  # the copy of the last moment alone takes some
@@ -89,6 +81,8 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _first(args: argparse.Namespace, serving: Serving) -> First:
+    from app.cli.beginnings import chosen_experiment, new_run, opened_situation, played_recording, resumed_run
+
     if args.resume is not None:
         return resumed_run(args)
     if args.situation is not None:
@@ -107,6 +101,7 @@ def run_with_trial(trial: Trial, moment_s: float | None, *, title: str = "", ser
     before it, and plays from there. None: it plays from its beginning. title: of the experiment, by default as in the
     catalogue.
     """
+    from app.cli.beginnings import first_of_trial
     from app.trials.experiment import catalogue
 
     title = title or next((each.title for each in catalogue() if each.name == trial.experiment), trial.experiment)

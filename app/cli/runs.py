@@ -31,12 +31,16 @@ def add_replay(commands: Verbs) -> None:
 def _list(args: argparse.Namespace) -> int:
     from app.runs.folder import all_runs, runs_folder
 
+    try:
+        where = f" in {runs_folder()}"
+    except ValueError as error:
+        where = f": {error}"
     rows = [_row(folder) for folder in all_runs()]
     if args.json:
         for row in rows:
             print(json.dumps(row))
     elif not rows:
-        print(f"No run is kept in {runs_folder()}")
+        print(f"No run is kept{where}")
     else:
         print(f"{'id':28} {'made':16} {'world':14} {'seed':>5} {'min':>6} {'places':>6}  state")
     for row in [] if args.json else rows:
@@ -52,7 +56,7 @@ def _row(folder: Path) -> dict[str, Any]:
         run = open_run(folder)
     except ValueError as error:
         return {"id": folder.name, "state": str(error)}
-    state = "goes on in another program" if is_open(folder) else "complete" if run.end else "cut off"
+    state = "complete" if run.end else "goes on in another program" if is_open(folder) else "cut off"
     header = run.header
     return {
         "id": run.name, "made_at": header.made_at, "world": header.world_name, "seed": header.seed, "ticks": run.last_tick,

@@ -12,15 +12,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.earlier import going_on
 from app.cli.for_class import class_words
 from app.runs.folder import BUDGET_MB, runs_folder
-from app.startup.compiling import Compiling
-from app.startup.waking import Waking
-from ratslam_core import load_brain
 
 if TYPE_CHECKING:
     from app.cli.beginnings import First
+    from app.startup.compiling import Compiling
     from app.time_machine import PastRoom
     from web.http.server import Dashboard, ForClass
 
@@ -44,6 +41,8 @@ class Serving:
 
 def serve(serving: Serving, first: First) -> int:
     """Serve it until it is stopped. The exit code. ValueError says why it cannot be."""
+    from app.startup.compiling import Compiling
+
     compiling = Compiling()  # runs in the background while the rest is loaded
     try:
         return _serve(serving, first, compiling)
@@ -62,6 +61,7 @@ def _past_room(serving: Serving) -> PastRoom:
 
 
 def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
+    from app.cli.earlier import going_on
     from app.engine_thread import EngineThread
     from app.export.page import PageExports
     from app.gallery.gallery import StoredGallery
@@ -69,6 +69,8 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     from app.kept_brains.keeper import BrainKeeper
     from app.runs.keeper import RunKeeper
     from app.situations.page import PageSituations
+    from app.startup.waking import Waking
+    from ratslam_core import load_brain
     from web import messages as m
     from web.http.kept_offer import Offered
     from web.http.server import CannotListen, Dashboard

@@ -9,9 +9,6 @@ from pathlib import Path
 from app.cli.options import Verbs, tell_beside
 from disk import write_whole
 from disk.words import shown
-from sim2d import WorldError, load_world, own_worlds, world_names, world_to_json
-from sim2d.importers import import_file
-from sim2d.world.world_file import complaints, parse_json, schema_text
 
 
 def add_worlds(commands: Verbs) -> None:
@@ -36,8 +33,10 @@ def add_worlds(commands: Verbs) -> None:
 
 
 def _list(_args: argparse.Namespace) -> int:
-    for name, _ in world_names():
-        world = load_world(name)
+    from sim2d import own_worlds
+    from sim2d.world.world_file import our_worlds
+
+    for name, world in our_worlds():
         x0, y0, x1, y1 = world.bounds
         print(f"{name:12} {world.title}; {x1 - x0:g} x {y1 - y0:g} m; {world.paper or 'ours'}: {world.about}")
     for name, title in own_worlds.names():
@@ -56,6 +55,10 @@ def _check(args: argparse.Namespace) -> int:
 
 def _complaints(path: Path, scale_m: float | None) -> list[str]:
     """Every fault of a world file; of a plan that is imported, only the first."""
+    from sim2d import WorldError
+    from sim2d.importers import import_file
+    from sim2d.world.world_file import complaints, parse_json
+
     try:
         if path.suffix.lower() == ".json":
             text = path.read_text("utf-8")
@@ -72,6 +75,9 @@ def _complaints(path: Path, scale_m: float | None) -> list[str]:
 def _import(args: argparse.Namespace) -> int:
     if args.seed < 0:
         raise ValueError(f"--seed must be 0 or larger, got {args.seed}")
+    from sim2d import world_to_json
+    from sim2d.importers import import_file
+
     world = import_file(args.file, args.scale, args.seed, tell=tell_beside)
     write_whole(args.output, world_to_json(world))
     print(f"{args.output}: {world.title}, {len(world.walls)} walls, {len(world.starts)} starts")
@@ -79,5 +85,7 @@ def _import(args: argparse.Namespace) -> int:
 
 
 def _schema(_args: argparse.Namespace) -> int:
+    from sim2d.world.world_file import schema_text
+
     print(schema_text(), end="")
     return 0

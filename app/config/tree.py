@@ -7,9 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import Field, dataclass, fields, replace
 from typing import Any
 
-from app.pilot import PilotParams
+from app.pilot.params import PilotParams
 from disk import kind
-from ratslam_core.local_view.matcher import COLUMNS
 from ratslam_core.params import (
     ExperienceMapParams,
     GoalMemoryParams,
@@ -22,6 +21,7 @@ from ratslam_core.params import (
     RatSlamParams,
     SolverParams,
 )
+from ratslam_core.params.local_view import COLUMNS
 from sim2d import OfficeParams, SimParams
 
 Value = float | int | bool | str

@@ -92,7 +92,7 @@ def _begun(workers: int) -> Any:
             return LocalCluster(
                 n_workers=workers, threads_per_worker=1, processes=True, host=HERE, memory_limit=0,
                 dashboard_address=f"{HERE}:0", scheduler_kwargs={"dashboard": False}, silence_logs=logging.CRITICAL,
-                preload=["app.experiments.batch"], security=keys,
+                preload=["ratslam_live", "app.experiments.batch"], security=keys,
             )  # fmt: skip
         except RuntimeError as error:
             if not more:
@@ -113,7 +113,7 @@ def _fork_ready_workers() -> None:
     utils: Any = import_module("distributed.utils")  # these have no types
     server: Any = import_module("multiprocessing.forkserver")
     dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"})
-    utils.get_mp_context().set_forkserver_preload(["distributed", "app.experiments.batch"])
+    utils.get_mp_context().set_forkserver_preload(["ratslam_live", "distributed", "app.experiments.batch", "app.trials.course"])
     with _environment(PYTHONPATH=str(_ROOT), PYTHONSAFEPATH="1", **_ONE_THREAD):  # this program, wherever it is called
         server.ensure_running()
 

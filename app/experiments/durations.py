@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
 from dataclasses import dataclass
 
 from app.trials.experiment import Experiment
-from app.trials.trial import Trial
 
 REAL_TIMES = 100.0  # simulated seconds in one of a core, where nothing has been measured
 SET_UP_S = 0.5  # of a session
@@ -25,12 +24,13 @@ class Duration:
         return f"{time_words(self.seconds / max(1, workers))}, {'measured' if self.measured else 'estimated'}"
 
 
-def duration_of(experiment: Experiment, trials: Sequence[Trial], measured: dict[str, float]) -> Duration:
-    """measured: wall seconds of a trial, by engine, as far as they are known."""
-    quick = any(trial.quick for trial in trials)
+def duration_of(
+    experiment: Experiment, trials: Counter[str], measured: dict[str, float], quick: bool = False
+) -> Duration:
+    """trials: how many, by engine. measured: wall seconds of a trial, by engine, as far as they are known."""
     estimated_s = experiment.seconds(quick) / REAL_TIMES + SET_UP_S
-    seconds = sum(measured.get(trial.engine, estimated_s) for trial in trials)
-    return Duration(seconds, len(trials), all(trial.engine in measured for trial in trials))
+    seconds = sum(measured.get(engine, estimated_s) * count for engine, count in trials.items())
+    return Duration(seconds, trials.total(), all(engine in measured for engine in trials))
 
 
 def time_words(seconds: float) -> str:

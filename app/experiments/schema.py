@@ -5,6 +5,8 @@ from __future__ import annotations
 import sqlite3
 from pathlib import Path
 
+from disk.locks import require_record_locks
+
 VERSION = 1  # of these tables, kept as the file's user_version
 BUSY_S = 60.0  # how long a command that writes waits for another that does
 READ_BUSY_S = 0.5  # and one that only reads: the file's journal lets it read meanwhile, unless somebody locks it whole
@@ -81,6 +83,7 @@ def connected(path: Path) -> sqlite3.Connection:
     """The file, made if it does not exist. ValueError if it is something else, or of a newer program."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        require_record_locks(path.parent, "the trials need; keep them on a local disk: --store FILE, or RATSLAM_EXPERIMENTS")
         connection = sqlite3.connect(path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
     except (OSError, sqlite3.OperationalError) as error:
         raise ValueError(f"--store {path}: {getattr(error, 'strerror', None) or error}") from None

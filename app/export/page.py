@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 from app.export.export import AT_A_MOMENT, FORMATS, Format, at_a_moment, files_of, write_parts
 from app.session_snapshot import restore_session
 from disk import State
+from ratslam_live import command_of
 from web.http.asking import Submit, told
 from web.http.commands import Malformed
 from web.http.export import Offer, Wish
@@ -59,7 +59,7 @@ class PageExports:
         kept = self._kept()
         if kept is None:
             raise ValueError(NOT_KEPT)
-        command = [sys.executable, "-m", "app", "export", str(kept), "--to", to, "--out", str(out), "--say-share"]
+        command = [*command_of("app"), "export", str(kept), "--to", to, "--out", str(out), "--say-share"]
         command += ["--pictures", wish.pictures]
         for name, time_s in (("--from", wish.from_s), ("--until", wish.until_s)):
             command += [] if time_s is None else [name, repr(time_s)]

@@ -57,7 +57,9 @@ class StoredGallery:
         """The newest figure drawn here, the first of its experiment; else the one that comes with the program."""
         if name not in _experiments():
             return None
-        drawn = [*self._folder.glob(f"{name}-1-*.svg"), *self._folder.glob(f"{name}-1-*.png")]
+        drawn: list[Path] = []
+        with contextlib.suppress(ValueError):  # there is no home, and so none drawn
+            drawn = [*self._folder.glob(f"{name}-1-*.svg"), *self._folder.glob(f"{name}-1-*.png")]
         if drawn:
             return max(drawn, key=lambda path: (path.stat().st_mtime, path.suffix))
         shipped = [self._pictures / f"{name}{suffix}" for suffix in (".svg", ".png")]

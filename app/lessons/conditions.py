@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import takewhile
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from app.session import Session, is_lost
-from app.trials.checking import place_of
 from app.trials.steps import Metres, Where
-from app.views.history import History
-from web.messages import Event
+
+if TYPE_CHECKING:
+    from app.session import Session
+    from app.views.history import History
+    from web.messages import Event
 
 What = Literal["closure", "snap", "lost", "found again", "packets", "goal reached", "place"]
 SHARE = 0.1  # of all activity: a smaller packet is not counted
@@ -63,6 +64,8 @@ class Waiting:
 
     def __init__(self, until: Until, session: Session, history: History) -> None:
         """ValueError: it cannot happen, as things are."""
+        from app.trials.checking import place_of
+
         self.until, self._session, self._history = until, session, history
         self._events = history.log.events[-1].number if history.log.events else 0
         self._place = None if until.place is None else place_of(session.world, until.place)
@@ -77,6 +80,8 @@ class Waiting:
         if what in ("closure", "snap"):
             return any(event.kind == what for event in self._new_events())
         if what == "lost":
+            from app.session import is_lost
+
             return is_lost(session)
         if what == "found again":
             return not self._unresolved

@@ -11,17 +11,16 @@ from pydantic import ValidationError
 
 from app.config.toml_file import read_text, toml_tree
 from app.lessons.lines import line_of
-from app.lessons.performance import Performance, session_of
 from app.lessons.schema import Lesson
-from app.views.history import History
+from disk import kept_folder
 
 _CATALOGUE = Path(__file__).with_name("catalogue")
 ENVIRONMENT = "RATSLAM_LESSONS"
 
 
 def own_folder() -> Path:
-    """Where a teacher's own lessons lie."""
-    return Path(os.environ.get(ENVIRONMENT) or Path.home() / ".ratslam" / "lessons")
+    """RATSLAM_LESSONS, or `.ratslam/lessons` in the home directory: where a teacher's own lie. ValueError without a home."""
+    return Path(os.environ.get(ENVIRONMENT) or kept_folder() / "lessons")
 
 
 def read_lesson(path: Path) -> Lesson:
@@ -53,6 +52,9 @@ def _find_world(path: Path, tree: dict[str, Any]) -> None:
 
 def check_lesson(lesson: Lesson) -> None:
     """ValueError says what does not fit together: a world, a place, a door."""
+    from app.lessons.performance import Performance, session_of
+    from app.views.history import History
+
     for number in range(lesson.round_count):
         session = session_of(lesson, number)
         Performance(lesson, number, session, History(session))
@@ -66,7 +68,11 @@ def catalogue() -> Iterator[Lesson]:
 
 def own_lessons() -> Iterator[tuple[Path, Lesson | str]]:
     """The user's, each read or with what is wrong with it."""
-    for path in sorted(own_folder().glob("*.toml")):
+    try:
+        folder = own_folder()
+    except ValueError:  # no home directory, so none of one's own
+        return
+    for path in sorted(folder.glob("*.toml")):
         try:
             yield path, read_lesson(path)
         except ValueError as error:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
-from app.companion import Companion
 from app.config.pairs import Pair
 from app.lessons.findings import Values
-from app.session import Session
-from app.views.history import History
-from ratslam_core import RatSlam
+
+if TYPE_CHECKING:
+    from app.companion import Companion
+    from app.session import Session
+    from app.views.history import History
+    from ratslam_core import RatSlam
+
 
 OF_SECOND = (
     "error_m", "error_before_m", "off_m", "off_most_m", "astray_m", "views", "views_new", "experiences", "experiences_new",

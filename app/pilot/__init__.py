@@ -1,7 +1,6 @@
 """The pilot: it explores, avoids obstacles, follows routes, obeys the hand and gets free when stuck."""
 
-from app.pilot.params import PilotParams
-from app.pilot.pilot import Mode, Pilot
-from app.pilot.route_following import Progress
+# pyright: basic
+import lazy_loader
 
-__all__ = ["Mode", "Pilot", "PilotParams", "Progress"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -30,6 +30,7 @@ from typing import NamedTuple, NoReturn, cast
 from app.recordings.fingerprint import files_of
 from app.recordings.opening import Opening, open_recording
 from app.recordings.recording import About, Moment, Recording, Wanted, every
+from ratslam_live import command_of
 
 MOST_MEMORY = 2 << 30  # bytes of data
 MOST_CPU_S, CPU_S_A_BYTE = (
@@ -107,7 +108,7 @@ class ReadApart:
         ours, theirs = socket.socketpair()
         with theirs:
             self._process = subprocess.Popen(
-                [sys.executable, "-P", "-c", f"from app.recordings.apart import main; main({theirs.fileno()})"],
+                command_of("app.recordings.apart", str(theirs.fileno())),
                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                 pass_fds=(theirs.fileno(),), process_group=0,
             )  # fmt: skip
@@ -244,3 +245,9 @@ def _allow(seconds: float) -> None:
     """So much computing from now on. Who takes more is ended by the system, even within a library."""
     limit = math.ceil(time.process_time() + seconds)
     resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
+
+
+if __name__ == "__main__":  # in the reader's process; what comes and goes there is of the module by its own name
+    from app.recordings.apart import main as answer
+
+    answer(int(sys.argv[1]))

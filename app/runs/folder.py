@@ -5,20 +5,17 @@ from __future__ import annotations
 import contextlib
 import os
 import shutil
+import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO
 
 from disk import kept_folder
-
-try:
-    import fcntl
-except ImportError:  # a system without such locks: two programs are not told apart there
-    fcntl = None
+from disk.locks import lock
 
 LINES, BRAIN, STATE = "run.jsonl", "brain.npz", "state.npz"
 BUDGET_MB = 200.0
 MOST_RUNS = 200
+FRESH_S = 60.0  # where there are no locks, a run that goes on is touched far more often than that
 MOST_STATES = 3  # runs that keep a state to be resumed from fast; the others are resumed from their orders
 
 
@@ -36,29 +33,28 @@ def all_runs() -> list[Path]:
     return sorted(found, key=_age, reverse=True)
 
 
-def lock(file: IO[bytes]) -> bool:
-    """Keep other programs from writing to this file until it is closed. False: another one is writing to it."""
-    if fcntl is not None:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            return False
-    return True
-
-
 def is_open(folder: Path) -> bool:
-    """Whether a program is writing this run now."""
+    """Whether a program is writing this run now. Without locks: whether one has within the last minute, in which it would."""
     try:
         with (folder / LINES).open("rb") as file:
-            return not lock(file)
+            free = lock(file, shared=True)
     except OSError:
         return False
+    return time.time() - _age(folder) < FRESH_S if free is None else not free
+
+
+def busy_words(folder: Path) -> str:
+    """Why a run that is open cannot be gone on with or deleted."""
+    with (folder / LINES).open("rb") as file:
+        if lock(file, shared=True) is None:
+            return f"was written less than {FRESH_S:g} s ago, and {folder.parent} has no file locks to tell whether it goes on"
+    return "is going on in another program"
 
 
 def delete(folder: Path) -> None:
     """ValueError: the run is still going on. OSError: it cannot be deleted."""
     if is_open(folder):
-        raise ValueError(f"the run {folder.name} is still going on; end its program first")
+        raise ValueError(f"the run {folder.name} {busy_words(folder)}; end its program first")
     shutil.rmtree(folder)
 
 

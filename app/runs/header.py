@@ -7,19 +7,20 @@ import platform
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as checked
 
 from app.config import Config, Value
-from app.played_session import PlayedSession
-from app.recordings.fingerprint import fingerprint
-from app.session import Session
 from app.trials.code_version import code_version
 from disk.state_reading import words_of
 from disk.words import one_line, plain
+
+if TYPE_CHECKING:
+    from app.played_session import PlayedSession
+    from app.session import Session
 
 FORMAT = "ratslam run/1"
 _Words = Annotated[str, Field(max_length=200), AfterValidator(one_line)]
@@ -100,6 +101,8 @@ _HEADER = TypeAdapter(Header)
 
 def header_of(beginning: Beginning) -> Header:
     """OSError: its recording cannot be read."""
+    from app.recordings.fingerprint import fingerprint
+
     path = beginning.recording
     recording = path and KeptRecording(str(path), fingerprint(path), beginning.dt or 0.0)
     return Header(

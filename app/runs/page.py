@@ -33,7 +33,7 @@ class Page:
         self._book, self._complain = book, complain
         self._complained = self._given_up = False
         self._end = "the program ended"
-        self._folder = runs_folder()
+        self._folder = Path()  # none yet
         self._journal: Journal | None = None
         try:
             self._begin(book)
@@ -64,6 +64,7 @@ class Page:
             shutil.rmtree(self._folder, ignore_errors=True)
 
     def _begin(self, book: Book) -> None:
+        self._folder = runs_folder()
         beginning = book.beginning
         if isinstance(beginning, Fork):
             beginning = _forked(beginning)
@@ -84,6 +85,9 @@ class Page:
                 with whole_file(self._folder / BRAIN) as file:
                     write_state(encode(book.brain), file)
         book.folder = self._folder
+        if self._journal.without_locks:
+            self._complain(f"{self._folder.parent} has no file locks: the run is kept there, but do not go on with it in two "
+                           "programs at once; RATSLAM_RUNS names another folder")  # fmt: skip
         self._states = States(self._folder, self._hashed)
         if isinstance(beginning, KeptRun):
             self._try(self._lines.again, version)
@@ -122,7 +126,8 @@ class Page:
         why = error.strerror if isinstance(error, OSError) else None
         self._given_up = True
         self._book.end("given up")
-        self._tell(f"the run is not kept in {self._folder}: {why or error}; it goes on")
+        where = f" in {self._folder}" if self._folder.name else ""
+        self._tell(f"the run is not kept{where}: {why or error}; it goes on")
 
     def _tell(self, words: str) -> None:
         if not self._complained:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import struct
 import zlib
+from typing import TYPE_CHECKING
 
-from app.session import Session
-from sim2d import Truth
+if TYPE_CHECKING:
+    from app.session import Session
 
 SIZE = 4
 _NUMBERS = struct.Struct("<12d")
-_NO_TRUTH = Truth(0.0, 0.0, 0.0, 0.0, 0.0)  # of a recording that has none
 
 
 def pulse_of(session: Session) -> bytes:
@@ -19,10 +19,11 @@ def pulse_of(session: Session) -> bytes:
     Of the picture it holds how much it differs from the most similar view: a sum over the picture alone would cost more
     than all the rest.
     """
-    truth, frame, estimate = session.truth or _NO_TRUTH, session.frame, session.estimate
+    truth, frame, estimate = session.truth, session.frame, session.estimate
+    x, y, heading_rad = (truth.x, truth.y, truth.heading_rad) if truth else (0.0, 0.0, 0.0)  # a recording may have none
     pose, packet, seen = estimate.pose_map_robot, estimate.packet, estimate.recognition
     numbers = _NUMBERS.pack(
-        truth.x, truth.y, truth.heading_rad, frame.odometry_speed, frame.odometry_yaw_rate, pose.x, pose.y,
+        x, y, heading_rad, frame.odometry_speed, frame.odometry_yaw_rate, pose.x, pose.y,
         pose.heading_rad, packet.mass, estimate.experience, seen.view, seen.difference,
     )  # fmt: skip
     return zlib.crc32(numbers).to_bytes(SIZE, "little")

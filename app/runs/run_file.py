@@ -7,21 +7,19 @@ import base64
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from app.order_book import SMALLEST_M, Order, carry_out, overtakes
 from app.runs.folder import BRAIN, LINES, all_runs, runs_folder
 from app.runs.header import Header, read_header
 from app.runs.lines import Lines
-from app.runs.order_check import check_order
 from app.runs.pulse import SIZE
-from app.runs.recorded import recorded
 from app.runs.world_edits import edited, require_room
-from app.session import Session
 from disk.state_reading import words_of
 from disk.words import one_line
-from ratslam_core import load_brain
-from sim2d import world_from_json
+
+if TYPE_CHECKING:
+    from app.session import Session
 
 MOST_WORDS, MOST_EXPERIENCES = 200, 10**9
 
@@ -68,6 +66,11 @@ class KeptRun:
 
     def begin(self) -> Session:
         """The session before its first tick. ValueError says why it cannot begin."""
+        from app.runs.recorded import recorded
+        from app.session import Session
+        from ratslam_core import load_brain
+        from sim2d import world_from_json
+
         header = self.header
         if header.recording is not None:
             return recorded(self.name, header)
@@ -191,6 +194,8 @@ def _words(value: object) -> str:
 
 
 def _again(session: Session, order: Order) -> None:
+    from app.runs.order_check import check_order
+
     try:
         check_order(order)
         carry_out(session, order)

@@ -10,6 +10,7 @@ from app.situations.situation import Situation
 from app.situations.writing import changed_values, is_ours
 from disk.words import plain
 
+FIRST = "import ratslam_live  # before the others: `app` is ours then, whatever lies beside the notebook"
 WIDE = 120  # characters of a line
 _AS_OBJECTS = {"edit_world", "put_box"}  # orders whose values are the texts of objects
 
@@ -54,6 +55,7 @@ def _from_file(file_name: str) -> list[str]:
         "# Save it to a file first: its world, boxes or brain are in there.",
         "from pathlib import Path",
         "",
+        FIRST,
         "from app.situations import read_situation",
         "",
         f"session = read_situation(Path({_literal(file_name)}).read_text()).play()",
@@ -65,6 +67,7 @@ def _from_the_beginning(situation: Situation) -> list[str]:
     # All or nothing: a value that follows from another one (`with_values`) is given with it.
     config = f"Config().with_values({_shown(values)})" if values else "Config()"
     lines = [
+        FIRST,
         "from app.config import Config",
         "from app.session import Session",
         "from sim2d import load_world",

@@ -1,6 +1,6 @@
 """Uses parts of the program for a moment, so that numba compiles their kernels and caches them on disk.
 
-`-m app.startup.compile_part PART ...` compiles each part in a process of its own, forked when everything has been
+Called with the names of parts, it compiles each part in a process of its own, forked when everything has been
 imported. It prints an empty line for each kernel. Nothing else depends on what is computed here.
 """
 

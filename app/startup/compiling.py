@@ -12,9 +12,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numba
 from numba.core.dispatcher import Dispatcher
 
 from app.startup.compile_part import PARTS
+from disk import kernel_cache
+from ratslam_live import command_of
 
 WORDS = "compiling the engine for this machine, once"
 
@@ -23,7 +26,10 @@ class Compiling:
     """Begins at once to compile the parts whose kernels are not on disk. A part that fails is compiled when used."""
 
     def __init__(self) -> None:
-        missing = [part for part, (_, modules) in PARTS.items() if not all(map(is_compiled, modules))]
+        if kernel_cache.words:
+            print(f"ratslam: {kernel_cache.words}", file=sys.stderr)
+        kept = not (kernel_cache.in_memory or numba.config.DISABLE_JIT)  # pyright: ignore[reportAttributeAccessIssue]
+        missing = [part for part, (_, modules) in PARTS.items() if kept and not all(map(is_compiled, modules))]
         self._process = _process(missing) if missing else None
 
     def __bool__(self) -> bool:
@@ -65,6 +71,6 @@ def is_compiled(module: ModuleType) -> bool:
 def _process(parts: list[str]) -> subprocess.Popen[str]:
     """The compiling process. It leads a process group of its own, so that its children can be ended with it."""
     return subprocess.Popen(
-        [sys.executable, "-P", "-m", "app.startup.compile_part", *parts],
+        command_of("app.startup.compile_part", *parts),
         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, process_group=0,
     )  # fmt: skip

@@ -10,9 +10,11 @@ import contextlib
 import errno
 import os
 import signal
+import stat
 import sys
 import threading
 from collections.abc import Callable
+from io import TextIOWrapper
 from types import FrameType, TracebackType
 from typing import TextIO
 
@@ -38,6 +40,7 @@ def ended(work: Callable[[], int]) -> int:
 def command(work: Callable[[], int]) -> int:
     """The whole life of a command: obey signals, do `work`, and return the exit code, which nothing changes any more."""
     obey_signals()
+    ready_to_print()
     code = ended(work)
     last_words()
     return code
@@ -47,6 +50,7 @@ def end_in_words() -> None:
     """For a module that is run by itself (`python -m`): whatever ends it, also while it is being imported, ends it as in
     `ended`."""
     obey_signals()
+    ready_to_print()
     usual = sys.excepthook
 
     def hook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
@@ -87,6 +91,24 @@ def obey_signals() -> None:
     sys.unraisablehook = held_back
 
 
+def ready_to_print() -> None:
+    """From now on printing cannot fail for a letter or a missing stream, and so cannot undo what was done before it.
+
+    A letter that the terminal lacks becomes `?`. A file is UTF-8, as whoever reads it again expects. A stream that was closed
+    (`>&-`) goes nowhere: the next file that is opened would have its number, and get what is printed.
+    """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+    sys.stdout = sys.stdout or open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+    sys.stderr = sys.stderr or open(2, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+    if isinstance(sys.stdout, TextIOWrapper):
+        file = stat.S_ISREG(os.fstat(sys.stdout.fileno()).st_mode)
+        sys.stdout.reconfigure(errors="replace", encoding="utf-8" if file else None)
+
+
 def last_words() -> None:
     """Ignore signals from now on: the exit code is known and everything is written."""
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -107,6 +129,8 @@ def _code(error: BaseException) -> int:
         return 128 + signal.SIGPIPE
     if isinstance(error, OSError):
         _say(_words(error))
+    elif isinstance(error, ImportError):
+        _say(f"a part of the program cannot be loaded: {error}; `make setup` installs what is missing into {sys.prefix}")
     elif isinstance(error, ValueError):
         _say(str(error))
     else:
@@ -124,7 +148,7 @@ def _words(error: OSError) -> str:
 
 
 def _say(words: str) -> None:
-    from disk.words import shown  # not before it is needed: numpy comes with it
+    from disk.words import shown
 
     with contextlib.suppress(OSError):  # there may be nobody to tell
         print(shown(f"ratslam: {words}"), file=sys.stderr)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.trials.course import Course
+if TYPE_CHECKING:
+    from app.trials.course import Course
 
 
 class Arbitration:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -35,7 +36,6 @@ from app.trials.steps import (
 from app.trials.trial import Trial, text_of
 from disk.limits import AXES, CELLS, TRIAL_S, TRIALS
 from disk.words import one_line
-from sim2d.importers import open_world
 from web.messages.command import Label
 
 EngineName = Literal["paper", "ours"]
@@ -183,6 +183,11 @@ class Experiment(_Part):
             return axis.levels
         return [axis.levels[0], *axis.levels[len(axis.levels) - self.quick.levels + 1 :]][: self.quick.levels]
 
+    def how_many(self, trials: int | None = None, quick: bool = False) -> Counter[str]:
+        """The number of trials that `make_trials` makes, by engine."""
+        count = (trials or (self.quick.trials if quick else self.trials)) * len(self.cells(quick))
+        return Counter(dict.fromkeys(self.engines, count))
+
     def make_trials(
         self, engines: list[EngineName] | None = None, trials: int | None = None, quick: bool = False
     ) -> list[Trial]:
@@ -213,6 +218,8 @@ class Experiment(_Part):
         return next((level.world for level in cell if level.world is not None), self.world)
 
     def _text_of(self, world: str) -> str:
+        from sim2d.importers import open_world
+
         return text_of(open_world(world, robot_radius_m=Config().with_values(self.set).robot.robot_radius_m))
 
     def values(self, engine: EngineName, cell: tuple[Level, ...]) -> Values:

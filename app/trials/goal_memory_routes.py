@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.trials.course import Course
-from ratslam_core import GoalMemory
-from ratslam_core.types import Packet
+if TYPE_CHECKING:
+    from app.trials.course import Course
+    from ratslam_core import GoalMemory
+    from ratslam_core.types import Packet
+
 
 _WEIGHTS = ("time_weight", "activity_weight", "distance_weight")
 CHANGES = (0.8, 1.2)
@@ -21,6 +24,8 @@ class GoalMemoryRoutes:
     """Goal memories with changed weights learn beside the brain's own, and lead from where the robot is to where it began."""
 
     def __init__(self, course: Course) -> None:
+        from ratslam_core import GoalMemory
+
         self._session = course.session
         brain = self._session.brain
         params, shape, cell_m = brain.params.goal_memory, brain.pose_cells.shape, brain.pose_cells.params.cell_m

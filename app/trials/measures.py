@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from app.evaluation import Coverage
 from app.trials.arbitration import Arbitration
-from app.trials.course import Course
 from app.trials.goal_memory_routes import GoalMemoryRoutes
-from ratslam_core.experience_map.places import find_places
+
+if TYPE_CHECKING:
+    from app.trials.course import Course
 
 
 class Measure(Protocol):
@@ -85,6 +85,8 @@ class Phenomena(_AtTheEnd):
     """Places with several representations, and pose cells that stand for several places (B 3.6, 3.7)."""
 
     def scores(self) -> dict[str, float]:
+        from ratslam_core import find_places
+
         found = find_places(self.session.brain.experience_map)
         return {
             "places": float(len(found.first)),
@@ -115,6 +117,8 @@ class Covered(_AtTheEnd):
 
     def scores(self) -> dict[str, float]:
         session = self.session
+        from app.evaluation import Coverage
+
         return {"covered": Coverage().follow(session.simulator.free_space, session.evaluation.path)}
 
 

@@ -8,9 +8,12 @@ import re
 import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from app.trials.course import Course
 from app.trials.measures import SCORES
+
+if TYPE_CHECKING:
+    from app.trials.course import Course
 
 _ALWAYS = (
     "error_m", "odometry_m", "path_m", "simulated_s", "old_ground", "views", "experiences", "links", "snaps",

@@ -7,18 +7,20 @@ import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter
 
 from app.config import Config
-from app.session import Session
-from app.trials.course import Course
 from app.trials.measures import MEASURES, Measure
 from app.trials.notes import Moment
 from app.trials.scores import scores_of
 from app.trials.steps import Step, Values
-from sim2d import World, WorldText
-from sim2d.importers import open_world
+
+if TYPE_CHECKING:
+    from app.trials.course import Course
+    from sim2d import World
+
 
 _STEPS: TypeAdapter[tuple[Step, ...]] = TypeAdapter(tuple[Step, ...])
 TELL_AFTER = 100  # ticks between two words about how far it is
@@ -52,6 +54,10 @@ class Trial:
 
     def begin(self) -> Course:
         """The session before its first tick. ValueError says what does not fit together."""
+        from app.session import Session
+        from app.trials.course import Course
+        from sim2d.importers import open_world
+
         config = Config().with_values(self.values)
         world = open_world(self.world, robot_radius_m=config.robot.robot_radius_m)
         return Course(Session(world, self.seed, config), self.protocol)
@@ -97,4 +103,6 @@ def watched(course: Course, measures: list[Measure], tell: Callable[[float, str]
 
 def text_of(world: World) -> str:
     """A world as the text of its file."""
+    from sim2d import WorldText
+
     return WorldText().of(world)

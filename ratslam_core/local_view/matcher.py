@@ -13,8 +13,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
+from ratslam_core.params.local_view import COLUMNS, ROWS
 
-COLUMNS, ROWS = 12, 8
 SIZE = COLUMNS * ROWS
 BLOCK = 128  # stored views that stay in the processor's nearest cache while all shifts are tried
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
+COLUMNS, ROWS = 12, 8  # of a view
+
 
 @kind("parameters of local view/1")
 @dataclass(frozen=True, slots=True)

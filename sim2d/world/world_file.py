@@ -7,20 +7,21 @@ import os
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
 from sim2d.params import SimParams
-from sim2d.world import own_worlds
+from sim2d.world import DEFAULT_WORLD, own_worlds
 from sim2d.world.json_lines import deeper_than, line_of
 from sim2d.world.world import World
-from sim2d.world.world_check import Fault, Where, world_faults
 from sim2d.world.world_schema import WorldFile
 from sim2d.world.world_writer import world_to_json
 
+if TYPE_CHECKING:
+    from sim2d.world.world_check import Fault, Where
+
 WORLDS = Path(__file__).parents[1] / "worlds"
-DEFAULT_WORLD = "office"
 SCHEMA = WORLDS / "schema.json"  # kept equal to `schema_text` by test_world_file.py::test_schema_is_published
 MOST_BYTES = 16_000_000
 MOST_LEVELS = 20  # a valid file has at most six
@@ -43,6 +44,13 @@ def world_names() -> tuple[tuple[str, str], ...]:
     return tuple((name, str(json.loads((WORLDS / f"{name}.json").read_text("utf-8"))["title"])) for name in names)
 
 
+def our_worlds() -> Iterator[tuple[str, World]]:
+    """The same worlds with their names. What is in them is right: a test checks it."""
+    for name, _ in world_names():
+        file = f"{name}.json"
+        yield name, world_as_written((WORLDS / file).read_text("utf-8"), file)
+
+
 def load_world(name_or_path: str | Path = DEFAULT_WORLD, robot_radius_m: float | None = None) -> World:
     """The world of this name, or the one in this file. Raises WorldError.
 
@@ -62,7 +70,7 @@ def holds(path: Path, world: World) -> bool:
     """Whether the file describes exactly this world. A file that cannot be read does not."""
     try:
         text = path.read_text("utf-8")
-        return text == world_to_json(world) or WorldFile.model_validate(parse_json(text, path.name)).world() == world
+        return text == world_to_json(world) or world_as_written(text, path.name) == world
     except (OSError, ValueError):
         return False
 
@@ -72,9 +80,8 @@ def world_from_json(text: str, file_name: str, robot_radius_m: float | None = No
 
     begins: whether a robot is to begin in it, or is in it already.
     """
-    raw = parse_json(text, file_name)
     try:
-        world = WorldFile.model_validate(raw).world()
+        world = world_as_written(text, file_name)
     except ValidationError as error:
         raise WorldError(next(_schema_complaints(error, file_name, text))) from None
     for complaint in _complaints(world, text, file_name, robot_radius_m, begins):
@@ -82,10 +89,15 @@ def world_from_json(text: str, file_name: str, robot_radius_m: float | None = No
     return world
 
 
+def world_as_written(text: str, file_name: str) -> World:
+    """The world in the text of a file, whose places and walls are not looked at. Raises WorldError, ValidationError."""
+    return WorldFile.model_validate(parse_json(text, file_name)).world()
+
+
 def complaints(text: str, file_name: str, robot_radius_m: float | None = None) -> list[str]:
     """Everything that is wrong with the text of a world file, in sentences. Some checks need walls that are valid."""
     try:
-        world = WorldFile.model_validate(parse_json(text, file_name)).world()
+        world = world_as_written(text, file_name)
     except ValidationError as error:
         return list(_schema_complaints(error, file_name, text))
     except WorldError as error:
@@ -137,6 +149,8 @@ def _schema_complaints(error: ValidationError, name: str, text: str | None = Non
 
 
 def _complaints(world: World, text: str, name: str, radius_m: float | None, begins: bool = True) -> Iterator[str]:
+    from sim2d.world.world_check import world_faults  # takes kernels
+
     radius = SimParams().robot_radius_m if radius_m is None else radius_m
     for fault in world_faults(world, radius, begins=begins):
         yield f"{name}: {fault_words(fault)}{_line(text, fault.where)}"

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from ratslam_core.local_view.matcher import COLUMNS, ROWS
+from ratslam_core.params.local_view import COLUMNS, ROWS
 
 
 def checked(image: NDArray[np.uint8] | None) -> NDArray[np.uint8]:

@@ -14,8 +14,9 @@ from disk import kind
 from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.front_ends.image_and_sonars import along_rows
 from ratslam_core.local_view.front_ends.template import grey_template
-from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
+from ratslam_core.local_view.matcher import Features
 from ratslam_core.params import LocalViewParams
+from ratslam_core.params.local_view import COLUMNS, ROWS
 
 GAIN = 90.0  # bytes for a brightness that is e times as large
 MOST = 40.0  # levels: a pixel that is half as bright again as its column, and more

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -63,10 +64,9 @@ def test_durations_in_words(seconds: float, words: str) -> None:
 
 
 def test_how_long_an_experiment_takes_is_measured_where_it_can_be() -> None:
-    trials = SMALL.make_trials(trials=2)
-    ours = [trial for trial in trials if trial.engine == "ours"]
-    assert (len(trials), len(ours)) == (8, 4)
-    known = duration_of(SMALL, ours, {"ours": 30.0})
+    trials = SMALL.how_many(trials=2)
+    assert trials == Counter(trial.engine for trial in SMALL.make_trials(trials=2)) == {"ours": 4, "paper": 4}
+    known = duration_of(SMALL, Counter(ours=4), {"ours": 30.0})
     assert (known.seconds, known.measured, known.words(2)) == (120.0, True, "60 s, measured")
     half = duration_of(SMALL, trials, {"ours": 30.0})
     assert not half.measured

@@ -54,7 +54,7 @@ def test_the_map_now_comes_from_a_copy(tmp_path: Path) -> None:
 def program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Stands in for Python: a script that is given the words of the command."""
     script = tmp_path / "program"
-    monkeypatch.setattr(page_exports.sys, "executable", str(script))
+    monkeypatch.setattr(sys, "executable", str(script))
     return script
 
 
@@ -67,7 +67,7 @@ def test_a_kept_run_is_played_again_by_a_process_of_its_own(program: Path, tmp_p
     exports, out = PageExports(lambda: tmp_path / "kept run"), tmp_path / "run.csv"
     will(program, 'echo "$@" > ' + f'"{out}"')
     assert asyncio.run(exports.write("csv", submit, out, Wish())) == [out]
-    assert out.read_text() == f"-m app export {tmp_path / 'kept run'} --to csv --out {out} --say-share --pictures png\n"
+    assert out.read_text() == f"{command_of('app')[1:]} export {tmp_path / 'kept run'} --to csv --out {out} --say-share --pictures png\n"
     will(program, 'echo done 0.42; echo "$@" > ' + f'"{out}"')
     asyncio.run(exports.write("csv", submit, out, Wish(from_s=1.5, until_s=20.0, pictures="jpeg")))
     assert out.read_text().endswith("--say-share --pictures jpeg --from 1.5 --until 20.0\n")

@@ -75,7 +75,7 @@ def test_it_goes_on_in_the_same_file(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert is_open(cut.folder)
     with pytest.raises(ValueError, match="is going on in another program"):
         Journal(cut.folder, cut.size, cut.check)
-    with pytest.raises(ValueError, match="is still going on"):
+    with pytest.raises(ValueError, match="is going on in another program; end its program first"):
         delete(cut.folder)
     journal.add({"tick": cut.last_tick, "again": "other"})
     journal.close()

@@ -1,0 +1,6 @@
+from .additions import additions_markdown
+from .table import to_markdown
+from .toml_file import from_toml, parse_value, to_toml
+from .tree import Config, Value
+
+__all__ = ["Config", "Value", "additions_markdown", "from_toml", "parse_value", "to_markdown", "to_toml"]
