@@ -113,7 +113,9 @@ def _fork_ready_workers() -> None:
     utils: Any = import_module("distributed.utils")  # these have no types
     server: Any = import_module("multiprocessing.forkserver")
     dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"})
-    utils.get_mp_context().set_forkserver_preload(["ratslam_live", "distributed", "app.experiments.batch", "app.trials.course"])
+    utils.get_mp_context().set_forkserver_preload(
+        ["ratslam_live", "distributed", "app.experiments.batch", "app.trials.course"]
+    )
     with _environment(PYTHONPATH=str(_ROOT), PYTHONSAFEPATH="1", **_ONE_THREAD):  # this program, wherever it is called
         server.ensure_running()
 

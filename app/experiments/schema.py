@@ -83,7 +83,9 @@ def connected(path: Path) -> sqlite3.Connection:
     """The file, made if it does not exist. ValueError if it is something else, or of a newer program."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        require_record_locks(path.parent, "the trials need; keep them on a local disk: --store FILE, or RATSLAM_EXPERIMENTS")
+        require_record_locks(
+            path.parent, "the trials need; keep them on a local disk: --store FILE, or RATSLAM_EXPERIMENTS"
+        )
         connection = sqlite3.connect(path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
     except (OSError, sqlite3.OperationalError) as error:
         raise ValueError(f"--store {path}: {getattr(error, 'strerror', None) or error}") from None

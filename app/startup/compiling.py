@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import numba
+from numba.core import config
 from numba.core.dispatcher import Dispatcher
 
 from app.startup.compile_part import PARTS
@@ -28,7 +28,7 @@ class Compiling:
     def __init__(self) -> None:
         if kernel_cache.words:
             print(f"ratslam: {kernel_cache.words}", file=sys.stderr)
-        kept = not (kernel_cache.in_memory or numba.config.DISABLE_JIT)  # pyright: ignore[reportAttributeAccessIssue]
+        kept = not (kernel_cache.in_memory or config.DISABLE_JIT)  # pyright: ignore[reportAttributeAccessIssue,reportUnknownMemberType]
         missing = [part for part, (_, modules) in PARTS.items() if kept and not all(map(is_compiled, modules))]
         self._process = _process(missing) if missing else None
 

@@ -16,7 +16,7 @@ import threading
 from collections.abc import Callable
 from io import TextIOWrapper
 from types import FrameType, TracebackType
-from typing import TextIO
+from typing import TextIO, cast
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 _FORBIDDEN = (errno.EACCES, errno.EPERM, errno.EROFS)
@@ -104,9 +104,10 @@ def ready_to_print() -> None:
             os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
     sys.stdout = sys.stdout or open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
     sys.stderr = sys.stderr or open(2, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
-    if isinstance(sys.stdout, TextIOWrapper):
-        file = stat.S_ISREG(os.fstat(sys.stdout.fileno()).st_mode)
-        sys.stdout.reconfigure(errors="replace", encoding="utf-8" if file else None)
+    printed: object = sys.stdout
+    if isinstance(printed, TextIOWrapper):
+        file = stat.S_ISREG(os.fstat(1).st_mode)
+        cast("TextIOWrapper", printed).reconfigure(errors="replace", encoding="utf-8" if file else None)
 
 
 def last_words() -> None:
@@ -130,7 +131,9 @@ def _code(error: BaseException) -> int:
     if isinstance(error, OSError):
         _say(_words(error))
     elif isinstance(error, ImportError):
-        _say(f"a part of the program cannot be loaded: {error}; `make setup` installs what is missing into {sys.prefix}")
+        _say(
+            f"a part of the program cannot be loaded: {error}; `make setup` installs what is missing into {sys.prefix}"
+        )
     elif isinstance(error, ValueError):
         _say(str(error))
     else:

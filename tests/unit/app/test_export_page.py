@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import sys
 from concurrent.futures import Future
 from pathlib import Path
 
@@ -11,10 +12,10 @@ import networkx as nx
 import pytest
 
 from app.export import FORMATS
-from app.export import page as page_exports
 from app.export.page import NOT_KEPT, PageExports
 from app.export.pose_graph import g2o_text
 from app.session_snapshot import take_session
+from ratslam_live import command_of
 from web.http.export import Wish
 from web.messages import Accepted, ReadSession, Refused
 
@@ -67,7 +68,8 @@ def test_a_kept_run_is_played_again_by_a_process_of_its_own(program: Path, tmp_p
     exports, out = PageExports(lambda: tmp_path / "kept run"), tmp_path / "run.csv"
     will(program, 'echo "$@" > ' + f'"{out}"')
     assert asyncio.run(exports.write("csv", submit, out, Wish())) == [out]
-    assert out.read_text() == f"{command_of('app')[1:]} export {tmp_path / 'kept run'} --to csv --out {out} --say-share --pictures png\n"
+    words = [*command_of("app")[1:], "export", str(tmp_path / "kept run"), "--to", "csv", "--out", str(out)]
+    assert out.read_text() == " ".join([*words, "--say-share --pictures png\n"])
     will(program, 'echo done 0.42; echo "$@" > ' + f'"{out}"')
     asyncio.run(exports.write("csv", submit, out, Wish(from_s=1.5, until_s=20.0, pictures="jpeg")))
     assert out.read_text().endswith("--say-share --pictures jpeg --from 1.5 --until 20.0\n")
