@@ -114,7 +114,7 @@ def refusal_of(scope: Scope, hosts: frozenset[str]) -> Refusal | None:
     if len(host) != 1 or len(origin) > 1:
         return Refusal(400, "a request needs one Host header and at most one Origin header")
     if host[0] not in hosts:
-        return Refusal(403, f"this server answers to {', '.join(sorted(hosts))} only; open it by one of these names")
+        return Refusal(403, _by_these_names(hosts))
     if origin and origin[0] != f"http://{host[0]}":
         return Refusal(403, f"requests from another origin are refused; the right one is http://{host[0]}")
     if scope["type"] == "websocket":
@@ -123,6 +123,20 @@ def refusal_of(scope: Scope, hosts: frozenset[str]) -> Refusal | None:
         costly = scope["path"].startswith(COSTLY_PATHS) and _from_elsewhere(headers)
         return Refusal(403, "this is too costly to be asked for by another site") if costly else None
     return _refusal_of_change(headers, scope["path"])
+
+
+def _by_these_names(hosts: frozenset[str]) -> str:
+    """How to come in. Through a tunnel a browser still says by which name and port it came."""
+    local = next((host for host in hosts if host.startswith("localhost:")), None)
+    words = f"this server answers to {', '.join(sorted(hosts))} only; open it by one of these names"
+    if local is None:
+        return words
+    port = local.removeprefix("localhost:")
+    return (
+        f"{words}. From another machine: a tunnel with the same port at both ends, `ssh -L {port}:localhost:{port} MACHINE`, "
+        f"and then http://{local}/. If {port} is taken there, start `ratslam run --port N` with one that is free at both ends. "
+        "Another port at one end, https and a path before ours are not possible yet"
+    )
 
 
 def _from_elsewhere(headers: Mapping[str, str]) -> bool:
@@ -148,7 +162,10 @@ def _refusal_of_change(headers: Headers, path: str) -> Refusal | None:
 
 
 async def refuse(scope: Scope, receive: Receive, send: Send, refusal: Refusal, *, local: bool = True) -> None:
-    response = Response(problem(refusal.reason), status_code=refusal.status, media_type="application/json")
+    if "text/html" in Headers(scope=scope).get("accept", ""):  # a person reads it, in a browser
+        response = Response(f"{refusal.reason}\n", refusal.status, media_type="text/plain")
+    else:
+        response = Response(problem(refusal.reason), refusal.status, media_type="application/json")
     bind_browser(response.headers, "default-src 'none'; frame-ancestors 'none'", local)
     if scope["type"] == "websocket" and "websocket.http.response" not in scope.get("extensions", {}):
         await send({"type": "websocket.close", "code": 1008, "reason": refusal.reason[:120]})

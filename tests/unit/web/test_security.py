@@ -43,6 +43,16 @@ def test_any_other_host_is_refused(server, host):
     assert "127.0.0.1:8000" in answer.json()["detail"][0]["reason"]
 
 
+def test_who_comes_through_a_tunnel_with_another_port_reads_what_is_possible(server):
+    """A browser asks for text/html and shows what it gets as text; a program gets JSON."""
+    host = {"Host": "localhost:9000"}
+    answer = server.client.get("/", headers=host | {"Accept": "text/html,application/xhtml+xml,*/*;q=0.8"})
+    assert (answer.status_code, answer.headers["content-type"]) == (403, "text/plain; charset=utf-8")
+    assert "`ssh -L 8000:localhost:8000 MACHINE`, and then http://localhost:8000/." in answer.text
+    program = server.client.get("/", headers=host | {"Accept": "*/*"})
+    assert program.json()["detail"][0]["reason"] == answer.text.strip()
+
+
 @pytest.mark.parametrize("origin", [*FOREIGN_ORIGINS, ""])
 @pytest.mark.parametrize("path", ["/api/state", "/", "/viser/"])
 def test_any_other_origin_is_refused(server, path, origin):
