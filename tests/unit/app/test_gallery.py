@@ -150,3 +150,11 @@ def test_an_experiment_that_is_not_there_has_no_detail(tmp_path: Path) -> None:
 def test_it_begins_at_the_levels_that_its_file_says() -> None:
     assert first_levels(TABLE.model_copy(update={"watch": ["10 %", "8 x 8"]})) == ("10 %", "8 x 8")
     assert first_levels(type(TABLE).model_validate(SHORT)) == ()
+
+
+def test_without_a_home_the_catalogue_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", "/")
+    monkeypatch.delenv("RATSLAM_EXPERIMENTS", raising=False)
+    gallery = StoredGallery()
+    assert {card.name for card in gallery.cards()} >= {"table", "loop"}
+    assert gallery.picture("table")

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import errno
 import json
+import os
+import time
 from pathlib import Path
 
 import pytest
 
 from app.cli.command_line import main
 from app.runs.folder import LINES, STATE, all_runs, delete, is_open, tidy
+from app.runs.header import beginning_of
 from app.runs.journal import Journal
+from app.runs.keeper import RunKeeper
 from app.runs.lines import Lines, line_of
 from app.runs.replay import ReplayError, newest_state, replay, resumed
 from app.runs.run_file import KeptRun, open_run
@@ -263,3 +267,40 @@ def test_the_list_and_deleting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
     assert main(["runs", "delete", run.name]) == 0
     assert main(["runs", "delete", run.name]) == 2
     assert [folder.name for folder in all_runs()] == ["broken"]
+
+
+def test_without_locks_it_is_kept_and_told_of_by_its_age(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on an NFS without its lock daemon: no error of a lock is taken for another program."""
+    said: list[str] = []
+
+    def no_locks(*_: object) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr("disk.locks.fcntl.flock", no_locks)
+    run, end = keep_one(tmp_path, monkeypatch, complaints=said)
+    assert len(said) == 1
+    assert said[0].startswith(f"{tmp_path} has no file locks: the run is kept there")
+    assert replay(run).state_hash() == end
+    assert is_open(run.folder)
+    with pytest.raises(ValueError, match=r"was written less than 60 s ago, and .* has no file locks to tell"):
+        delete(run.folder)
+    assert main(["runs"]) == 0
+    left = time.time() - 61
+    os.utime(run.folder / LINES, (left, left))
+    assert not is_open(run.folder)
+    delete(run.folder)
+    assert all_runs() == []
+
+
+def test_without_a_home_the_run_goes_on_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    said: list[str] = []
+    monkeypatch.setenv("HOME", "/")
+    session = Session(LIVING, 3)
+    monkeypatch.delenv("RATSLAM_RUNS", raising=False)
+    keeper = RunKeeper(said.append)
+    keeper.start()
+    keeper.begin(keeper.book(session, beginning_of(session)))
+    keeper.stop()
+    assert said == [
+        "the run is not kept: there is no home directory (it would be /): set HOME to a folder of yours; it goes on"
+    ]

@@ -53,6 +53,7 @@ def test_on_another_number_of_cores_and_threads(tmp_path: Path, threads: str) ->
 
 
 def test_the_lines_of_python_make_it_again(tmp_path: Path) -> None:
+    (tmp_path / "app.py").touch()  # as a notebook may have beside it
     situation = a_situation(120)
     lines = python_lines(situation, "unused.json")
     assert "read_situation" not in lines
@@ -64,6 +65,7 @@ def test_the_lines_of_python_make_it_again(tmp_path: Path) -> None:
 
 
 def test_with_boxes_the_lines_read_the_file(tmp_path: Path) -> None:
+    (tmp_path / "app.py").touch()
     situation = a_situation(60, boxes=True)
     lines = python_lines(situation, "it.situation.json")
     (tmp_path / "it.situation.json").write_text(file_of(situation))
