@@ -29,7 +29,7 @@ ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "sim2d").glob("*/README.md"))]
 BEGINNINGS = ("ratslam ", "python -m ", "make ", "uv run")
 SERVES = "--port 0 --no-browser"  # ended by Ctrl+C once it is alive
-QUICK = "--quick --trials 1 --engine paper --workers 1"
+QUICK = "--quick --trials 1 --workers 1 --engine"
 ONE = "ratslam experiment trial --quick --trials 1 --engine ours --workers 1"
 DASK = (
     "dask scheduler --host 127.0.0.1 --port 0 --scheduler-file dask.json >scheduler.txt 2>&1 & one=$!; "
@@ -54,7 +54,7 @@ TABLE = (
     (r"ratslam run .*--world FILE", f"ratslam run --world {{world}} {SERVES}", "FILE"),
     (r"ratslam run .*--experiment (?:NAME|table)", f"ratslam run --experiment table {SERVES}", "NAME"),
     (r"ratslam run .*--class", "{0} --class-address 127.0.0.1 --class-port 0 " + SERVES, "in no network"),
-    (r"ratslam run.*", "{0} " + SERVES, "any free port"),
+    (r"ratslam run( .*)?", "{0} " + SERVES, "any free port"),
     (r"ratslam replay(?: ID)?", "ratslam replay last", "ID"),
     (r"ratslam export (?:RUN|last) --to (?:FORMAT|mp4)", "ratslam export last --to mp4 --until 2", "RUN and FORMAT"),
     (r"ratslam headless .*--recording PATH(.*)", "ratslam headless --recording {tub}{1}", "PATH"),
@@ -74,9 +74,10 @@ TABLE = (
     (r"ratslam experiment (?:NAME|all)", "ratslam experiment all --help", "each is run by its name"),
     (r"ratslam experiment (check .*|results|)", "{0}", "as it is"),
     (r"ratslam experiment table.*", "ratslam experiment table --quick --trials 1 --engine ours --workers 1", "hours"),
-    (r"ratslam experiment [a-z0-9-]+", "{0} " + QUICK, "hours"),
+    (r"ratslam experiment (?:additions|arbitration|deliveries)", "{0} " + QUICK + " ours", "hours; the papers have none"),
+    (r"ratslam experiment [a-z0-9-]+", "{0} " + QUICK + " paper", "hours"),
     (r"ratslam lessons --check .*", "ratslam lessons --check {lesson}", "mine.toml is a file of parameters above"),
-    (r"ratslam lessons --run NAME", "ratslam lessons --run packet", "NAME"),
+    (r"ratslam lessons --run(?: NAME)?", "ratslam lessons --run packet", "NAME"),
     (r"ratslam lessons --time", "ratslam lessons --help", "three minutes; every lesson is a test of its own"),
     (r"python -m sim2d.worlds.pictures .*", "python -m sim2d.worlds.pictures {here}/pictures", "not into the repository"),
     (r"python -m tests.fuzz.*", "python -m tests.fuzz --only world --count 2 && test -z \"$(ls {here} | grep fuzz)\"", "short"),

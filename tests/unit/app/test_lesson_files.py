@@ -30,7 +30,7 @@ TEXT = FILE.read_text("utf-8")
         ('what = "found again"', 'what = "found"', "until =", r"show.until.what: input should be 'closure', .*'found'"),
         ('measure = "found_s" }\noptions', 'measure = "fnd" }\noptions', "finding =", r"predict.finding.measure: nothing"),
         ("{found_m}", "{way}", "name =", r"nothing is measured by the name 'way'"),
-        (", at_least = 0.2, below = 120 }]", " }]", "promise =", r"promise.1: a promise without at_least and below"),
+        (", at_least = 0.2 }", " }", "promise =", r"promise.1: a promise without at_least and below"),
         ('commands = [{ type = "kidnap" }]', 'commands = [{ type = "kid" }]', "[[sandbox]]", r"sandbox.1: .*is no command"),
         ("at_least = 2, below = 120", "at_least = 1, below = 120", "[predict]", r"can both be right: their bounds overlap"),
         ('title = "Kidnapped"\n', "", "name =", r"title: field required"),
