@@ -119,6 +119,7 @@ type IndexIds = {
   "delete-dialog": HTMLElementTagNameMap["dialog"];
   "delete-open": HTMLElementTagNameMap["span"];
   "delete-title": HTMLElementTagNameMap["h2"];
+  "drive-keys": HTMLElementTagNameMap["span"];
   "drop": HTMLElementTagNameMap["div"];
   "edit": HTMLElementTagNameMap["button"];
   "edit-close": HTMLElementTagNameMap["button"];

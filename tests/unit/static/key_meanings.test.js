@@ -6,7 +6,7 @@ import { meaningOf } from "../../../web/static/model/key_meanings.js";
 import { GROUPS, actOf } from "../../../web/static/model/key_table.js";
 
 const NOWHERE = { typing: false, arrows: false, pressing: false, dialog: false };
-/** @param {string} code @param {string} key @param {object} [rest] */
+/** @param {string} code @param {string} key @param {Partial<import("../../../web/static/model/key_meanings.js").Pressed>} [rest] */
 const pressed = (code, key, rest = {}) => ({
   code,
   key,
@@ -90,6 +90,7 @@ function deed(stroke) {
 }
 
 const HELP = GROUPS.flatMap(({ rows }) => rows.flatMap(({ keys }) => keys.map(String)));
+const DRIVING_CODES = ["KeyW", "KeyA", "KeyS", "KeyD"];
 const DRIVING = ["Key up", "Key down", "Key left", "Key right", "Arr up", "Arr down", "Arr left", "Arr right"];
 
 for (const layout of Object.keys(LAYOUTS))
@@ -101,20 +102,20 @@ for (const layout of Object.keys(LAYOUTS))
     assert.deepEqual(unmet, []);
     for (const stroke of all) {
       const written = stroke.key.length > 1 ? stroke.key : stroke.key.toLowerCase();
-      if (actOf(written)) assert.equal(deed(stroke), written); // it never drives
+      const drives = DRIVING_CODES.includes(stroke.code) && !stroke.shiftKey;
+      if (drives)
+        assert.match(deed(stroke), /^Key /); // and means nothing else
+      else if (actOf(written)) assert.equal(deed(stroke), written);
     }
   });
 
-test("W A S D drive by their letters, and by place where no Latin letter is written", () => {
-  for (const [code, key] of [
-    ["KeyW", "w"],
-    ["KeyZ", "w"], // a French keyboard
-    ["KeyW", "ц"],
-    ["KeyW", "ς"],
-  ])
-    assert.deepEqual(meaningOf(pressed(code, key), NOWHERE), { drive: "up" });
-  assert.deepEqual(meaningOf(pressed("KeyW", "z"), NOWHERE), { act: "z" });
-  assert.deepEqual(meaningOf(pressed("KeyA", "q"), NOWHERE), { act: "q" });
+test("four keys drive by their places, and mean what a layout writes there with shift", () => {
+  for (const key of ["w", "z", ",", "ц", "ς"])
+    assert.deepEqual(meaningOf(pressed("KeyW", key), NOWHERE), { drive: "up" });
+  assert.deepEqual(meaningOf(pressed("KeyW", "Z", { shiftKey: true }), NOWHERE), { act: "z" }); // French
+  assert.deepEqual(meaningOf(pressed("KeyA", "Q", { shiftKey: true }), NOWHERE), { act: "q" });
+  assert.deepEqual(meaningOf(pressed("KeyW", "<", { shiftKey: true }), NOWHERE), { act: "," }); // Dvorak
+  assert.deepEqual(meaningOf(pressed("KeyZ", "w"), NOWHERE), { act: "w" }); // which nothing has
 });
 
 test("an arrow is the slider's, a letter drives also there", () => {

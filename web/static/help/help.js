@@ -2,16 +2,31 @@
 
 import { $ } from "../elements/dom.js";
 import { make } from "../elements/elements.js";
+import { DRIVING } from "../model/key_meanings.js";
 import { GROUPS, written } from "../model/key_table.js";
 
-const DRIVING = { keys: ["↑", "←", "↓", "→", "W", "A", "S", "D"], words: "drive while held" };
+const ARROWS = ["↑", "←", "↓", "→"];
 
 export class Help {
   constructor() {
     this.dialog = $("help-dialog");
     this.dialog.addEventListener("click", ({ target }) => target === this.dialog && this.toggle());
     $("help-close").addEventListener("click", () => this.toggle());
-    $("keys").replaceChildren(...GROUPS.map(groupOf));
+    this.write(["w", "a", "s", "d"]);
+    this.writeLayout();
+  }
+
+  /** With what this keyboard writes on the keys that drive, where the browser tells. */
+  async writeLayout() {
+    const { keyboard } = /** @type {{ keyboard?: { getLayoutMap(): Promise<Map<string, string>> } }} */ (navigator);
+    const layout = await keyboard?.getLayoutMap().catch(() => undefined); // not in a frame, or not allowed
+    if (layout?.size) this.write(DRIVING.map((code) => layout.get(code) ?? code[3].toLowerCase()));
+  }
+
+  /** @param {string[]} driving what is written on the four keys that drive */
+  write(driving) {
+    $("keys").replaceChildren(...GROUPS.map((group) => groupOf(group, driving)));
+    $("drive-keys").textContent = driving.join("").toUpperCase();
   }
 
   toggle() {
@@ -20,9 +35,10 @@ export class Help {
   }
 }
 
-/** @param {import("../model/key_table.js").Group} group */
-function groupOf({ title, rows }) {
-  const all = title === "Robot" ? [DRIVING, ...rows] : rows;
+/** @param {import("../model/key_table.js").Group} group @param {string[]} driving */
+function groupOf({ title, rows }, driving) {
+  const drive = { keys: [...ARROWS, ...driving], words: "drive while held" };
+  const all = title === "Robot" ? [drive, ...rows] : rows;
   return make(
     "section",
     {},
@@ -31,7 +47,14 @@ function groupOf({ title, rows }) {
       "ul",
       {},
       ...all.map(({ keys, words }) =>
-        make("li", {}, ...keys.map((key) => make("kbd", { textContent: written(key) })), ` ${words}`),
+        make(
+          "li",
+          {},
+          ...keys.map((key) =>
+            make("kbd", { textContent: (words !== drive.words && driving.includes(key) ? "⇧" : "") + written(key) }),
+          ),
+          ` ${words}`,
+        ),
       ),
     ),
   );

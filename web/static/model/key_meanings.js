@@ -10,17 +10,20 @@ import { actOf } from "./key_table.js";
  * @typedef {{ typing: boolean, arrows: boolean, pressing: boolean, dialog: boolean }} Where
  */
 
-/** @type {Record<string, Direction>} */
+/** By place. @type {Record<string, Direction>} */
 const DRIVE = {
   ArrowUp: "up",
   ArrowDown: "down",
   ArrowLeft: "left",
   ArrowRight: "right",
-  w: "up",
-  s: "down",
-  a: "left",
-  d: "right",
+  KeyW: "up",
+  KeyS: "down",
+  KeyA: "left",
+  KeyD: "right",
 };
+export const DRIVING = ["KeyW", "KeyA", "KeyS", "KeyD"];
+/** A sign of ours that a layout has on one of them, by what it writes with shift. @type {Record<string, string>} */
+const SHIFTED = { "<": "," };
 
 /** What a US keyboard has in a place, where there is no letter. @type {Record<string, string>} */
 const US = { Space: " ", Comma: ",", Period: ".", Slash: "/", BracketLeft: "[", BracketRight: "]" };
@@ -32,37 +35,40 @@ function onUs(code, shift) {
   return /^Digit\d$/.test(code) ? code[5] : (US[code] ?? "");
 }
 
-/** @param {string} name */
-const known = (name) => Object.hasOwn(DRIVE, name) || actOf(name) !== undefined;
-
 /**
- * The name of the key that is meant, "" for none. One rule for every layout and script, so that the help is right on all: a key
- * means the Latin letter or sign that it writes; one that writes none of ours means what a US keyboard has in its place. So W A S D
- * lie in their places also where Cyrillic, Greek or Arabic is written, and Z presents wherever it lies. A sign may need AltGr, which
+ * The name of the key that is meant, "" for none: the Latin letter or sign that it writes; where it writes none of ours, what a US
+ * keyboard has in its place, so that letters are found where Cyrillic, Greek or Arabic is written. A sign may need AltGr, which
  * Windows tells as ctrl and alt, or option on a Mac; letters and digits with those are the browser's.
  * @param {Pressed} event
  */
 export function nameOfKey(event) {
   const { code, key, ctrlKey, metaKey, altKey, shiftKey = false } = event;
-  const sign = key.length > 1 ? key : key.toLowerCase();
+  const sign = key.length > 1 ? key : (DRIVING.includes(code) && SHIFTED[key]) || key.toLowerCase();
   const us = onUs(code, shiftKey);
   if (metaKey || ctrlKey || altKey) {
     const third = !metaKey && (altKey || Boolean(event.getModifierState?.("AltGraph")));
     return third && /^[^a-z0-9\s]$/.test(sign) && sign !== us ? sign : "";
   }
-  return known(sign) || /^[a-z]$/.test(sign) || !us ? sign : us;
+  return actOf(sign) !== undefined || /^[a-z]$/.test(sign) || !us ? sign : us;
 }
 
 /**
- * What a key means there: driving, or the name of an action; null: the key is left to the widget or the browser.
+ * What a key means there: driving, or the name of an action; null: the key is left to the widget or the browser. Who drives looks
+ * at the stage and not at letters, so the four keys lie in the same places on every layout; what a layout writes there is meant
+ * with shift (French: ⇧Z presents).
  * @param {Pressed} event
  * @param {Where} where
  * @returns {{ drive: Direction } | { act: string } | null}
  */
 export function meaningOf(event, where) {
   const act = event.isComposing || where.typing ? "" : nameOfKey(event);
-  if (!act) return null;
   if (where.dialog) return act === "?" ? { act } : null;
-  if (Object.hasOwn(DRIVE, act)) return act.startsWith("Arrow") && where.arrows ? null : { drive: DRIVE[act] };
-  return act === " " && where.pressing ? null : { act };
+  if (!act || (act === " " && where.pressing)) return null;
+  if (!drives(event)) return { act };
+  return where.arrows && event.code.startsWith("Arrow") ? null : { drive: DRIVE[event.code] };
+}
+
+/** @param {Pressed} event */
+function drives({ code, shiftKey, ctrlKey, metaKey, altKey }) {
+  return code.startsWith("Arrow") || (DRIVING.includes(code) && !(shiftKey || ctrlKey || metaKey || altKey));
 }
