@@ -98,9 +98,7 @@ class ReadApart:
                 yield from moments
         finally:
             if self._process is reader:
-                self._over.append(
-                    number
-                )  # told with the next wish: a generator may be closed at any moment, in any thread
+                self._over.append(number)
 
     # ------------------------------------------------------------ inside
 
@@ -112,10 +110,9 @@ class ReadApart:
                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                 pass_fds=(theirs.fileno(),), process_group=0,
             )  # fmt: skip
-        self._wire, self._over = (
-            Connection(ours.detach()),
-            list[int](),
-        )  # numbers of readings that are not needed any more
+        self._wire = Connection(ours.detach())
+        # Readings that are over, told with the next wish: a generator may be closed at any moment, in any thread.
+        self._over = list[int]()
         weakref.finalize(self, _end, self._process, self._wire)
 
     def _left(self) -> tuple[int, ...]:
