@@ -34,7 +34,7 @@ class Doubles:
         self.made: dict[str, tuple] = {}
         self.began, self.refuse, self.compiles = threading.Event(), refuse, compiles
         self.latest = SimpleNamespace(waking="")
-        monkeypatch.setattr(serving, "Compiling", partial(CompilingDouble, self))
+        monkeypatch.setattr("app.startup.compiling.Compiling", partial(CompilingDouble, self))
         monkeypatch.setattr(engine_thread, "EngineThread", partial(EngineDouble, self))
         monkeypatch.setattr(server, "Dashboard", partial(DashboardDouble, self))
         monkeypatch.setattr(brain_keeper.BrainKeeper, "start", lambda _self: None)

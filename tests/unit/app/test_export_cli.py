@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-import app.runs
 from app.cli import command_line as cli
 from app.cli import export as export_command
 from app.export import FORMATS
@@ -23,7 +22,7 @@ def _kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
             raise ValueError(f"there is no run {name!r}")
         return AgainAndAgain(30)
 
-    monkeypatch.setattr(app.runs, "open_run", open_run, raising=False)
+    monkeypatch.setattr("app.runs.run_file.open_run", open_run)
     monkeypatch.chdir(tmp_path)
 
 
