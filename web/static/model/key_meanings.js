@@ -23,7 +23,7 @@ const DRIVE = {
 };
 export const DRIVING = ["KeyW", "KeyA", "KeyS", "KeyD"];
 /** A sign of ours that a layout has on one of them, by what it writes with shift. @type {Record<string, string>} */
-const SHIFTED = { "<": "," };
+const SHIFTED = { "<": ",", İ: "i" }; // Dvorak, Turkish F
 
 /** What a US keyboard has in a place, where there is no letter. @type {Record<string, string>} */
 const US = { Space: " ", Comma: ",", Period: ".", Slash: "/", BracketLeft: "[", BracketRight: "]" };
