@@ -106,7 +106,7 @@ def _pairs(name: str, text: str, tell: Tell) -> dict[str, _Value]:
     except RecursionError:
         raise WorldError(f"{name}: not YAML: nested too deep") from None
     except (yaml.YAMLError, ValueError) as error:
-        raise WorldError(f"{name}: not YAML: {str(error)[:200]}") from None
+        raise WorldError(f"{name}: not YAML: {' '.join(str(error).split())[:200]}") from None
     if len(documents) != 1 or not isinstance(documents[0], yaml.MappingNode):
         line = documents[-1].start_mark.line + 1 if documents else 1
         raise WorldError(f"{name}: line {line}: expected one list of `key: value`, with {', '.join(_NEEDED)}")
