@@ -12,10 +12,8 @@ try:
 except ImportError:  # a system without such locks: two programs are not told apart there
     fcntl = None
 
-_HELD = (
-    errno.EAGAIN,
-    errno.EACCES,
-)  # any other error says that there are no locks, as an NFS without its lock daemon does
+# Any other error says that there are no locks, as an NFS without its lock daemon does.
+_HELD = (errno.EAGAIN, errno.EACCES)
 
 
 def lock(file: IO[bytes], *, shared: bool = False) -> bool | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Callable
 from pathlib import Path
 
 from disk.locks import require_record_locks
@@ -58,54 +59,44 @@ def broken(path: Path, error: sqlite3.Error) -> ValueError:
 
 def opened(path: Path) -> sqlite3.Connection:
     """A file that exists, to be read only and without waiting. ValueError if it cannot be, or is something else."""
+    where = f"{path.absolute().as_uri()}?mode=ro"
     try:
         connection = sqlite3.connect(
-            f"{path.absolute().as_uri()}?mode=ro",
-            uri=True,
-            timeout=READ_BUSY_S,
-            isolation_level=None,
-            check_same_thread=False,
+            where, uri=True, timeout=READ_BUSY_S, isolation_level=None, check_same_thread=False
         )
     except sqlite3.Error as error:
         raise broken(path, error) from None
-    try:
-        _require_ours(connection, path)
-    except sqlite3.Error as error:
-        connection.close()
-        raise broken(path, error) from None
-    except ValueError:
-        connection.close()
-        raise
-    return connection
+    return _ready(connection, path, _require_ours)
 
 
 def connected(path: Path) -> sqlite3.Connection:
     """The file, made if it does not exist. ValueError if it is something else, or of a newer program."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        require_record_locks(
-            path.parent, "the trials need; keep them on a local disk: --store FILE, or RATSLAM_EXPERIMENTS"
-        )
+        way_out = "the trials need; keep them on a local disk: --store FILE, or RATSLAM_EXPERIMENTS"
+        require_record_locks(path.parent, way_out)
         connection = sqlite3.connect(path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
     except (OSError, sqlite3.OperationalError) as error:
         raise ValueError(f"--store {path}: {getattr(error, 'strerror', None) or error}") from None
+    return _ready(connection, path, _make_tables)
+
+
+def _ready(
+    connection: sqlite3.Connection, path: Path, prepare: Callable[[sqlite3.Connection, Path], None]
+) -> sqlite3.Connection:
+    """The connection, prepared; closed again if that fails."""
     try:
-        connection.execute("PRAGMA journal_mode = WAL")
-        connection.execute(
-            "PRAGMA synchronous = NORMAL"
-        )  # a killed process loses nothing; a power cut the last moments
-        connection.execute("PRAGMA foreign_keys = ON")
-        _make_tables(connection, path)
-    except sqlite3.Error as error:
+        prepare(connection, path)
+    except (sqlite3.Error, ValueError) as error:
         connection.close()
-        raise broken(path, error) from None
-    except ValueError:
-        connection.close()
-        raise
+        raise (broken(path, error) if isinstance(error, sqlite3.Error) else error) from None
     return connection
 
 
 def _make_tables(connection: sqlite3.Connection, path: Path) -> None:
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("PRAGMA synchronous = NORMAL")  # a killed process loses nothing; a power cut the last moments
+    connection.execute("PRAGMA foreign_keys = ON")
     connection.execute("BEGIN IMMEDIATE")  # two commands may begin at once
     found = connection.execute("PRAGMA user_version").fetchone()[0]
     empty = not connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]

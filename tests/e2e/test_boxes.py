@@ -8,8 +8,9 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.e2e.browser import at_each, calm, open_page
+from tests.e2e.browser import at_each, box_of, calm, on_screen, open_page
 from tests.e2e.program import Program
+from web.viewer.camera_views import VIEWS, camera_for, corners_of
 
 # Of a page each, with the panel beside the plates or over them; 683 x 384 is 1366 x 768 enlarged twice.
 SIZES = [[(1024, 768), (1280, 720), (1366, 768), (1920, 1080)], [(683, 384), (820, 1180)]]
@@ -174,6 +175,34 @@ def test_enlarged_four_times_the_plates_are_seen_and_the_panel_can_be_opened(
         page.click("#panels")
         expect(page.locator("#panel")).to_be_in_viewport(ratio=0.99)
         page.click("#panel .close")
+
+
+A_GAP = 12  # pixels; between what may touch
+
+
+def test_the_rows_of_buttons_leave_the_plates_free(program: Program, browser: Browser) -> None:
+    """However many rows they need, in whatever room the lesson and the panel leave: no plate reaches beneath them or is cut."""
+    program.command("reset", world="office", seed=5)
+    program.command("step", ticks=300)
+    sizes = [(1400, 800), (1280, 720), (1180, 720), (1024, 768), (390, 844)]
+    with open_page(browser, program.url, *sizes[0], stage=False) as page:
+        wrong: list[str] = []
+        for state in (plain, presented, in_a_lesson, in_a_lesson_before_a_class):
+            state(program, page)
+            for width, height in at_each(page, sizes):
+                calm(page)
+                canvas = box_of(page.frame_locator("#stage").locator("canvas").first)
+                bar = box_of(page.locator(".stage-bar"))
+                for view in VIEWS:
+                    camera = camera_for(view, canvas["width"] / canvas["height"])
+                    seen = [on_screen(page, camera, tuple(at), canvas) for at in corners_of(view, True, False)]
+                    highest, left, right = min(y for _, y in seen), min(x for x, _ in seen), max(x for x, _ in seen)
+                    where = f"{state.__name__}, {width} x {height}, {view}"
+                    if highest < bar["y"] + bar["height"] - A_GAP:
+                        wrong.append(f"{where}: {bar['y'] + bar['height'] - highest:.0f} px beneath the buttons")
+                    if left < canvas["x"] or right > canvas["x"] + canvas["width"]:
+                        wrong.append(f"{where}: cut at a side")
+        assert not wrong, "\n".join(wrong)
 
 
 SMALL = """() => [...document.querySelectorAll("button, select, summary, [role=tab], label.check, .pop a, .option")]

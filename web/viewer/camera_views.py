@@ -68,7 +68,8 @@ class _Look:
     tall_deg: tuple[float, float]
     azimuth_deg: tuple[float, float]
     fov_deg: float
-    free: tuple[float, float]  # shares of the canvas that are left: above for the buttons, below for what the page says
+    # Shares of the canvas that are left: above for one row of buttons, below for what the page says.
+    free: tuple[float, float]
 
 
 _BESIDE = 0.015  # share of the canvas that is left free around
@@ -79,7 +80,6 @@ _LOOKS: dict[View, _Look] = {
     "map": _Look((46, 58), (56, 74), (0, 0), 30, (0.11, _BESIDE)),
 }
 _STEP_DEG = 2.0
-_TALL_ROOM = (0.2, _BESIDE)  # in a tall window: there are two rows of buttons
 _LOW_ROOM = (0.2, _BESIDE)  # in a low one the row of buttons takes a fifth
 _ROOM = (0.09, 0.125)  # with two brains: above for the buttons, below for the figures
 _LOW_ROOM_OF_TWO = (0.2, 0.24)
@@ -93,8 +93,8 @@ def camera_for(view: View, aspect: float, office: bool = True, two: bool = False
     The plates are as large as the window allows: of the elevations in question, it takes the one with the nearest camera."""
     tall, look = aspect < PHONE_ASPECT, _LOOKS[view if office or view != "office" else "all"]
     low, high = look.tall_deg if tall else look.wide_deg
-    rooms = (_LOW_ROOM, _LOW_ROOM_OF_TWO) if aspect > LOW_ASPECT else (_TALL_ROOM if tall else look.free, _ROOM)
-    points, azimuth_deg = _seen(view, office, two), 0 if two else look.azimuth_deg[tall]
+    rooms = (_LOW_ROOM, _LOW_ROOM_OF_TWO) if aspect > LOW_ASPECT else (look.free, _ROOM)
+    points, azimuth_deg = corners_of(view, office, two), 0 if two else look.azimuth_deg[tall]
     found = [
         _fitted(points, elevation, azimuth_deg, look.fov_deg, max(aspect, 0.1), rooms[two])
         for elevation in np.arange(low, high + 1e-9, _STEP_DEG).tolist()
@@ -102,7 +102,7 @@ def camera_for(view: View, aspect: float, office: bool = True, two: bool = False
     return min(found, key=lambda camera: float(np.linalg.norm(camera.position - camera.look_at)))
 
 
-def _seen(view: View, office: bool, two: bool) -> Points:
+def corners_of(view: View, office: bool, two: bool) -> Points:
     """What a view shows."""
     at = stands(office=office, two=two)
     cells = np.vstack([_CELLS + np.array((*here, 0.0)) for here in at.cells])

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import IO
 
-from app.recordings.formats.problems import plain
+from disk.words import plain
 
 MOST_BYTES, MOST_FILES, MOST_RATIO = 16_000_000_000, 500_000, 100
 SPARE_BYTES = 500_000_000  # of the disk are left free
@@ -27,6 +27,10 @@ _PIECE = 1 << 20
 _OTHERS = ((b"7z\xbc\xaf'\x1c", "7z"), (b"Rar!", "RAR"), (b"\x28\xb5\x2f\xfd", "Zstandard"))
 _ZIP = (b"PK\x03\x04", b"PK\x05\x06")
 _PACKED = (b"\x1f\x8b", b"BZh", b"\xfd7zXZ\0")
+# Broken files; RuntimeError: one with a password, or packed in a way that the library does not know.
+_BROKEN = (
+    tarfile.TarError, zipfile.BadZipFile, OSError, EOFError, zlib.error, lzma.LZMAError, LookupError, RuntimeError,
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,17 +68,8 @@ def unpack(path: Path) -> tuple[Path, tuple[str, ...]]:
         return folder, _unpack(path, folder)
     except BaseException as error:
         shutil.rmtree(folder, ignore_errors=True)
-        if isinstance(
-            error, NotImplementedError | RuntimeError
-        ):  # of a way of packing that is not known, or with a password
-            raise ValueError(f"{path.name}: cannot be unpacked: {plain(str(error))}") from None
-        broken = (tarfile.TarError, zipfile.BadZipFile, OSError, EOFError, zlib.error, lzma.LZMAError, LookupError)
-        if isinstance(error, broken):
-            why = (
-                error.strerror
-                if isinstance(error, OSError) and error.strerror
-                else plain(str(error)) or "it is cut off"
-            )
+        if isinstance(error, _BROKEN):
+            why = getattr(error, "strerror", None) or plain(str(error)) or "it is cut off"
             raise ValueError(f"{path.name}: cannot be unpacked: {why}") from None
         raise
 

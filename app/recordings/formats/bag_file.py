@@ -15,8 +15,9 @@ from typing import IO
 
 from app.recordings.formats.lines import open_whole
 from app.recordings.formats.packed import lz4_unpacked
-from app.recordings.formats.problems import Problems, plain
+from app.recordings.formats.problems import Problems
 from app.recordings.formats.ros_packets import MOST_CHUNK, Packet, type_of
+from disk.words import plain
 
 MAGIC = b"#ROSBAG V2.0\n"
 _MESSAGE, _CHUNK, _CONNECTION = 2, 5, 7

@@ -19,8 +19,9 @@ from app.recordings.formats.lines import open_whole
 from app.recordings.formats.lying import by_number
 from app.recordings.formats.mcap_file import mcap_packets
 from app.recordings.formats.packed import ZSTD
-from app.recordings.formats.problems import Problems, plain
+from app.recordings.formats.problems import Problems
 from app.recordings.formats.ros_packets import MOST_CHUNK, Packet, cdr_of, type_of
+from disk.words import plain
 
 METADATA = "metadata.yaml"
 _BAGS = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")

@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.recordings.formats.lines import lines_of
-from app.recordings.formats.problems import Problems, plain
+from app.recordings.formats.problems import Problems
 from app.recordings.formats.sensed import Beams, Rates, Sensed, ns_of
 from app.recordings.formats.streamed import StreamedRecording
 from app.recordings.recording import Pose
+from disk.words import plain
 
 SICK_LIMIT_M = 81.0  # a SICK laser reports 81.83 m and the like where nothing comes back
 # What makes a text a log of CARMEN. Of lasers of which there are several, the first one looks ahead.

@@ -12,9 +12,10 @@ from typing import Any, cast
 from app.recordings.formats.lines import lines_of
 from app.recordings.formats.lying import by_number
 from app.recordings.formats.pictures import beside, read_picture, within
-from app.recordings.formats.problems import Problems, plain
+from app.recordings.formats.problems import Problems
 from app.recordings.formats.sensed import Sensed, ns_of
 from app.recordings.formats.streamed import StreamedRecording
+from disk.words import plain
 
 MANIFEST = "manifest.json"
 SPEEDS = ("enc/speed", "pos/speed", "rs2/vel", "odom/speed")

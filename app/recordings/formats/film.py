@@ -20,8 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.recordings.formats.pictures import require_size
-from app.recordings.formats.problems import Problems, plain
+from app.recordings.formats.problems import Problems
 from app.recordings.formats.sensed import Sensed
+from disk.words import plain
 
 FAR = 60  # frames: so many are sooner passed than jumped over
 BROKEN = -1  # in place of a checksum: the frame cannot be unpacked

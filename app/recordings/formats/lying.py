@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 
 from app.recordings.formats.cells import date_ns
 from app.recordings.formats.pictures import PICTURES
-from app.recordings.formats.problems import plain
+from disk.words import plain
 
 MOST_FILES = 2_000_000
 _NO_CAMERA = re.compile(
@@ -25,22 +25,8 @@ _RANKS = (  # the words by which cameras are told apart, the one to be played fi
 _FEW = 0.1  # of as many pictures as another camera has: no camera
 _KINDS = 12  # different names in one folder: no cameras, but names that mean something else
 _RECORDED = (
-    ".bag",
-    ".db3",
-    ".mcap",
-    ".zip",
-    ".7z",
-    ".rar",
-    ".tar",
-    ".gz",
-    ".tgz",
-    ".bz2",
-    ".xz",
-    ".zst",
-    ".mp4",
-    ".avi",
-    ".mkv",
-)
+    ".bag", ".db3", ".mcap", ".zip", ".7z", ".rar", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".zst", ".mp4", ".avi", ".mkv",
+)  # fmt: skip
 _DATE = re.compile(
     r"(?<!\d)(\d{4})[-_]?(\d\d)[-_]?(\d\d)[-_T ]+(\d\d)[-_:.]?(\d\d)[-_:.]?(\d\d)(?:[-_.](\d{1,9}))?(?!\d)"
 )

@@ -4,7 +4,7 @@ of each source was read, which is counted where it comes in and again where it i
 from __future__ import annotations
 
 from app.recordings.recording import Count
-from disk.words import plain as plain  # of what is wrong, too
+from disk.words import plain
 
 TOLD = 10  # sentences of one kind
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from app.recordings.formats import ros_messages as ros
-from app.recordings.formats.problems import Problems, plain
+from app.recordings.formats.problems import Problems
 from app.recordings.formats.ros_packets import SONAR_ANGLES, Packet
 from app.recordings.formats.ros_times import times_of
 from app.recordings.formats.ros_topics import Choice, Roles, Topic, roles_of
@@ -19,6 +19,7 @@ from app.recordings.formats.ros_topics import unused as unused_topics
 from app.recordings.formats.ros_transforms import transforms_in
 from app.recordings.formats.sensed import Beams, Rates, Sensed
 from app.recordings.formats.streamed import StreamedRecording
+from disk.words import plain
 
 ORDER_S, ORDER_BYTES = 0.5, 64_000_000  # a message waits so long for earlier ones, or until so much waits
 MOST_TOPICS = 10_000

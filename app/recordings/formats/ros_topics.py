@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.recordings.formats import ros_messages as ros
-from app.recordings.formats.problems import plain
 from app.recordings.formats.ros_odometry import Odometer
 from app.recordings.formats.ros_packets import Packet
 from app.recordings.formats.ros_times import Stamps
 from app.recordings.formats.ros_transforms import Edge, Moving, Wheels, note, wheels_of
+from disk.words import plain
 
 _TRUTH = re.compile(r"(^|[/_])(truth|ground_?truth|gt|true_pose|mocap|vicon|optitrack)([/_]|$)", re.IGNORECASE)
 _NOT_A_CAMERA = re.compile(r"depth|disparity|mask|segment|label|infra|thermal|normals|debug", re.IGNORECASE)

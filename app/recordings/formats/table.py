@@ -15,9 +15,10 @@ import numpy as np
 from app.recordings.formats.cells import columns_without_header, is_picture, ns_of_date, samples, style_of
 from app.recordings.formats.lines import lines_of
 from app.recordings.formats.lying import rank_of
-from app.recordings.formats.problems import Problems, plain
+from app.recordings.formats.problems import Problems
 from app.recordings.formats.sensed import Picture, Rates, Sensed, ns_of
 from app.recordings.recording import Pose
+from disk.words import plain
 
 _IMU = {f"{kind}_{axis}": tuple(f"{name}_{axis}" for name in names) for kind, names in (
     ("gyro", ("gyro", "gyr", "w_rs_s", "angular_velocity", "imu_gyr")),

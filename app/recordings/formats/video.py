@@ -8,10 +8,11 @@ from pathlib import Path
 
 from app.recordings.formats.film import Film
 from app.recordings.formats.lines import open_whole
-from app.recordings.formats.problems import Problems, plain
+from app.recordings.formats.problems import Problems
 from app.recordings.formats.sensed import Rates, Sensed
 from app.recordings.formats.streamed import StreamedRecording
 from app.recordings.formats.table import Table
+from disk.words import plain
 
 VIDEOS = (".mp4", ".avi", ".mkv", ".mov", ".webm", ".m4v", ".mpg", ".mpeg")
 _FIRST_BYTES = (b"RIFF", b"\x1aE\xdf\xa3", b"\x00\x00\x01\xba", b"\x00\x00\x01\xb3")

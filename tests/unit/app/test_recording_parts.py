@@ -15,10 +15,11 @@ from app.recordings.formats.clock import BREAK_S, GOES_ON_S, Clock
 from app.recordings.formats.held import HELD_S, Held
 from app.recordings.formats.lying import by_number
 from app.recordings.formats.pictures import read_picture, unpacked, within
-from app.recordings.formats.problems import TOLD, Problems, plain
+from app.recordings.formats.problems import TOLD, Problems
 from app.recordings.formats.sensed import Rates, ns_of
 from app.recordings.made_odometry import OdometryErrors, WithMadeOdometry, parse_errors
 from app.recordings.opening import Opening, open_recording
+from disk.words import plain
 from ratslam_core import Pose2
 from tests.recordings import N, airsim, carmen, drive, image_folder, plain_folder, png
 

@@ -1,7 +1,7 @@
 // The plates in 3-D: viser's client in a frame of our own origin, and the view buttons. The frame belongs to one program and one
 // graphics context; when either is another, it is thrown away and built anew. While it has drawn nothing, the drawing stands there.
 
-import { $ } from "../elements/dom.js";
+import { $, find } from "../elements/dom.js";
 import { toast } from "../elements/toasts.js";
 import { takeClicks } from "./clicks.js";
 import { Drawing } from "./drawing.js";
@@ -36,6 +36,7 @@ export class Viewer extends EventTarget {
     for (const button of this.buttons)
       button.addEventListener("click", () => this.show(/** @type {ViewName} */ (button.dataset.view)));
     this.mark();
+    this.makeRoom();
     this.drawing = new Drawing(link, this);
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.late = undefined;
@@ -66,6 +67,15 @@ export class Viewer extends EventTarget {
     this.drawing.draw();
     this.dispatchEvent(new Event("view"));
     this.link.tell(camera ? { type: "camera", name: view, at: camera } : { type: "view", name: view });
+  }
+
+  // A camera leaves one row of buttons free. What they need beyond that is taken from the frame, whose shape viser tells the camera.
+  makeRoom() {
+    const bar = /** @type {HTMLElement} */ (find(document, ".stage-bar"));
+    const first = /** @type {HTMLElement} */ (find(bar, ".views"));
+    const main = /** @type {HTMLElement} */ (this.frame.parentElement);
+    const measure = () => main.style.setProperty("--rows", `${Math.max(bar.offsetHeight - first.offsetHeight, 0)}px`);
+    for (const part of [bar, first]) new ResizeObserver(measure).observe(part);
   }
 
   mark() {
