@@ -2,7 +2,8 @@
 
 A file may be made so that reading it never ends or takes all memory: a view of SQLite without an end, a picture of billions
 of pixels, a bomb of zeros. Only the process that reads it ends by that; the program says so in a sentence and goes on. It
-can be called off, and it ends with whoever asked for it, however that ends. test_recordings_apart.py.
+can be called off, and it ends with whoever asked for it, however that ends. So does its temporary folder, where archives are
+unpacked. test_recordings_apart.py.
 
 The program sends what it wants, the reader answers each time with one thing: what the recording says of itself, a few
 moments, or the sentence of a ValueError.
@@ -14,10 +15,12 @@ import math
 import os
 import queue
 import resource
+import shutil
 import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import weakref
@@ -32,11 +35,6 @@ from app.recordings.opening import Opening, open_recording
 from app.recordings.recording import About, Moment, Recording, Wanted, every
 from ratslam_live import command_of
 
-MOST_MEMORY = 2 << 30  # bytes of data
-MOST_CPU_S, CPU_S_A_BYTE = (
-    20.0,
-    1e-6,
-)  # of computing for one answer; opening looks at everything, so large files have more
 AT_ONCE, BYTES_AT_ONCE = 64, 2_000_000  # moments in one answer, and bytes of their pictures
 POLL_S = 0.1
 
@@ -104,16 +102,17 @@ class ReadApart:
 
     def _begin(self) -> None:
         ours, theirs = socket.socketpair()
+        folder = tempfile.mkdtemp(prefix="ratslam-reader-")
         with theirs:
             self._process = subprocess.Popen(
-                command_of("app.recordings.apart", str(theirs.fileno())),
+                command_of("app.recordings.apart", str(theirs.fileno()), folder), env={**os.environ, "TMPDIR": folder},
                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                 pass_fds=(theirs.fileno(),), process_group=0,
             )  # fmt: skip
         self._wire = Connection(ours.detach())
         # Readings that are over, told with the next wish: a generator may be closed at any moment, in any thread.
         self._over = list[int]()
-        weakref.finalize(self, _end, self._process, self._wire)
+        weakref.finalize(self, _end, self._process, self._wire, folder)
 
     def _left(self) -> tuple[int, ...]:
         over, self._over = tuple(self._over), []
@@ -135,10 +134,11 @@ class ReadApart:
         return answer
 
 
-def _end(process: subprocess.Popen[bytes], wire: Connection) -> None:
+def _end(process: subprocess.Popen[bytes], wire: Connection, folder: str) -> None:
     wire.close()
     process.kill()
     process.wait()
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 def _why_ended(process: subprocess.Popen[bytes], most: Most) -> str:
@@ -153,11 +153,11 @@ def _why_ended(process: subprocess.Popen[bytes], most: Most) -> str:
 # ------------------------------------------------------------ the reader
 
 
-def main(descriptor: int) -> NoReturn:
-    """Answer what comes, until the other end is closed."""
+def main(descriptor: int, folder: str) -> NoReturn:
+    """Answer what comes, until the other end is closed. folder: its temporary one."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     wire, wishes = Connection(descriptor), queue.SimpleQueue[object]()
-    threading.Thread(target=_listen, args=(wire, wishes), daemon=True).start()
+    threading.Thread(target=_listen, args=(wire, wishes, folder), daemon=True).start()
     path, opening, most = cast("tuple[str, Opening, Most]", wishes.get())
     resource.setrlimit(resource.RLIMIT_DATA, (most.memory, most.memory))
     reader = _Reader(Path(path), opening, most)
@@ -166,12 +166,13 @@ def main(descriptor: int) -> NoReturn:
         wire.send(_answer(path, partial(reader.to, wishes.get())))
 
 
-def _listen(wire: Connection, wishes: queue.SimpleQueue[object]) -> None:
+def _listen(wire: Connection, wishes: queue.SimpleQueue[object], folder: str) -> None:
     """By a thread of its own, so that a reading without an end does not outlive who asked for it."""
     try:
         while True:
             wishes.put(wire.recv())
     except (OSError, EOFError):
+        shutil.rmtree(folder, ignore_errors=True)  # whoever asked may have been killed
         os._exit(0)
 
 
@@ -247,4 +248,4 @@ def _allow(seconds: float) -> None:
 if __name__ == "__main__":  # in the reader's process; what comes and goes there is of the module by its own name
     from app.recordings.apart import main as answer
 
-    answer(int(sys.argv[1]))
+    answer(int(sys.argv[1]), sys.argv[2])

@@ -1,9 +1,12 @@
 """Recordings that another process reads are the same, and what they cost ends with it."""
 
+import gc
 import os
+import shutil
 import sqlite3
 import subprocess
 import sys
+import tempfile
 import threading
 from itertools import zip_longest
 from pathlib import Path
@@ -15,6 +18,7 @@ import pytest
 from app.recordings.apart import Most, ReadApart
 from app.recordings.opening import open_recording
 from app.recordings.recording import Moment
+from tests.patience import PATIENCE_S
 from tests.recordings import FORMATS
 
 LITTLE = Most(cpu_s=1.0, cpu_s_a_byte=0.0)
@@ -88,11 +92,26 @@ def test_a_reader_that_is_killed_is_said_and_the_next_reading_has_another(tmp_pa
     assert len(list(recording.moments())) == recording.about.moments
 
 
+def test_what_was_unpacked_goes_with_the_reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    (tmp_path / "temporary").mkdir()
+    made(tmp_path, "tub")
+    packed = shutil.make_archive(str(tmp_path / "packed"), "gztar", tmp_path / FORMATS["tub"][0])
+    recording = ReadApart(Path(packed))
+    assert len(list(recording.moments())) == recording.about.moments
+    assert [*(tmp_path / "temporary").glob("*/*")]
+    del recording
+    gc.collect()
+    assert not [*(tmp_path / "temporary").iterdir()]
+
+
 def test_the_reader_ends_with_whoever_asked(tmp_path: Path) -> None:
-    """Also with one that is killed, and while it reads without an end."""
-    bag = endless(tmp_path / "bag.db3")
+    """Also with one that is killed, and while it reads without an end. Its temporary folder goes, too."""
+    bag, temporary = endless(tmp_path / "bag.db3"), tmp_path / "temporary"
+    temporary.mkdir()
     code = f"from pathlib import *; from app.recordings.apart import ReadApart; ReadApart(Path({str(bag)!r}))"
-    asker = subprocess.Popen([sys.executable, "-c", code], cwd=Path(__file__).parents[3])
+    environment = {**os.environ, "TMPDIR": str(temporary)}
+    asker = subprocess.Popen([sys.executable, "-c", code], cwd=Path(__file__).parents[3], env=environment)
     try:
         while not (readers := psutil.Process(asker.pid).children()):
             assert asker.poll() is None
@@ -100,4 +119,5 @@ def test_the_reader_ends_with_whoever_asked(tmp_path: Path) -> None:
     finally:
         asker.kill()
         asker.wait()
-    assert psutil.wait_procs(readers, timeout=60)[1] == []
+    assert psutil.wait_procs(readers, timeout=PATIENCE_S)[1] == []
+    assert not [*temporary.iterdir()]
