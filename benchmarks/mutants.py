@@ -29,8 +29,10 @@ from typing import Any
 
 from tqdm import tqdm
 
+from ratslam_live import ROOMS
+
 ROOT = Path(__file__).resolve().parent.parent
-ROOMS = ("app", "benchmarks", "disk", "docs", "ratslam_core", "sim2d", "tests", "web", "pyproject.toml")
+COPIED = (*ROOMS, "ratslam_live.py", "docs", "tests", "pyproject.toml")
 SUITE = ("tests/unit/ratslam_core", "tests/property")
 NOT_MUTATED = ("laws", "params")  # guards of files, and declarations
 MOST_S = 400.0  # of a mutant's tests; those of the unchanged tree take a quarter of it
@@ -113,6 +115,7 @@ class Bench:
         self._own = threading.local()
         self._warm = folder / "warm"
         self._copy(self._warm)
+        self._require_own(self._warm)
         self._test(self._warm, ["-q"], check=True)
 
     def survives(self, mutant: Mutant) -> bool:
@@ -139,7 +142,7 @@ class Bench:
     @staticmethod
     def _copy(to: Path) -> None:
         to.mkdir()
-        for room in ROOMS:
+        for room in COPIED:
             if (ROOT / room).is_dir():
                 shutil.copytree(ROOT / room, to / room, ignore=shutil.ignore_patterns("__pycache__", "node_modules"))
             else:
@@ -175,6 +178,15 @@ class Bench:
         for name in reached:
             for cached in (tree / name).parent.glob(f"__pycache__/{Path(name).stem}.*.nb*"):
                 cached.unlink()
+
+    @staticmethod
+    def _require_own(tree: Path) -> None:
+        """Or it is the unchanged program that is tested, and every mutant survives."""
+        code = "import ratslam_live, ratslam_core; print(ratslam_core.__file__)"
+        command, environment = [sys.executable, "-c", code], {**os.environ, "PYTHONPATH": str(tree)}
+        found = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, check=True).stdout
+        if not Path(found.strip()).is_relative_to(tree):
+            raise RuntimeError(f"tests of {tree} would use {found.strip()}")
 
     @staticmethod
     def _test(tree: Path, arguments: list[str], check: bool = False) -> bool:
