@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from app.time_machine.kept_state import PACK, Bytes, Chunk, KeptArray, KeptState, kept_array
+from app.time_machine.kept_state import Bytes, Chunk, KeptArray, KeptState, kept_array, pack
 from app.time_machine.shelf import Place, Shelf
 from disk import State
 
@@ -51,7 +51,7 @@ class Chunks:
         }
         self._note_past(now)
         self._last = now
-        tree = PACK.compress(json.dumps(state.tree).encode())
+        tree = pack(json.dumps(state.tree).encode())
         made = KeptState(tree, tuple(now[places[number]][1] for number in range(len(state.arrays))))
         self.nbytes += len(made.tree)
         for array in made.arrays:

@@ -23,8 +23,13 @@ LARGE = 1 << 20  # arrays from this size on are cut by their content ...
 CUT_BITS, CUT = 13, 77  # ... after a word whose hash has these first bits, ...
 LEAST, MOST = 4096, 131072  # ... in chunks of about these sizes, bytes
 WORTH = 0.7  # a difference is kept where it takes less than this share of the whole
-PACK, UNPACK = zstandard.ZstdCompressor(level=1), zstandard.ZstdDecompressor()  # fast: the engine waits for them
+_PACK, UNPACK = zstandard.ZstdCompressor(level=1), zstandard.ZstdDecompressor()  # fast: the engine waits for them
 Bytes = NDArray[np.uint8]
+
+
+def pack(content: bytes) -> bytes:
+    """A copy: what the compressor returns holds the memory that it might have needed, whatever its length says."""
+    return bytes(memoryview(_PACK.compress(content)))
 
 
 class Chunk(msgspec.Struct, eq=False, gc=False):
@@ -48,7 +53,7 @@ class Chunk(msgspec.Struct, eq=False, gc=False):
     def pack_whole(self, whole: Bytes, dtype: np.dtype[Any]) -> None:
         """Keep the content without a base. Whole numbers are mostly small ones: their bytes pack better sorted."""
         self.base, self.itemsize = None, dtype.itemsize if dtype.kind in "iu" else 1
-        self.packed = PACK.compress(_sorted(whole, self.itemsize))
+        self.packed = pack(_sorted(whole, self.itemsize))
 
 
 class KeptArray(msgspec.Struct, frozen=True, eq=False, gc=False):
@@ -133,7 +138,7 @@ def _chunk(raw: Bytes, dtype: np.dtype[Any], before: Chunk) -> Chunk:
     base = before.base or before
     content = base.content()
     if len(content) == len(raw):
-        packed = PACK.compress(_sorted(raw ^ content, dtype.itemsize))
+        packed = pack(_sorted(raw ^ content, dtype.itemsize))
         if len(packed) < WORTH * len(base.packed):
             return Chunk(packed, base, dtype.itemsize)
     return _whole(raw, dtype)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import random
+import tracemalloc
 from typing import Any
 
 import numpy as np
@@ -79,6 +80,17 @@ def test_a_difference_whose_base_nobody_else_needs_takes_no_more_than_the_whole(
     assert all(chunk.base is None for array in kept[2].arrays for chunk in array.chunks)
     assert chunks.nbytes == pytest.approx(bytes_of([whole]), rel=0.01)
     assert same(kept[2], third)
+
+
+def test_what_is_counted_is_what_is_held() -> None:
+    """A budget of 200 MB once held 1.1 GB: what the compressor returned was short and kept the memory of its worst case."""
+    given, chunks = states(1, 40), Chunks()
+    tracemalloc.start()
+    kept = [chunks.keep(state) for state in given]
+    held, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert len(kept) == 40
+    assert held < 1.2 * (chunks.nbytes + chunks.copy_nbytes)
 
 
 def test_the_garbage_collector_does_not_walk_through_what_is_kept() -> None:
