@@ -120,6 +120,7 @@ def maps() -> None:
     for k in range(3):  # more links than there is room for at first: compiles the growth
         blob[:, X], blob[:, Y] = np.arange(64) % 8 + 8 * k, np.arange(64) // 8
         goals.learn(blob, np.ones(64, np.float32), 0.1 * k)
+    goals.direction(goals.times_to(20, 4), Packet(4.0, 4.0, 0.0, 1.0))
 
 
 def loops() -> None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING
 
+from app.startup.compile_part import PARTS
 from app.startup.compiling import WORDS, Compiling, say_how_far
+from disk import kernel_cache
 
 if TYPE_CHECKING:
     from app.engine_thread import EngineThread  # loaded while others compile
@@ -34,6 +36,9 @@ class Waking:
     def _wake(self) -> None:
         self._compiling.wait(self._tell)
         self._engine.latest.waking = "loading the office and the brain"
+        if not kernel_cache.in_memory:
+            for use, _ in PARTS.values():  # now, while there are descriptors: whoever connects may take the last
+                use()
         if not self._stopped:
             self._engine.start()
 
