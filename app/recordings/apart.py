@@ -33,6 +33,7 @@ from typing import NamedTuple, NoReturn, cast
 from app.recordings.fingerprint import files_of
 from app.recordings.opening import Opening, open_recording
 from app.recordings.recording import About, Moment, Recording, Wanted, every
+from disk.limits import TICKS
 from ratslam_live import command_of
 
 AT_ONCE, BYTES_AT_ONCE = 64, 2_000_000  # moments in one answer, and bytes of their pictures
@@ -47,6 +48,7 @@ class Most(NamedTuple):
     cpu_s: float = 10.0  # of computing for one answer ...
     cpu_s_a_byte: float = 2e-6  # ... and more for the first, which looks at all of the files
     memory: int = 1 << 30  # bytes of data
+    moments: int = TICKS  # each is a tick of the run that plays it
 
 
 class Wish(NamedTuple):
@@ -206,7 +208,7 @@ class _Reader:
         """wish: None begins a reading, whose number is told."""
         _allow(self._most.cpu_s)
         if not isinstance(wish, Wish):
-            self._readings.append(_Reading(self._recording))
+            self._readings.append(_Reading(self._recording, self._most.moments))
             return len(self._readings) - 1
         for number in wish.over:
             self._readings[number] = None
@@ -219,8 +221,8 @@ class _Reader:
 class _Reading:
     """A place at which a recording is being read."""
 
-    def __init__(self, recording: Recording) -> None:
-        self._recording = recording
+    def __init__(self, recording: Recording, most: int) -> None:
+        self._recording, self._most = recording, most
         self._goal = self._following = 0  # the first picture that is wanted, the number of the moment that comes next
         self._moments: Iterator[Moment] | None = None
 
@@ -234,6 +236,10 @@ class _Reading:
             told.append(moment)
             size += 0 if moment.image is None else moment.image.nbytes
             self._following += 1
+            if self._following > self._most:
+                raise ValueError(
+                    f"{self._recording.about.name} has more than {self._most:,} moments; play a part of it"
+                )
             if len(told) == AT_ONCE or size > BYTES_AT_ONCE or (self._following > wish.goal and not wish.all):
                 break
         return told

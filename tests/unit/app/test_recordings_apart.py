@@ -81,6 +81,14 @@ def test_too_much_memory_is_the_readers_fault_alone(tmp_path: Path) -> None:
         ReadApart(path, most=Most(memory=1 << 20))
 
 
+def test_more_moments_than_a_run_has_ticks_are_refused_where_they_begin(tmp_path: Path) -> None:
+    playing = ReadApart(made(tmp_path, "carmen"), most=Most(moments=3)).moments(lambda _: False)
+    told = list[Moment]()
+    with pytest.raises(ValueError, match="has more than 3 moments; play a part of it"):
+        told.extend(playing)
+    assert len(told) <= 3
+
+
 def test_a_reader_that_is_killed_is_said_and_the_next_reading_has_another(tmp_path: Path) -> None:
     path = made(tmp_path, "mcap")
     recording = ReadApart(path)

@@ -3,6 +3,7 @@
 import { $ } from "../elements/dom.js";
 import { make } from "../elements/elements.js";
 import { choices } from "../model/places.js";
+import { get } from "../net/post.js";
 import { renew } from "../panel/parts.js";
 
 const MOST = 60; // rows
@@ -36,14 +37,9 @@ export class PlaceList {
     $("places-said").textContent = "Asking the robot";
     this.dialog.showModal();
     if (byKey || !touched.matches) $("places-typed").focus(); // a keyboard on the screen would cover the list
-    try {
-      const answer = await fetch("/api/places");
-      const told = await answer.json();
-      if (answer.ok) this.places = told;
-      else $("places-said").textContent = told.detail[0].reason;
-    } catch {
-      $("places-said").textContent = "The program did not answer. Close this and try again.";
-    }
+    const { told, wrong } = await get("/api/places");
+    this.places = told;
+    if (wrong) $("places-said").textContent = wrong;
     this.draw();
   }
 

@@ -3,7 +3,7 @@
 import { $ } from "../elements/dom.js";
 import { toast } from "../elements/toasts.js";
 import { sentence } from "../model/sentences.js";
-import { reasons } from "../net/post.js";
+import { get, reasons } from "../net/post.js";
 import { cardOf } from "./card.js";
 import { Grid } from "./grid.js";
 
@@ -106,14 +106,9 @@ export class Gallery {
 
   /** What the server has at this address; null, and a sentence, if nothing can be had. @param {string} path */
   async ask(path) {
-    try {
-      const answer = await fetch(path);
-      const told = await answer.json();
-      if (answer.ok) return told;
-      this.wrong(reasons(told));
-    } catch {
-      this.wrong("The connection is lost.");
-    }
+    const { told, wrong } = await get(path);
+    if (!wrong) return told;
+    this.wrong(wrong);
     $("gallery-none").textContent = "";
     return null;
   }

@@ -4,7 +4,7 @@ import { $, find } from "../elements/dom.js";
 import { make } from "../elements/elements.js";
 import { icon } from "../elements/icons.js";
 import { cardFacts, chapters } from "../model/lessons.js";
-import { reasons } from "../net/post.js";
+import { get, reasons } from "../net/post.js";
 import { sentence } from "../model/sentences.js";
 import { done } from "./kept.js";
 
@@ -34,14 +34,9 @@ export class LessonList {
 
   /** What there is. */
   async look() {
-    try {
-      const answer = await fetch("/api/lessons");
-      const told = await answer.json();
-      if (answer.ok) this.cards = told;
-      else this.wrong(reasons(told));
-    } catch {
-      this.wrong("The connection is lost.");
-    }
+    const { told, wrong } = await get("/api/lessons");
+    this.cards = told ?? this.cards;
+    if (wrong) this.wrong(wrong);
     return this.cards;
   }
 

@@ -1,4 +1,4 @@
-// Changes that are not commands: JSON sent to one of the routes.
+// What the routes tell, and changes that are not commands: JSON sent to one of them.
 
 import { sentence } from "../model/sentences.js";
 
@@ -22,6 +22,28 @@ export async function post(path, body, signal) {
     return { wrong: reasons(told), field: told.detail[0].field };
   } catch {
     return { wrong: "The connection is lost; nothing was changed.", field: null };
+  }
+}
+
+const ANSWERED_MS = 20_000;
+
+/**
+ * What lies at an address, or why it cannot be had, in sentences. Whatever hangs is given up: a list would stay empty for ever.
+ * @template T
+ * @param {string} path
+ * @returns {Promise<{ told: T | null, wrong: string }>}
+ */
+export async function get(path) {
+  try {
+    const answer = await fetch(path, { signal: AbortSignal.timeout(ANSWERED_MS) });
+    const told = await answer.json();
+    return answer.ok ? { told, wrong: "" } : { told: null, wrong: reasons(told) };
+  } catch (error) {
+    const late = error instanceof DOMException && error.name === "TimeoutError";
+    return {
+      told: null,
+      wrong: late ? "The program did not answer. Close this and try again." : "The connection is lost.",
+    };
   }
 }
 
