@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import cast
 
 import numpy as np
@@ -57,8 +58,8 @@ class Cameras:
             nonlocal aspect
             self._heard(client.client_id, camera)
             if abs(aspect_of(camera) / aspect - 1) > RESHAPED:
-                aspect = aspect_of(camera)
-                self._post(lambda: self.reframe(client.client_id))
+                before, aspect = aspect, aspect_of(camera)
+                self._post(partial(self._reshaped, client, before, aspect))
             elif self._set_back(client.client_id, camera):
                 self._post(lambda: self._send_on(client.client_id))
 
@@ -73,6 +74,11 @@ class Cameras:
     def reframe(self, client_id: int) -> None:
         if client_id in self._views and client_id not in self._followers:
             self.take_off(client_id, self._views[client_id])
+
+    def _reshaped(self, client: viser.ClientHandle, before: float, aspect: float) -> None:
+        if client.client_id in self._followers and client.client_id not in self._flights:
+            _point(client, self._followers[client.client_id].reshaped(before, aspect))
+        self.reframe(client.client_id)
 
     def give_room(self, *, office: bool, two: bool = False) -> None:
         """Frames every view anew when an office or a second brain has come or gone."""

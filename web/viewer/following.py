@@ -24,8 +24,13 @@ def follow_camera(at: Point, scale: float, aspect: float) -> Camera:
     """Where a camera begins to follow. scale: plate units a metre; aspect: width over height of the canvas."""
     half_width = min(max(NEAR_M * scale, LEAST), MOST)
     half, up = math.tan(math.radians(FOV_DEG) / 2), math.radians(ELEVATION_DEG)
-    distance = half_width / (half * min(max(aspect, 0.5), 1.6))
+    distance = half_width / (half * _counted(aspect))
     return Camera(at + distance * np.array([0.0, -math.cos(up), math.sin(up)]), at.copy(), math.radians(FOV_DEG))
+
+
+def _counted(aspect: float) -> float:
+    """A canvas that is wider than this shows more at the sides, not less in height."""
+    return min(max(aspect, 0.5), 1.6)
 
 
 @dataclass
@@ -38,6 +43,11 @@ class Follower:
     fov_rad: float
     last_s: float
     rests_until_s: float = -math.inf
+
+    def reshaped(self, before: float, aspect: float) -> Camera:
+        """Where the camera should be now that the canvas has another aspect: as much is seen from side to side."""
+        self.offset = self.offset * (_counted(before) / _counted(aspect))
+        return Camera(self.at + self.offset, self.at, self.fov_rad)
 
     def heard(self, position: Point, look_at: Point, now_s: float) -> None:
         """The browser reports its camera. If it is turned or nearer than we put it, that was the hand, which is obeyed."""

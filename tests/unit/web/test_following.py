@@ -100,6 +100,14 @@ def test_cameras_follow_on_the_plate_they_look_at_until_another_view_is_asked_fo
     assert np.linalg.norm(screen.camera.look_at - on["office"][0]) < 0.01
     asyncio.run(screen.camera.moved(screen.camera))
     assert cameras.flying
+    away = np.linalg.norm(screen.camera.position - screen.camera.look_at)
+    screen.camera.image_width = 750  # half as wide: the same from side to side is seen from farther away
+    asyncio.run(screen.camera.moved(screen.camera))
+    while posted:
+        posted.pop(0)()
+    assert np.linalg.norm(screen.camera.position - screen.camera.look_at) == pytest.approx(2 * away)
+    cameras.track({**on, "office": (np.array([-4.0, -2.0, 0.0]), 1.0)}, 30.0)
+    assert np.linalg.norm(screen.camera.position - screen.camera.look_at) == pytest.approx(2 * away)
     cameras.take_off(1, "map", None)
     cameras.fly_on(20.0)
     assert not cameras.flying  # it follows no longer
