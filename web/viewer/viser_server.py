@@ -28,6 +28,7 @@ from viser.infra import WebsockMessageHandler
 from websockets.http11 import Request, Response
 
 SECRET_HEADER = "X-Stage-Secret"
+MOST_SILENT = 32  # connections that may leave open whether they are ours: each holds a descriptor
 # The only messages of a browser that are handled. viser would also open a public tunnel, keep whatever is uploaded, and
 # store for good that any form was touched.
 HEARD: set[type[Any]] = {
@@ -82,12 +83,30 @@ def _asking_for(secret: str) -> Generator[list[str], None, None]:
     plain: Any = serving.serve
     asks: list[str] = []
 
+    silent = dict[serving.ServerConnection, None]()  # those that have not told the secret yet
+
+    class Counted(serving.ServerConnection):
+        def connection_made(self, transport: Any) -> None:
+            super().connection_made(transport)
+            silent[self] = None
+            if len(silent) > MOST_SILENT:
+                longest = next(iter(silent))
+                del silent[longest]
+                longest.transport.abort()
+
+        def connection_lost(self, exc: Exception | None) -> None:
+            silent.pop(self, None)
+            super().connection_lost(exc)
+
     def check(connection: serving.ServerConnection, request: Request) -> Response | None:
-        return None if knows(request, secret) else connection.respond(HTTPStatus.FORBIDDEN, "not for you\n")
+        if not knows(request, secret):
+            return connection.respond(HTTPStatus.FORBIDDEN, "not for you\n")
+        silent.pop(connection, None)
+        return None
 
     def serve(handler: Any, host: str, port: int, **options: Any) -> serving.serve:
         asks.append(f"{host}:{port}")
-        return plain(handler, host, port, **{**options, "process_request": check})
+        return plain(handler, host, port, **{**options, "process_request": check, "create_connection": Counted})
 
     serving.serve = serve
     try:

@@ -21,7 +21,7 @@ from tests.unit.web.doubles import OURS, PAGE, StubEngine, house
 from web.latest import Latest
 from web.switches import Switches
 from web.viewer import Viewer
-from web.viewer.viser_server import SECRET_HEADER, guarded_server
+from web.viewer.viser_server import MOST_SILENT, SECRET_HEADER, guarded_server
 
 PROTOCOL: Any = "viser-v1.1.1"
 
@@ -102,6 +102,24 @@ def test_who_knows_the_secret_enters_and_each_server_has_its_own(stage: Viewer) 
         connect(url, subprotocols=[PROTOCOL], additional_headers={SECRET_HEADER: secret}),
     ):
         pass
+
+
+def is_open(connection: socket.socket) -> bool:
+    connection.setblocking(False)
+    try:
+        return connection.recv(1) != b""
+    except BlockingIOError:
+        return True
+    except ConnectionResetError:
+        return False
+
+
+def test_those_that_say_nothing_hold_few_descriptors_and_keep_nobody_out(stage: Viewer) -> None:
+    with contextlib.ExitStack() as crowd:
+        address, secret = ("127.0.0.1", stage.port), {SECRET_HEADER: stage.secret}
+        silent = [crowd.enter_context(socket.create_connection(address)) for _ in range(4 * MOST_SILENT)]
+        with connect(f"ws://127.0.0.1:{stage.port}", subprotocols=[PROTOCOL], additional_headers=secret):
+            assert sum(map(is_open, silent)) <= MOST_SILENT
 
 
 def test_a_viser_that_cannot_be_guarded_is_not_let_loose(monkeypatch) -> None:
