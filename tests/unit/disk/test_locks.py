@@ -55,11 +55,7 @@ def test_experiments_say_where_else_the_trials_could_be_kept(tmp_path: Path, mon
     from app.experiments.schema import connected
 
     fail(monkeypatch, errno.ENOLCK)
-    with (
-        monkeypatch.context() as patch,
-        pytest.raises(ValueError, match="has no file locks .*; keep them on a local disk"),
-    ):
-        patch.setattr(
-            sqlite3, "connect", lambda *_, **__: pytest.fail("SQLite was asked")
-        )  # coverage asks it afterwards
-        connected(tmp_path / "trials.sqlite")
+    with monkeypatch.context() as patch:  # coverage asks it afterwards
+        patch.setattr(sqlite3, "connect", lambda *_, **__: pytest.fail("SQLite was asked"))
+        with pytest.raises(ValueError, match=r"has no file locks .*; keep them on a local disk: --store FILE"):
+            connected(tmp_path / "trials.sqlite")
