@@ -29,13 +29,14 @@ def test_every_command_and_request_has_a_handler_and_no_handler_is_idle() -> Non
     assert len(set(handlers)) == len(handlers)
 
 
-@pytest.mark.parametrize("kind", [*COMMANDS, *REQUESTS], ids=lambda kind: kind.__name__)
-def test_a_handler_is_of_the_class_that_it_stands_beside(kind: type) -> None:
-    handler = (COMMANDS | REQUESTS)[kind]
-    hints = get_type_hints(handler)
-    _, command = inspect.signature(handler).parameters
-    assert hints[command] is kind
-    assert hints["return"] == Outcome
+def test_a_handler_is_of_the_class_that_it_stands_beside(subtests: pytest.Subtests) -> None:
+    for kind in [*COMMANDS, *REQUESTS]:
+        with subtests.test(kind=kind):
+            handler = (COMMANDS | REQUESTS)[kind]
+            hints = get_type_hints(handler)
+            _, command = inspect.signature(handler).parameters
+            assert hints[command] is kind
+            assert hints["return"] == Outcome
 
 
 def test_what_nobody_carries_out_is_an_error() -> None:

@@ -65,22 +65,23 @@ def test_every_parameter_says_what_it_is() -> None:
             assert about["low"] <= value <= about["high"], name
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_every_range_is_kept(name: str) -> None:
-    item, default = next((item, value) for dotted, item, value in Config().items() if dotted == name)
-    wrong: list[object] = ["much", None]
-    if isinstance(default, bool):
-        wrong += [1, 0.5]
-    elif isinstance(default, str):
-        wrong += [1, True, ""]
-    else:
-        low, high = item.metadata["low"], item.metadata["high"]
-        wrong += [low - 1, high + 1, math.nan, math.inf, -math.inf, 10**400, True]
-        if isinstance(default, int):
-            wrong += [default + 0.5]
-    for value in wrong:
-        with pytest.raises(ValueError, match=name.replace(".", r"\.")):
-            Config().with_value(name, value)  # type: ignore[arg-type]
+def test_every_range_is_kept(subtests: pytest.Subtests) -> None:
+    for name in NAMES:
+        with subtests.test(name=name):
+            item, default = next((item, value) for dotted, item, value in Config().items() if dotted == name)
+            wrong: list[object] = ["much", None]
+            if isinstance(default, bool):
+                wrong += [1, 0.5]
+            elif isinstance(default, str):
+                wrong += [1, True, ""]
+            else:
+                low, high = item.metadata["low"], item.metadata["high"]
+                wrong += [low - 1, high + 1, math.nan, math.inf, -math.inf, 10**400, True]
+                if isinstance(default, int):
+                    wrong += [default + 0.5]
+            for value in wrong:
+                with pytest.raises(ValueError, match=name.replace(".", r"\.")):
+                    Config().with_value(name, value)  # type: ignore[arg-type]
 
 
 def test_left_out_parameters_keep_their_value() -> None:

@@ -245,10 +245,11 @@ def test_every_parameter_has_another_value() -> None:
     assert {item.name for item in fields(PilotParams)} == {*OTHER, "goal_reach_m", "goal_place_m"}  # test_session.py
 
 
-@pytest.mark.parametrize("name", OTHER)
 @pytest.mark.slow
-def test_a_parameter_acts(name: str) -> None:
-    assert any(differs(situation, usual(**{name: OTHER[name]})) for situation in SITUATIONS[of(name)])
+def test_a_parameter_acts(subtests: pytest.Subtests) -> None:
+    for name in OTHER:
+        with subtests.test(name=name):
+            assert any(differs(situation, usual(**{name: OTHER[name]})) for situation in SITUATIONS[of(name)])
 
 
 def test_the_same_parameters_do_the_same() -> None:

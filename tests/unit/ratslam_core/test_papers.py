@@ -116,20 +116,18 @@ ELSEWHERE = {
 }
 
 
-@pytest.mark.parametrize(
-    "name",
-    [name for name, value in OFF.items() if value != PRESETS["ours"][name] and name not in ELSEWHERE],
-)
 @pytest.mark.slow
-def test_each_addition_alone_changes_the_run(name: str) -> None:
+def test_each_addition_alone_changes_the_run(subtests: pytest.Subtests) -> None:
     """Each switch must have an effect."""
-    fits = {
-        "local_view.min_edges": "complex cells",
-        "local_view.min_colour": "hue and saturation",
-        "local_view.front_end": "image and sonars",
-    }
-    base = with_values(RatSlamParams(), {"local_view.front_end": fits.get(name, "template")})
-    assert _told(base) != _told(with_values(base, {name: OFF[name]}))
+    for name in [name for name, value in OFF.items() if value != PRESETS["ours"][name] and name not in ELSEWHERE]:
+        with subtests.test(name=name):
+            fits = {
+                "local_view.min_edges": "complex cells",
+                "local_view.min_colour": "hue and saturation",
+                "local_view.front_end": "image and sonars",
+            }
+            base = with_values(RatSlamParams(), {"local_view.front_end": fits.get(name, "template")})
+            assert _told(base) != _told(with_values(base, {name: OFF[name]}))
 
 
 def _told(params: RatSlamParams) -> list[object]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -14,15 +15,15 @@ from . import literal
 from .packets import drive, rest, settled, two_packets, where
 
 
-@pytest.mark.parametrize("heading", [0.0, 1.7, 9.5, 23.2])  # layers: 0, 17, 95, 232 degrees
-@pytest.mark.parametrize("cells_a_step", [*np.geomspace(0.01, 3.0, 9).tolist(), 1.0])
-def test_gain_is_one_at_any_speed(cells_a_step: float, heading: float) -> None:
-    pose_cells = turned_to(heading)
-    steps = max(40, round(4 / cells_a_step))
-    angle = pose_cells.winner.heading_rad
-    way = drive(pose_cells, cells_a_step, 0.0, steps) / (steps * cells_a_step)
-    assert way[:2] == pytest.approx([math.cos(angle), math.sin(angle)], abs=0.01)
-    assert pose_cells.winner.heading_rad == pytest.approx(angle, abs=math.radians(0.5))
+def test_gain_is_one_at_any_speed(subtests: pytest.Subtests) -> None:
+    for heading, cells_a_step in product([0.0, 1.7, 9.5, 23.2], [*np.geomspace(0.01, 3.0, 9).tolist(), 1.0]):
+        with subtests.test(heading=heading, cells_a_step=cells_a_step):
+            pose_cells = turned_to(heading)
+            steps = max(40, round(4 / cells_a_step))
+            angle = pose_cells.winner.heading_rad
+            way = drive(pose_cells, cells_a_step, 0.0, steps) / (steps * cells_a_step)
+            assert way[:2] == pytest.approx([math.cos(angle), math.sin(angle)], abs=0.01)
+            assert pose_cells.winner.heading_rad == pytest.approx(angle, abs=math.radians(0.5))
 
 
 @pytest.mark.parametrize("layers_a_step", [-2.3, -1.0, -0.1, 0.01, 0.02, 0.4, 1.0, 3.0])

@@ -19,20 +19,21 @@ def test_defaults_are_the_ones_asked_for() -> None:
 ITEMS = [(kind, item) for kind in (SimParams, OfficeParams) for item in fields(kind)]
 
 
-@pytest.mark.parametrize(("kind", "item"), ITEMS, ids=lambda value: getattr(value, "name", ""))
-def test_every_parameter_is_declared_in_full_and_checked(kind, item) -> None:
-    meta = item.metadata
-    assert set(meta) == {"symbol", "unit", "source", "low", "high", "meaning", "choices", "live"}
-    bad: list[tuple[object, str]] = []
-    if isinstance(item.default, bool):
-        bad = [(value, "must be true or false, got") for value in (1, "on", None)]
-    else:
-        assert meta["low"] <= item.default <= meta["high"]
-        bad = [(value, "must be from .* to .*, got") for value in (meta["low"] - 1, meta["high"] + 1)]
-        bad += [(math.nan, "must be"), *((odd, "must be a number from") for odd in (True, "fast", None))]
-    for value, reason in bad:
-        with pytest.raises(ValueError, match=f"{item.name} {reason}"):
-            kind(**{item.name: value})
+def test_every_parameter_is_declared_in_full_and_checked(subtests: pytest.Subtests) -> None:
+    for kind, item in ITEMS:
+        with subtests.test(item.name):
+            meta = item.metadata
+            assert set(meta) == {"symbol", "unit", "source", "low", "high", "meaning", "choices", "live"}
+            bad: list[tuple[object, str]] = []
+            if isinstance(item.default, bool):
+                bad = [(value, "must be true or false, got") for value in (1, "on", None)]
+            else:
+                assert meta["low"] <= item.default <= meta["high"]
+                bad = [(value, "must be from .* to .*, got") for value in (meta["low"] - 1, meta["high"] + 1)]
+                bad += [(math.nan, "must be"), *((odd, "must be a number from") for odd in (True, "fast", None))]
+            for value, reason in bad:
+                with pytest.raises(ValueError, match=f"{item.name} {reason}"):
+                    kind(**{item.name: value})
 
 
 def test_whole_numbers_stay_whole() -> None:

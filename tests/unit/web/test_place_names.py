@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -94,31 +95,35 @@ def test_no_name_leaves_the_plate(shared: Bench, places: list[tuple[float, float
 # ---------------------------------------------------------------- the room of the window
 
 
-@pytest.mark.parametrize("view", VIEWS)
-@pytest.mark.parametrize("aspect", [0.46, 0.75, 1.0, 1.35, 1.63, 2.2, 3.0])
-def test_the_plates_fill_the_window_and_stay_in_it(view: str, aspect: float) -> None:
+def test_the_plates_fill_the_window_and_stay_in_it(subtests: pytest.Subtests) -> None:
     """Every corner of the plates in view is seen, and two opposite sides are reached, whatever the window's shape."""
-    plates = {"office": (office_plate, OFFICE_AT), "map": (map_plate, MAP_AT), "pose": (pose_cell_plate, CELLS_AT)}
-    camera = camera_for(view, aspect)  # type: ignore[arg-type]
-    corners = []
-    for name, (plate, at) in plates.items():
-        assert plate.ORIGIN[:2] == at
-        width, depth, centre_y, _ = plate.SHEET
-        if view in ("all", name):
-            corners += [
-                (at[0] + a * width / 2, at[1] + centre_y + b * depth / 2, 0.0) for a in (-1, 1) for b in (-1, 1)
-            ]
-    ahead = camera.look_at - camera.position
-    ahead /= np.linalg.norm(ahead)
-    right = np.cross(ahead, (0.0, 0.0, 1.0))
-    right /= np.linalg.norm(right)
-    offset = np.array(corners) - camera.position
-    half = np.tan(camera.fov_rad / 2)
-    x = offset @ right / (offset @ ahead) / half / aspect
-    y = offset @ np.cross(right, ahead) / (offset @ ahead) / half
-    assert np.abs(x).max() < 1
-    assert np.abs(y).max() < 1
-    filled = max(x.max() - x.min(), y.max() - y.min() if view in ("office", "map") else 2 * abs(y.min()))
-    assert filled > (
-        1.5 if aspect > LOW_ASPECT else 1.65
-    )  # of 2; the rest is for buttons above and for what is said below
+    for view, aspect in product(VIEWS, [0.46, 0.75, 1.0, 1.35, 1.63, 2.2, 3.0]):
+        with subtests.test(view=view, aspect=aspect):
+            plates = {
+                "office": (office_plate, OFFICE_AT),
+                "map": (map_plate, MAP_AT),
+                "pose": (pose_cell_plate, CELLS_AT),
+            }
+            camera = camera_for(view, aspect)  # type: ignore[arg-type]
+            corners = []
+            for name, (plate, at) in plates.items():
+                assert plate.ORIGIN[:2] == at
+                width, depth, centre_y, _ = plate.SHEET
+                if view in ("all", name):
+                    corners += [
+                        (at[0] + a * width / 2, at[1] + centre_y + b * depth / 2, 0.0) for a in (-1, 1) for b in (-1, 1)
+                    ]
+            ahead = camera.look_at - camera.position
+            ahead /= np.linalg.norm(ahead)
+            right = np.cross(ahead, (0.0, 0.0, 1.0))
+            right /= np.linalg.norm(right)
+            offset = np.array(corners) - camera.position
+            half = np.tan(camera.fov_rad / 2)
+            x = offset @ right / (offset @ ahead) / half / aspect
+            y = offset @ np.cross(right, ahead) / (offset @ ahead) / half
+            assert np.abs(x).max() < 1
+            assert np.abs(y).max() < 1
+            filled = max(x.max() - x.min(), y.max() - y.min() if view in ("office", "map") else 2 * abs(y.min()))
+            assert filled > (
+                1.5 if aspect > LOW_ASPECT else 1.65
+            )  # of 2; the rest is for buttons above and for what is said below

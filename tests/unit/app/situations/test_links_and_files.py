@@ -113,9 +113,8 @@ def _order(name: str, **values: Any) -> Callable[[dict[str, Any]], None]:
     return lambda document: document.update(orders=[[0, name, values]])
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
+def test_what_is_wrong_in_it_is_said(subtests: pytest.Subtests) -> None:
+    for change, words in [
         (_set(format="ratslam situation/9"), "its format is 'ratslam situation/9'; this program reads"),
         (_set(tick=-1), "tick: input should be greater than or equal to 0"),
         (_set(tick=10**12), "tick: input should be less than"),
@@ -149,14 +148,13 @@ def _order(name: str, **values: Any) -> Callable[[dict[str, Any]], None]:
         (_order("kidnap", x=1.0, z=1.0), "kidnap: z: extra inputs are not permitted"),
         (_order("set_mode", mode="fly"), "set_mode: mode: input should be 'explore', 'manual' or 'goal'"),
         (_order("edit_world", edit={"from": 0}), "an edit of the world cannot be made again"),
-    ],
-)
-def test_what_is_wrong_in_it_is_said(change: Callable[[dict[str, Any]], None], words: str) -> None:
-    document = json.loads(FILE)
-    change(document)
-    for text in (json.dumps(document), packed(document)):
-        with pytest.raises(ValueError, match=words):
-            read_situation(text)
+    ]:
+        with subtests.test(change=change, words=words):
+            document = json.loads(FILE)
+            change(document)
+            for text in (json.dumps(document), packed(document)):
+                with pytest.raises(ValueError, match=words):
+                    read_situation(text)
 
 
 @pytest.mark.parametrize(
