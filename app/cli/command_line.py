@@ -22,7 +22,7 @@ from app.startup.ending import ended
 
 def main(argv: list[str] | None = None) -> int:
     """Run one command and return its exit code; ending.py says what the codes mean."""
-    parser = _parser()
+    parser = parser_of_all()
     arguments = list(sys.argv[1:] if argv is None else argv)
     if not arguments or (arguments[0].startswith("-") and arguments[0] not in ("-h", "--help")):
         arguments.insert(0, "run")
@@ -30,7 +30,8 @@ def main(argv: list[str] | None = None) -> int:
     return ended(lambda: args.do(args))
 
 
-def _parser() -> argparse.ArgumentParser:
+def parser_of_all() -> argparse.ArgumentParser:
+    """Understands every command, and carries out none."""
     parser = argparse.ArgumentParser(prog="ratslam", description="RatSLAM, alive in a browser.")
     commands = parser.add_subparsers(title="commands", required=True)
     for add in (

@@ -7,7 +7,7 @@
 A mutant is one changed operator, comparison, condition, call or returned value in one file of a room. Each is tried in
 a copy of the tree, in which the unit and property tests that run its line are run, the quickest first, for at most a
 minute. A fault of the whole is tried with the tests that are named beside it. It is noticed if a test fails or takes far
-too long. Those that nothing notices are listed.
+too long. Those that nothing notices are listed; the exit code is 1 where a fault of the whole is among them.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ ROOMS = (
 NOT_MUTATED = ("laws", "params", "vendor")  # guards of files, declarations, what others wrote
 
 
-def main() -> None:
+def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
     parser.add_argument("rooms", nargs="*", metavar="ROOM", help=f"of: {', '.join(ROOMS)}, faults (default: all)")
     parser.add_argument("--count", type=int, default=100, help="mutants of each room (default 100)")
@@ -51,16 +51,16 @@ def main() -> None:
     chosen = {room: _chosen(room, args.count, args.seed) for room in rooms if room != "faults"}
     if not args.count:
         print("none tried")
-        return
+        return 0
     with tempfile.TemporaryDirectory() as folder:
         kept = args.kept or Path(folder)
         kept.mkdir(parents=True, exist_ok=True)
         bench = Bench(Trees(kept), kept / "tried.json", args.jobs)
         survivors = [mutant for room, some in chosen.items() for mutant in bench.room(room, some)]
-        if "faults" in rooms:
-            bench.faults()
+        unnoticed = bench.faults() if "faults" in rooms else 0
     if args.json is not None:
         args.json.write_text(json.dumps([asdict(m) for m in survivors], indent=1) + "\n", encoding="utf-8")
+    return 1 if unnoticed else 0
 
 
 class Bench:
@@ -79,14 +79,15 @@ class Bench:
         print(f"{name}: {killed} of {len(mutants)} killed ({killed / len(mutants):.0%})", flush=True)
         return survivors
 
-    def faults(self) -> None:
-        """Each fault of the whole, against its own tests."""
+    def faults(self) -> int:
+        """Each fault of the whole, against its own tests. How many nothing noticed."""
         named = {fault.mutant(ROOT): fault for fault in faults()}
         tried = self._tried({mutant: fault.whole for mutant, fault in named.items()})
         unnoticed = [named[mutant].name for mutant, survived in tried if survived]
         for name in unnoticed:
             print(f"not noticed: {name}")
         print(f"faults of the whole: {len(named) - len(unnoticed)} of {len(named)} noticed")
+        return len(unnoticed)
 
     def _tried(self, whole: dict[Mutant, tuple[str, ...]]) -> Iterator[tuple[Mutant, bool]]:
         with ThreadPoolExecutor(self._jobs) as pool:
@@ -109,4 +110,4 @@ def _chosen(room: str, count: int, seed: int) -> list[Mutant]:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

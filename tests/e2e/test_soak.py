@@ -19,6 +19,7 @@ ROW = Row(
 CALM = [replace(ROW, minute=k, tick=k * 9600, memory_mb=300 + k / 6, experiences=5 * k) for k in range(121)]
 
 
+@pytest.mark.long
 def test_seconds_of_it_and_the_page_loaded_anew(tmp_path):
     report = tmp_path / "soak.json"
     command = [sys.executable, "-m", "benchmarks.soak", "--minutes", "0.2", "--every", "1", "--act-every", "0.02"]

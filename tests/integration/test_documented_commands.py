@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -20,11 +21,11 @@ import numpy as np
 import orjson
 import pytest
 
+from app.cli.command_line import parser_of_all
 from tests.e2e.program import Program
 from tests.patience import PATIENCE_S
 from tests.recordings import tub
 
-pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "sim2d").glob("*/README.md"))]
 BEGINNINGS = ("ratslam ", "python -m ", "make ", "uv run")
@@ -210,6 +211,19 @@ def environment(home: Path, temporary: Path) -> dict[str, str]:
     }  # fmt: skip
 
 
+def test_what_is_documented_is_understood() -> None:
+    """Each option and value of it; that it also runs takes ten minutes."""
+    wrong: list[str] = []
+    for line in RUN:
+        for command in re.findall(r"(?:^|&& |; )ratslam ([^;&|>]*)", line):
+            try:
+                parser_of_all().parse_args(shlex.split(command) or ["run"])
+            except SystemExit as end:
+                wrong += [command] * (end.code != 0)
+    assert wrong == []
+
+
+@pytest.mark.long
 @pytest.mark.parametrize("command", RUN)
 def test_what_is_documented_runs(command: str, made: Made, tmp_path: Path) -> None:
     code, words = run(command, made, tmp_path)
@@ -227,6 +241,7 @@ MODULES = sorted(
 )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("module", [each for each in MODULES if instead(f"python -m benchmarks.{each}") not in RUN])
 def test_every_benchmark_runs(module: str, made: Made, tmp_path: Path) -> None:
     code, words = run(instead(f"python -m benchmarks.{module}"), made, tmp_path)
@@ -244,6 +259,7 @@ def test_the_table_knows_nothing_else() -> None:
 INTERRUPTED = ("recordings --data {data} --only office", "alarms --worlds loop", "killed_runs", "mutants --jobs 1")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("benchmark", INTERRUPTED)
 def test_ctrl_c_ends_a_benchmark_in_one_line(benchmark: str, made: Made, tmp_path: Path) -> None:
     """While its libraries are being imported, where nobody would catch it: that takes most of a second."""

@@ -71,7 +71,7 @@ def test_after_a_kill_the_run_is_offered_and_goes_on(tmp_path: Path, monkeypatch
     assert replay(whole).state_hash() == there.state_hash()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_killed_at_any_moment_it_opens_and_comes_out_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path))
     chance = random.Random(5)

@@ -13,7 +13,7 @@ from benchmarks.recordings import of_known, play
 INTEL = Path(__file__).parents[3] / "shared" / "data" / "logs" / "intel"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["as it is", "every second scan"])
 def test_a_log_that_nobody_tuned_on(name: str) -> None:
     if not INTEL.exists():

@@ -37,7 +37,7 @@ PAIRS = [lesson.name for lesson in LESSONS if lesson.pair is not None]
 OTHERS = [(name, seed) for name in PAIRS for seed in (301, 302)] + [("kidnapped", seed) for seed in (7, 702, 705)]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "seed"), OTHERS)
 def test_what_is_promised_holds_on_other_seeds(name: str, seed: int) -> None:
     """That of two brains, and of a kidnap: found late with 7 and 702, not at all with 705, and yet noticed."""

@@ -12,7 +12,7 @@ from app.experiments.store import Store
 from app.trials.experiment import catalogue
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_experiment_runs_from_its_trials_to_its_page(tmp_path: Path) -> None:
     store, out = tmp_path / "trials.sqlite", tmp_path / "out"
     command = ["experiment", "all", "--quick", "--workers", "2", "--store", str(store), "--out", str(out)]

@@ -8,6 +8,7 @@ from benchmarks.random_drive import BAR_M, drive, with_people
 from sim2d import load_world, world_names
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [name for name, _ in world_names()])
 def test_never_a_centimetre_into_a_wall(name: str) -> None:
     deepest = drive(with_people(load_world(name), seed=11), hours=0.1, seed=11)

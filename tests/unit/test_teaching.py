@@ -85,7 +85,7 @@ def test_the_lessons_on_what_is_ours_are_named_by_their_numbers() -> None:
     assert ours == [*range(first, last + 1), together, apart]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])
 def test_the_rates_come_out_on_other_seeds_as_in_the_answers(seed: int) -> None:
     slow, quick, *off = re.findall(rf"^\| {seed} \| (.+) \| (.+) \| (.+) \| (.+) \|$", PAGE, re.MULTILINE)[0]
@@ -94,7 +94,7 @@ def test_the_rates_come_out_on_other_seeds_as_in_the_answers(seed: int) -> None:
     assert f"{off[0]} and {off[1]} off" in said
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_kidnaps_take_on_other_seeds_what_lesson_and_answers_say() -> None:
     times = re.findall(r"Seeds 1 to 6: ([\d., ]+) s, and never", PAGE)[0].split(", ")
     found = [report_of(LESSONS["kidnapped"], seed).performances[0].values for seed in range(1, 7)]

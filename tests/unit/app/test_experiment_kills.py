@@ -25,7 +25,7 @@ MORE = 2000  # trials at first, and whenever all are done
 MOST_WAIT_S = 0.2
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_fifty_kills_lose_nothing(tmp_path: Path) -> None:
     rng, path, total = random.Random(12), tmp_path / "trials.sqlite", MORE
     victims = ["client"] * CLIENTS + ["worker"] * (KILLS - CLIENTS)

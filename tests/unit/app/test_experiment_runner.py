@@ -223,7 +223,13 @@ def test_a_cluster_that_dies_is_told_of_and_what_had_come_is_kept(store: Store, 
     assert all(trial.scores == {"mark": score_of(trials[trial.seed - 1000])} for trial in store.of_experiment("small"))
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)])
+@pytest.mark.parametrize(
+    ("number", "code"),
+    [
+        (signal.SIGINT, 130),
+        *(pytest.param(*each, marks=pytest.mark.long) for each in ((signal.SIGTERM, 143), (signal.SIGKILL, -9))),
+    ],
+)
 def test_a_command_that_is_stopped_leaves_no_process_and_goes_on(tmp_path: Path, number: int, code: int) -> None:
     path = tmp_path / "trials.sqlite"
     command = begin(path, 600)
