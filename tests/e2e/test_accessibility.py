@@ -43,6 +43,7 @@ def test_axe_finds_nothing(program, browser, size):
         assert findings(page) == []
 
 
+@pytest.mark.long
 def test_axe_finds_nothing_before_the_server_has_said_anything(program, browser):
     with browser.new_context(viewport={"width": 1440, "height": 900}) as context:
         context.set_default_timeout(PATIENCE_MS)
@@ -55,6 +56,7 @@ def test_axe_finds_nothing_before_the_server_has_said_anything(program, browser)
         assert findings(page) == []
 
 
+@pytest.mark.long
 def test_axe_finds_nothing_in_the_documents(program, browser):
     with browser.new_context() as context:
         context.set_default_timeout(PATIENCE_MS)
@@ -67,6 +69,7 @@ def test_axe_finds_nothing_in_the_documents(program, browser):
         page.wait_for_selector("#answer:has-text('accepted')")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("widths", [(360, 390), (760, 1024, 1440)], ids=["phones", "screens"])
 def test_nothing_sticks_out(program, browser, widths):
     with open_page(browser, program.url, widths[0], 740, stage=False) as page:
@@ -127,6 +130,7 @@ def colours(page: Page, part: str) -> list[tuple[int, ...]]:
     return [colour for count, colour in counts if count * 20 >= image.width * image.height]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("light", [True, False])
 def test_with_the_system_s_own_colours_nothing_is_told_by_colour_alone(program, browser, light):
     with open_page(browser, program.url, stage=False, light=light) as page:

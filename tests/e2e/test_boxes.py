@@ -137,7 +137,15 @@ STATES: list[Callable[[Program, Page], None]] = [
 
 
 @pytest.mark.parametrize(
-    ("sizes", "touched"), [*((sizes, False) for sizes in SIZES), *((sizes, True) for sizes in TOUCHED)]
+    ("sizes", "touched"),
+    [
+        (SIZES[0], False),
+        (TOUCHED[0], True),
+        *(
+            pytest.param(*each, marks=pytest.mark.long)
+            for each in ((SIZES[1], False), *((s, True) for s in TOUCHED[1:]))
+        ),
+    ],
 )
 def test_nothing_is_covered_cut_or_too_small(
     program: Program, browser: Browser, sizes: list[tuple[int, int]], touched: bool
@@ -182,6 +190,7 @@ def test_enlarged_four_times_the_page_is_scrolled_and_nothing_lies_over_the_plat
 A_GAP = 12  # pixels; between what may touch
 
 
+@pytest.mark.long
 def test_the_rows_of_buttons_leave_the_plates_free(program: Program, browser: Browser) -> None:
     """However many rows they need, in whatever room the lesson and the panel leave: no plate reaches beneath them or is cut."""
     program.command("reset", world="office", seed=5)
@@ -215,6 +224,7 @@ SMALL = """() => [...document.querySelectorAll("button, select, summary, [role=t
     .map(([part, { width, height }]) => `${part.id || part.textContent || part.ariaLabel}: ${width} x ${height}`)"""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(390, 844), (844, 390), (1024, 768)])
 def test_all_that_opens_is_large_enough_for_fingers(program: Program, browser: Browser, size: tuple[int, int]) -> None:
     program.command("reset", world="office", seed=5)

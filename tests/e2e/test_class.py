@@ -77,6 +77,7 @@ def test_phones_vote_and_the_main_page_shows_the_bars(school, browser):
     assert faults == []
 
 
+@pytest.mark.long
 def test_the_presented_card_shows_the_address_large_and_as_a_code(school, browser):
     with open_page(browser, school.url, 1280, 720, stage=False) as main:
         until(main, "() => document.querySelectorAll('.option').length > 1")
@@ -92,6 +93,7 @@ def test_the_presented_card_shows_the_address_large_and_as_a_code(school, browse
             assert findings(main) == [], size
 
 
+@pytest.mark.long
 def test_a_class_looks_on(school, browser):
     with open_page(browser, f"{school.door}?watch") as page:
         expect(page.locator("#lesson-title")).to_have_text("A packet moves")
@@ -110,6 +112,7 @@ def refused(url: str, body: bytes | None = None, **headers: str) -> int:
     return error.value.code
 
 
+@pytest.mark.long
 def test_the_network_reaches_votes_and_nothing_else(school):
     before = school.state()
     own = {"Origin": school.door.removesuffix("/")}

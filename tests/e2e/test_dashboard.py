@@ -151,6 +151,7 @@ def test_the_robot_stops_when_the_page_cannot_hold_it(program, browser, end):
         assert_still(program)
 
 
+@pytest.mark.long
 def test_the_pad_drives_while_it_is_held(program, browser):
     program.command("resume")
     with open_page(browser, program.url, 390, 844, stage=False) as page:
@@ -221,6 +222,7 @@ THEMES = """() => [document.documentElement.dataset.theme,
 DARK, LIGHT = "dark, the stage dark", "light, the stage light"
 
 
+@pytest.mark.long
 def test_two_tabs_agree_each_in_its_own_theme_and_a_reload_comes_back_to_the_same(program, browser):
     program.command("pause")
     with open_page(browser, program.url) as one, open_page(browser, program.url, 900, 700, light=True) as two:
@@ -245,6 +247,7 @@ def test_two_tabs_agree_each_in_its_own_theme_and_a_reload_comes_back_to_the_sam
         assert two.evaluate(THEMES) == DARK
 
 
+@pytest.mark.long
 def test_another_theme_leaves_a_turned_camera_where_it_is(program, browser):
     program.command("pause")
     with open_page(browser, program.url) as page:
@@ -289,6 +292,7 @@ def plates_of(page) -> np.ndarray:
     return cv2.imdecode(np.frombuffer(shots[1], np.uint8), cv2.IMREAD_GRAYSCALE).astype(float)
 
 
+@pytest.mark.long
 def test_a_page_that_is_open_while_the_program_is_restarted_shows_the_new_one(browser):
     """Another seed, another world, on the same port, while nobody looks at the page: the plates are those of a page that is
     opened now."""

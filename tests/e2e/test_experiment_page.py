@@ -62,6 +62,7 @@ def test_a_click_on_a_dot_shows_the_command_that_opens_its_trial(page: Page) -> 
     expect(box).to_be_hidden()
 
 
+@pytest.mark.long
 def test_the_command_can_be_copied(page: Page) -> None:
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     dot = page.locator("svg [id^='f2-trial-']").first
@@ -72,6 +73,7 @@ def test_the_command_can_be_copied(page: Page) -> None:
     assert copied == f"ratslam experiment open {dot.get_attribute('data-trial')}"
 
 
+@pytest.mark.long
 def test_a_dot_is_reached_and_left_with_the_keyboard(page: Page) -> None:
     dot = page.locator("svg [id^='f2-trial-']").nth(5)
     dot.focus()
@@ -81,6 +83,7 @@ def test_a_dot_is_reached_and_left_with_the_keyboard(page: Page) -> None:
     expect(dot).to_be_focused()
 
 
+@pytest.mark.long
 def test_a_point_of_a_curve_lists_its_trials_and_a_panel_of_a_map_tells_its_own(page: Page) -> None:
     page.locator("svg [data-cell]").first.click()
     expect(page.locator("#box code")).to_have_count(4)
@@ -90,6 +93,7 @@ def test_a_point_of_a_curve_lists_its_trials_and_a_panel_of_a_map_tells_its_own(
     expect(page.locator("#box")).to_be_hidden()
 
 
+@pytest.mark.long
 def test_the_page_is_accessible(page: Page) -> None:
     page.locator("svg [data-trial]").first.focus()
     page.keyboard.press("Enter")
@@ -97,6 +101,7 @@ def test_the_page_is_accessible(page: Page) -> None:
     assert found.violations_count == 0, found.generate_report()
 
 
+@pytest.mark.long
 def test_nothing_lies_beyond_a_small_screen(page: Page) -> None:
     page.set_viewport_size({"width": 390, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") <= 390

@@ -82,6 +82,7 @@ def test_one_is_watched_and_an_order_of_ones_own_ends_it(stored: Program, browse
         stored.command("pause")
 
 
+@pytest.mark.long
 def test_a_cell_and_a_dot_are_clicked_and_the_trial_plays_from_its_moment(
     stored: Program, browser, ran: tuple[Path, Ran]
 ) -> None:
@@ -113,6 +114,7 @@ def test_a_cell_and_a_dot_are_clicked_and_the_trial_plays_from_its_moment(
         assert {"trial", "failed"} <= set(legend)
 
 
+@pytest.mark.long
 def test_a_stored_trial_is_opened_at_its_moment(browser, ran: tuple[Path, Ran]) -> None:
     path, (trial, result) = ran
     opened = Program(start=OPEN.format(store=str(path), id=trial.id))
@@ -125,6 +127,7 @@ def test_a_stored_trial_is_opened_at_its_moment(browser, ran: tuple[Path, Ran]) 
     assert opened.stop() == 0
 
 
+@pytest.mark.long
 def test_going_to_a_moment_can_be_broken_off(stored: Program, browser) -> None:
     with open_page(browser, stored.url, stage=False) as page:
         stored.command("watch_experiment", experiment="table", moment_s=1300.0)
@@ -137,6 +140,7 @@ def test_going_to_a_moment_can_be_broken_off(stored: Program, browser) -> None:
         stored.command("pause")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("size", "light"), [((1280, 800), False), ((390, 844), True), ((360, 740), False)])
 def test_axe_finds_nothing_and_nothing_sticks_out(stored: Program, browser, size, light: bool) -> None:
     with open_page(browser, stored.url, *size, light=light, stage=False) as page:
@@ -163,6 +167,7 @@ def test_axe_finds_nothing_and_nothing_sticks_out(stored: Program, browser, size
         stored.command("pause")
 
 
+@pytest.mark.long
 def test_by_keyboard_alone_there_and_back(stored: Program, browser) -> None:
     with open_page(browser, stored.url, stage=False) as page:
         trials_of_the_table(page)
@@ -173,6 +178,7 @@ def test_by_keyboard_alone_there_and_back(stored: Program, browser) -> None:
         assert page.evaluate("() => !document.getElementById('gallery-dialog').open")
 
 
+@pytest.mark.long
 def test_a_refusal_is_said_where_one_looks(stored: Program, browser) -> None:
     with open_page(browser, stored.url, stage=False) as page:
         page.route("**/api/experiments", lambda route: _renamed(route))
@@ -182,6 +188,7 @@ def test_a_refusal_is_said_where_one_looks(stored: Program, browser) -> None:
         assert page.evaluate("() => document.getElementById('gallery-dialog').open")
 
 
+@pytest.mark.long
 def test_who_waits_is_told_for_what(stored: Program, browser) -> None:
     """The engine may still be compiled when the first experiment is asked for."""
     held, pages = [], []

@@ -6,6 +6,7 @@ import zipfile
 from pathlib import Path
 
 import networkx as nx
+import pytest
 from playwright.sync_api import expect
 
 from tests.e2e.browser import open_page, told, until
@@ -33,6 +34,7 @@ def test_the_map_is_saved_for_other_programs(program, browser, tmp_path: Path):
             assert len(pictures.namelist()) == 3
 
 
+@pytest.mark.long
 def test_a_stretch_between_two_marks_and_a_file_that_is_given_up(program, browser):
     program.command("step", ticks=60)
     program.command("loop", begin_s=1.0, end_s=3.0)

@@ -100,6 +100,7 @@ def test_a_place_is_chosen_from_a_list_by_keyboard_and_told_aloud(fresh, browser
         expect(page.locator("#panel [role=tab][aria-selected=true]")).to_have_text("Inspect")
 
 
+@pytest.mark.long
 def test_the_help_lists_the_keys_by_group(fresh, browser) -> None:
     with open_page(browser, fresh.url, stage=False) as page:
         page.keyboard.press("?")
@@ -107,6 +108,7 @@ def test_the_help_lists_the_keys_by_group(fresh, browser) -> None:
         expect(page.locator("#keys li", has_text="kidnap").locator("kbd")).to_have_text("k")
 
 
+@pytest.mark.long
 def test_a_presenter_goes_on_and_back_without_the_panel(fresh, browser) -> None:
     with open_page(browser, fresh.url, stage=False) as page:
         size = "() => parseFloat(getComputedStyle(document.getElementById('status')).fontSize)"

@@ -15,6 +15,8 @@ from tests.fake_snapshots import SNAP_EVERY, fake_snapshot
 from web.panel.panel import TABS
 from web.viewer.plates.pose_cell_plate import ORIGIN, SHEET
 
+pytestmark = pytest.mark.long
+
 SIZES = [(1024, 768), (1280, 800), (1366, 768), (1920, 1080), (390, 844), (360, 740), (900, 700), (761, 600)]
 SIZES += [(1400, 900), (1440, 900), (1480, 900), (1600, 900), (1679, 900), (1680, 900), (1800, 900)]
 SIZES += [(640, 400), (683, 384), (960, 540)]  # 1280, 1366 and 1920 pixels wide, enlarged twice

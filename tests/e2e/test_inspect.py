@@ -70,6 +70,7 @@ def test_a_click_with_shift_on_the_map_and_a_click_into_the_pose_cells_inspect(w
         assert len(walked.state()["pose_cells"]["packets"]) == 2
 
 
+@pytest.mark.long
 def test_a_click_on_a_view_shows_it_beside_what_is_seen_now(walked, browser):
     with open_page(browser, walked.url, stage=False) as page:
         page.get_by_role("button", name="Inspect the stored view").click()
@@ -89,6 +90,7 @@ def test_a_click_on_a_view_shows_it_beside_what_is_seen_now(walked, browser):
         says(page, re.compile(rf"^#{next_square}$"))
 
 
+@pytest.mark.long
 def test_a_tick_is_walked_through_by_key_and_by_button(walked, browser):
     walked.command("pause")
     with open_page(browser, walked.url, stage=False) as page:
@@ -139,6 +141,7 @@ def test_a_brain_goes_down_to_a_file_and_comes_up_again(walked, browser, tmp_pat
         assert after["experiences"] >= known
 
 
+@pytest.mark.long
 def test_why_a_loop_closed_or_the_packet_snapped_is_told(walked, browser):
     walked.command("set_parameter", name="local_view.false_positives", value=0.2)
     walked.command("step", ticks=100)

@@ -55,6 +55,7 @@ def test_plates_as_vectors(driven: Program, browser: Browser, tmp_path: Path) ->
             assert len(list(picture.iter())) > 30
 
 
+@pytest.mark.long
 def test_of_two_brains_each_has_its_plates(driven: Program, browser: Browser, tmp_path: Path) -> None:
     with open_page(browser, driven.url, stage=False) as page:
         page.click("#keep summary")
@@ -75,6 +76,7 @@ def test_of_two_brains_each_has_its_plates(driven: Program, browser: Browser, tm
         expect(page.locator("#keep-map-2")).to_be_hidden()
 
 
+@pytest.mark.long
 def test_plots_as_vectors_and_pixels(driven: Program, browser: Browser, tmp_path: Path) -> None:
     with open_page(browser, driven.url, stage=False) as page:
         page.get_by_role("tab", name="Truth").click()
@@ -91,6 +93,7 @@ def test_plots_as_vectors_and_pixels(driven: Program, browser: Browser, tmp_path
         assert pixels.std() > 10
 
 
+@pytest.mark.long
 def test_the_stage_as_a_picture_and_as_a_film(driven: Program, browser: Browser, tmp_path: Path) -> None:
     with open_page(browser, driven.url, 780, 500) as page:
         show(page, "map")

@@ -68,6 +68,7 @@ def test_the_offer_is_seen_and_taken(offering: Program, browser, known: Session)
         until(phone, GONE)
 
 
+@pytest.mark.long
 def test_a_broken_one_is_told_of_and_not_now_stays_gone(offering: Program, browser, tmp_path: Path) -> None:
     (tmp_path / "earlier.npz").write_bytes(b"PK")
     with open_page(browser, offering.url, refused=True, stage=False) as page:

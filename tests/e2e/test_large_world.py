@@ -22,6 +22,8 @@ from web.viewer.plates.office_plate import ORIGIN
 from .browser import eye_of, on_screen, open_page, show, until
 from .program import Program
 
+pytestmark = pytest.mark.long
+
 INK = """() => {
     const canvas = document.querySelector("canvas.painted");
     if (!canvas || canvas.hidden || !canvas.width) return 0;

@@ -80,6 +80,7 @@ def test_a_lesson_from_the_list_to_the_sandbox_with_a_class_that_votes(school, b
         expect(page.locator("#lesson")).to_be_hidden()
 
 
+@pytest.mark.long
 def test_where_it_ends_is_drawn_on_the_plan(school, browser) -> None:
     with open_page(browser, school.url, stage=False) as page:
         page.goto(f"{school.url}docs")
@@ -108,6 +109,7 @@ def test_where_it_ends_is_drawn_on_the_plan(school, browser) -> None:
         expect(page.locator(".outcome")).to_contain_text(f"{outcome['distance_m']:.1f} m from where it ended")
 
 
+@pytest.mark.long
 def test_where_it_will_believe_to_be_is_drawn_on_the_map_which_lies_as_on_its_plate(school, browser) -> None:
     with open_page(browser, school.url, stage=False) as page:
         page.goto(f"{school.url}docs")
@@ -140,6 +142,7 @@ def test_where_it_will_believe_to_be_is_drawn_on_the_map_which_lies_as_on_its_pl
         expect(page.locator(".outcome")).to_contain_text(f"{outcome['distance_m']:.1f} m from where it ended")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", DEMOS)
 def test_each_of_the_six_demos_is_three_clicks_from_a_fresh_page(school, browser, name) -> None:
     with open_page(browser, school.url, stage=False, first=True) as page:
@@ -151,6 +154,7 @@ def test_each_of_the_six_demos_is_three_clicks_from_a_fresh_page(school, browser
         page.click("#lesson-leave")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
 def test_the_card_is_whole_and_axe_finds_nothing(school, browser, size) -> None:
     with open_page(browser, school.url, *size, stage=False) as page:
@@ -183,6 +187,7 @@ def test_the_card_is_whole_and_axe_finds_nothing(school, browser, size) -> None:
         look("compared")
 
 
+@pytest.mark.long
 def test_it_runs_until_something_happens_and_stops_there(school, browser) -> None:
     with open_page(browser, school.url, stage=False) as page:
         school.command("reset", world="office", seed=5)
@@ -207,6 +212,7 @@ def test_it_runs_until_something_happens_and_stops_there(school, browser) -> Non
         until(page, "() => [...toasted].length > 1")
 
 
+@pytest.mark.long
 def test_a_symbol_leads_to_its_row_in_tune(school, browser) -> None:
     with open_page(browser, school.url, stage=False) as page:
         choose(page, "quicker")
@@ -219,6 +225,7 @@ def test_a_symbol_leads_to_its_row_in_tune(school, browser) -> None:
         expect(rows).to_have_attribute("title", re.compile("moving average"))
 
 
+@pytest.mark.long
 def test_a_clicker_goes_through_a_lesson(school, browser) -> None:
     with open_page(browser, school.url, stage=False) as page:
         page.keyboard.press("z")
@@ -240,6 +247,7 @@ def test_a_clicker_goes_through_a_lesson(school, browser) -> None:
         expect(page.locator("#lesson-title")).to_have_text("Packets merge and compete")
 
 
+@pytest.mark.long
 def test_rounds_are_shown_one_after_the_other(school, browser) -> None:
     with open_page(browser, school.url, stage=False) as page:
         choose(page, "merge")
@@ -257,6 +265,7 @@ def test_rounds_are_shown_one_after_the_other(school, browser) -> None:
         expect(page.locator("#lesson-which")).to_contain_text("round 2 of 2")
 
 
+@pytest.mark.long
 def test_a_lesson_that_is_broken_off_says_by_what_and_begins_once_more(school, browser) -> None:
     with open_page(browser, school.url, stage=False) as page:
         choose(page, "dark")
@@ -274,6 +283,7 @@ def test_a_lesson_that_is_broken_off_says_by_what_and_begins_once_more(school, b
         expect(page.locator("#lesson-again")).not_to_have_class("go")
 
 
+@pytest.mark.long
 def test_the_card_leads_to_inspect_where_that_tells_why(school, browser) -> None:
     with open_page(browser, school.url, stage=False) as page:
         choose(page, "snap")

@@ -70,6 +70,7 @@ def test_people_lamps_and_presets_are_switched_on_the_page(office: Program, brow
         page.get_by_text("preset Pioneer 2DXE 2004").first.wait_for(state="attached")
 
 
+@pytest.mark.long
 def test_a_field_of_view_that_the_brain_is_told_wrongly_is_said_on_the_page(office: Program, browser: Browser) -> None:
     with open_page(browser, office.url, stage=False) as page:
         office.command("set_parameter", name="local_view.field_of_view", value=1.2)

@@ -47,6 +47,7 @@ def toasts(page) -> list[str]:
 # ---------------------------------------------------------------- toasts
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(1280, 800), (1024, 700), (390, 844), (640, 400)])
 def test_toasts_cover_neither_header_nor_view_buttons_nor_each_other(fake, browser, size) -> None:
     with open_page(browser, fake[1], *size, light=size[0] == 1024, stage=False) as page:
@@ -57,6 +58,7 @@ def test_toasts_cover_neither_header_nor_view_buttons_nor_each_other(fake, brows
         assert len(toasts(page)) >= 3 or size[1] < 500  # as many as there is room for
 
 
+@pytest.mark.long
 def test_a_toast_stays_for_as_long_as_reading_needs(fake, browser) -> None:
     with open_page(browser, fake[1], stage=False) as page:
         page.evaluate("() => document.querySelectorAll('.toast').forEach((toast) => toast.remove())")
@@ -77,6 +79,7 @@ def test_a_toast_stays_for_as_long_as_reading_needs(fake, browser) -> None:
         assert toasts(page) == ["It stays."]
 
 
+@pytest.mark.long
 def test_what_was_done_what_went_wrong_and_a_notice_have_signs_of_their_own(fake, browser) -> None:
     with open_page(browser, fake[1]) as page:
         for words, options in (("Done.", {}), ("Wrong.", {"bad": True}), ("A notice.", {"notice": True})):
@@ -88,6 +91,7 @@ def test_what_was_done_what_went_wrong_and_a_notice_have_signs_of_their_own(fake
         assert all(sign == "#i-info" for words, sign in signs.items() if "graphics card" in words)
 
 
+@pytest.mark.long
 def test_a_toast_stands_beneath_the_plates(fake, browser) -> None:
     front = MAP_ORIGIN[1] + MAP_SHEET[2] - MAP_SHEET[1] / 2
     with open_page(browser, fake[1], stage=False) as page:
@@ -98,6 +102,7 @@ def test_a_toast_stands_beneath_the_plates(fake, browser) -> None:
             assert toast["y"] >= on_screen(page, "all", (0.0, front, 0.0))[1], size
 
 
+@pytest.mark.long
 def test_a_click_or_escape_takes_a_toast_away(fake, browser) -> None:
     with open_page(browser, fake[1], stage=False) as page:
         for words in ("One.", "Two.", "Three.", "Two."):
@@ -113,6 +118,7 @@ def test_a_click_or_escape_takes_a_toast_away(fake, browser) -> None:
         assert roles == {"alerts": "alert", "toasts": "status"}
 
 
+@pytest.mark.long
 def test_an_unreachable_goal_and_a_fault_are_told_to_everyone(fake, browser) -> None:
     engine, url = fake
     with open_page(browser, url, stage=False) as one, open_page(browser, url, 390, 844, stage=False) as two:
@@ -125,6 +131,7 @@ def test_an_unreachable_goal_and_a_fault_are_told_to_everyone(fake, browser) -> 
         one.wait_for_selector("#alerts .toast:has-text('division by zero')", state="detached")
 
 
+@pytest.mark.long
 def test_what_the_stage_refuses_is_told_to_whoever_did_it(program, browser) -> None:
     with open_page(browser, program.url, stage=False):  # a page that is alive has a state
         state = program.state()
@@ -189,6 +196,7 @@ def test_every_event_has_a_name_a_mark_and_a_place_in_the_legend(fake, browser) 
         assert "never heard of: something new" in listed
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
 def test_a_mark_says_what_happened(fake, browser, size) -> None:
     engine, url = fake

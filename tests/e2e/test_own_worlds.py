@@ -93,6 +93,7 @@ def test_an_empty_world_is_begun_drawn_in_and_saved(program, browser, own):
         assert page.evaluate("() => document.activeElement.closest('#edit-menu') !== null")
 
 
+@pytest.mark.long
 def test_saving_under_another_name_can_rename(program, browser, own):
     with open_page(browser, program.url, 1440, 900, refused=True, stage=False) as page:
         program.command("edit_world", steps=[{"do": "add", "list": "places", "item": {"name": "p", "x": 0.9, "y": 2}}])
@@ -119,6 +120,7 @@ def test_saving_under_another_name_can_rename(program, browser, own):
         assert program.state()["world"] == "third"
 
 
+@pytest.mark.long
 def test_a_saved_world_is_opened_deleted_and_brought_back(program, browser, own):
     with open_page(browser, program.url, 1440, 900, stage=False) as page:
         edit(page)
@@ -155,6 +157,7 @@ def test_a_saved_world_is_opened_deleted_and_brought_back(program, browser, own)
         assert "school" in listed(page)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
 def test_axe_finds_nothing_and_it_fits(program, browser, size):
     fits = "(id) => { const d = document.getElementById(id); return d.scrollWidth <= d.clientWidth; }"
@@ -182,6 +185,7 @@ def test_axe_finds_nothing_and_it_fits(program, browser, size):
             turn_theme(page)
 
 
+@pytest.mark.long
 def test_the_editor_s_bar_is_one_row_saved_or_not(program, browser) -> None:
     with open_page(browser, program.url, 1024, 768, stage=False) as page:
         page.click("#edit")
@@ -197,6 +201,7 @@ def test_the_editor_s_bar_is_one_row_saved_or_not(program, browser) -> None:
             assert places[0][2] == places[1][2], size
 
 
+@pytest.mark.long
 def test_a_dropped_picture_becomes_a_world(program, browser):
     with open_page(browser, program.url, 1280, 800) as page:
         drop(page, ("plan.pgm", cv2.imencode(".pgm", np.zeros((7, 8), np.uint8))[1].tobytes()))
@@ -217,6 +222,7 @@ def test_a_dropped_picture_becomes_a_world(program, browser):
         told(page, "walls, 16.0 × 12.0 m")
 
 
+@pytest.mark.long
 def test_what_cannot_be_opened_says_why_and_the_session_goes_on(program, browser):
     program.command("step", ticks=7)
     before = program.state()

@@ -72,6 +72,7 @@ def test_pictures_are_drawn_into_canvases(walked: Program, page: Page) -> None:
     expect(panel).to_contain_text(f"of {state['views']})")
 
 
+@pytest.mark.long
 def test_every_tab_shows_something_and_axe_finds_nothing(page: Page) -> None:
     words = {
         "Senses": "local view cells",
@@ -95,6 +96,7 @@ def test_every_tab_shows_something_and_axe_finds_nothing(page: Page) -> None:
             turn_theme(page)
 
 
+@pytest.mark.long
 def test_plots_follow_the_theme(page: Page) -> None:
     show(page, "Truth")
     canvas = page.locator("#panel-truth canvas").first
@@ -104,6 +106,7 @@ def test_plots_follow_the_theme(page: Page) -> None:
     until(page, "(was) => document.querySelector('#panel-truth canvas')?.toDataURL() !== was", argument=dark)
 
 
+@pytest.mark.long
 def test_the_panel_s_colours_are_those_of_the_plates(page: Page) -> None:
     named = "(name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim()"
     for theme in ("dark", "light"):
@@ -114,12 +117,14 @@ def test_the_panel_s_colours_are_those_of_the_plates(page: Page) -> None:
         assert shown == ["#{:02x}{:02x}{:02x}".format(*colour) for colour in palette.packets]
 
 
+@pytest.mark.long
 def test_the_marks_among_the_pose_cells_have_a_legend(page: Page) -> None:
     panel = show(page, "Memory")
     panel.get_by_text("Marks among the pose cells").click()
     expect(panel).to_contain_text("where the winning packet was (start) and where the views brought it (finish)")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["Memory", "Inspect"])
 def test_words_of_tables_stand_on_one_line(page: Page, name: str) -> None:
     panel = show(page, name)
@@ -156,6 +161,7 @@ def test_a_parameter_is_found_turned_and_set_back(page: Page) -> None:
     expect(panel.get_by_role("status")).to_have_text("nothing is called “no such thing”")
 
 
+@pytest.mark.long
 def test_what_waits_for_a_reset_says_so(page: Page) -> None:
     panel = show(page, "Tune")
     expect(panel.locator(".knob").nth(50)).to_be_attached()
@@ -164,6 +170,7 @@ def test_what_waits_for_a_reset_says_so(page: Page) -> None:
     assert panel.locator(".knob:visible").count() == panel.locator(".knob:visible [role=img]").count()
 
 
+@pytest.mark.long
 def test_what_somebody_types_stays_typed(walked: Program, page: Page) -> None:
     panel = show(page, "Tune")
     panel.get_by_role("searchbox").fill("match threshold")
@@ -176,6 +183,7 @@ def test_what_somebody_types_stays_typed(walked: Program, page: Page) -> None:
     field.press("Escape")
 
 
+@pytest.mark.long
 def test_a_switch_is_on_for_all_who_look(walked: Program, page: Page, browser) -> None:
     mine = show(page, "Memory").get_by_label("Occupancy among the pose cells")
     with open_page(browser, walked.url, stage=False) as other:
@@ -187,6 +195,7 @@ def test_a_switch_is_on_for_all_who_look(walked: Program, page: Page, browser) -
         expect(mine).not_to_be_checked()
 
 
+@pytest.mark.long
 def test_a_key_drives_although_a_switch_has_been_clicked(walked: Program, page: Page) -> None:
     show(page, "Memory").get_by_label("Goal memory").click()
     walked.command("resume")
@@ -239,6 +248,7 @@ STICKING_OUT = """() => [...document.querySelectorAll("#panel *")]
     .map((part) => `${part.className} ${part.textContent.slice(0, 40)}`)"""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sizes", [SIZES[:-1], SIZES[-1:]], ids=["screens", "phone"])
 def test_nothing_sticks_out_of_any_tab(walked: Program, browser, sizes: list[tuple[int, int]]) -> None:
     walked.command("inspect", experience=3)

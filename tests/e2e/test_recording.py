@@ -48,6 +48,7 @@ def status_is(page: Page, words: str) -> None:
     expect(page.locator("#status span")).to_have_text(words)
 
 
+@pytest.mark.long
 def test_it_plays_to_its_end_and_what_it_lacks_is_not_there(playing: Program, browser, film: Path) -> None:
     with open_page(browser, playing.url, stage=False, refused=True) as page:
         status_is(page, "the recording has ended")
@@ -63,6 +64,7 @@ def test_it_plays_to_its_end_and_what_it_lacks_is_not_there(playing: Program, br
         expect(page.locator(".toast").filter(has_text="restart it")).to_be_visible()
 
 
+@pytest.mark.long
 def test_it_begins_again_and_the_office_comes_back(playing: Program, browser) -> None:
     with open_page(browser, playing.url, stage=False) as page:
         page.click("#restart summary")
@@ -148,6 +150,7 @@ def folder(film: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made
 
 
+@pytest.mark.long
 def test_a_folder_is_dropped_and_plays(playing: Program, browser, folder: Path) -> None:
     with open_page(browser, playing.url, stage=False) as page:
         page.select_option("#world", "loop")
@@ -163,6 +166,7 @@ def test_a_folder_is_dropped_and_plays(playing: Program, browser, folder: Path) 
         assert playing.state()["tick"] == 29
 
 
+@pytest.mark.long
 def test_a_folder_is_chosen_and_what_is_wrong_with_one_is_said(
     playing: Program, browser, folder: Path, tmp_path: Path
 ) -> None:

@@ -19,6 +19,7 @@ def keep(page: Page, words: str) -> None:
     page.get_by_role("button", name=words).click()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
 def test_axe_finds_nothing_and_nothing_sticks_out(program: Program, browser: Browser, size: tuple[int, int]) -> None:
     with open_page(browser, program.url, *size, stage=False) as page:
@@ -83,6 +84,7 @@ def test_a_link_is_opened_elsewhere(program: Program, browser: Browser) -> None:
         assert other.stop() == 0
 
 
+@pytest.mark.long
 def test_a_file_is_saved_and_dropped(program: Program, browser: Browser, tmp_path: Path) -> None:
     program.command("step", ticks=20)
     tick = program.state()["tick"]
@@ -108,6 +110,7 @@ def test_what_is_no_link_is_said(program: Program, browser: Browser) -> None:
     assert program.state()["tick"] == before["tick"]
 
 
+@pytest.mark.long
 def test_one_that_is_long_can_be_left(program: Program, browser: Browser, tmp_path: Path) -> None:
     with open_page(browser, program.url, stage=False) as page:
         tick = program.state()["tick"]
@@ -123,6 +126,7 @@ def test_one_that_is_long_can_be_left(program: Program, browser: Browser, tmp_pa
         program.wait(lambda state: state["tick"] == tick and not state["running"])
 
 
+@pytest.mark.long
 def test_the_command_line_opens_it(program: Program, browser: Browser) -> None:
     with open_page(browser, program.url, stage=False) as page:
         link = link_from(page)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from playwright.sync_api import expect
 
 from sim2d import load_world
@@ -17,6 +18,7 @@ from web.viewer.marks.place_names import Z
 from web.viewer.plates.office_plate import ORIGIN
 
 
+@pytest.mark.long
 def test_vision_goes_off_and_on_by_the_same_click(program: Program, browser) -> None:
     with open_page(browser, program.url, stage=False) as page:
         vision = page.locator("#vision")
@@ -53,6 +55,7 @@ def test_the_camera_goes_with_the_robot_until_a_view_is_asked_for(program: Progr
         expect(page.locator("#follow")).to_have_attribute("aria-pressed", "false")
 
 
+@pytest.mark.long
 def test_the_name_of_a_place_is_a_goal_once_the_map_knows_it(program: Program, browser) -> None:
     program.command("pause")
     program.command("reset", seed=5)
@@ -74,6 +77,7 @@ def test_the_name_of_a_place_is_a_goal_once_the_map_knows_it(program: Program, b
         program.wait(lambda state: state["goal"] is not None)
 
 
+@pytest.mark.long
 def test_a_loop_closure_can_be_played_again(browser) -> None:
     plain = fake_snapshot(40)
     before = plain.map.xy[:50]

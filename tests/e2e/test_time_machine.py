@@ -109,6 +109,7 @@ def test_go_on_without_the_kidnap_and_compare(driven: Program, browser) -> None:
         driven.wait(lambda state: state["tick"] == 600)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sizes", [[(1024, 768), (1280, 800), (1920, 1080)], [(390, 844)]], ids=["screens", "phone"])
 def test_nothing_is_covered_in_the_present_and_in_the_past(driven: Program, browser, sizes) -> None:
     with open_page(browser, driven.url, *sizes[0], stage=False) as page:

@@ -111,6 +111,7 @@ def test_lines_are_added_changed_and_deleted_and_happen(program, browser):
         )
 
 
+@pytest.mark.long
 def test_what_is_no_time_or_level_is_refused_with_the_reason(program, browser):
     with open_page(browser, program.url, 1440, 900, stage=False) as page:
         open_time(page)
@@ -146,6 +147,7 @@ def test_what_is_no_time_or_level_is_refused_with_the_reason(program, browser):
         assert {**world(page), "script": None} == {**before, "script": None}
 
 
+@pytest.mark.long
 def test_lines_follow_the_thing_that_they_are_about(program, browser):
     with open_page(browser, program.url, 1440, 900, stage=False) as page:
         open_time(page)
@@ -166,6 +168,7 @@ def test_lines_follow_the_thing_that_they_are_about(program, browser):
         lines_are(page, (5, "close_door", "kitchen"), (7, "close_door", "kitchen"))
 
 
+@pytest.mark.long
 def test_the_daylight_is_drawn_by_its_points(program, browser):
     def daylight_is(page: Page, course: object) -> None:
         found = (
@@ -214,6 +217,7 @@ def test_the_daylight_is_drawn_by_its_points(program, browser):
         daylight_is(page, {"points": [[20, 0.25]], "repeat_s": 30})
 
 
+@pytest.mark.long
 def test_the_keyboard_alone_writes_a_line(program, browser):
     with open_page(browser, program.url, 1440, 900, stage=False) as page:
         page.keyboard.press("o")
@@ -229,6 +233,7 @@ def test_the_keyboard_alone_writes_a_line(program, browser):
         assert page.is_hidden("#time")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sizes", [[(1440, 900), (1024, 740)], [(390, 844)]], ids=["screens", "phone"])
 def test_axe_finds_nothing_and_it_fits(program, browser, sizes):
     program.command("edit_world", steps=[

@@ -80,6 +80,7 @@ def test_a_tap_on_the_map_sets_a_goal(driven, touched):
     driven.command("cancel_goal")
 
 
+@pytest.mark.long
 def test_a_pinch_comes_nearer_to_what_is_between_the_fingers_and_sets_no_goal(driven, touched):
     page = touched
     _, at = dot(driven)
@@ -104,6 +105,7 @@ def away(page: Page) -> float:
     return math.dist(camera.position, camera.look_at)
 
 
+@pytest.mark.long
 def test_two_fingers_on_the_robot_carry_it_nowhere(driven, touched):
     page = touched
     show(page, "office")
@@ -115,6 +117,7 @@ def test_two_fingers_on_the_robot_carry_it_nowhere(driven, touched):
     assert driven.state()["robot"] == state["robot"]
 
 
+@pytest.mark.long
 def test_a_finger_carries_the_robot_away(driven, touched):
     page = touched
     show(page, "office")

@@ -62,6 +62,7 @@ def test_two_clicks_begin_it_and_one_ends_it(program: Program, browser: Browser)
         expect(page.locator("#event-list")).to_contain_text("the comparison ends: after 30 s with vision")
 
 
+@pytest.mark.long
 def test_the_menu_names_what_would_really_begin(program: Program, browser: Browser) -> None:
     program.command("use_preset", name="paper-2006")
     for axis in ("x", "y"):
@@ -83,6 +84,7 @@ def test_the_menu_names_what_would_really_begin(program: Program, browser: Brows
     program.command("reset", seed=5)
 
 
+@pytest.mark.long
 def test_one_addition_is_chosen_by_its_name_and_the_strip_tells_what_differs(
     program: Program, browser: Browser
 ) -> None:
@@ -120,6 +122,7 @@ def test_one_addition_is_chosen_by_its_name_and_the_strip_tells_what_differs(
     program.command("reset", seed=5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sizes", [[(1920, 1080), (1280, 800), (1024, 768)], [(390, 844)]], ids=["screens", "phone"])
 def test_the_strip_covers_nothing_and_is_whole(
     program: Program, browser: Browser, sizes: list[tuple[int, int]]
@@ -150,6 +153,7 @@ def test_the_strip_covers_nothing_and_is_whole(
     program.command("end_comparison")
 
 
+@pytest.mark.long
 def test_the_stage_shows_both_and_then_one_again(program: Program, browser: Browser) -> None:
     program.command("compare_brains", pair="papers")
     program.command("step", ticks=100)

@@ -30,6 +30,7 @@ LOOK = """() => {
 }"""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("width", [1280, 390])
 def test_a_drawing_stands_there_until_the_first_frame(program: Program, browser, width) -> None:
     context = browser.new_context(viewport={"width": width, "height": 800})
@@ -48,6 +49,7 @@ def test_a_drawing_stands_there_until_the_first_frame(program: Program, browser,
     context.close()
 
 
+@pytest.mark.long
 def test_the_page_says_which_tabs_are_open(program: Program, browser) -> None:
     with open_page(browser, program.url, stage=False) as page:
         told: list[str] = []
@@ -103,6 +105,7 @@ CONTEXT = """(what) => {
 }"""
 
 
+@pytest.mark.long
 def test_a_context_that_is_lost_leaves_the_drawing_and_one_that_comes_back_the_stage(program: Program, browser) -> None:
     with open_page(browser, program.url) as page:
         until(page, "() => document.getElementById('waiting').hidden")

@@ -99,6 +99,7 @@ def test_keys_clicks_drags_and_requests_change_nothing(drawn, browser):
         drawn.command("cancel_goal")
 
 
+@pytest.mark.long
 def test_it_shows_what_the_main_page_shows(drawn, browser):
     clock = "() => document.getElementById('clock').textContent"
     with (
@@ -130,6 +131,7 @@ def test_it_shows_what_the_main_page_shows(drawn, browser):
         expect(page.locator("#lesson")).to_be_hidden()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sizes", [[(1920, 1080), (1280, 720)], [(390, 844)]], ids=["screens", "phone"])
 def test_nothing_steers_and_nothing_is_cut_off(drawn, browser, sizes):
     steers = "header button:visible, header select:enabled:visible, .aids button:visible, footer button:visible"

@@ -93,6 +93,7 @@ def test_a_wall_is_drawn_undone_redone_saved_and_downloaded(program, browser, ow
         assert page.eval_on_selector_all("#world option", "all => all.map((o) => o.textContent)")[-1] == "Mine"
 
 
+@pytest.mark.long
 def test_things_of_every_kind_are_drawn_moved_and_deleted(program, browser):
     with open_page(browser, program.url, 1440, 900, stage=False) as page:
         edit(page)
@@ -134,6 +135,7 @@ def test_things_of_every_kind_are_drawn_moved_and_deleted(program, browser):
         until(page, "async () => (await (await fetch('/api/world')).json()).world.lamps === undefined")
 
 
+@pytest.mark.long
 def test_a_door_makes_its_own_gap_and_corners_stay_closed(program, browser):
     count = len(load_world("office").walls)
     with open_page(browser, program.url, 1440, 900, stage=False) as page:
@@ -175,6 +177,7 @@ def test_a_wall_onto_the_robot_is_refused_and_nothing_changes(program, browser):
         says(page, "A door is 0.3 to 6 m wide; this one would be 0.25 m.")
 
 
+@pytest.mark.long
 def test_the_keyboard_alone_draws_a_wall(program, browser):
     count = len(load_world("office").walls)
     with open_page(browser, program.url, 1440, 900, stage=False) as page:
@@ -196,6 +199,7 @@ def test_the_keyboard_alone_draws_a_wall(program, browser):
         assert page.evaluate("() => document.activeElement.id") == "edit"
 
 
+@pytest.mark.long
 def test_edits_of_two_pages_meet(program, browser):
     with open_page(browser, program.url, 1280, 800, stage=False) as page:
         edit(page)
@@ -204,6 +208,7 @@ def test_edits_of_two_pages_meet(program, browser):
         until(page, "() => [...document.querySelectorAll('#plan .name')].some((t) => t.textContent === 'somewhere')")
 
 
+@pytest.mark.long
 def test_people_boxes_and_lamps_are_drawn_as_they_are_now(program, browser):
     program.command("reset", world="living")
     people = program.state()["living"]["people"]
@@ -232,6 +237,7 @@ def test_people_boxes_and_lamps_are_drawn_as_they_are_now(program, browser):
         program.command("set_parameter", name="office.people", value=True)
 
 
+@pytest.mark.long
 def test_leaving_an_edited_office_asks_first(program, browser):
     with open_page(browser, program.url, 1280, 800, stage=False) as page:
         edit(page)
@@ -247,6 +253,7 @@ def test_leaving_an_edited_office_asks_first(program, browser):
         assert program.wait(lambda state: state["world"] == "loop")["tick"] == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [(1440, 900), (1024, 740), (390, 844)])
 def test_axe_finds_nothing_in_the_editor(program, browser, size):
     with open_page(browser, program.url, *size, stage=False) as page:

@@ -39,7 +39,7 @@ def driven(engine: str, laps: int, values: dict[str, Value]) -> tuple[Session, f
     return session, float(np.hypot(*steps.sum(0)) / np.hypot(*steps.T).sum())
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("engine", ["ours", "paper-2005"])
 def test_the_square_is_lost_in_the_pose_cells_and_kept_in_the_map(engine: str) -> None:
     straightness, errors = [], []
@@ -69,7 +69,7 @@ def test_the_bias_acts_on_the_pose_cells_alone_and_not_at_rest() -> None:
     assert biased.experience_map.robot == plain.experience_map.robot
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("alpha", "holds"), [(0.5, False), (0.05, True)])
 def test_a_rate_that_is_too_high_diverges(alpha: float, holds: bool) -> None:
     values: dict[str, Value] = {"experience_map.sweep": "all at once", "experience_map.correction": alpha}

@@ -44,7 +44,8 @@ DASK = (
 # What is documented (a pattern of the whole line), what is run instead, and why. {0} is all of it, {1} the first group.
 TABLE = (
     (r"make run(?: RUN_ARGS=\"(.*)\")?", f'make run RUN_ARGS="{{1}} {SERVES}"', "any free port"),
-    (r"make (test|test-fast|coverage)", "make --dry-run {1}", "this is one of its tests: only what it would do"),
+    (r"make (test|test-fast|test-all|coverage)", "make --dry-run {1}", "this is one of its tests: only what it would do"),
+    (r"pytest (.*)", "python -m pytest --collect-only -q {1}", "that there are such tests"),
     (r"uv run ratslam", f"uv run --no-sync ratslam run {SERVES}", "without a network"),
     (r"dask .*|.*--scheduler.*", DASK, "the three lines belong together"),
     (r"ratslam run .*--situation '.*'", f"ratslam run --situation '{{link}}' {SERVES}", "a link that was made here"),

@@ -53,7 +53,7 @@ def ways(seed: int, world: World) -> tuple[Course, dict[str, float]]:
     return course, {name: float(np.mean(ys)) for name, ys in heights.items()}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [1, 2])
 @pytest.mark.parametrize("upper", [True, False])
 def test_the_slow_zone_flips_the_choice(seed: int, upper: bool) -> None:

@@ -218,7 +218,7 @@ print(*(f"{command.type} {command.speed}" for command in engine.commands), "ende
 """
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+@pytest.mark.parametrize("name", ["SIGINT", pytest.param("SIGTERM", marks=pytest.mark.long)])
 @pytest.mark.slow
 def test_a_signal_stops_the_robot_closes_the_sockets_and_ends_with_code_0(name):
     """With a page that drives, a viewer that is watched, one that is not, and a browser that reads nothing."""
