@@ -10,6 +10,10 @@ from app.recordings.recording import Pose
 _WINDOW_NS = 10**9
 _MOVES = (0.05, 0.1)  # m and rad in a window; less is noise
 _UNLIKE, _MANY, _LEAST = 0.3, 0.25, 2  # share of the motion; of the windows with motion; windows
+_SCALE, _FAR_M = (
+    0.1,
+    5.0,
+)  # share of a way that is at least so long; what wheels and poses of one driver differ by is a tenth of it
 
 
 @dataclass
@@ -23,6 +27,9 @@ class Odometer:
     _last_ns: int = 0
     _window: int = 0
     _sums: list[float] = field(default_factory=lambda: [0.0] * 4)  # way, turn by poses; way, turn by twists
+    _far_m: list[float] = field(
+        default_factory=lambda: [0.0, 0.0]
+    )  # as way_m, of windows with motion: noise has no part in it
     _moving: int = 0
     _unlike: int = 0
     _rates: Rates = field(default_factory=Rates)
@@ -57,8 +64,19 @@ class Odometer:
         """Whether twist and poses contradict each other wherever the robot moves."""
         return self._unlike >= _LEAST and self._unlike > _MANY * self._moving
 
+    @property
+    def longer(self) -> float | None:
+        """[ours] By which share the way by twists is longer, where both tell the same motion: a wrong radius of the wheels.
+        None: they agree, or it hardly moved. test_recording_ros.py::test_a_twist_of_another_scale_is_said."""
+        poses, twist = self._far_m
+        if self.unlike or not self.twisted or min(poses, twist) < _FAR_M or abs(twist / poses - 1) < _SCALE:
+            return None
+        return twist / poses - 1
+
     def _compare(self) -> None:
         moving = unlike = False
+        if max(map(abs, self._sums[::2])) > _MOVES[0]:
+            self._far_m = [far + abs(way) for far, way in zip(self._far_m, self._sums[::2], strict=True)]
         for poses, twists, least in zip(self._sums[:2], self._sums[2:], _MOVES, strict=True):
             size = max(abs(poses), abs(twists))
             moving |= size > least

@@ -112,6 +112,10 @@ class _Source:
                 "odometry", name, f"its twist does not lead from one pose to the next ({ways}); poses are used"
             )
 
+        elif name is not None and (longer := self._topics[name].odometer.longer) is not None:
+            ways = f"{abs(longer):.0%} {'longer' if longer > 0 else 'shorter'}"
+            problems.add("odometry", name, f"the way by its twist is {ways} than that by its poses; the twist is used")
+
     def _in_order(self, problems: Problems) -> Iterator[tuple[int, Packet]]:
         used, waiting, size, newest = self._roles.used(), list[tuple[int, int, Packet]](), 0, 0
         for order, packet in enumerate(self._packets(problems)):

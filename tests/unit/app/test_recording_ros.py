@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import math
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -372,24 +372,36 @@ def test_headers_of_different_clocks_are_not_believed() -> None:
     assert not any("headers" in use and "since" not in use for use in about.uses)
 
 
-@pytest.mark.parametrize("wrong", ["frame", "unit"])
-def test_a_twist_that_does_not_lead_from_pose_to_pose_is_not_believed(wrong: str) -> None:
-    """Six seconds round a circle; the twist is that in the world's frame, or in km/h."""
+def round_a_circle(twist_of: Callable[[float], float]) -> Recording:
+    """Ten seconds at 1 m/s, by poses. twist_of: what the odometry says of its speed at a heading."""
     messages, told_of = camera_only()[:1], next(message for message in ros_messages(False) if message[0] == "/odom")
-    for k in range(61):
+    for k in range(101):
         time, heading = BEGAN_NS + k * S // 10, k / 10
         told = copy.deepcopy(told_of[3])
         told.header.stamp = header(time).stamp
         place, turn, twist = told.pose.pose.position, told.pose.pose.orientation, told.twist.twist
         place.x, place.y = math.sin(heading), -math.cos(heading)
         turn.z, turn.w = math.sin(heading / 2), math.cos(heading / 2)
-        twist.linear.x, twist.angular.z = (math.cos(heading) if wrong == "frame" else 3.6), 1.0
+        twist.linear.x, twist.angular.z = twist_of(heading), 1.0
         messages.append(("/odom", ros.ODOMETRY, time, told))
         messages.append(("/camera/image", ros.IMAGE, time, copy.deepcopy(messages[0][3])))
         messages[-1][3].header.stamp = header(time).stamp
-    recording = opened(messages[1:])
-    assert [moment.speed for moment in recording.moments()][1:] == pytest.approx([1.0] * 60, rel=1e-3)
+    return opened(messages[1:])
+
+
+@pytest.mark.parametrize("twist", [math.cos, lambda _: 3.6], ids=["the world's frame", "km/h"])
+def test_a_twist_that_does_not_lead_from_pose_to_pose_is_not_believed(twist: Callable[[float], float]) -> None:
+    recording = round_a_circle(twist)
+    assert [moment.speed for moment in recording.moments()][1:] == pytest.approx([1.0] * 100, rel=1e-3)
     assert "its twist does not lead from one pose to the next" in recording.about.problems[0]
+
+
+@pytest.mark.parametrize(("speed", "words"), [(1.2, "20% longer"), (0.8, "20% shorter"), (1.05, None)])
+def test_a_twist_of_another_scale_is_said(speed: float, words: str | None) -> None:
+    recording = round_a_circle(lambda _: speed)
+    assert [moment.speed for moment in recording.moments()][1:] == pytest.approx([speed] * 100)
+    said = [f"the way by its twist is {words} than that by its poses; the twist is used"] * (words is not None)
+    assert [words.split(": ", 1)[1] for words in recording.about.problems if "twist" in words] == said
 
 
 def test_the_usual_picture_is_the_rule_and_not_the_first() -> None:
