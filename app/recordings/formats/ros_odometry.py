@@ -1,8 +1,12 @@
-"""Whether what an odometry says of its speed leads from one of its poses to the next."""
+"""Whether what sources say of one motion agrees: an odometry's speed with its poses, a gyro's turns with those of the wheels."""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
 
 from app.recordings.formats.sensed import Rates
 from app.recordings.recording import Pose
@@ -16,12 +20,47 @@ _SCALE, _FAR_M = (
 )  # share of a way that is at least so long; what wheels and poses of one driver differ by is a tenth of it
 
 
+_TURN_NS, _TURN_RAD, _TURNS_UNLIKE = 5 * 10**9, 0.5, 0.3  # long windows: a gyro may be a little late
+
+
+class Turns:
+    """How far something turned in each window of time, about each of its axes."""
+
+    def __init__(self) -> None:
+        self._windows = defaultdict[int, NDArray[np.float64]](lambda: np.zeros(3))
+        self._last_ns: int | None = None
+
+    def note(self, time_ns: int, rates: tuple[float, float, float]) -> None:
+        """rates: rad/s, since the message before."""
+        dt = 0.0 if self._last_ns is None else (time_ns - self._last_ns) / 1e9
+        self._last_ns = time_ns
+        if 0 < dt < 1 and np.abs(rates).max() < 1e3:
+            self._windows[time_ns // _TURN_NS] += np.multiply(rates, dt)
+
+    def about(self, up: NDArray[np.float64]) -> dict[int, float]:
+        """rad in each window."""
+        return {window: float(turn @ up) for window, turn in self._windows.items()}
+
+
+def unlike_turns(wheels: dict[int, float], gyro: dict[int, float]) -> tuple[float, float] | None:
+    """[ours] Both turns, rad, forwards and backwards, where they contradict each other in a quarter of the windows in which
+    either turns, two at least. None: they agree. test_recording_ros.py::test_a_gyro_that_turns_otherwise_than_the_wheels."""
+    both = [(wheels[window], gyro[window]) for window in wheels.keys() & gyro.keys()]
+    turning = [(a, b) for a, b in both if max(abs(a), abs(b)) > _TURN_RAD]
+    unlike = sum(abs(a - b) > _TURNS_UNLIKE * max(abs(a), abs(b)) for a, b in turning)
+    if unlike < _LEAST or unlike <= _MANY * len(turning):
+        return None
+    return sum(abs(a) for a, _ in turning), sum(abs(b) for _, b in turning)
+
+
 @dataclass
 class Odometer:
     """What is known of an odometry's messages after all of them have gone by."""
 
     twisted: bool = False  # it reports speeds
     moved: bool = False  # its poses change
+    turns_by_poses: Turns = field(default_factory=Turns)
+    turns_by_twist: Turns = field(default_factory=Turns)
     way_m: list[float] = field(default_factory=lambda: [0.0, 0.0])  # forwards or backwards, by poses and by twists
     _first: Pose | None = None
     _last_ns: int = 0
@@ -41,8 +80,10 @@ class Odometer:
         self.twisted |= twist != (0.0, 0.0)
         rates, dt = self._rates.since(time_ns, pose), (time_ns - self._last_ns) / 1e9
         self._last_ns = time_ns
+        self.turns_by_twist.note(time_ns, (0.0, 0.0, twist[1]))
         if rates is None:
             return
+        self.turns_by_poses.note(time_ns, (0.0, 0.0, rates[1]))
         if time_ns // _WINDOW_NS != self._window:
             self._compare()
             self._window, self._sums = time_ns // _WINDOW_NS, [0.0] * 4

@@ -14,7 +14,7 @@ from app.recordings.formats import ros_messages as ros
 from app.recordings.formats.problems import Problems
 from app.recordings.formats.ros_packets import SONAR_ANGLES, Packet
 from app.recordings.formats.ros_times import times_of
-from app.recordings.formats.ros_topics import Choice, Roles, Topic, roles_of
+from app.recordings.formats.ros_topics import Choice, Roles, Topic, roles_of, turned_otherwise
 from app.recordings.formats.ros_topics import unused as unused_topics
 from app.recordings.formats.ros_transforms import transforms_in
 from app.recordings.formats.sensed import Beams, Rates, Sensed
@@ -115,6 +115,15 @@ class _Source:
         elif name is not None and (longer := self._topics[name].odometer.longer) is not None:
             ways = f"{abs(longer):.0%} {'longer' if longer > 0 else 'shorter'}"
             problems.add("odometry", name, f"the way by its twist is {ways} than that by its poses; the twist is used")
+
+        for gyro, wheels_rad, gyro_rad in turned_otherwise(self._topics, self._roles):
+            turns = f"{wheels_rad:.1f} rad by the wheels, {gyro_rad:.1f} rad by the gyro, to and fro"
+            used = (
+                "the gyro is used"
+                if gyro == self._roles.gyro
+                else f"the wheels are used; --gyro-topic {gyro} takes the gyro"
+            )
+            problems.add("gyro", plain(gyro, 60), f"it turns otherwise than {name} ({turns}); {used}")
 
     def _in_order(self, problems: Problems) -> Iterator[tuple[int, Packet]]:
         used, waiting, size, newest = self._roles.used(), list[tuple[int, int, Packet]](), 0, 0

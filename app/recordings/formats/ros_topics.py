@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.recordings.formats import ros_messages as ros
-from app.recordings.formats.ros_odometry import Odometer
+from app.recordings.formats.ros_odometry import Odometer, Turns, unlike_turns
 from app.recordings.formats.ros_packets import Packet
 from app.recordings.formats.ros_times import Stamps
 from app.recordings.formats.ros_transforms import Edge, Moving, Wheels, note, wheels_of
@@ -18,6 +18,7 @@ from disk.words import plain
 
 _TRUTH = re.compile(r"(^|[/_])(truth|ground_?truth|gt|true_pose|mocap|vicon|optitrack)([/_]|$)", re.IGNORECASE)
 _NOT_A_CAMERA = re.compile(r"depth|disparity|mask|segment|label|infra|thermal|normals|debug", re.IGNORECASE)
+UP = np.array([0.0, 0.0, 1.0])
 _TRUTHS = (ros.POSE, ros.ODOMETRY, ros.POSE_COVARIANCE, ros.TRANSFORM)
 _ODOMETRIES = {"odom", "odometry"}
 
@@ -43,6 +44,7 @@ class Topic:
     odometer: Odometer = field(default_factory=Odometer)
     transforms: dict[Edge, Moving] = field(default_factory=dict[Edge, Moving])
     limit_m: float | None = None  # of a scan
+    turns: Turns = field(default_factory=Turns)  # of a gyro
     accelerated: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))  # sum of a gyro's accelerations
 
     def note(self, packet: Packet) -> None:
@@ -64,7 +66,9 @@ class Topic:
             elif self.type == ros.SCAN and self.limit_m is None:
                 self.limit_m = ros.scan_beams(ros.message(packet)).limit_m
             elif self.type == ros.IMU:
-                a = ros.message(packet).linear_acceleration
+                told = ros.message(packet)
+                a, rate = told.linear_acceleration, told.angular_velocity
+                self.turns.note(stamp or packet.time_ns, (rate.x, rate.y, rate.z))
                 force = np.array([a.x, a.y, a.z])
                 if np.abs(force).max() < 1e3:
                     self.accelerated += force
@@ -75,7 +79,7 @@ class Topic:
     def up(self) -> NDArray[np.float64]:
         """What is up for the sensor: what it feels on the whole is the ground that carries it."""
         size = float(np.linalg.norm(self.accelerated))
-        return self.accelerated / size if size > self.count else np.array([0.0, 0.0, 1.0])
+        return self.accelerated / size if size > self.count else UP
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +121,17 @@ def roles_of(topics: dict[str, Topic], choice: Choice) -> Roles:
         camera, odometry, None if odometry else transforms, gyro if choice.gyro or not by_wheels else None, scan, truth,
         sonars if scan else None, behaviour,
     )  # fmt: skip
+
+
+def turned_otherwise(topics: dict[str, Topic], roles: Roles) -> Iterator[tuple[str, float, float]]:
+    """Gyros that contradict the wheels: the topic, and how far the wheels and it turned, rad."""
+    if roles.odometry is None:
+        return
+    odometer = topics[roles.odometry].odometer
+    turns = odometer.turns_by_poses if odometer.by_poses else odometer.turns_by_twist
+    for name, topic in topics.items():
+        if topic.type == ros.IMU and (both := unlike_turns(turns.about(UP), topic.turns.about(topic.up))) is not None:
+            yield name, *both
 
 
 def unused(topics: dict[str, Topic], roles: Roles) -> Iterator[str]:

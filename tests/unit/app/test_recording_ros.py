@@ -372,10 +372,10 @@ def test_headers_of_different_clocks_are_not_believed() -> None:
     assert not any("headers" in use and "since" not in use for use in about.uses)
 
 
-def round_a_circle(twist_of: Callable[[float], float]) -> Recording:
-    """Ten seconds at 1 m/s, by poses. twist_of: what the odometry says of its speed at a heading."""
+def round_a_circle(twist_of: Callable[[float], float], gyro: float | None = None, ticks: int = 100) -> Recording:
+    """At 1 m/s and 1 rad/s, by poses. twist_of: what the odometry says of its speed at a heading; gyro: rad/s."""
     messages, told_of = camera_only()[:1], next(message for message in ros_messages(False) if message[0] == "/odom")
-    for k in range(101):
+    for k in range(ticks + 1):
         time, heading = BEGAN_NS + k * S // 10, k / 10
         told = copy.deepcopy(told_of[3])
         told.header.stamp = header(time).stamp
@@ -386,6 +386,8 @@ def round_a_circle(twist_of: Callable[[float], float]) -> Recording:
         messages.append(("/odom", ros.ODOMETRY, time, told))
         messages.append(("/camera/image", ros.IMAGE, time, copy.deepcopy(messages[0][3])))
         messages[-1][3].header.stamp = header(time).stamp
+        if gyro is not None:
+            messages.append(imu(time + S // 10, vector(0.0, 0.0, gyro), vector(0.0, 0.0, 9.8)))
     return opened(messages[1:])
 
 
@@ -402,6 +404,15 @@ def test_a_twist_of_another_scale_is_said(speed: float, words: str | None) -> No
     assert [moment.speed for moment in recording.moments()][1:] == pytest.approx([speed] * 100)
     said = [f"the way by its twist is {words} than that by its poses; the twist is used"] * (words is not None)
     assert [words.split(": ", 1)[1] for words in recording.about.problems if "twist" in words] == said
+
+
+@pytest.mark.parametrize(("gyro", "contradicts"), [(1.0, False), (1.2, False), (-1.0, True), (57.3, True), (0.0, True)])
+def test_a_gyro_that_turns_otherwise_than_the_wheels(gyro: float, contradicts: bool) -> None:
+    """Late by a tenth of a second, as drivers are; another sign, degrees, and one that is dead."""
+    problems = round_a_circle(lambda _: 1.0, gyro, ticks=300).about.problems
+    said = [words for words in problems if "it turns otherwise than /odom" in words]
+    assert [words[:6] for words in said] == ["/imu: "] * contradicts
+    assert all("the wheels are used; --gyro-topic /imu takes the gyro" in words for words in said)
 
 
 def test_the_usual_picture_is_the_rule_and_not_the_first() -> None:
