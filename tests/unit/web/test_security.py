@@ -10,7 +10,7 @@ from starlette.testclient import WebSocketDenialResponse
 from starlette.websockets import WebSocketDisconnect
 
 from tests.unit.web.doubles import ORIGIN, OURS, PAGE, PORT, house
-from web.http import asking, security
+from web.http import asking, brain_download, security
 from web.http.api import STATIC
 from web.http.security import Bucket, Guard, Limits, own_hosts
 
@@ -165,6 +165,7 @@ def routes(server) -> dict[str, set[str]]:
 def test_whatever_is_only_looked_at_changes_nothing(monkeypatch, tmp_path):
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(asking, "ANSWER_TIMEOUT_S", 0.01)
+    monkeypatch.setattr(brain_download, "COPY_TIMEOUT_S", 0.01)
     with house() as server:
         server.engine.answer = None
         looked = [path for path, methods in routes(server).items() if "GET" in methods]

@@ -218,7 +218,7 @@ print(*(f"{command.type} {command.speed}" for command in engine.commands), "ende
 """
 
 
-@pytest.mark.parametrize("name", ["SIGINT", pytest.param("SIGTERM", marks=pytest.mark.long)])
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
 @pytest.mark.slow
 def test_a_signal_stops_the_robot_closes_the_sockets_and_ends_with_code_0(name):
     """With a page that drives, a viewer that is watched, one that is not, and a browser that reads nothing."""
@@ -233,7 +233,9 @@ def test_a_signal_stops_the_robot_closes_the_sockets_and_ends_with_code_0(name):
         host = program.stdout.readline().strip().removeprefix("http://").removesuffix("/")
         ours: dict[str, Any] = {"origin": f"http://{host}", "max_size": None}
         looks = connect(f"ws://{host}/viser/ws/{'p' * 22}", subprotocols=["viser-v1.1.1"], **ours)
-        stalled = connect(f"ws://{host}/viser/ws/{'q' * 22}", subprotocols=["viser-v1.1.1"], max_queue=1, **ours)
+        stalled = connect(
+            f"ws://{host}/viser/ws/{'q' * 22}", subprotocols=["viser-v1.1.1"], max_queue=1, close_timeout=0.1, **ours
+        )
         with connect(f"ws://{host}/api/stream", **ours) as talk, looks, stalled:
             looks.recv(timeout=PATIENCE_S)
             talk.send('{"type": "drive", "speed": 0.4, "yaw_rate": 0, "id": 1}')
