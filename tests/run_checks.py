@@ -60,12 +60,12 @@ def main(arguments: list[str]) -> int:
     tier = FAST if "--fast" in arguments else ALL if everything else USUAL
     tests = [*PYTEST, *tier, *(word for word in arguments if word not in ("--fast", "--all"))]
     with ThreadPoolExecutor(2) as pool:
-        passed = {name: pool.submit(_check, name, command) for name, command in CHECKS.items()}
-        passed["tests (pytest)"] = pool.submit(_test, tests)
-    for name, command in LONG.items() if everything else ():  # alone: each takes all cores
-        with ThreadPoolExecutor(1) as pool:
-            passed[name] = pool.submit(_check, name, command)
-    failed = [name for name, check in passed.items() if not check.result()]
+        checks = {name: pool.submit(_check, name, command) for name, command in CHECKS.items()}
+        checks["tests (pytest)"] = pool.submit(_test, tests)
+    passed = {name: check.result() for name, check in checks.items()}
+    if everything:  # one after the other: each takes all cores
+        passed |= {name: _check(name, command) for name, command in LONG.items()}
+    failed = [name for name, fine in passed.items() if not fine]
     if failed:
         print(f"failed: {', '.join(failed)}", file=sys.stderr)
     return 1 if failed else 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from typing import TYPE_CHECKING
 
@@ -37,11 +38,17 @@ class Waking:
         self._compiling.wait(self._tell)
         self._engine.latest.waking = "loading the office and the brain"
         if not kernel_cache.in_memory:
-            for use, _ in PARTS.values():  # now, while there are descriptors: whoever connects may take the last
-                use()
+            _load_kernels()
         if not self._stopped:
             self._engine.start()
 
     def _tell(self, words: str) -> None:
         self._engine.latest.waking = words
         say_how_far(words)
+
+
+def _load_kernels() -> None:
+    """While there are descriptors: whoever connects may take the last. What cannot be loaded, the engine meets and tells of."""
+    for use, _ in PARTS.values():
+        with contextlib.suppress(Exception):
+            use()

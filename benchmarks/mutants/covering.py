@@ -24,6 +24,12 @@ class Covering:
         self._data.read()
         self._contexts: dict[str, dict[int, list[str]]] = {}
 
+    @property
+    def every(self) -> list[str]:
+        """All tests that may be chosen."""
+        running = {context.rpartition("|")[0] for context in self._data.measured_contexts() if context}
+        return sorted(running | self._seconds.keys())
+
     def tests(self, mutant: Mutant) -> list[str]:
         """The tests that are tried, in their order."""
         room = f"tests/unit/{mutant.file.partition('/')[0]}/"

@@ -38,6 +38,10 @@ class Trees:
             _require_own(self._warm)
             self._learn()
         self._covering = Covering(folder / "covering", self._warm)
+        if _run(self._warm, _pytest("--collect-only", *self._covering.every)):
+            raise RuntimeError(
+                "pytest does not know tests by these names: what it cannot find would count as a fault noticed"
+            )
 
     def survives(self, mutant: Mutant, whole: tuple[str, ...] = ()) -> bool:
         """Whether no test notices the mutant: those that run its line, then `whole`, tests of the whole program."""
