@@ -14,20 +14,15 @@ from app.recordings.recording import Pose
 _WINDOW_NS = 10**9
 _MOVES = (0.05, 0.1)  # m and rad in a window; less is noise
 _UNLIKE, _MANY, _LEAST = 0.3, 0.25, 2  # share of the motion; of the windows with motion; windows
-_SCALE, _FAR_M = (
-    0.1,
-    5.0,
-)  # share of a way that is at least so long; what wheels and poses of one driver differ by is a tenth of it
-
-
-_TURN_NS, _TURN_RAD, _TURNS_UNLIKE = 5 * 10**9, 0.5, 0.3  # long windows: a gyro may be a little late
+_SCALE, _FAR_M = 0.1, 5.0  # share of a way, and its least length: what is right differs by a hundredth
+_TURN_S, _WHOLE_S, _TURN_RAD = 5.0, 4.0, 0.5  # windows are long, for a gyro may be late; of them heard; rad in a window
 
 
 class Turns:
     """How far something turned in each window of time, about each of its axes."""
 
     def __init__(self) -> None:
-        self._windows = defaultdict[int, NDArray[np.float64]](lambda: np.zeros(3))
+        self._windows = defaultdict[int, NDArray[np.float64]](lambda: np.zeros(4))  # rad about x, y, z; s heard
         self._last_ns: int | None = None
 
     def note(self, time_ns: int, rates: tuple[float, float, float]) -> None:
@@ -35,11 +30,11 @@ class Turns:
         dt = 0.0 if self._last_ns is None else (time_ns - self._last_ns) / 1e9
         self._last_ns = time_ns
         if 0 < dt < 1 and np.abs(rates).max() < 1e3:
-            self._windows[time_ns // _TURN_NS] += np.multiply(rates, dt)
+            self._windows[int(time_ns / 1e9 / _TURN_S)] += np.multiply((*rates, 1.0), dt)
 
     def about(self, up: NDArray[np.float64]) -> dict[int, float]:
-        """rad in each window."""
-        return {window: float(turn @ up) for window, turn in self._windows.items()}
+        """rad in each window that was heard as a whole."""
+        return {window: float(turn[:3] @ up) for window, turn in self._windows.items() if turn[3] > _WHOLE_S}
 
 
 def unlike_turns(wheels: dict[int, float], gyro: dict[int, float]) -> tuple[float, float] | None:
@@ -47,7 +42,7 @@ def unlike_turns(wheels: dict[int, float], gyro: dict[int, float]) -> tuple[floa
     either turns, two at least. None: they agree. test_recording_ros.py::test_a_gyro_that_turns_otherwise_than_the_wheels."""
     both = [(wheels[window], gyro[window]) for window in wheels.keys() & gyro.keys()]
     turning = [(a, b) for a, b in both if max(abs(a), abs(b)) > _TURN_RAD]
-    unlike = sum(abs(a - b) > _TURNS_UNLIKE * max(abs(a), abs(b)) for a, b in turning)
+    unlike = sum(abs(a - b) > _UNLIKE * max(abs(a), abs(b)) for a, b in turning)
     if unlike < _LEAST or unlike <= _MANY * len(turning):
         return None
     return sum(abs(a) for a, _ in turning), sum(abs(b) for _, b in turning)
@@ -66,9 +61,7 @@ class Odometer:
     _last_ns: int = 0
     _window: int = 0
     _sums: list[float] = field(default_factory=lambda: [0.0] * 4)  # way, turn by poses; way, turn by twists
-    _far_m: list[float] = field(
-        default_factory=lambda: [0.0, 0.0]
-    )  # as way_m, of windows with motion: noise has no part in it
+    _far_m: list[float] = field(default_factory=lambda: [0.0, 0.0])  # as way_m, without noise: of windows with motion
     _moving: int = 0
     _unlike: int = 0
     _rates: Rates = field(default_factory=Rates)

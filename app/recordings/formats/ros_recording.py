@@ -111,7 +111,6 @@ class _Source:
             problems.add(
                 "odometry", name, f"its twist does not lead from one pose to the next ({ways}); poses are used"
             )
-
         elif name is not None and (longer := self._topics[name].odometer.longer) is not None:
             ways = f"{abs(longer):.0%} {'longer' if longer > 0 else 'shorter'}"
             problems.add("odometry", name, f"the way by its twist is {ways} than that by its poses; the twist is used")
@@ -119,11 +118,9 @@ class _Source:
         for gyro, wheels_rad, gyro_rad in turned_otherwise(self._topics, self._roles):
             turns = f"{wheels_rad:.1f} rad by the wheels, {gyro_rad:.1f} rad by the gyro, to and fro"
             used = (
-                "the gyro is used"
-                if gyro == self._roles.gyro
-                else f"the wheels are used; --gyro-topic {gyro} takes the gyro"
+                "the gyro is used" if gyro == self._roles.gyro else "the wheels are used; --gyro-topic takes the gyro"
             )
-            problems.add("gyro", plain(gyro, 60), f"it turns otherwise than {name} ({turns}); {used}")
+            problems.add("gyro", plain(gyro, 60), f"it turns otherwise than {self._roles.odometry} ({turns}); {used}")
 
     def _in_order(self, problems: Problems) -> Iterator[tuple[int, Packet]]:
         used, waiting, size, newest = self._roles.used(), list[tuple[int, int, Packet]](), 0, 0
