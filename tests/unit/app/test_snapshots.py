@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from app.session import Session
-from app.views import snapshots, throttle
+from app.views import map_layers, snapshots, throttle
 from app.views.history import History
 from app.views.places import known_places
 from app.views.snapshots import Snapshots
 from app.views.throttle import Slow
 from sim2d import load_world
-from tests.unit.app.engines import an_engine, tell
+from tests.unit.app.engines import an_engine
 from web import messages as m
 
 OFFICE = load_world("office")
@@ -134,6 +134,7 @@ def test_what_stands_still_is_shown_as_it_is(monkeypatch) -> None:
     """The slow parts, too: while it is paused no later snapshot would catch up."""
     for slow in ("OCCUPANCY_EVERY_S", "PLACES_EVERY_S"):
         monkeypatch.setattr(snapshots, slow, math.inf)
+    monkeypatch.setattr(map_layers, "MAP_EVERY_S", math.inf)
     engine = an_engine(OFFICE, seed=5)
     first = engine.snapshot()
     engine.running = True
@@ -141,7 +142,7 @@ def test_what_stands_still_is_shown_as_it_is(monkeypatch) -> None:
         engine.tick()
     late = engine.snapshot()
     session = engine.run.session
-    tell(engine, type="pause")
+    engine.running = False  # as at the end of a recording: no command comes, which would have everything drawn anew
     still = engine.snapshot()
     assert (late.places, late.occupancy) == (first.places, first.occupancy)
     assert still.places == known_places(session) != first.places
@@ -151,3 +152,15 @@ def test_what_stands_still_is_shown_as_it_is(monkeypatch) -> None:
     np.testing.assert_array_equal(still.occupancy.cells, session.brain.occupancy.probability)
     again = engine.snapshot()
     assert (again.places, again.map, again.occupancy) == (still.places, still.map, still.occupancy)
+
+
+def test_its_errors_are_told_apart_and_who_is_lost_is_told() -> None:
+    engine = an_engine(OFFICE, seed=5)
+    for _ in range(300):
+        engine.tick()
+    told, judged = engine.snapshot(), engine.run.history.series
+    assert (told.error_map_m, told.error_odometry_m) == (judged.error_map_m, judged.error_odometry_m)
+    assert told.error_map_m != told.error_odometry_m
+    assert not told.lost
+    engine.run.session.brain.declare_kidnapped()
+    assert engine.snapshot().lost

@@ -59,16 +59,17 @@ def test_they_are_kept_with_the_run_and_its_branches(tmp_path: Path, monkeypatch
         engine.tick()
     tell(engine, type="change_branch", number=1)
     assert names(engine) == [(40, "the other door"), (45, "in the past"), (60, "late")]
+    tell(engine, type="put_bookmark", name="at last", tick=60)  # nothing else is marked after it
     keeper.stop()
     assert complaints == []
     kept = {open_run(folder).last_tick: folder for folder in all_runs()}
-    assert [row.name for row in read_bookmarks(kept[60]).rows] == ["the other door", "in the past", "late"]
+    assert [row.name for row in read_bookmarks(kept[60]).rows] == ["the other door", "in the past", "at last"]
     assert [row.name for row in read_bookmarks(kept[48]).rows] == ["in the past"]
     run = open_run(kept[60])
     replay(run)  # they change nothing
     going_on = Engine(OFFICE, Pace(0.0), Watchdog(60.0, lambda: None), running=False, answer=lambda *_: None)
     going_on.go_on(run, resumed(run))
-    assert names(going_on)[-1] == (60, "late")
+    assert names(going_on)[-1] == (60, "at last")
 
 
 def test_what_is_wrong_is_said() -> None:
