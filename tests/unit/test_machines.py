@@ -18,6 +18,8 @@ from disk import kernel_cache
 from tests.recordings import image_folder
 from tests.unit.app.runs.kept import keep_one
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 RATSLAM = Path(sys.executable).with_name("ratslam")
 WITHOUT_KERNELS = [

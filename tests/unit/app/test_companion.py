@@ -22,6 +22,8 @@ from disk import encode
 from .made_recordings import recorded
 from .sessions import OFFICE, a_session
 
+pytestmark = pytest.mark.slow
+
 EIGHT: dict[str, Value] = {"pose_cells.n_x": 8, "pose_cells.n_y": 8}
 BLIND: dict[str, Value] = {"local_view.enabled": False}
 Step = Callable[[Session], object]

@@ -27,6 +27,8 @@ from .made_recordings import recorded
 from .sessions import OFFICE, a_session
 from .trials_to_watch import short_trial
 
+pytestmark = pytest.mark.slow
+
 
 def run_for(engine: Engine, ticks: int) -> None:
     for _ in range(ticks):

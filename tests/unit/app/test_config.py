@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 from app.config import Config, from_toml, parse_value, to_toml
 from app.config.presets import preset
 
+pytestmark = pytest.mark.slow
+
 NAMES = [name for name, _, _ in Config().items()]
 
 
@@ -33,7 +35,6 @@ def values(name: str) -> st.SearchStrategy:
 
 @settings(max_examples=60)
 @given(st.data())
-@pytest.mark.slow
 def test_toml_there_and_back_is_the_identity(data: st.DataObject) -> None:
     config = Config()
     for name in data.draw(st.lists(st.sampled_from(NAMES), max_size=12, unique=True)):

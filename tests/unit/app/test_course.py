@@ -30,6 +30,8 @@ from app.trials.steps import (
 )
 from sim2d import Place, load_world
 
+pytestmark = pytest.mark.slow
+
 LOOP, LIVING = load_world("loop"), load_world("living")
 ROUND = [f"{corner} corner" for corner in ("south-east", "north-east", "north-west", "south-west")]
 IDEAL = Config().with_values({"robot.odometry_noise": 0.0, "robot.gyro_bias": 0.0, "robot.odometry_scale_error": 0.0})

@@ -21,6 +21,8 @@ from app.trials.measures import MEASURES, SCORES
 from app.trials.steps import Drive, Explore, Repeat, Tour, Visit, Wait
 from ratslam_core.params.additions import ADDITIONS
 
+pytestmark = pytest.mark.slow
+
 # The experiments of the four papers, and two of ours.
 ALL = {
     "hypotheses", "rates", "odometry-alone", "learning-rates", "loop", "campus", "kidnap-turn", "kidnap-far", "snaps",

@@ -22,6 +22,8 @@ from app.session import Session
 from .exported import AgainAndAgain, silent
 from .sessions import a_session
 
+pytestmark = pytest.mark.slow
+
 TICKS = 400
 BIN = Path(sys.executable).parent
 

@@ -22,6 +22,8 @@ from sim2d import SONAR_ANGLES_RAD
 from .exported import AgainAndAgain, silent
 from .test_export import BIN, program, rmse_of
 
+pytestmark = pytest.mark.slow
+
 TICKS = 300
 
 
@@ -139,7 +141,6 @@ def test_evo_judges_it(bag: Path, tmp_path: Path) -> None:
     assert 0 < rmse_of(said) < 5
 
 
-@pytest.mark.slow
 def test_rerun_converts_it(bag: Path, tmp_path: Path) -> None:
     out = tmp_path / "run.rrd"
     program(BIN / "rerun", "mcap", "convert", bag, "-o", out, folder=tmp_path)

@@ -19,6 +19,8 @@ from app.recordings.reel import Reel
 from app.time_machine import TimeMachine
 from app.views.history import History
 
+pytestmark = pytest.mark.slow
+
 FRAMES = 400
 CODECS = {"v.mp4": "mp4v", "v.avi": "MJPG", "x.avi": "XVID", "v.webm": "VP80", "m.mpg": "PIM1"}
 

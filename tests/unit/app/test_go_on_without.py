@@ -10,6 +10,8 @@ from web import messages as m
 
 from .engines import an_engine, tell
 
+pytestmark = pytest.mark.slow
+
 OFFICE = load_world("office")
 
 

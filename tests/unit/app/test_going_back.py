@@ -24,6 +24,8 @@ from tests.unit.app.engines import an_engine, tell
 from tests.unit.app.made_recordings import MadeRecording, recorded
 from web import messages as m
 
+pytestmark = pytest.mark.slow
+
 OFFICE, TICKS = load_world("office"), 240
 
 

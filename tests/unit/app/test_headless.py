@@ -14,6 +14,8 @@ from disk import state_codec
 from ratslam_core import load_brain
 from sim2d import load_world
 
+pytestmark = pytest.mark.slow
+
 OFFICE = load_world("office")
 KEYS = [
     "world", "seed", "simulated_s", "wall_s", "real_time_factor", "ticks", "metres", "views", "false_positives",
@@ -23,7 +25,6 @@ KEYS = [
 ]  # fmt: skip
 
 
-@pytest.mark.slow
 def test_the_report_has_its_shape() -> None:
     told: list[tuple[float, str]] = []
     report = run_headless(OFFICE, 2, 0.5, goals=2, kidnap_at_s=[20, 5], progress=lambda s, what: told.append((s, what)))
@@ -132,7 +133,6 @@ def test_a_brain_that_grows_too_large_for_a_file_is_told_of_in_time(
     assert capsys.readouterr().err == words  # once
 
 
-@pytest.mark.slow
 def test_a_saved_brain_finds_its_way_again(tmp_path: Path) -> None:
     world, file = load_world("office"), tmp_path / "brain.npz"
     brain_file = BrainFile(file)

@@ -26,6 +26,8 @@ from tests.unit.disk.full import full_after
 
 from .engine_threads import accept, snapshot, step
 
+pytestmark = pytest.mark.slow
+
 NOW = About("office", 5, 90.0, 12, 1e9)
 
 
@@ -170,7 +172,6 @@ def test_a_brain_that_grows_too_large_is_told_of_in_time(
     assert newest().about.time_s == 60.5  # type: ignore[union-attr]
 
 
-@pytest.mark.slow
 def test_leaving_keeps_it_once_more_and_does_not_wait_for_ever(
     start: Callable[..., EngineThread],
     brains: Path,

@@ -17,6 +17,8 @@ from app.lessons.units import MEASURED
 
 from .lessons_to_give import short_lesson
 
+pytestmark = pytest.mark.slow
+
 FILE = Path(__file__).parents[3] / "app" / "lessons" / "catalogue" / "10-kidnapped.toml"
 TEXT = FILE.read_text("utf-8")
 

@@ -15,6 +15,8 @@ from .engines import an_engine, tell
 from .lessons_to_give import drawn_lesson, short_lesson, two_rounds
 from .sessions import OFFICE
 
+pytestmark = pytest.mark.slow
+
 
 def begun(lesson: Lesson) -> Engine:
     engine = an_engine(OFFICE)

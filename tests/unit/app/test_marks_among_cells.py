@@ -8,6 +8,8 @@ from app.lessons.files import find_lesson
 from app.lessons.performance import Performance, perform_round
 from web.messages import LessonMark
 
+pytestmark = pytest.mark.slow
+
 
 def among_cells(performance: Performance) -> dict[str, LessonMark]:
     assert performance.marks is not None

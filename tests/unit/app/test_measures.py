@@ -16,6 +16,8 @@ from app.trials.steps import Drive, Explore, Kidnap, Move, Step, Tag, Visit, Wai
 from app.trials.trial import watched
 from sim2d import load_world
 
+pytestmark = pytest.mark.slow
+
 IDEAL: dict[str, Value] = {"robot.odometry_noise": 0.0, "robot.gyro_bias": 0.0, "robot.odometry_scale_error": 0.0}
 LAPS = ["south-east corner", "north-east corner", "north-west corner", "south-west corner"]
 

@@ -18,6 +18,8 @@ from app.recordings.recording import About, Moment, Wanted, every
 from app.session import Session
 from sim2d import SONAR_ANGLES_RAD, load_world
 
+pytestmark = pytest.mark.slow
+
 
 class Held:
     """A recording in memory."""

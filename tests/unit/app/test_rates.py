@@ -22,6 +22,8 @@ from app.trials.steps import Move
 from ratslam_core.params.presets import PRESETS
 from sim2d import load_world
 
+pytestmark = pytest.mark.slow
+
 # Two laps of the office, and of the loop. Between a straight stretch and a turn on the spot the robot stands for a second,
 # since a wheel report of one second knows one speed and one yaw rate.
 SIDES = {"office": (27.0, 11.0, 27.0, 11.0), "loop": (7.0, 14.0, 14.0, 14.0, 7.0)}

@@ -10,6 +10,8 @@ from app.views.history import History
 from sim2d import load_world
 from web.messages import WhyReport
 
+pytestmark = pytest.mark.slow
+
 OFFICE = load_world("office")
 
 
@@ -51,7 +53,6 @@ def snapped() -> tuple[Session, History]:
     raise AssertionError("it never relocalised")
 
 
-@pytest.mark.slow
 def test_a_closed_loop_is_marked_and_says_what_was_linked() -> None:
     session = Session(OFFICE, 3)
     history = watched(session, 2000)

@@ -16,6 +16,8 @@ from app.recordings.playing import Player
 from app.recordings.trace import HEADER
 from tests.recordings import N, airsim, drive, image_folder, tub
 
+pytestmark = pytest.mark.slow
+
 SHARED = Path(__file__).parents[4] / "shared" / "data"
 
 
@@ -116,7 +118,6 @@ def test_without_a_truth_there_is_no_error(tmp_path: Path) -> None:
     assert trace.poses(brain.experience_map)[-1] == pytest.approx((robot.x, robot.y, robot.heading_rad), abs=1e-9)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("path", "moments", "has"),
     [

@@ -21,6 +21,8 @@ from app.recordings.recording import Moment
 from tests.patience import PATIENCE_S
 from tests.recordings import FORMATS
 
+pytestmark = pytest.mark.slow
+
 LITTLE = Most(cpu_s=1.0, cpu_s_a_byte=0.0)
 
 

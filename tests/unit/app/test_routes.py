@@ -21,6 +21,8 @@ from sim2d.world.elements import SlowZone
 from .pilots import DT, EXPLORING, USUAL, Run, a_pilot, follow
 from .worlds import EXACT, HandMadeMap, chain, room
 
+pytestmark = pytest.mark.slow
+
 
 def test_progress_counts_down_along_the_links() -> None:
     map_ = HandMadeMap(*chain((0.0, 0.0), (4.0, 0.0), (4.0, 2.0)))

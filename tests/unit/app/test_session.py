@@ -13,6 +13,8 @@ from app.views.senses import senses_of
 
 from .sessions import OFFICE, a_session
 
+pytestmark = pytest.mark.slow
+
 # ---------------------------------------------------------------- the loop
 
 
@@ -67,7 +69,6 @@ def test_equal_runs_have_equal_hashes_and_others_not() -> None:
 
 
 @pytest.mark.parametrize("front_end", ["complex cells", "hue and saturation", "scene numbers"])
-@pytest.mark.slow
 def test_each_front_end_maps_the_office(front_end: str) -> None:
     """Known places are recognised and nothing is far off; the picture shows what the front end sees."""
     session = a_session(1200, config=Config().with_value("local_view.front_end", front_end))
@@ -96,7 +97,6 @@ def test_the_true_pose_stays_out_of_a_brain_that_sees_images(monkeypatch: pytest
         assert told == [session.frame.scene if front_end == "scene numbers" else None]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("order", ["kidnap", "goal", "mode", "parameter"])
 def test_equal_orders_keep_runs_equal(order: str) -> None:
     runs = []

@@ -21,6 +21,8 @@ from disk.state_codec import LONG
 from ratslam_core import save_brain
 from sim2d import Box, Lamp, load_world
 
+pytestmark = pytest.mark.slow
+
 DRIVEN = 60
 
 
@@ -50,14 +52,12 @@ def goes_on(session: Session, ticks: int, act: Callable[[Session, int], None] = 
         assert other.state_hash() == session.state_hash(), f"parted after {tick + 1} ticks"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("world", ["office", "living", "twins"])
 def test_it_goes_on_bit_for_bit(world: str) -> None:
     goes_on(driven(world), 40)
 
 
 @pytest.mark.parametrize("world", ["office", "living", "twins"])
-@pytest.mark.slow
 def test_while_the_robot_touches_a_wall(world: str) -> None:
     session = driven(world, 20)
     x0, y0, _, _ = session.world.bounds
@@ -73,7 +73,6 @@ def test_while_the_robot_touches_a_wall(world: str) -> None:
     assert bumped > 20
 
 
-@pytest.mark.slow
 def test_in_the_middle_of_a_route() -> None:
     session = driven("office", 900)
     session.pilot.set_goal(spread_goals(session, 1)[0])
@@ -96,7 +95,6 @@ def test_on_the_way_to_a_place_of_many_experiences(place_m: float) -> None:
     goes_on(session, 20)
 
 
-@pytest.mark.slow
 def test_while_it_frees_itself() -> None:
     session = driven("office", 20)
     session.set_parameter("pilot.stuck_s", 1.0)
@@ -109,7 +107,6 @@ def test_while_it_frees_itself() -> None:
     goes_on(session, 60)
 
 
-@pytest.mark.slow
 def test_after_a_kidnap_an_edit_and_other_parameters() -> None:
     session = driven("living", 100)
     session.simulator.set_door("laboratory door", False)
@@ -151,7 +148,6 @@ def do(session: Session, order: int) -> None:
 
 @settings(max_examples=10, deadline=None)
 @given(st.lists(st.integers(0, 8), min_size=8, max_size=20), st.integers(0, 8), st.integers(0, 2**16))
-@pytest.mark.slow
 def test_whatever_was_ordered_it_goes_on(orders: list[int], at: int, seed: int) -> None:
     session, other = driven("living", 5, seed), None
     for k, order in enumerate(orders):

@@ -15,6 +15,8 @@ from web.messages import SnapCause
 
 from .sessions import a_session
 
+pytestmark = pytest.mark.slow
+
 HERE, THERE = (8, 8, 0), (40, 50, 9)
 
 

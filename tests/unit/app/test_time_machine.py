@@ -20,6 +20,8 @@ from tests.unit.app.engine_threads import accept, snapshot
 from tests.unit.app.engines import READER, an_engine
 from web import messages as m
 
+pytestmark = pytest.mark.slow
+
 OFFICE = load_world("office")
 
 
@@ -75,7 +77,6 @@ def test_any_moment_is_as_it_was(world: str) -> None:
         machine.moment(machine.live, 701)
 
 
-@pytest.mark.slow
 def test_keyframes_stay_under_their_budget_and_the_first_is_never_dropped() -> None:
     session = Session(OFFICE, 5)
     history = History(session)

@@ -16,6 +16,8 @@ from app.trials.trial import Trial, run_trial, text_of, watched
 from ratslam_core import Pose2
 from sim2d.importers import open_world
 
+pytestmark = pytest.mark.slow
+
 PROTOCOL = (
     Tag(do="tag", places=["kitchen"]),
     Explore(do="explore", minutes=0.5),

@@ -13,6 +13,8 @@ from .engines import an_engine, tell
 from .sessions import OFFICE
 from .trials_to_watch import short_trial, table_trial
 
+pytestmark = pytest.mark.slow
+
 
 def watching(trial: Trial, moment_s: float | None = None) -> Engine:
     engine = an_engine(OFFICE)

@@ -18,6 +18,8 @@ from ratslam_core.brain_file import read_brain
 from tests.unit.disk.full import full_after
 from tests.unit.ratslam_core.drives import driven
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def file(tmp_path_factory: pytest.TempPathFactory) -> Path:

@@ -17,6 +17,8 @@ from web.http.commands import MODELS, Malformed, check, read_object
 from web.messages import Accepted, Drive, Kidnap, ReadExperience, Refused, Reset, SetGoal, SetSpeed
 from web.messages.commands import FASTEST, SLOWEST
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def server():
@@ -161,7 +163,6 @@ def test_what_is_wrong_is_said_with_field_value_and_remedy(body, field, reason):
 
 @pytest.mark.parametrize("levels", [20, 128, 254, 255, 1000, 1022, 1023, 9000])
 @pytest.mark.parametrize("route", ["commands", "worlds/new", "worlds/open", "worlds/save", "worlds/delete"])
-@pytest.mark.slow
 def test_what_is_nested_too_deeply_is_refused_on_every_route(server, levels, route):
     for body in (b'{"type": ' + b"[" * levels + b"]" * levels + b"}", b'{"a":' * levels + b"[]" + b"}" * levels):
         answer = server.client.post(f"/api/{route}", content=body, headers={"Content-Type": "application/json"})
@@ -209,7 +210,6 @@ fields = st.sampled_from(
 )
 
 
-@pytest.mark.slow
 @settings(max_examples=300)
 @given(
     st.dictionaries(fields, json_values, max_size=4),

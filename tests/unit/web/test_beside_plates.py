@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
@@ -15,6 +16,8 @@ from web.viewer.camera_views import VIEWS, camera_for, seen_by
 from web.viewer.plates import map_plate, office_plate, pose_cell_plate
 from web.viewer.plates.plate import Plate
 from web.viewer.pointer import Click
+
+pytestmark = pytest.mark.slow
 
 CHANGED = (Changed("local_view.enabled", True, False),)
 

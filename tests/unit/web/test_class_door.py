@@ -23,6 +23,8 @@ from web.http.class_door import MOST_WATCHERS, RATE_HZ, ClassDoor, Classroom
 from web.latest import Latest
 from web.messages import Vote
 
+pytestmark = pytest.mark.slow
+
 CLASSROOM = Classroom("192.168.1.5", 8001)
 HOST, ORIGIN = "192.168.1.5:8001", "http://192.168.1.5:8001"
 BALLOT = {"lesson": "packet", "voter": "somebody", "choice": 1}

@@ -30,6 +30,8 @@ from web.http.server import Dashboard, ForClass
 from web.latest import Latest
 from web.viewer import Viewers
 
+pytestmark = pytest.mark.slow
+
 ROUNDS, AT_ONCE = 50, 10
 
 
@@ -96,7 +98,6 @@ async def visits(made: Dashboard, rounds: int) -> None:
         await asyncio.gather(*(visit(made, number * AT_ONCE + seat) for seat in range(AT_ONCE)))
 
 
-@pytest.mark.slow
 def test_a_thousand_connections_leave_no_thread_task_or_file_behind() -> None:
     stage = StubViewer()
     with viser_double(stage), served(StubViewers(stage)) as made:  # type: ignore[arg-type]
@@ -118,7 +119,6 @@ def settled(look: Callable[[], dict[str, int]]) -> dict[str, int]:
     return seen[-1]
 
 
-@pytest.mark.slow
 def test_a_browser_that_takes_nothing_of_the_stage_keeps_nobody_waiting(monkeypatch) -> None:
     """Far more is drawn than fits into the buffers between the viewer and the browser that stalls."""
     monkeypatch.setattr(proxy, "SEND_TIMEOUT_S", 1e6)  # so that it is never disconnected

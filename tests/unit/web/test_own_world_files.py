@@ -16,6 +16,8 @@ from tests.unit.web.doubles import House, house
 from tests.unit.web.house_of_worlds import OFFICE, Engine, house_of_worlds, post, why
 from web.messages import ReadWorld, WorldDeleted, WorldRestored
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[House]:

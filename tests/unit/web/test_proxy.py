@@ -26,6 +26,8 @@ from web.viewer.plates.map_plate import NODE_Z
 from web.viewer.pointer import NOT_THERE
 from web.viewer.viser_server import client_page
 
+pytestmark = pytest.mark.slow
+
 PROTOCOL = "viser-v1.1.1"
 
 

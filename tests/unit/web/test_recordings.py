@@ -23,6 +23,8 @@ from web.http.recordings import MAX_RECORDING_BYTES, SentRecordings
 from web.latest import Latest
 from web.messages import Accepted, PlayRecording, RecordingView, Refused, Snapshot
 
+pytestmark = pytest.mark.slow
+
 KIND = {"Content-Type": "application/octet-stream"}
 VIEW = RecordingView("walk", "MCAP", 3, 0.2, ("camera", "speed"), over=False)
 

@@ -17,6 +17,8 @@ from web.messages import Belief, Pose, Snapshot, TaggedPlace
 from web.switches import NAMES, Name
 from web.viewer.vector import PlateName, vector_picture
 
+pytestmark = pytest.mark.slow
+
 ROOTS: dict[PlateName, str] = {"office": "/office", "pose": "/pose_cells", "map": "/map"}
 PLAIN = judged(830, nodes=200, movements=tried)  # 3 s after a snap, so that all is there
 REPORTS = fake_reports()

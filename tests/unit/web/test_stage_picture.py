@@ -22,6 +22,8 @@ from web.viewer.fits.office_fit import OfficeFit
 from web.viewer.picture import UNITS, picture
 from web.viewer.primitives.palette import BRAINS, DARK, LIGHT, Rgb, mix
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("view", VIEWS)
 @pytest.mark.parametrize("aspect", [0.46, 1.63])

@@ -24,6 +24,8 @@ from web.viewer.plates.plate import MOST_LARGE
 from web.viewer.primitives.palette import LARGE
 from web.viewer.viser_server import SECRET_HEADER
 
+pytestmark = pytest.mark.slow
+
 
 class Both:
     """A dark and a light viewer that run."""

@@ -24,6 +24,8 @@ from web.switches import Switches
 from web.viewer import Viewer
 from web.viewer.viser_server import MOST_SILENT, SECRET_HEADER, guarded_server
 
+pytestmark = pytest.mark.slow
+
 PROTOCOL: Any = "viser-v1.1.1"
 
 

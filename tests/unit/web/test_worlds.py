@@ -15,6 +15,8 @@ from tests.unit.web.doubles import House
 from tests.unit.web.house_of_worlds import OFFICE, files, house_of_worlds, plan_png, post, why
 from web.http.security import Limits
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[House]:

@@ -29,6 +29,8 @@ from tests.unit.app.engines import tell
 from tests.unit.app.made_recordings import recorded
 from web import messages as m
 
+pytestmark = pytest.mark.slow
+
 OFFICE, MOMENTS = load_world("office"), 120
 
 

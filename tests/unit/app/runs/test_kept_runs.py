@@ -22,6 +22,8 @@ from app.session import Session
 from sim2d import Box, load_world
 from tests.unit.app.runs.kept import TICKS, keep_one
 
+pytestmark = pytest.mark.slow
+
 LIVING = load_world("living")
 SOME = 33_000  # bytes: the header of a run in that world and some of its ticks
 

@@ -25,6 +25,8 @@ from app.time_machine import TimeMachine
 from app.views.history import History
 from sim2d import load_world
 
+pytestmark = pytest.mark.slow
+
 OFFICE, LIVING = load_world("office"), load_world("living")
 
 

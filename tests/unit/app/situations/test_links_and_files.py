@@ -19,6 +19,8 @@ from sim2d import load_world
 
 from .made import LOOK, a_situation
 
+pytestmark = pytest.mark.slow
+
 PLAIN = a_situation()
 FILE = file_of(PLAIN)
 LINK = link_of(PLAIN)[0] or ""

@@ -26,6 +26,8 @@ from web import messages as m
 
 from .made import a_situation
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[4]
 
 

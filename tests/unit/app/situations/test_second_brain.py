@@ -17,6 +17,8 @@ from tests.unit.app.sessions import OFFICE
 from .made import a_situation
 from .test_made_again import hash_printed_by, moment_of, opened, ticks, view_of
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def compared() -> Situation:
