@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 from xml.etree import ElementTree
 
 from coverage import CoverageData
 
 from benchmarks.mutants.operators import Mutant
 
-MOST_S = 60.0  # of tests of one mutant, by their times in the unchanged tree
+QUICK_S, MOST_S = 10.0, 30.0  # of tests of one mutant, by their times in the unchanged tree
+
+
+class Tests(NamedTuple):
+    """Some tests, and how long they take in the unchanged tree."""
+
+    names: Sequence[str]
+    seconds: float = 0.0
 
 
 class Covering:
@@ -30,17 +39,17 @@ class Covering:
         running = {context.rpartition("|")[0] for context in self._data.measured_contexts() if context}
         return sorted(running | self._seconds.keys())
 
-    def tests(self, mutant: Mutant) -> list[str]:
-        """The tests that are tried, in their order."""
+    def tests(self, mutant: Mutant) -> tuple[Tests, Tests]:
+        """The tests that are tried, in their order: the quick ones, of which all are, and the others."""
         room = f"tests/unit/{mutant.file.partition('/')[0]}/"
         nodes = self._running(mutant) or self._near(mutant, room)
-        chosen, total = list[str](), 0.0
+        quick, rest, total = list[str](), list[str](), 0.0
         for node in sorted(nodes, key=lambda node: (not node.startswith(room), self._seconds.get(node, 0.0))):
             total += self._seconds.get(node, 0.0)
-            if chosen and total > MOST_S:
+            (quick if total <= QUICK_S or not quick else rest).append(node)
+            if total > MOST_S:
                 break
-            chosen.append(node)
-        return chosen
+        return Tests(quick, min(total, QUICK_S)), Tests(rest, total)
 
     def _running(self, mutant: Mutant) -> set[str]:
         if mutant.file not in self._contexts:
@@ -65,6 +74,12 @@ class Covering:
 def _times(file: Path) -> dict[str, float]:
     """Seconds of each test, by its name as pytest takes it."""
     return {_node(case): float(case.get("time", 0)) for case in ElementTree.parse(file).iter("testcase")}
+
+
+def failed(file: Path) -> list[str]:
+    """The tests that a report says have failed."""
+    cases = ElementTree.parse(file).iter("testcase")
+    return sorted({_node(case) for case in cases if case.find("failure") is not None or case.find("error") is not None})
 
 
 def _node(case: ElementTree.Element) -> str:

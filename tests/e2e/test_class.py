@@ -12,8 +12,8 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.e2e.browser import at_each, calm, open_page, until
+from tests.e2e.layout import findings
 from tests.e2e.program import Program
-from tests.e2e.test_accessibility import findings
 from tests.patience import PATIENCE_S
 from web.http.listening import CannotListen, class_socket
 

@@ -13,9 +13,8 @@ from app.experiments.store import Store
 from app.trials.chosen import chosen_trial
 from app.trials.experiment import find_experiment
 from app.trials.trial import Result, Trial, run_trial
-from tests.e2e.browser import NO_STAGE, calm, open_page, told, turn_theme, until
+from tests.e2e.browser import NO_STAGE, open_page, told, until
 from tests.e2e.program import Program
-from tests.e2e.test_accessibility import findings
 
 SAYS = "(words) => document.getElementById('trial').innerText.includes(words)"
 TABLE = find_experiment("table")
@@ -137,33 +136,6 @@ def test_going_to_a_moment_can_be_broken_off(stored: Program, browser) -> None:
         state = stored.wait(lambda state: state["trial"]["ahead"] is None)
         assert (state["running"], state["trial"]["state"]) == (True, "running")
         assert state["time_s"] < 1290
-        stored.command("pause")
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("size", "light"), [((1280, 800), False), ((390, 844), True), ((360, 740), False)])
-def test_axe_finds_nothing_and_nothing_sticks_out(stored: Program, browser, size, light: bool) -> None:
-    with open_page(browser, stored.url, *size, light=light, stage=False) as page:
-        if size[0] < 500:
-            page.click("#more")
-        page.click("#experiments")
-        page.wait_for_selector(".card")
-        for look in range(2):
-            if look:
-                page.click(".card[data-name=table] .trials")
-                page.wait_for_selector("#one-grid .cell")
-                page.get_by_label("2 %, 8 x 8: ").click()
-            for _ in range(2):
-                calm(page)
-                assert findings(page) == []
-                turn_theme(page)
-            wide = "() => { const box = document.getElementById('gallery-dialog'); return box.scrollWidth - box.clientWidth; }"
-            assert page.evaluate(wide) <= 0
-        stored.command("watch_experiment", experiment="table", quick=True)
-        page.click("#gallery-close")
-        until(page, SAYS, argument="Experiment table")
-        calm(page)
-        assert findings(page) == []
         stored.command("pause")
 
 

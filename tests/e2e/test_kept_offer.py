@@ -12,8 +12,8 @@ from app.kept_brains.files import About, keep
 from app.session import Session
 from sim2d import load_world
 from tests.e2e.browser import calm, open_page, told, until
+from tests.e2e.layout import findings
 from tests.e2e.program import Program
-from tests.e2e.test_accessibility import findings
 
 OFFERED = "() => document.getElementById('kept').checkVisibility()"
 GONE = "() => !document.getElementById('kept').checkVisibility()"

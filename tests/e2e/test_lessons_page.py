@@ -9,16 +9,11 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.browser import box_of, calm, open_page, told, turn_theme, until
+from tests.e2e.browser import box_of, open_page, told, until
 from tests.e2e.program import Program
-from tests.e2e.test_accessibility import findings
 
 DEMOS = ["dark", "loop", "twins", "small", "kidnapped", "quicker"]
 STATE = "(state) => document.getElementById('lesson').dataset.state === state"
-# What of the card is cut off, or wider than the card.
-CUT = """() => [...document.querySelectorAll("#lesson :is(h2, p, button, label, legend, li, figure)")]
-    .filter((part) => part.checkVisibility() && part.scrollWidth > part.clientWidth + 1 && part.clientWidth)
-    .map((part) => part.id || part.textContent)"""
 
 
 @pytest.fixture(scope="module")
@@ -152,39 +147,6 @@ def test_each_of_the_six_demos_is_three_clicks_from_a_fresh_page(school, browser
         is_in(page, "showing")
         assert school.state()["running"]
         page.click("#lesson-leave")
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
-def test_the_card_is_whole_and_axe_finds_nothing(school, browser, size) -> None:
-    with open_page(browser, school.url, *size, stage=False) as page:
-
-        def look(state: str) -> None:
-            is_in(page, state)
-            for _ in range(2):
-                calm(page)
-                assert page.evaluate(CUT) == []
-                assert findings(page) == []
-                turn_theme(page)
-            if size[0] < 500:
-                small = """() => [...document.querySelectorAll("#lesson :is(button, label.option)")]
-                    .filter((part) => part.checkVisibility())
-                    .map((part) => [part.getBoundingClientRect(), part.textContent])
-                    .filter(([box]) => box.width < 44 || box.height < 43.5).map(([, words]) => words)"""
-                assert page.evaluate(small) == []
-
-        page.evaluate("() => document.getElementById('lessons').click()")
-        page.wait_for_selector("#lessons-list button")
-        assert findings(page) == []
-        page.click("#lessons-list [data-name=kidnapped]")
-        look("predict")
-        page.click("#lesson-show")
-        is_in(page, "showing")
-        school.command("pause")
-        look("showing")
-        school.command("set_speed", factor=0)
-        school.command("resume")
-        look("compared")
 
 
 @pytest.mark.long

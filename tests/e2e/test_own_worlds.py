@@ -12,10 +12,9 @@ import pytest
 from playwright.sync_api import Page
 
 from sim2d import load_world, world_from_json, world_to_json
-from tests.e2e.browser import at_each, box_of, calm, open_page, told, turn_theme, until
+from tests.e2e.browser import at_each, box_of, open_page, told, until
 from tests.e2e.editor import drop, edit, plan_png, walls_are, world
 from tests.e2e.program import Program
-from tests.e2e.test_accessibility import findings
 
 
 @pytest.fixture(scope="module")
@@ -155,34 +154,6 @@ def test_a_saved_world_is_opened_deleted_and_brought_back(program, browser, own)
         program.wait(lambda state: state["world"] == "loop")
         until(page, "() => ![...document.querySelectorAll('#world option')].some((o) => o.value === 'lab')")
         assert "school" in listed(page)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
-def test_axe_finds_nothing_and_it_fits(program, browser, size):
-    fits = "(id) => { const d = document.getElementById(id); return d.scrollWidth <= d.clientWidth; }"
-    program.command("edit_world", steps=[{"do": "add", "list": "places", "item": {"name": "p", "x": 0.9, "y": 2}}])
-    with open_page(browser, program.url, *size, stage=False) as page:
-        page.evaluate("() => document.getElementById('edit').click()")
-        until(page, "() => document.querySelector('#plan .outer') !== null")
-        for _ in range(2):
-            calm(page)
-            page.click("#edit-menu summary")
-            assert findings(page) == []
-            page.click("#edit-new")
-            page.wait_for_selector("#new-unsaved", state="visible")
-            assert findings(page) == []
-            assert page.evaluate(fits, "new-dialog")
-            page.click("#new-close")
-            menu(page, "#edit-open")
-            page.click("#own-list [aria-label^='Delete A school']")
-            assert findings(page) == []
-            page.click("#delete-dialog [value=keep]")
-            assert page.evaluate(fits, "open-dialog")
-            assert findings(page) == []
-            page.click("#open-close")
-            assert page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
-            turn_theme(page)
 
 
 @pytest.mark.long

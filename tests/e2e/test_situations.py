@@ -9,38 +9,13 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.e2e.browser import box_of, calm, open_page, told, turn_theme
+from tests.e2e.browser import open_page, told
 from tests.e2e.program import Program
-from tests.e2e.test_accessibility import findings
 
 
 def keep(page: Page, words: str) -> None:
     page.click("#keep summary")
     page.get_by_role("button", name=words).click()
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
-def test_axe_finds_nothing_and_nothing_sticks_out(program: Program, browser: Browser, size: tuple[int, int]) -> None:
-    with open_page(browser, program.url, *size, stage=False) as page:
-        page.click("#bookmark")
-        expect(page.get_by_label("Name of the bookmark")).to_be_focused()
-        page.keyboard.press("Enter")
-        for _ in range(2):
-            calm(page)
-            assert findings(page) == []
-            page.click("#keep summary")
-            assert findings(page) == []
-            for box in map(
-                box_of, page.locator("#keep .pop button:visible").all()
-            ):  # without a second brain, none of its
-                assert box["x"] >= 0
-                assert box["x"] + box["width"] <= size[0]
-                assert box["height"] >= (44 if size[0] < 500 else 24)
-            page.keyboard.press("Escape")
-            link_from(page, look=findings)
-            turn_theme(page)
-        page.locator("#bookmark-list").get_by_role("button", name="Delete").click()
 
 
 def link_from(page: Page, look: Callable[[Page], list[str]] = lambda _page: []) -> str:

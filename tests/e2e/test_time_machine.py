@@ -5,27 +5,8 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.browser import at_each, box_of, open_page, told, until
+from tests.e2e.browser import box_of, open_page, told, until
 from tests.e2e.program import Program
-
-# Every visible part of the footer: its box against all others and against the window.
-WRONG = """() => {
-    const wrong = [], name = (part) => part.id || part.textContent;
-    const parts = [...document.querySelectorAll("footer button, footer .past-chip, #timeline")]
-        .filter((part) => part.checkVisibility({visibilityProperty: true}) && !part.closest("#events-box"));
-    for (const part of parts) {
-        const box = part.getBoundingClientRect();
-        if (box.bottom > innerHeight + 0.5) wrong.push(`${name(part)} sticks out`);
-        for (const other of parts) {
-            if (other === part) continue;
-            const its = other.getBoundingClientRect();
-            const across = Math.min(box.right, its.right) - Math.max(box.left, its.left);
-            const down = Math.min(box.bottom, its.bottom) - Math.max(box.top, its.top);
-            if (across > 0.5 && down > 0.5) wrong.push(`${name(part)} covers ${name(other)}`);
-        }
-    }
-    return wrong;
-}"""
 
 
 @pytest.fixture(scope="module")
@@ -107,21 +88,3 @@ def test_go_on_without_the_kidnap_and_compare(driven: Program, browser) -> None:
         page.keyboard.press("Escape")
         page.get_by_role("button", name="Branch 1, the run as it began").click()
         driven.wait(lambda state: state["tick"] == 600)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("sizes", [[(1024, 768), (1280, 800), (1920, 1080)], [(390, 844)]], ids=["screens", "phone"])
-def test_nothing_is_covered_in_the_present_and_in_the_past(driven: Program, browser, sizes) -> None:
-    with open_page(browser, driven.url, *sizes[0], stage=False) as page:
-        for size in at_each(page, sizes):
-            assert page.evaluate(WRONG) == [], size
-        driven.command("seek", time_s=12.0)
-        expect(page.locator("#now")).to_be_visible()
-        for size in at_each(page, sizes):
-            assert page.evaluate(WRONG) == [], size
-            for part in ("#go-on", "#now"):
-                box = box_of(page.locator(part))
-                assert box["x"] >= 0
-                assert box["x"] + box["width"] <= size[0], size
-        page.click("#now")
-        expect(page.locator("#now")).to_be_hidden()

@@ -9,10 +9,9 @@ import orjson
 import pytest
 from playwright.sync_api import Locator, Page
 
-from tests.e2e.browser import at_each, box_of, calm, open_page, turn_theme, until
+from tests.e2e.browser import box_of, open_page, until
 from tests.e2e.editor import edit, says, world
 from tests.e2e.program import Program
-from tests.e2e.test_accessibility import findings
 
 DOOR = {"name": "lab", "hinge": [8.0, 1.0], "angle_deg": 0, "width": 1.0}
 LAMP = {"name": "desk lamp", "x": 5.0, "y": 5.0}
@@ -231,25 +230,3 @@ def test_the_keyboard_alone_writes_a_line(program, browser):
         lines_are(page, (42, "open_door", "lab"))
         page.keyboard.press("Escape")
         assert page.is_hidden("#time")
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("sizes", [[(1440, 900), (1024, 740)], [(390, 844)]], ids=["screens", "phone"])
-def test_axe_finds_nothing_and_it_fits(program, browser, sizes):
-    program.command("edit_world", steps=[
-        {"do": "add", "list": "script", "item": {"at_s": at, "do": "close_door", "name": "lab"}} for at in (0, 90)
-    ] + [{"do": "add", "list": "daylight", "item": {"points": [[0, 1], [60, 0.5]]}}])  # fmt: skip
-    program.command("step", ticks=1)
-    with open_page(browser, program.url, *sizes[0], stage=False) as page:
-        page.evaluate("() => document.getElementById('edit').click()")
-        page.evaluate("() => document.getElementById('edit-time').click()")
-        until(page, "() => document.querySelectorAll('#script-lines li').length === 3")
-        for size in at_each(page, sizes):
-            for _ in range(2):
-                calm(page)
-                assert findings(page) == [], size
-                assert page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
-                assert page.evaluate(
-                    "() => { const t = document.getElementById('time'); return t.scrollWidth <= t.clientWidth; }"
-                ), size
-                turn_theme(page)

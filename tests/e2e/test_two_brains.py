@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, expect
 
 from ratslam_core.params.additions import ADDITIONS
-from tests.e2e.browser import at_each, box_of, calm, eye_of, open_page, show, told, turn_theme
+from tests.e2e.browser import box_of, eye_of, open_page, show, told
 from tests.e2e.program import Program
-from tests.e2e.test_accessibility import findings
 from tests.patience import until
 from web.viewer.camera_views import camera_for
 
@@ -20,10 +19,6 @@ def program() -> Iterator[Program]:
     made = Program("--port", "0", "--seed", "5", "--paused")
     yield made
     assert made.stop() == 0
-
-
-def row(page: Page, which: str) -> list[str]:
-    return page.locator(f"#beside-{which} > *").all_inner_texts()
 
 
 def test_two_clicks_begin_it_and_one_ends_it(program: Program, browser: Browser) -> None:
@@ -120,37 +115,6 @@ def test_one_addition_is_chosen_by_its_name_and_the_strip_tells_what_differs(
     program.command("end_comparison")
     program.command("set_parameter", name="pose_cells.carry", value=True)
     program.command("reset", seed=5)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("sizes", [[(1920, 1080), (1280, 800), (1024, 768)], [(390, 844)]], ids=["screens", "phone"])
-def test_the_strip_covers_nothing_and_is_whole(
-    program: Program, browser: Browser, sizes: list[tuple[int, int]]
-) -> None:
-    program.command("compare_brains", pair="cells")
-    program.command("step", ticks=200)
-    with open_page(browser, program.url, *sizes[0], stage=False) as page:
-        for size in at_each(page, sizes):
-            strip, stage, views = (box_of(page.locator(name)) for name in ("#beside", "#stage", ".views"))
-            assert strip["height"] < 130, size
-            assert strip["y"] > views["y"] + views["height"], size
-            assert strip["y"] + strip["height"] <= stage["y"] + stage["height"], size
-            end = box_of(page.locator("#beside-end"))
-            assert strip["x"] <= end["x"], size
-            assert end["x"] + end["width"] <= strip["x"] + strip["width"] <= stage["x"] + stage["width"], size
-            for which in ("first", "second"):
-                cells = page.locator(f"#beside-{which} > :visible")
-                last = box_of(cells.last)
-                assert last["x"] + last["width"] <= strip["x"] + strip["width"], size
-            for _ in range(2):
-                calm(page)
-                assert findings(page) == [], size
-                turn_theme(page)
-        page.get_by_label("Compare brains").click()
-        for size in at_each(page, sizes):
-            calm(page)
-            assert findings(page) == [], size
-    program.command("end_comparison")
 
 
 @pytest.mark.long

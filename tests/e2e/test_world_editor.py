@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 
 from sim2d import load_world, world_from_json
-from tests.e2e.browser import calm, open_page, turn_theme, until
-from tests.e2e.editor import click, drag, drop, edit, plan_png, says, walls_are, world
+from tests.e2e.browser import open_page, until
+from tests.e2e.editor import click, drag, edit, says, walls_are, world
 from tests.e2e.program import Program
-from tests.e2e.test_accessibility import findings
 
 # Where a person's head is drawn, and whose it is, at one moment, since the plan is drawn anew ten times a second.
 HEAD = """(k) => { const head = document.querySelectorAll("#plan .head")[k], box = head.getBoundingClientRect();
@@ -251,26 +250,3 @@ def test_leaving_an_edited_office_asks_first(program, browser):
         page.select_option("#world", "loop")
         page.click("#leave-dialog [value=leave]")
         assert program.wait(lambda state: state["world"] == "loop")["tick"] == 0
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("size", [(1440, 900), (1024, 740), (390, 844)])
-def test_axe_finds_nothing_in_the_editor(program, browser, size):
-    with open_page(browser, program.url, *size, stage=False) as page:
-        page.evaluate("() => document.getElementById('edit').click()")
-        until(page, "() => document.querySelector('#plan .outer') !== null")
-        for _ in range(2):
-            calm(page)
-            assert findings(page) == []
-            assert page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
-            turn_theme(page)
-        page.click("[data-tool=wall]")
-        page.click("#edit-save")
-        assert findings(page) == []
-        page.click("#save-close")
-        page.evaluate("() => document.getElementById('edit-open').click()")
-        assert findings(page) == []
-        page.click("#open-close")
-        drop(page, ("plan.png", plan_png()))
-        until(page, "() => !document.getElementById('open-scale').hidden")
-        assert findings(page) == []

@@ -1,0 +1,91 @@
+"""What can be wrong with how a page looks: something is covered, cut, too small for who presses it, or fails axe."""
+
+from __future__ import annotations
+
+import importlib.resources
+
+from playwright.sync_api import Page
+
+from tests.e2e.browser import calm
+
+# Each of these stands alone; what lies in one of them may not cover its neighbours there either.
+PARTS = """header, footer, .views, .aids, .hints, #panel, #panel-show, #beside, #lesson, #trial, #first, #situation, #film,
+    #walk, #kept, #presenter-bar, .pad, .toast"""
+BOXES = """([parts, least]) => {
+    const wrong = [], name = (part) => part.id || part.className || part.tagName;
+    const shown = (part) => part.checkVisibility({ visibilityProperty: true }) && part.getBoundingClientRect().width > 0;
+    const all = [...document.querySelectorAll(parts)].filter(shown);
+    const apart = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) <= 0.5
+        || Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) <= 0.5;
+    const scrolls = getComputedStyle(document.documentElement).overflowY !== "hidden"; // the page as a whole
+    const bottom = scrolls ? document.documentElement.scrollHeight : innerHeight;
+    if (document.documentElement.scrollWidth > innerWidth) wrong.push("the page is wider than the window");
+    for (const part of document.querySelectorAll("dialog[open], #time"))
+        if (shown(part) && part.scrollWidth > part.clientWidth) wrong.push(`${name(part)} is wider than it shows`);
+    for (const [k, part] of all.entries()) {
+        const box = part.getBoundingClientRect();
+        if (box.left < -0.5 || box.right > innerWidth + 0.5 || box.top < -0.5 || box.bottom > bottom + 0.5)
+            wrong.push(`${name(part)} sticks out`);
+        for (const other of all.slice(k + 1)) {
+            const sheet = part.id === "panel" && innerWidth <= 1000 || other.id === "panel" && innerWidth <= 1000;
+            if (!sheet && !part.contains(other) && !other.contains(part) && !apart(box, other.getBoundingClientRect()))
+                wrong.push(`${name(part)} and ${name(other)} cover one another`);
+        }
+    }
+    const room = document.getElementById("panel")?.getBoundingClientRect();
+    for (const part of document.querySelectorAll("[role=tabpanel]:not([hidden]) *")) {
+        const box = part.getBoundingClientRect();
+        if (shown(part) && !part.closest(".gone, svg, .u-wrap") && (box.right > room.right + 1 || box.left < room.left - 1))
+            wrong.push(`${name(part)} sticks out of its tab`);
+    }
+    for (const part of document.querySelectorAll("#lesson :is(h2, p, button, label, legend, li, figure)"))
+        if (shown(part) && part.clientWidth && part.scrollWidth > part.clientWidth + 1) wrong.push(`${name(part)} is cut`);
+    const scrolled = (part) => { // out of sight in something that can be scrolled to it
+        for (let up = part.parentElement; up; up = up.parentElement)
+            if (/auto|scroll/.test(getComputedStyle(up).overflow)
+                && (up.scrollHeight > up.clientHeight || up.scrollWidth > up.clientWidth)) return true;
+        return false;
+    };
+    const over = ["dialog[open]", "details[open] > .pop", "#editor", "#events-box", ...innerWidth <= 1000 ? ["#panel"] : []];
+    const modal = [...document.querySelectorAll(over.join())].some(shown); // it may lie over all else
+    const pressed = [...document.querySelectorAll("button, select, summary, [role=tab]")].filter(shown);
+    for (const part of pressed.filter((part) => !part.closest("#panel, dialog, #timeline, .pop, #editor"))) {
+        const box = part.getBoundingClientRect();
+        if (Math.min(box.width, box.height) < least - 0.5)
+            wrong.push(`${name(part)} is ${box.width.toFixed(0)} x ${box.height.toFixed(0)}`);
+        if (part.tagName !== "SELECT" && part.scrollWidth > part.clientWidth + 1 && getComputedStyle(part).overflow !== "visible")
+            wrong.push(`${name(part)} is cut`);
+        if (part.matches("#beside-end")) { // it stands first in a line that is scrolled
+            const line = part.parentElement.getBoundingClientRect();
+            if (box.left < line.left - 0.5 || box.right > line.right + 0.5) wrong.push(`${name(part)} is out of sight`);
+        }
+        if (modal || scrolled(part)) continue;
+        const at = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2);
+        if (at && !part.contains(at) && !at.contains(part) && !at.closest("label")?.contains(part))
+            wrong.push(`${name(part)} is beneath ${name(at)}`);
+    }
+    return wrong; }"""
+FOR_FINGERS = """() => [...document.querySelectorAll("button, select, summary, [role=tab], label.check, .pop a, .option")]
+    .filter((part) => part.checkVisibility({ visibilityProperty: true }) && !part.closest(".gone"))
+    .map((part) => [part, part.getBoundingClientRect()])
+    .filter(([part, { width, height }]) => Math.min(width, height) < 43.5 || part.scrollWidth > part.clientWidth + 1
+        && getComputedStyle(part).overflow !== "visible" && getComputedStyle(part).textOverflow !== "ellipsis")
+    .map(([part, { width, height }]) => `${part.id || part.textContent || part.ariaLabel}: ${width} x ${height}`)"""
+AXE = importlib.resources.files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8")
+# Asked for violations alone, axe does half the work: it keeps one node for each rule that is kept.
+RUN = """async () => (await axe.run(document, {iframes: false, resultTypes: ["violations"]})).violations.map(
+    (found) => `${found.impact}: ${found.help}: ${found.nodes.map((node) => node.html.slice(0, 120)).join(" ")}`)"""
+
+
+def boxes(page: Page, fingers: bool = False) -> list[str]:
+    """What is covered, cut, out of the window, or smaller than WCAG 2.2 has it: 24 pixels, 44 for fingers."""
+    calm(page)
+    return page.evaluate(BOXES, [PARTS, 44 if fingers else 24]) + (page.evaluate(FOR_FINGERS) if fingers else [])
+
+
+def findings(page: Page) -> list[str]:
+    """What axe finds."""
+    calm(page)  # what is half transparent while it appears has no contrast
+    if not page.evaluate("() => 'axe' in window"):
+        page.evaluate(AXE)
+    return page.evaluate(RUN)
