@@ -23,6 +23,8 @@ class Library:
 
     def world(self, name: str) -> World:
         """The world of this name. ValueError if there is none, or if its file is not valid."""
+        if name not in self._titles:  # its file may have come since
+            self._titles = dict(own_worlds.names()) | self._titles
         if name not in self._titles:
             known = ", ".join(self._titles)
             raise ValueError(f"unknown world {name!r}; expected one of: {known}")

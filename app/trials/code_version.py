@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import threading
 from functools import cache
 from pathlib import Path
 
@@ -21,9 +22,17 @@ _DECIDES = (
 _LOOKS_ON = {"figure_options.py", "final_map.py", "trace.py"}  # of app/trials: what is asked of a trial when it is over
 
 
-@cache
+_ONE_AT_A_TIME = threading.Lock()
+
+
 def code_version() -> str:
     """Twelve hexadecimal digits. Equal trials have equal scores while these are equal."""
+    with _ONE_AT_A_TIME:  # up to Python 3.12 ast.parse raises SystemError while another thread is in it
+        return _digest()
+
+
+@cache
+def _digest() -> str:
     digest = hashlib.sha256()
     for room in _DECIDES:
         path = _ROOT / room

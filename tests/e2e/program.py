@@ -40,6 +40,7 @@ class Program:
             env={**os.environ, "PYTHONUNBUFFERED": "1", **kept, **environment},
         )
         self.said: list[str] = []
+        self.begun = ""  # what its session was when it began, as a hash
         try:
             self._begin()
         except BaseException:  # nobody else could stop it, after Ctrl+C neither

@@ -4,23 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
 
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.e2e.browser import box_of, open_page, told, until
-from tests.e2e.program import Program
 
 DEMOS = ["dark", "loop", "twins", "small", "kidnapped", "quicker"]
 STATE = "(state) => document.getElementById('lesson').dataset.state === state"
-
-
-@pytest.fixture(scope="module")
-def school() -> Iterator[Program]:
-    made = Program("--port", "0", "--seed", "5", "--paused")
-    yield made
-    assert made.stop() == 0
 
 
 def is_in(page: Page, state: str) -> None:
@@ -33,15 +24,15 @@ def choose(page: Page, name: str) -> None:
     until(page, "(name) => document.querySelector('#lessons-dialog').open === false", argument=name)
 
 
-def test_a_lesson_from_the_list_to_the_sandbox_with_a_class_that_votes(school, browser) -> None:
-    with open_page(browser, school.url, stage=False) as page, browser.new_context() as other:
+def test_a_lesson_from_the_list_to_the_sandbox_with_a_class_that_votes(program, browser) -> None:
+    with open_page(browser, program.url, stage=False) as page, browser.new_context() as other:
         choose(page, "packet")
         is_in(page, "predict")
         expect(page.locator("#lesson-title")).to_be_focused()
         expect(page.locator("#lesson-text")).to_contain_text("pose cells")
         expect(page.locator("#lesson-formulas math").first).to_be_visible()
         pupil = other.new_page()
-        pupil.goto(f"{school.url}?vote")
+        pupil.goto(f"{program.url}?vote")
         pupil.locator(".option").nth(1).click()
         expect(pupil.locator("#vote-said")).to_contain_text("Your vote counts")
         expect(page.locator(".option .count").nth(1)).to_have_text("1")
@@ -55,17 +46,17 @@ def test_a_lesson_from_the_list_to_the_sandbox_with_a_class_that_votes(school, b
         is_in(page, "showing")
         expect(page.locator("#lesson-watch")).to_contain_text("What to watch")
         expect(page.locator(".views [aria-pressed=true]")).to_have_text("Pose cells")
-        school.command("set_speed", factor=0)
+        program.command("set_speed", factor=0)
         is_in(page, "compared")
         expect(page.locator(".outcome")).to_have_attribute("data-tone", "wrong")
         expect(page.locator(".outcome")).to_contain_text("8 cells on, and 9 layers lower")
         expect(page.locator(".option").nth(0)).to_have_attribute("data-look", "true")
         expect(pupil.locator("#vote-said")).to_contain_text("It came true")
         page.locator(".moments button").last.click()
-        end = school.state()["time_s"]
+        end = program.state()["time_s"]
         page.locator(".try button").first.click()
         until(page, "() => document.querySelector('#events').textContent.includes('packet put in')")
-        assert school.state()["time_s"] >= end
+        assert program.state()["time_s"] >= end
         page.click("#lessons")
         expect(page.locator("#lessons-list [data-name=packet] .gone-through")).to_be_visible()
         page.click("#lessons-close")
@@ -76,10 +67,10 @@ def test_a_lesson_from_the_list_to_the_sandbox_with_a_class_that_votes(school, b
 
 
 @pytest.mark.long
-def test_where_it_ends_is_drawn_on_the_plan(school, browser) -> None:
-    with open_page(browser, school.url, stage=False) as page:
-        page.goto(f"{school.url}docs")
-        page.goto(f"{school.url}#lesson=dark")
+def test_where_it_ends_is_drawn_on_the_plan(program, browser) -> None:
+    with open_page(browser, program.url, stage=False) as page:
+        page.goto(f"{program.url}docs")
+        page.goto(f"{program.url}#lesson=dark")
         is_in(page, "predict")
         assert "#" not in page.url  # loaded again, the page begins nothing
         plan = page.locator(".lesson-plan")
@@ -88,95 +79,95 @@ def test_where_it_ends_is_drawn_on_the_plan(school, browser) -> None:
         box = box_of(plan)
         page.mouse.click(box["x"] + box["width"] * 0.5, box["y"] + box["height"] * 0.5)
         expect(plan.locator(".said")).to_be_visible()
-        first = school.state()["lesson"]["prediction"]
+        first = program.state()["lesson"]["prediction"]
         plan.focus()
         for key in ("ArrowUp", "ArrowUp", "ArrowRight", "Enter"):
             page.keyboard.press(key)
         before = (first["x"], first["y"])
-        after = school.wait(lambda state: state["lesson"]["prediction"] != first)["lesson"]["prediction"]
+        after = program.wait(lambda state: state["lesson"]["prediction"] != first)["lesson"]["prediction"]
         assert after["x"] > before[0]
         assert after["y"] > before[1]
         page.click("#lesson-show")
-        school.command("set_speed", factor=0)
+        program.command("set_speed", factor=0)
         is_in(page, "compared")
         expect(plan.locator(".was")).to_be_visible()
-        outcome = school.state()["lesson"]["outcome"]
+        outcome = program.state()["lesson"]["outcome"]
         expect(page.locator(".outcome")).to_contain_text(f"{outcome['distance_m']:.1f} m from where it ended")
 
 
 @pytest.mark.long
-def test_where_it_will_believe_to_be_is_drawn_on_the_map_which_lies_as_on_its_plate(school, browser) -> None:
-    with open_page(browser, school.url, stage=False) as page:
-        page.goto(f"{school.url}docs")
-        page.goto(f"{school.url}#lesson=believes")
+def test_where_it_will_believe_to_be_is_drawn_on_the_map_which_lies_as_on_its_plate(program, browser) -> None:
+    with open_page(browser, program.url, stage=False) as page:
+        page.goto(f"{program.url}docs")
+        page.goto(f"{program.url}#lesson=believes")
         is_in(page, "predict")
         plan = page.locator(".lesson-plan")
         until(page, "() => document.querySelector('.lesson-plan .walls')?.getAttribute('d')?.length > 40")
         until(page, "() => document.querySelector('.lesson-plan .places')?.getAttribute('d')?.length > 40")
         plan.scroll_into_view_if_needed()
-        state = school.state(full=True)
+        state = program.state(full=True)
         here, turn = state["estimate"], state["map"]["turn_rad"]
         pin = box_of(plan.locator("circle.robot"))
         page.mouse.click(pin["x"] + pin["width"] / 2, pin["y"] + pin["height"] / 2)
-        first = school.wait(lambda state: state["lesson"]["prediction"])["lesson"]["prediction"]
+        first = program.wait(lambda state: state["lesson"]["prediction"])["lesson"]["prediction"]
         assert math.dist((first["x"], first["y"]), (here["x"], here["y"])) < 0.1
         plan.focus()
         for key in ("ArrowUp", "ArrowUp", "Enter"):  # up on the page, whichever way the map lies
             page.keyboard.press(key)
-        then = school.wait(lambda state: state["lesson"]["prediction"] != first)["lesson"]["prediction"]
+        then = program.wait(lambda state: state["lesson"]["prediction"] != first)["lesson"]["prediction"]
         moved = (then["x"] - first["x"], then["y"] - first["y"])
         assert math.remainder(math.atan2(moved[1], moved[0]) + turn - math.pi / 2, math.tau) == pytest.approx(
             0, abs=0.01
         )
         page.click("#lesson-show")
-        school.command("set_speed", factor=0)
+        program.command("set_speed", factor=0)
         is_in(page, "compared")
         expect(plan.locator(".was")).to_be_visible()
-        outcome = school.state()["lesson"]["outcome"]
+        outcome = program.state()["lesson"]["outcome"]
         assert outcome["right"] == (outcome["distance_m"] <= 1.0)
         expect(page.locator(".outcome")).to_contain_text(f"{outcome['distance_m']:.1f} m from where it ended")
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", DEMOS)
-def test_each_of_the_six_demos_is_three_clicks_from_a_fresh_page(school, browser, name) -> None:
-    with open_page(browser, school.url, stage=False, first=True) as page:
+def test_each_of_the_six_demos_is_three_clicks_from_a_fresh_page(program, browser, name) -> None:
+    with open_page(browser, program.url, stage=False, first=True) as page:
         page.click("#lessons")
         page.click(f"#lessons-list [data-name={name}]")
         page.click("#lesson-show")
         is_in(page, "showing")
-        assert school.state()["running"]
+        assert program.state()["running"]
         page.click("#lesson-leave")
 
 
 @pytest.mark.long
-def test_it_runs_until_something_happens_and_stops_there(school, browser) -> None:
-    with open_page(browser, school.url, stage=False) as page:
-        school.command("reset", world="office", seed=5)
+def test_it_runs_until_something_happens_and_stops_there(program, browser) -> None:
+    with open_page(browser, program.url, stage=False) as page:
+        program.command("reset", world="office", seed=5)
         page.click("#until-open")
         page.click("text=a loop closes")
         told(page, "Stopped at this very tick")
-        state = school.state()
+        state = program.state()
         assert not state["running"]
         assert state["until"] is None or state["until"]["state"] == "met"
         page.click("#until-open")
         page.get_by_label("Which place").select_option("printer")
         page.get_by_label("How many packets").fill("3")
         page.get_by_role("button", name="packets compete:").click()
-        assert "3 packets compete" in school.wait(lambda state: state["until"]["what"] == "packets")["until"]["words"]
-        school.command("pause")
+        assert "3 packets compete" in program.wait(lambda state: state["until"]["what"] == "packets")["until"]["words"]
+        program.command("pause")
         page.click("#until-open")
         page.get_by_role("button", name="it comes to").click()
-        assert "comes to printer" in school.wait(lambda state: state["until"]["what"] == "place")["until"]["words"]
-        school.command("pause")
+        assert "comes to printer" in program.wait(lambda state: state["until"]["what"] == "place")["until"]["words"]
+        program.command("pause")
         page.click("#until-open")
         page.click("text=it is at its goal")  # there is none: that is refused
         until(page, "() => [...toasted].length > 1")
 
 
 @pytest.mark.long
-def test_a_symbol_leads_to_its_row_in_tune(school, browser) -> None:
-    with open_page(browser, school.url, stage=False) as page:
+def test_a_symbol_leads_to_its_row_in_tune(program, browser) -> None:
+    with open_page(browser, program.url, stage=False) as page:
         choose(page, "quicker")
         is_in(page, "predict")
         page.locator("#lesson-formulas .symbols button").first.click()
@@ -188,8 +179,8 @@ def test_a_symbol_leads_to_its_row_in_tune(school, browser) -> None:
 
 
 @pytest.mark.long
-def test_a_clicker_goes_through_a_lesson(school, browser) -> None:
-    with open_page(browser, school.url, stage=False) as page:
+def test_a_clicker_goes_through_a_lesson(program, browser) -> None:
+    with open_page(browser, program.url, stage=False) as page:
         page.keyboard.press("z")
         page.keyboard.press("c")
         page.click("#lessons-list [data-name=packet]")
@@ -197,45 +188,45 @@ def test_a_clicker_goes_through_a_lesson(school, browser) -> None:
         page.locator(".option input").first.check()
         page.keyboard.press("PageDown")  # although a radio button has the focus
         is_in(page, "showing")
-        school.command("set_speed", factor=0)
+        program.command("set_speed", factor=0)
         is_in(page, "compared")
         expect(page.locator(".outcome")).to_have_attribute("data-tone", "right")
         page.keyboard.press("PageUp")
         is_in(page, "predict")
         page.keyboard.press("PageDown")
-        school.command("set_speed", factor=0)
+        program.command("set_speed", factor=0)
         is_in(page, "compared")
         page.keyboard.press("PageDown")
         expect(page.locator("#lesson-title")).to_have_text("Packets merge and compete")
 
 
 @pytest.mark.long
-def test_rounds_are_shown_one_after_the_other(school, browser) -> None:
-    with open_page(browser, school.url, stage=False) as page:
+def test_rounds_are_shown_one_after_the_other(program, browser) -> None:
+    with open_page(browser, program.url, stage=False) as page:
         choose(page, "merge")
         is_in(page, "predict")
         page.locator(".option").first.click()
         page.click("text=Let it happen")
         is_in(page, "showing")
-        school.command("set_speed", factor=0)
+        program.command("set_speed", factor=0)
         expect(page.locator("#lesson-show")).to_have_text("Show the next round")
         expect(page.locator(".option input").first).to_be_disabled()
         page.click("#lesson-show")
         is_in(page, "showing")
-        school.command("set_speed", factor=0)
+        program.command("set_speed", factor=0)
         is_in(page, "compared")
         expect(page.locator("#lesson-which")).to_contain_text("round 2 of 2")
 
 
 @pytest.mark.long
-def test_a_lesson_that_is_broken_off_says_by_what_and_begins_once_more(school, browser) -> None:
-    with open_page(browser, school.url, stage=False) as page:
+def test_a_lesson_that_is_broken_off_says_by_what_and_begins_once_more(program, browser) -> None:
+    with open_page(browser, program.url, stage=False) as page:
         choose(page, "dark")
         is_in(page, "predict")
         expect(page.locator("#lesson-again")).to_be_hidden()
         page.click("#lesson-show")
         is_in(page, "showing")
-        school.command("drive", speed=0.2, yaw_rate=0.0)
+        program.command("drive", speed=0.2, yaw_rate=0.0)
         is_in(page, "sandbox")
         expect(page.locator("#lesson-doing")).to_contain_text("Broken off: somebody drove the robot by hand.")
         expect(page.locator("#lesson-again")).to_have_class("go")
@@ -246,13 +237,13 @@ def test_a_lesson_that_is_broken_off_says_by_what_and_begins_once_more(school, b
 
 
 @pytest.mark.long
-def test_the_card_leads_to_inspect_where_that_tells_why(school, browser) -> None:
-    with open_page(browser, school.url, stage=False) as page:
+def test_the_card_leads_to_inspect_where_that_tells_why(program, browser) -> None:
+    with open_page(browser, program.url, stage=False) as page:
         choose(page, "snap")
         is_in(page, "predict")
         page.click("#lesson-show")
         is_in(page, "showing")
-        school.command("set_speed", factor=0)
+        program.command("set_speed", factor=0)
         is_in(page, "compared")
         expect(page.locator("#lesson-watch")).to_contain_text("What to watch")
         page.locator("#panel [role=tab]").first.click()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,27 +17,17 @@ from tests.e2e.program import Program
 
 
 @pytest.fixture(scope="module")
-def own(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with two saved worlds."""
-    folder = tmp_path_factory.mktemp("own")
+def own(own: Path) -> Path:
+    """With two saved worlds."""
     for name, title in (("lab", "My laboratory"), ("school", "A school whose name is long enough for two lines")):
-        (folder / f"{name}.json").write_text(world_to_json(replace(load_world("office"), name=name, title=title)))
-    return folder
-
-
-@pytest.fixture(scope="module")
-def started(own: Path) -> Iterator[Program]:
-    with pytest.MonkeyPatch.context() as environment:
-        environment.setenv("RATSLAM_WORLDS", str(own))
-        made = Program("--port", "0", "--seed", "5", "--paused")
-    yield made
-    assert made.stop() == 0
+        (own / f"{name}.json").write_text(world_to_json(replace(load_world("office"), name=name, title=title)))
+    return own
 
 
 @pytest.fixture
-def program(started: Program) -> Program:
-    started.command("reset", world="loop")
-    return started
+def program(one_program: Program) -> Program:
+    one_program.command("reset", world="loop")
+    return one_program
 
 
 def menu(page: Page, item: str) -> None:

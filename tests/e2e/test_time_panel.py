@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import orjson
@@ -17,21 +16,14 @@ DOOR = {"name": "lab", "hinge": [8.0, 1.0], "angle_deg": 0, "width": 1.0}
 LAMP = {"name": "desk lamp", "x": 5.0, "y": 5.0}
 
 
-@pytest.fixture(scope="module")
-def started() -> Iterator[Program]:
-    made = Program("--port", "0", "--seed", "5", "--paused")
-    yield made
-    assert made.stop() == 0
-
-
 @pytest.fixture
-def program(started: Program) -> Program:
+def program(one_program: Program) -> Program:
     """An office with a door and a lamp, at 0:00."""
-    started.command("reset", world="loop")
-    started.command("reset", world="office")
+    one_program.command("reset", world="loop")
+    one_program.command("reset", world="office", seed=5)
     steps = [{"do": "add", "list": kind, "item": item} for kind, item in (("doors", DOOR), ("lamps", LAMP))]
-    started.command("edit_world", steps=steps)
-    return started
+    one_program.command("edit_world", steps=steps)
+    return one_program
 
 
 def open_time(page: Page) -> None:

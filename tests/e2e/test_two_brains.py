@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
 from playwright.sync_api import Browser, expect
 
@@ -12,13 +10,6 @@ from tests.e2e.browser import box_of, eye_of, open_page, show, told
 from tests.e2e.program import Program
 from tests.patience import until
 from web.viewer.camera_views import camera_for
-
-
-@pytest.fixture(scope="module")
-def program() -> Iterator[Program]:
-    made = Program("--port", "0", "--seed", "5", "--paused")
-    yield made
-    assert made.stop() == 0
 
 
 def test_two_clicks_begin_it_and_one_ends_it(program: Program, browser: Browser) -> None:

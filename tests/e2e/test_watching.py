@@ -38,12 +38,10 @@ TRIES = """async () => {
 
 
 @pytest.fixture(scope="module")
-def drawn() -> Any:
+def drawn(program: Program) -> Program:
     """A run with a map, paused."""
-    made = Program("--port", "0", "--seed", "5", "--paused")
-    made.command("step", ticks=1000)
-    yield made
-    assert made.stop() == 0
+    program.command("step", ticks=1000)
+    return program
 
 
 def moment(program: Program) -> tuple[Any, ...]:

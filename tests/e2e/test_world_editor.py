@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -18,26 +17,12 @@ HEAD = """(k) => { const head = document.querySelectorAll("#plan .head")[k], box
     return [head.querySelector("title").textContent, box.left + box.width / 2, box.top + box.height / 2]; }"""
 
 
-@pytest.fixture(scope="module")
-def own(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("own")
-
-
-@pytest.fixture(scope="module")
-def started(own: Path) -> Iterator[Program]:
-    with pytest.MonkeyPatch.context() as environment:
-        environment.setenv("RATSLAM_WORLDS", str(own))
-        made = Program("--port", "0", "--seed", "5", "--paused")
-    yield made
-    assert made.stop() == 0
-
-
 @pytest.fixture
-def program(started: Program) -> Program:
+def program(one_program: Program) -> Program:
     """The program in the office that comes with it, whatever was drawn before."""
-    started.command("reset", world="loop")
-    started.command("reset", world="office")
-    return started
+    one_program.command("reset", world="loop")
+    one_program.command("reset", world="office", seed=5)
+    return one_program
 
 
 def test_a_wall_is_drawn_undone_redone_saved_and_downloaded(program, browser, own):

@@ -182,6 +182,16 @@ def test_a_deleted_world_goes_on_until_another_is_opened(
     assert snapshot(engine).office.saved
 
 
+def test_a_world_whose_file_came_while_the_program_ran_is_opened_by_its_name(
+    start: Callable[..., EngineThread], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("RATSLAM_WORLDS", str(tmp_path))
+    engine = start()
+    own_worlds.save("late", world_to_json(replace(room(start=(2.0, 2.0, 0.0)), name="late")))
+    opened = accept(engine, m.Reset(type="reset", world="late"))
+    assert (opened.world.name, "late" in dict(opened.worlds)) == ("late", True)
+
+
 def test_a_saved_world_that_is_spoilt_is_refused(
     start: Callable[..., EngineThread], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -62,8 +62,10 @@ def apart(a: End, b: End) -> tuple[float, float]:
 
 @pytest.mark.parametrize(
     ("world", "preset", "front_end", "rate"),
-    [("office", "ours", "", 20), ("office", "ours", "", 30), ("office", "ours", "", 60), ("loop", "ours", "", 60),
-     ("office", "paper-2006", "scene numbers", 30), ("office", "paper-2006", "", 20)],
+    [("office", "ours", "", 60), ("office", "paper-2006", "", 20),
+     *(pytest.param(*each, marks=pytest.mark.long) for each in (
+         ("office", "ours", "", 20), ("office", "ours", "", 30), ("loop", "ours", "", 60),
+         ("office", "paper-2006", "scene numbers", 30)))],
 )  # fmt: skip
 def test_at_a_faster_rate_the_engine_does_the_same(world: str, preset: str, front_end: str, rate: int) -> None:
     usual, fast = end(world, preset, front_end, 10), end(world, preset, front_end, rate)
