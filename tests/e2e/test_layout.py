@@ -462,6 +462,16 @@ def test_enlarged_four_times_the_page_is_scrolled_and_nothing_lies_over_the_plat
         expect(page.locator("#panel")).to_be_in_viewport(ratio=0.99)
 
 
+def test_a_window_that_is_widened_while_presenting_as_on_a_projector_shows_no_panel(
+    program: Program, browser: Browser
+) -> None:
+    with open_page(browser, program.url, 820, 700, stage=False) as page, in_a_lesson_before_a_class(program, page):
+        for size in at_each(page, [(820, 700), (1280, 720)]):
+            expect(page.locator("#panel")).to_be_hidden()
+            quiet(page)
+            assert boxes(page) == [], size
+
+
 A_GAP = 12  # pixels; between what may touch
 
 

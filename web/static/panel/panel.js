@@ -59,7 +59,7 @@ export class Panel {
     this.build();
     this.open("Senses");
     this.show(this.shown);
-    narrow.addEventListener("change", () => this.show(!narrow.matches));
+    narrow.addEventListener("change", () => this.show(!narrow.matches && document.body.dataset.presenter !== "true"));
     document.addEventListener("visibilitychange", () => this.tell());
     link.on("hello", () => {
       this.told.clear(); // a new connection: the server sends everything again
