@@ -50,6 +50,7 @@ def test_every_kind_that_a_file_may_name_is_drawn():
 
 
 @pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("spec", SPECS, ids=NAMES)
 def test_a_figure_is_the_same_file_each_time(spec):
     first, again = draw(spec, material(traced=True)), draw(spec, material(traced=True))

@@ -136,9 +136,12 @@ def test_looking_back_pauses_and_changes_nothing(player: Player) -> None:
     assert engine.shown.session.state_hash() == straight, "the moment is what playing up to it makes"
     with pytest.raises(ValueError, match="this is the past"):
         tell(engine, type="inject_packet", x=3, y=4)
-    tell(engine, type="back_to_now")
-    assert engine.snapshot().tick == 100
-    assert engine.run.session.state_hash() == now
+    for order in ({"type": "back_to_now"}, {"type": "seek", "tick": 100}):  # its last moment is the present
+        tell(engine, **order)
+        assert engine.time.past is None
+        assert engine.snapshot().tick == 100
+        assert engine.run.session.state_hash() == now
+        tell(engine, type="seek", time_s=4.2)
 
 
 def test_the_past_plays_to_the_present_also_at_the_end_of_the_recording(player: Player) -> None:

@@ -77,6 +77,7 @@ def test_any_moment_is_as_it_was(world: str) -> None:
         machine.moment(machine.live, 701)
 
 
+@pytest.mark.long
 def test_keyframes_stay_under_their_budget_and_the_first_is_never_dropped() -> None:
     session = Session(OFFICE, 5)
     history = History(session)

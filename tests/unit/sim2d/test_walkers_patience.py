@@ -43,7 +43,13 @@ def stands(simulator: Simulator, seconds: float) -> list[float]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("least", "most"), [(3.0, 8.0), (0.5, 1.0), (0.0, 4.0), (2.0, 2.0), (6.0, 10.0)])
+@pytest.mark.parametrize(
+    ("least", "most"),
+    [
+        (3.0, 8.0),
+        *(pytest.param(*each, marks=pytest.mark.long) for each in ((0.5, 1.0), (0.0, 4.0), (2.0, 2.0), (6.0, 10.0))),
+    ],
+)
 def test_a_person_is_as_patient_as_is_said(least: float, most: float) -> None:
     """The first time the least, then at random."""
     times = np.array(stands(a_passage(patient(least, most)), 40 * (most + 4)))

@@ -98,6 +98,7 @@ async def visits(made: Dashboard, rounds: int) -> None:
         await asyncio.gather(*(visit(made, number * AT_ONCE + seat) for seat in range(AT_ONCE)))
 
 
+@pytest.mark.long
 def test_a_thousand_connections_leave_no_thread_task_or_file_behind() -> None:
     stage = StubViewer()
     with viser_double(stage), served(StubViewers(stage)) as made:  # type: ignore[arg-type]
