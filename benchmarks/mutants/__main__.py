@@ -22,6 +22,7 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 
@@ -57,9 +58,9 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         kept = args.kept or Path(folder)
         kept.mkdir(parents=True, exist_ok=True)
-        bench = Bench(Trees(kept), kept / "tried.json", args.jobs)
-        survivors = [mutant for room, some in chosen.items() for mutant in bench.room(room, some)]
-        unnoticed = bench.faults() if "faults" in rooms else 0
+        with closing(Bench(Trees(kept), kept / "tried.json", args.jobs)) as bench:
+            survivors = [mutant for room, some in chosen.items() for mutant in bench.room(room, some)]
+            unnoticed = bench.faults() if "faults" in rooms else 0
     if args.json is not None:
         args.json.write_text(json.dumps([asdict(m) for m in survivors], indent=1) + "\n", encoding="utf-8")
     return 1 if unnoticed else 0
@@ -69,8 +70,12 @@ class Bench:
     """Tries faults, several at a time, and says what became of them. What was tried before is not tried again."""
 
     def __init__(self, trees: Trees, file: Path, jobs: int) -> None:
-        self._trees, self._file, self._jobs = trees, file, jobs
+        self._trees, self._file = trees, file
+        self._pool = ThreadPoolExecutor(jobs)  # one for all rooms: each of its threads has a tree
         self._found: dict[str, list[str]] = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+
+    def close(self) -> None:
+        self._pool.shutdown(cancel_futures=True)
 
     def room(self, name: str, mutants: list[Mutant]) -> list[Mutant]:
         """The mutants that nothing noticed."""
@@ -92,11 +97,10 @@ class Bench:
         return len(unnoticed)
 
     def _tried(self, whole: dict[Mutant, tuple[str, ...]]) -> Iterator[tuple[Mutant, list[str]]]:
-        with ThreadPoolExecutor(self._jobs) as pool:
-            tried = {pool.submit(self._found_by, mutant, tests): mutant for mutant, tests in whole.items()}
-            for one in tqdm(as_completed(tried), total=len(tried), unit="fault", mininterval=10, file=sys.stderr):
-                yield tried[one], one.result()
-                self._file.write_text(json.dumps(self._found, indent=1), encoding="utf-8")
+        tried = {self._pool.submit(self._found_by, mutant, tests): mutant for mutant, tests in whole.items()}
+        for one in tqdm(as_completed(tried), total=len(tried), unit="fault", mininterval=10, file=sys.stderr):
+            yield tried[one], one.result()
+            self._file.write_text(json.dumps(self._found, indent=1), encoding="utf-8")
 
     def _found_by(self, mutant: Mutant, whole: tuple[str, ...]) -> list[str]:
         key = repr(mutant)
