@@ -49,7 +49,7 @@ class Covering:
             (quick if total <= QUICK_S or not quick else rest).append(node)
             if total > MOST_S:
                 break
-        return Tests(quick, min(total, QUICK_S)), Tests(rest, total)
+        return Tests(quick, sum(self._seconds.get(node, 0.0) for node in quick)), Tests(rest, total)
 
     def _running(self, mutant: Mutant) -> set[str]:
         if mutant.file not in self._contexts:
