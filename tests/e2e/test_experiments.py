@@ -1,4 +1,4 @@
-"""The gallery of experiments in a real browser: one is watched, a cell and a dot are clicked, and the trial plays."""
+"""Trials that were stored: a cell and a dot are clicked, and the trial plays; one is opened from the command line."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.experiments.store import Store
 from app.trials.chosen import chosen_trial
 from app.trials.experiment import find_experiment
 from app.trials.trial import Result, Trial, run_trial
-from tests.e2e.browser import NO_STAGE, open_page, told, until
+from tests.e2e.browser import open_page, told, until
 from tests.e2e.program import Program
 
 SAYS = "(words) => document.getElementById('trial').innerText.includes(words)"
@@ -53,32 +53,6 @@ def trials_of_the_table(page: Page) -> None:
     page.keyboard.press("g")
     page.click(".card[data-name=table] .trials")
     page.wait_for_selector("#one-grid .cell")
-
-
-def test_one_is_watched_and_an_order_of_ones_own_ends_it(stored: Program, browser) -> None:
-    with open_page(browser, stored.url, stage=False) as page:
-        page.click("#experiments")
-        card = page.locator(".card[data-name=table]")
-        expect(card.locator("h3")).to_have_text(TABLE.title)
-        expect(card.locator(".asks")).to_have_text(TABLE.asks)
-        card.locator("select").select_option("paper")
-        card.locator(".go").click()
-        told(page, f"Watching: {TABLE.title}.")
-        assert page.evaluate("() => !document.getElementById('gallery-dialog').open")
-        for words in ("Experiment table", "the paper's rules", "exploring", "of about 22:00"):
-            until(page, SAYS, argument=words)
-        state = stored.wait(lambda state: state["time_s"] > 0.3)
-        assert state["running"]
-        assert (state["trial"]["engine"], state["trial"]["levels"]) == ("paper", ["0 %", "64 x 64"])
-        page.click("#kidnap")
-        until(page, SAYS, argument="ended: somebody carried the robot away")
-        page.click("#trial-again")
-        until(page, SAYS, argument="exploring")
-        page.click("#trial-close")
-        expect(page.locator("#trial")).to_be_hidden()
-        stored.command("reset", seed=3)
-        stored.wait(lambda state: state["trial"] is None)
-        stored.command("pause")
 
 
 @pytest.mark.long
@@ -124,75 +98,3 @@ def test_a_stored_trial_is_opened_at_its_moment(browser, ran: tuple[Path, Ran]) 
         assert (state["trial"]["id"], state["trial"]["title"], state["speed"]) == (trial.id, TABLE.title, 1.0)
         told(page, "The trial is over: 0 of 3 goals reached.")
     assert opened.stop() == 0
-
-
-@pytest.mark.long
-def test_going_to_a_moment_can_be_broken_off(stored: Program, browser) -> None:
-    with open_page(browser, stored.url, stage=False) as page:
-        stored.command("watch_experiment", experiment="table", moment_s=1300.0)
-        until(page, SAYS, argument="going to the moment")
-        page.click("#trial-here")
-        until(page, SAYS, argument="exploring")
-        state = stored.wait(lambda state: state["trial"]["ahead"] is None)
-        assert (state["running"], state["trial"]["state"]) == (True, "running")
-        assert state["time_s"] < 1290
-        stored.command("pause")
-
-
-@pytest.mark.long
-def test_by_keyboard_alone_there_and_back(stored: Program, browser) -> None:
-    with open_page(browser, stored.url, stage=False) as page:
-        trials_of_the_table(page)
-        assert page.evaluate("() => document.activeElement.id") == "gallery-back"
-        page.keyboard.press("Enter")
-        assert page.evaluate("() => document.activeElement.className") == "trials"
-        page.keyboard.press("Escape")
-        assert page.evaluate("() => !document.getElementById('gallery-dialog').open")
-
-
-@pytest.mark.long
-def test_a_refusal_is_said_where_one_looks(stored: Program, browser) -> None:
-    with open_page(browser, stored.url, stage=False) as page:
-        page.route("**/api/experiments", lambda route: _renamed(route))
-        page.keyboard.press("g")
-        page.click(".card >> nth=0 >> .go")
-        expect(page.locator("#gallery-wrong")).to_contain_text("There is no experiment 'castle'; expected one of: ")
-        assert page.evaluate("() => document.getElementById('gallery-dialog').open")
-
-
-@pytest.mark.long
-def test_who_waits_is_told_for_what(stored: Program, browser) -> None:
-    """The engine may still be compiled when the first experiment is asked for."""
-    held, pages = [], []
-
-    def slow(socket) -> None:
-        server = socket.connect_to_server()
-        pages.append(socket)
-        socket.on_message(lambda text: held.append(text) if "watch_experiment" in text else server.send(text))
-        server.on_message(lambda text: None if text[:16] == '{"type":"state",' else socket.send(text))
-        held.append(server)
-
-    with browser.new_context() as context:
-        page = context.new_page()
-        page.route("**/viser/**", lambda route: route.fulfill(content_type="text/html", body=NO_STAGE))
-        page.route_web_socket("**/api/stream**", slow)
-        page.goto(stored.url)
-        page.keyboard.press("g")
-        page.click(".card[data-name=table] .go")
-        words = page.locator("#gallery-wait")
-        expect(words).to_contain_text("It begins in a moment.")
-        pages[0].send('{"type":"waking","doing":"compiling the engine"}')
-        expect(words).to_contain_text("First the engine wakes up: compiling the engine.")
-        page.click(".card[data-name=table] .go")  # once is enough
-        server, *asked = held
-        assert len(asked) == 1
-        server.send(asked[0])
-        until(page, "() => !document.getElementById('gallery-dialog').open")
-        expect(words).to_be_hidden()
-
-
-def _renamed(route) -> None:
-    answer = route.fetch()
-    cards = answer.json()
-    cards[0]["name"] = "castle"
-    route.fulfill(response=answer, json=cards)

@@ -1,4 +1,4 @@
-"""The first visit: what this is, three things to do, done by doing them; the help; places chosen from a list by keyboard."""
+"""The first visit: what this is, three things to do, done by doing them; and a presenter."""
 
 from __future__ import annotations
 
@@ -35,6 +35,7 @@ def is_done(page: Page, row: int) -> None:
     until(page, f"() => ({STATES})()[{row}] === 'done'")
 
 
+@pytest.mark.long
 def test_a_newcomer_sends_it_and_sees_a_kidnap_through(fresh, browser) -> None:
     with open_page(browser, fresh.url, first=True) as page:
         card = page.locator("#first")
@@ -68,44 +69,6 @@ def test_a_newcomer_sends_it_and_sees_a_kidnap_through(fresh, browser) -> None:
         expect(card).to_be_visible()
     fresh.command("pause")  # or it would go on as fast as it can beside all that follows
     fresh.command("set_speed", factor=1)
-
-
-def test_a_place_is_chosen_from_a_list_by_keyboard_and_told_aloud(fresh, browser) -> None:
-    with open_page(browser, fresh.url, stage=False) as page:
-        fresh.command("reset", seed=5)
-        fresh.command("step", ticks=250)
-        fresh.command("tag", name="the printer")
-        page.keyboard.press("/")
-        expect(page.locator("#places-typed")).to_be_focused()
-        rows = page.locator("#places-list li")
-        expect(rows.first).to_contain_text("the printer")
-        assert rows.count() > 5
-        page.keyboard.type("the print")
-        expect(rows).to_have_count(1)
-        page.keyboard.press("Enter")
-        expect(page.locator("#places-dialog")).to_be_hidden()
-        until(page, "() => !document.getElementById('goal').hidden")
-        until(page, "() => document.getElementById('said').textContent.includes('goal set')")
-        page.keyboard.press("x")
-        page.keyboard.press("/")
-        unknown = rows.filter(has_text="library")
-        expect(unknown).to_contain_text("the robot has not been near it yet")
-        expect(unknown.locator("button")).to_have_attribute("aria-disabled", "true")
-        page.keyboard.type("library")
-        page.keyboard.press("Enter")  # nothing is given: it stays open
-        expect(page.locator("#places-dialog")).to_be_visible()
-        page.locator("#places-typed").fill("")
-        rows.filter(has_text="Experience").first.locator("text=Inspect").focus()
-        page.keyboard.press("Enter")
-        expect(page.locator("#panel [role=tab][aria-selected=true]")).to_have_text("Inspect")
-
-
-@pytest.mark.long
-def test_the_help_lists_the_keys_by_group(fresh, browser) -> None:
-    with open_page(browser, fresh.url, stage=False) as page:
-        page.keyboard.press("?")
-        expect(page.locator("#keys h4")).to_have_text(["Robot", "Time", "Looking", "Presenter", "Page"])
-        expect(page.locator("#keys li", has_text="kidnap").locator("kbd")).to_have_text("k")
 
 
 @pytest.mark.long

@@ -1,4 +1,4 @@
-"""Inspection in a real browser: clicks that inspect, a tick stage by stage, brains uploaded and downloaded."""
+"""Clicks on the plates that inspect; brains downloaded and uploaded."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.browser import box_of, on_screen, open_page, show, told, until
+from tests.e2e.browser import on_screen, open_page, show, told, until
 from tests.e2e.program import Program
 from tests.e2e.test_dashboard import node_on_stage
 from web.messages import Packet
@@ -28,11 +28,6 @@ def walked(program) -> Program:
 
 def selected(page: Page, tab: str) -> None:
     expect(page.get_by_role("tab", name=tab, exact=True)).to_have_attribute("aria-selected", "true")
-
-
-def open_tab(page: Page, tab: str) -> None:
-    page.get_by_role("tab", name=tab, exact=True).click()
-    selected(page, tab)
 
 
 def says(page: Page, words: str | re.Pattern[str]) -> None:
@@ -70,53 +65,6 @@ def test_a_click_with_shift_on_the_map_and_a_click_into_the_pose_cells_inspect(w
         assert len(walked.state()["pose_cells"]["packets"]) == 2
 
 
-@pytest.mark.long
-def test_a_click_on_a_view_shows_it_beside_what_is_seen_now(walked, browser):
-    with open_page(browser, walked.url, stage=False) as page:
-        page.get_by_role("button", name="Inspect the stored view").click()
-        selected(page, "Inspect")
-        says(page, "as it is stored")
-        open_tab(page, "Senses")
-        strip = box_of(page.get_by_role("slider", name="Local view cells"))
-        page.mouse.click(strip["x"] + 3, strip["y"] + 3)
-        selected(page, "Inspect")
-        says(page, re.compile(r"^#0$"))
-        open_tab(page, "Senses")
-        page.get_by_role("slider", name="Local view cells").focus()
-        page.keyboard.press("ArrowRight")
-        page.keyboard.press("Enter")
-        selected(page, "Inspect")
-        next_square = -(-walked.state()["views"] // 204)  # a square stands for this many views
-        says(page, re.compile(rf"^#{next_square}$"))
-
-
-@pytest.mark.long
-def test_a_tick_is_walked_through_by_key_and_by_button(walked, browser):
-    walked.command("pause")
-    with open_page(browser, walked.url, stage=False) as page:
-        tick = walked.state()["tick"]
-        page.keyboard.press(",")
-        expect(page.locator("#walk")).to_be_visible()
-        titles = []
-        for k in range(1, 10):
-            expect(page.locator("#walk .which")).to_have_text(f"{k} of 9")
-            titles.append(page.locator("#walk .title").inner_text())
-            if k < 9:
-                page.click("#walk-next")
-        assert titles == [
-            "Image and odometry", "View match", "Path integration", "Injection by the view", "Excitation", "Inhibition",
-            "Normalisation", "Experience choice", "Map correction",
-        ]  # fmt: skip
-        assert walked.state()["tick"] == tick + 1
-        page.click("#walk-back")
-        expect(page.locator("#walk .title")).to_have_text("Experience choice")
-        open_tab(page, "Tick")
-        says(page, "Stage 8 of 9")
-        says(page, re.compile(r"^A tick takes [\d.]+ of its 100 ms$"))
-        page.keyboard.press(".")
-        expect(page.locator("#walk")).to_be_hidden()
-
-
 def test_a_brain_goes_down_to_a_file_and_comes_up_again(walked, browser, tmp_path: Path):
     walked.command("pause")
     known = walked.state()["experiences"]
@@ -139,25 +87,3 @@ def test_a_brain_goes_down_to_a_file_and_comes_up_again(walked, browser, tmp_pat
         told(page, "Started anew with the brain")
         after = walked.wait(lambda state: state["tick"] == 0)
         assert after["experiences"] >= known
-
-
-@pytest.mark.long
-def test_why_a_loop_closed_or_the_packet_snapped_is_told(walked, browser):
-    walked.command("set_parameter", name="local_view.false_positives", value=0.2)
-    walked.command("step", ticks=100)
-    walked.command("set_parameter", name="local_view.false_positives", value=0.0)
-    with open_page(browser, walked.url) as page:
-        open_tab(page, "Inspect")
-        page.get_by_role("tabpanel").get_by_role("button", name=re.compile(r"^false positive \d")).first.click()
-        says(page, "What led to it")
-        says(page, re.compile(r"^\d+:\d\d view \d+ is reported instead: 20%"))
-        expect(page.get_by_role("img", name=re.compile("^the tick before: packet "))).to_be_visible()
-        expect(page.locator("#panel .seen canvas")).to_have_count(2)
-        page.locator("#panel .seen").get_by_role("button").first.click()
-        says(page, "local view cell")
-        page.get_by_role("tabpanel").get_by_role("button", name=re.compile(r"^false positive \d")).first.click()
-        before = walked.state()["tick"]
-        page.get_by_role("button", name="Go on without this view").click()
-        walked.wait(lambda state: state["tick"] < before)
-        says(page, "Why did it happen?")
-    walked.command("set_parameter", name="local_view.false_positives", value=0.0)  # it was not yet, there

@@ -103,35 +103,6 @@ def test_a_toast_stands_beneath_the_plates(fake, browser) -> None:
 
 
 @pytest.mark.long
-def test_a_click_or_escape_takes_a_toast_away(fake, browser) -> None:
-    with open_page(browser, fake[1], stage=False) as page:
-        for words in ("One.", "Two.", "Three.", "Two."):
-            page.evaluate(SAY, [words, {"stays": True, "bad": words == "One."}])
-        page.click(".toast:has-text('One.')")
-        assert toasts(page) == ["Three.", "Two."]  # the same sentence only once
-        while "Two." in toasts(page):  # the message about the graphics card may have come last
-            page.keyboard.press("Escape")
-            assert "Three." in toasts(page)
-        page.click(".toast:has-text('Three.') button")
-        assert toasts(page) == []
-        roles = {kind: page.get_attribute(f"#{kind}", "role") for kind in ("alerts", "toasts")}
-        assert roles == {"alerts": "alert", "toasts": "status"}
-
-
-@pytest.mark.long
-def test_an_unreachable_goal_and_a_fault_are_told_to_everyone(fake, browser) -> None:
-    engine, url = fake
-    with open_page(browser, url, stage=False) as one, open_page(browser, url, 390, 844, stage=False) as two:
-        engine.note("unreachable", "no way to experience 12 is known; exploring for one")
-        engine.shown = {"fault": "ZeroDivisionError: division by zero", "running": False}
-        for page in (one, two):
-            told(page, "No way to experience 12 is known")
-            told(page, "division by zero")
-        engine.shown = {}
-        one.wait_for_selector("#alerts .toast:has-text('division by zero')", state="detached")
-
-
-@pytest.mark.long
 def test_what_the_stage_refuses_is_told_to_whoever_did_it(program, browser) -> None:
     with open_page(browser, program.url, stage=False):  # a page that is alive has a state
         state = program.state()

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import cv2
 import numpy as np
-import pytest
 from playwright.sync_api import Browser, Page
 
 from sim2d import load_world
@@ -17,13 +14,6 @@ from web.viewer.fits.office_fit import OfficeFit
 from web.viewer.plates.office_plate import ORIGIN
 
 NEAR_PX = 90
-
-
-@pytest.fixture(scope="module")
-def office() -> Iterator[Program]:
-    made = Program("--port", "0", "--seed", "5", "--preset", "ideal")
-    yield made
-    assert made.stop() == 0
 
 
 def around(page: Page, robot: dict[str, float]) -> np.ndarray:
@@ -38,15 +28,11 @@ def around(page: Page, robot: dict[str, float]) -> np.ndarray:
 
 
 def test_the_candidate_movements_are_drawn_around_the_robot_while_they_are_switched_on(
-    office: Program, browser: Browser
+    program: Program, browser: Browser
 ) -> None:
-    office.command("pause")
-    office.command("reset", seed=5)
-    office.command("pause")
-    office.command("step", ticks=40)  # it follows the wall, and 6 of 47 movements are blocked
-    office.wait(lambda state: state["tick"] == 40)
-    robot = office.state()["robot"]
-    with open_page(browser, office.url) as page:
+    program.command("step", ticks=40)  # it follows the wall, and 6 of 47 movements are blocked
+    robot = program.state()["robot"]
+    with open_page(browser, program.url) as page:
         show(page, "office")
         page.get_by_role("tab", name="Memory").click()
         switch = page.get_by_label("Candidate movements")

@@ -77,30 +77,6 @@ def test_a_file_is_saved_and_dropped(program: Program, browser: Browser, tmp_pat
         expect(page.locator("#open-dialog")).to_be_hidden()
 
 
-def test_what_is_no_link_is_said(program: Program, browser: Browser) -> None:
-    before = program.state()
-    with open_page(browser, program.url, stage=False, refused=True) as page:
-        page.goto(f"{program.url}#run=nonsense")
-        told(page, "The link cannot be opened. The link is damaged")
-    assert program.state()["tick"] == before["tick"]
-
-
-@pytest.mark.long
-def test_one_that_is_long_can_be_left(program: Program, browser: Browser, tmp_path: Path) -> None:
-    with open_page(browser, program.url, stage=False) as page:
-        tick = program.state()["tick"]
-        with page.expect_download() as loading:
-            keep(page, "Save this situation to a file")
-        document = json.loads(Path(loading.value.path()).read_text())
-        file = tmp_path / "long.situation.json"
-        file.write_text(json.dumps({**document, "tick": 5_000_000}))
-        page.set_input_files("#open-files", file)
-        expect(page.locator("#situation")).to_contain_text("of 5,000,000")
-        page.click("#situation-leave")
-        expect(page.locator("#situation-leave")).to_be_hidden()
-        program.wait(lambda state: state["tick"] == tick and not state["running"])
-
-
 @pytest.mark.long
 def test_the_command_line_opens_it(program: Program, browser: Browser) -> None:
     with open_page(browser, program.url, stage=False) as page:

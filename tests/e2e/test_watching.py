@@ -63,6 +63,7 @@ def dragged(page, start: tuple[float, float], end: tuple[float, float]) -> None:
     page.mouse.up()
 
 
+@pytest.mark.long
 def test_keys_clicks_drags_and_requests_change_nothing(drawn, browser):
     with open_page(browser, f"{drawn.url}?watch", forbidden=True) as page:
         until(page, "() => document.querySelector('#events').textContent !== ''")
@@ -94,38 +95,6 @@ def test_keys_clicks_drags_and_requests_change_nothing(drawn, browser):
             drawn.wait(lambda state: state["goal"] is not None)
         expect(page.locator("#goal")).to_be_visible()
         drawn.command("cancel_goal")
-
-
-@pytest.mark.long
-def test_it_shows_what_the_main_page_shows(drawn, browser):
-    clock = "() => document.getElementById('clock').textContent"
-    with (
-        open_page(browser, drawn.url, stage=False) as main,
-        open_page(browser, f"{drawn.url}?watch", stage=False) as page,
-    ):
-        assert page.evaluate(clock) == main.evaluate(clock)
-        drawn.command("seek", time_s=30)
-        for one in (page, main):
-            expect(one.locator("#past")).to_contain_text("0:30")
-        assert page.evaluate(clock) == main.evaluate(clock) == "0:30"
-        main.keyboard.press("n")
-        expect(page.locator("#past")).to_be_hidden()
-        main.keyboard.press("z")
-        expect(page.locator("body")).to_have_attribute("data-presenter", "true")
-        expect(page.locator("#presenter-bar")).to_be_hidden()
-        main.keyboard.press("z")
-        expect(page.locator("body")).to_have_attribute("data-presenter", "false")
-        drawn.command("begin_lesson", name="packet")
-        expect(page.locator("#lesson-title")).to_have_text(main.locator("#lesson-title").inner_text())
-        drawn.wait(lambda state: state["lesson"]["state"] == "predict")
-        expect(page.locator(".option input").first).to_be_disabled()
-        drawn.command("predict", choice=1)
-        until(page, "() => document.querySelectorAll('.option input')[1].checked")
-        assert (
-            page.locator("#lesson button:visible:not(.symbols *)").all_inner_texts() == []
-        )  # a symbol shows its parameter
-        drawn.command("end_lesson")
-        expect(page.locator("#lesson")).to_be_hidden()
 
 
 @pytest.mark.long

@@ -9,6 +9,7 @@ from web.switches import Switches
 from web.throttle import Throttle
 from web.viewer.beside import Beside
 from web.viewer.fits.judged import judged
+from web.viewer.fits.map_fit import MapFit
 from web.viewer.fits.overlaid import Overlaid, overlaid
 from web.viewer.judged_layers import JudgedLayers
 from web.viewer.occupancy_artist import OccupancyArtist
@@ -36,6 +37,7 @@ class Layers:
         self._scenery, self._beside, self._judged, self._replay = scenery, beside, judged, replay
         self._pointer, self._switches = pointer, switches
         office, cells, map_plate = scenery.office, scenery.cells, scenery.map
+        self._run = 0
         self._artist = OccupancyArtist(map_plate, switches, post)
         self._layers: dict[str, Throttle] = {
             "world": Throttle(5, office.set_world),
@@ -112,7 +114,7 @@ class Layers:
 
     def _draw_on_map(self, snapshot: Snapshot, now_s: float) -> None:
         offer = self._layers
-        offer["map"].offer(now_s, snapshot.map, snapshot.map_turn_rad)
+        offer["map"].offer(now_s, snapshot.map, snapshot.map_turn_rad, snapshot.run)
         offer["times"].offer(now_s, snapshot.times)
         offer["estimate"].offer(now_s, snapshot.estimate)
         offer["other"].offer(now_s, snapshot.belief.other if snapshot.belief else None)
@@ -121,7 +123,9 @@ class Layers:
         offer["places"].offer(now_s, snapshot.places)
         offer["closures"].offer(now_s, judged(snapshot, self._switches.on).closures, snapshot.map, snapshot)
 
-    def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
+    def _draw_map(self, layer: MapLayer, turn_rad: float, run: int) -> None:
+        if run != self._run:  # its map lies as if there had been none before
+            self._run, self._scenery.map.fit = run, MapFit()
         if self._scenery.map.set_map(layer, turn_rad):
             self.forget("inspected", "lesson", *ON_MAP)
             self._judged.forget()

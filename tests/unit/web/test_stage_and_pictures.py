@@ -126,3 +126,12 @@ def test_names_of_known_places_are_on_both(stage: Bench) -> None:
     known = crowded()
     for found in (on_stage, in_pictures):
         assert "map" in differing(found(stage, known), found(stage, replace(known, places=())))
+
+
+def test_the_map_of_a_new_run_lies_the_same_whatever_was_shown_before(stage: Bench) -> None:
+    seen = []
+    for run, size in enumerate((0.9, 1.1), start=900):
+        layer = replace(PLAIN.map, xy=PLAIN.map.xy * np.float32(size))
+        on_stage(stage, replace(PLAIN, map=layer, run=run))
+        seen.append(on_stage(stage, replace(PLAIN, run=run + 10))["map"]["/map/nodes_0"])
+    assert seen[0] == seen[1]

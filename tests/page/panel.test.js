@@ -1,0 +1,242 @@
+// The side panel: what its tabs tell, its controls and its keys.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { fresh, open } from "./page.js";
+import { command, post, state, until } from "./program.js";
+
+/** @typedef {import("./page.js").Page} Page */
+
+/** Half a minute of exploring, paused. @param {(page: Page) => Promise<void>} use */
+const walked = (use) =>
+  fresh(async (page) => {
+    await command("step", { ticks: 300 });
+    await use(page);
+  });
+
+/** @param {Page} page */
+const knobs = (page) => page.all("#panel .knob").filter((knob) => knob.checkVisibility());
+
+test("every tab shows something", () =>
+  walked(async (page) => {
+    for (const [name, words] of [
+      ["Senses", "local view cells"],
+      ["Memory", "links of the goal memory"],
+      ["Inspect", "Nothing is chosen"],
+      ["Tick", "of its 100 ms"],
+      ["Truth", "map error, after alignment"],
+      ["Office", "preset"],
+      ["Tune", "parameters"],
+    ])
+      await page.says(await page.tab(name), words);
+    await page.says(await page.tab("Senses"), `of ${(await state()).views})`);
+    await page.says(
+      await page.tab("Memory"),
+      "where the winning packet was (start) and where the views brought it (finish)",
+    );
+  }));
+
+test("a parameter is found, turned and set back; what is wrong with one is said", () =>
+  walked(async (page) => {
+    const tune = await page.tab("Tune");
+    await until("they have come", () => knobs(page).length > 5);
+    await page.fill(`${tune} [type=search]`, "match threshold");
+    const knob = knobs(page)[0];
+    const field = knob.querySelector("input");
+    const back = knob.querySelector("button");
+    const was = field.value;
+    await page.fill(field, "7.5");
+    await page.says("#events", "match_threshold");
+    await page.click(back);
+    await until("it is as before", () => field.value === was && !back.checkVisibility());
+    await page.fill(field, "-3");
+    await page.told("match_threshold"); // why not
+    await until("it is as before", () => field.value === was);
+    await page.fill(`${tune} [type=search]`, "no such thing");
+    await page.says(`${tune} [role=status]`, "nothing is called “no such thing”");
+    await page.fill(`${tune} [type=search]`, "takes effect at reset");
+    assert.ok(knobs(page).length > 3);
+    assert.ok(knobs(page).every((one) => one.querySelector("[role=img]")));
+  }));
+
+test("what somebody types stays typed", () =>
+  walked(async (page) => {
+    const tune = await page.tab("Tune");
+    await until("they have come", () => knobs(page).length > 5);
+    await page.fill(`${tune} [type=search]`, "match threshold");
+    const field = knobs(page)[0].querySelector("input");
+    field.focus();
+    field.value = "1";
+    field.dispatchEvent(new page.window.Event("input", { bubbles: true }));
+    await command("set_parameter", { name: "local_view.match_threshold", value: 5 });
+    await page.says("#events", "match_threshold");
+    await command("step");
+    await page.says("#clock", "0:30");
+    assert.equal(field.value, "1");
+    await page.fill(field, "5");
+    await command("set_parameter", { name: "local_view.match_threshold", value: 4 });
+    await until("it follows again", () => field.value === "4");
+    await page.click(knobs(page)[0].querySelector("button"));
+    await until("it is the default", () => !knobs(page)[0].querySelector("button").checkVisibility());
+  }));
+
+test("a switch is on for all who look", () =>
+  walked(async (page) => {
+    const switchOf = (/** @type {Page} */ one) =>
+      one
+        .all("#panel-memory label")
+        .find((label) => label.textContent.includes("Occupancy among the pose cells"))
+        ?.querySelector("input");
+    await page.tab("Memory");
+    await open(async (other) => {
+      await other.tab("Memory");
+      await until("both have it", () => switchOf(page) && switchOf(other));
+      assert.ok(!switchOf(other).checked);
+      switchOf(page).click();
+      await until("it is on there too", () => switchOf(other).checked);
+      switchOf(other).click();
+      await until("it is off here too", () => !switchOf(page).checked);
+    });
+  }));
+
+test("a key drives although a switch has been clicked", () =>
+  walked(async (page) => {
+    await page.tab("Memory");
+    const goal = () =>
+      page
+        .all("#panel-memory label")
+        .find((label) => label.textContent.includes("Goal memory"))
+        ?.querySelector("input");
+    await until("it is there", goal);
+    await page.click(goal());
+    await command("resume");
+    page.down("ArrowLeft");
+    await until("it is driven", async () => (await state()).mode === "manual");
+    page.up("ArrowLeft");
+    await command("pause");
+    await page.click(goal());
+  }));
+
+test("a tick goes stage by stage from the panel, and over the page", () =>
+  walked(async (page) => {
+    const panel = await page.tab("Tick");
+    await page.push("next stage", panel);
+    await page.says(panel, "Stage 1 of 9");
+    await page.push("next stage", panel);
+    await page.says(`${panel} [aria-current]`, "View match");
+    await page.push("back", panel);
+    await page.says(`${panel} [aria-current]`, "Image and odometry");
+    await page.push("tick", panel);
+    await page.says(panel, "Press next stage");
+
+    const { tick } = await state();
+    page.press(",");
+    const titles = [];
+    for (let k = 1; k <= 9; k++) {
+      await page.says("#walk .which", `${k} of 9`);
+      titles.push(page.text("#walk .title"));
+      if (k < 9) await page.click("#walk-next");
+    }
+    assert.deepEqual(titles, [
+      "Image and odometry",
+      "View match",
+      "Path integration",
+      "Injection by the view",
+      "Excitation",
+      "Inhibition",
+      "Normalisation",
+      "Experience choice",
+      "Map correction",
+    ]);
+    assert.equal((await state()).tick, tick + 1);
+    await page.click("#walk-back");
+    await page.says("#walk .title", "Experience choice");
+    await page.says(panel, "Stage 8 of 9");
+    await page.says(panel, /A tick takes [\d.]+ of its 100 ms/);
+    page.press(".");
+    await until("it is over", () => !page.shown("#walk"));
+  }));
+
+test("a stored view is shown beside what is seen now, by click and by key", () =>
+  walked(async (page) => {
+    const inspecting = () => page.text("#panel [role=tab][aria-selected=true]") === "Inspect";
+    await page.push("Inspect the stored view");
+    await until("Inspect is open", inspecting);
+    await page.says("#panel-inspect", "as it is stored");
+    await page.tab("Senses");
+    page.find("#panel-senses [role=slider]").focus();
+    page.press("ArrowRight");
+    page.press("Enter");
+    await until("Inspect is open", inspecting);
+  }));
+
+test("why a false positive came is told, and left out", () =>
+  walked(async (page) => {
+    const wrong = (/** @type {number} */ value) =>
+      command("set_parameter", { name: "local_view.false_positives", value });
+    await wrong(0.2);
+    await command("step", { ticks: 100 });
+    await wrong(0);
+    const inspect = await page.tab("Inspect");
+    await page.push("false positive", inspect);
+    await page.says(inspect, "What led to it");
+    await page.says(inspect, /\d+:\d\d view \d+ is reported instead: 20%/);
+    assert.equal(page.all("#panel .seen canvas").length, 2);
+    await page.click("#panel .seen button");
+    await page.says(inspect, "local view cell");
+    await page.push("false positive", inspect);
+    const { tick } = await state();
+    await page.push("Go on without this view");
+    await until("it is before that", async () => (await state()).tick < tick);
+    await page.says(inspect, "Why did it happen?");
+    await wrong(0); // it was not yet, there
+  }));
+
+test("arrows go from tab to tab", () =>
+  fresh(async (page) => {
+    page.find("#tab-senses").focus();
+    for (const [key, name] of [
+      ["ArrowRight", "memory"],
+      ["End", "tune"],
+      ["ArrowRight", "senses"],
+      ["ArrowLeft", "tune"],
+      ["Home", "senses"],
+    ]) {
+      page.press(key);
+      assert.equal(page.document.activeElement?.id, `tab-${name}`);
+      assert.ok(page.shown(`#panel-${name}`));
+    }
+    assert.equal(page.all("[role=tab]").filter((tab) => tab.tabIndex === 0).length, 1);
+  }));
+
+test("people, lamps and presets are switched", () =>
+  fresh(async (page) => {
+    await command("reset", { world: "living" });
+    const living = async () => (await state()).living;
+    const turn = async (/** @type {string} */ name) => {
+      const label = () => page.all("#panel-office label").find((one) => one.textContent.trim() === name);
+      await until(`there is a switch for ${name}`, label);
+      await page.click(label().querySelector("input"));
+    };
+    await page.tab("Office");
+    await command("step");
+    assert.equal((await living()).people, 3);
+    for (const people of [0, 3]) {
+      await turn("people");
+      await command("step");
+      await until(`${people} people`, async () => (await living()).people === people);
+    }
+    await turn("hall west");
+    await until("the lamp is off", async () => !(await living()).lamps["hall west"]);
+    assert.ok((await living()).lamps["hall east"]);
+    const preset = "#panel-office [aria-label=preset]";
+    const before = JSON.parse((await post("situation", {})).file).values;
+    await page.choose(preset, "Pioneer 2DXE 2004");
+    await page.says("#events", "preset Pioneer 2DXE 2004");
+    await command("set_parameter", { name: "local_view.field_of_view", value: 1.2 }); // not that of the camera
+    await page.told("robot.camera_fov_rad");
+    await command("reset"); // a situation tells the values of its beginning
+    const now = JSON.parse((await post("situation", {})).file).values;
+    for (const name of Object.keys(now).filter((name) => now[name] !== before[name]))
+      await command("set_parameter", { name, value: before[name] });
+  }));
