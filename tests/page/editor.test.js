@@ -163,7 +163,7 @@ test("lines of the script follow the thing that they are about", () =>
       item: { at_s, do: "close_door", name: "lab" },
     });
     await command("edit_world", { steps: [line(5), line(7)] });
-    await until("it is drawn", () => page.find("#plan .leaf"));
+    await until("the page has both", () => page.all("#script-lines li[data-number]").length === 2);
     click(page, [8.5, 1]);
     await page.fill("#fields [data-key=name]", "kitchen");
     await worldIs("the lines have the new name", ({ script }) =>

@@ -73,7 +73,9 @@ test("what somebody types stays typed", () =>
     await command("step");
     await page.says("#clock", "0:30");
     assert.equal(field.value, "1");
-    await page.fill(field, "5");
+    const turns = () => page.text("#events").split("match_threshold").length - 1;
+    await page.fill(field, "5.5");
+    await until("it is taken", () => turns() === 2);
     await command("set_parameter", { name: "local_view.match_threshold", value: 4 });
     await until("it follows again", () => field.value === "4");
     await page.click(knobs(page)[0].querySelector("button"));

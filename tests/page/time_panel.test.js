@@ -92,6 +92,7 @@ test("lines are added, changed and deleted, and happen", () =>
     assert.ok(Math.abs(daylight - 0.3) < 1e-9);
     await command("step", { ticks: 40 });
     assert.equal((await living()).doors.lab, 0);
+    await page.says("#clock", "0:07");
     await addLine(page, "0:04", "Door opens", "lab");
     await says(page, "That is past; it happens after a restart.");
     await command("step", { ticks: 20 });
