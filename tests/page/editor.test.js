@@ -163,7 +163,9 @@ test("lines of the script follow the thing that they are about", () =>
       item: { at_s, do: "close_door", name: "lab" },
     });
     await command("edit_world", { steps: [line(5), line(7)] });
+    await page.click("#edit-time");
     await until("the page has both", () => page.all("#script-lines li[data-number]").length === 2);
+    await page.click("#time-close");
     click(page, [8.5, 1]);
     await page.fill("#fields [data-key=name]", "kitchen");
     await worldIs("the lines have the new name", ({ script }) =>
