@@ -55,6 +55,7 @@ def pupil(browser: Browser, url: str, faults: list[str]) -> Page:
     return page
 
 
+@pytest.mark.long
 def test_phones_vote_and_the_main_page_shows_the_bars(school, browser):
     faults: list[str] = []
     with open_page(browser, school.url, stage=False) as main:

@@ -21,11 +21,10 @@ from web.viewer.plates.office_plate import ORIGIN as OFFICE_ORIGIN
 
 @pytest.fixture(scope="module")
 def explored(program):
-    """Ten minutes of exploring without a page. Where the settled map lies in the office is kept as pairs of places."""
+    """Seven minutes of exploring without a page. Where the settled map lies in the office is kept as pairs of places."""
     program.command("pause")
     program.command("reset", seed=5)
-    for _ in range(3):
-        program.command("step", ticks=1000)
+    program.command("step", ticks=1000)
     pairs = []  # collected only now, since closing loops bends the map
     for _ in range(120):
         program.command("step", ticks=25)

@@ -12,6 +12,7 @@ from playwright.sync_api import expect
 from tests.e2e.browser import open_page, told, until
 
 
+@pytest.mark.long
 def test_the_map_is_saved_for_other_programs(program, browser, tmp_path: Path):
     program.command("step", ticks=50)
     with open_page(browser, program.url, stage=False) as page:

@@ -65,6 +65,7 @@ def test_a_click_with_shift_on_the_map_and_a_click_into_the_pose_cells_inspect(w
         assert len(walked.state()["pose_cells"]["packets"]) == 2
 
 
+@pytest.mark.long
 def test_a_brain_goes_down_to_a_file_and_comes_up_again(walked, browser, tmp_path: Path):
     walked.command("pause")
     known = walked.state()["experiences"]

@@ -38,6 +38,7 @@ def keep(page: Page, words: str) -> Callable[[], None]:
     return press
 
 
+@pytest.mark.long
 def test_plates_as_vectors(driven: Program, browser: Browser, tmp_path: Path) -> None:
     seconds = driven.state()["tick"] / 10
     with open_page(browser, driven.url, stage=False, light=True) as page:

@@ -76,6 +76,7 @@ def test_it_begins_again_and_the_office_comes_back(playing: Program, browser) ->
         expect(page.locator("[data-view=office]")).to_have_text("Office")
 
 
+@pytest.mark.long
 def test_one_is_dropped_and_a_wrong_one_changes_nothing(playing: Program, browser, film: Path) -> None:
     with open_page(browser, playing.url, stage=False, refused=True) as page:
         page.select_option("#world", "loop")
@@ -93,6 +94,7 @@ def test_one_is_dropped_and_a_wrong_one_changes_nothing(playing: Program, browse
 # ------------------------------------------------------------ going back
 
 
+@pytest.mark.long
 def test_the_timeline_is_dragged_back_and_a_branch_goes_on_from_there(playing: Program, browser, film: Path) -> None:
     with open_page(browser, playing.url, 1280, 800, stage=False) as page:
         page.select_option("#world", "loop")  # or the end would be that of the test before

@@ -28,6 +28,7 @@ def link_from(page: Page, look: Callable[[Page], list[str]] = lambda _page: []) 
     return link
 
 
+@pytest.mark.long
 def test_a_link_is_opened_elsewhere(program: Program, browser: Browser) -> None:
     program.command("step", ticks=100)
     program.command("kidnap", x=2.0, y=6.0)

@@ -16,7 +16,7 @@ from tests.fuzz.messages import MESSAGES
 
 SHARES = {
     "brain state": 60,
-    "brain file": 20,
+    "brain file": 10,
     "session state": 60,
     "session file": 10,
     "recording": 150,

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { fresh, open } from "./page.js";
-import { command, long, state, until } from "./program.js";
+import { command, door, long, state, until } from "./program.js";
 
 /** @typedef {import("./page.js").Page} Page */
 
@@ -29,6 +29,7 @@ test("a lesson from the list to the sandbox, with a class that votes", () =>
     await choose(page, "packet");
     assert.equal(page.document.activeElement?.id, "lesson-title");
     await page.says("#lesson-text", "pose cells");
+    await until("the card shows the address", () => page.find(".vote-link a")?.href === door);
     assert.ok(page.shown("#lesson-formulas math"));
     await open(
       async (pupil) => {
@@ -50,7 +51,7 @@ test("a lesson from the list to the sandbox, with a class that votes", () =>
         await isIn(page, "compared");
         await pupil.says("#vote-said", "It came true");
       },
-      { path: "?vote" },
+      { base: door }, // that of the network
     );
     assert.equal(page.find(".outcome").dataset.tone, "wrong");
     await page.says(".outcome", "8 cells on, and 9 layers lower");

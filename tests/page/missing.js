@@ -12,6 +12,16 @@ export function complete(inside) {
   if (inside.Path2D) return; // this window has them
   Object.assign(inside, { Path2D: class {}, ImageData: class {}, Option: optionOf(inside), createImageBitmap });
   const { HTMLElement, HTMLTableRowElement, HTMLTableSectionElement, WebSocket } = inside;
+  inside.saved = []; // what went down to a file: a Blob each
+  inside.URL = class extends inside.URL {
+    /** @param {Blob} blob */
+    static createObjectURL(blob) {
+      inside.saved.push(blob);
+      return "javascript:void 0";
+    }
+
+    static revokeObjectURL() {}
+  };
   inside.sockets = [];
   inside.WebSocket = class extends WebSocket {
     /** @param {string} address */
@@ -22,12 +32,10 @@ export function complete(inside) {
   };
   inside.asking = 0; // answers that have not come as a whole
   const { fetch, Response } = inside;
-  inside.fetch = async (/** @type {Parameters<typeof fetch>} */ ...wish) => {
+  inside.fetch = async (/** @type {Parameters<typeof globalThis.fetch>} */ ...wish) => {
     inside.asking++;
     try {
-      const answer = await fetch.apply(inside, wish);
-      const { status, headers } = answer;
-      return new Response(status === 204 ? null : await answer.arrayBuffer(), { status, headers });
+      return await Promise.race([whole(fetch.apply(inside, wish), Response), givenUp(wish[1]?.signal ?? undefined)]);
     } finally {
       inside.asking--;
     }
@@ -52,6 +60,17 @@ export function complete(inside) {
     deleteRow: { value: deleteRow },
   });
 }
+
+/** An answer that has come as a whole. @param {Promise<any>} coming @param {any} Response */
+async function whole(coming, Response) {
+  const answer = await coming;
+  const { status, headers } = answer;
+  return new Response(status === 204 ? null : await answer.arrayBuffer(), { status, headers });
+}
+
+/** Fails when the request is given up, also while its answer is coming. @param {AbortSignal} [signal] */
+const givenUp = (signal) =>
+  new Promise((_, fail) => signal?.addEventListener("abort", () => fail(signal.reason ?? new Error("aborted"))));
 
 /** @param {any} kind @param {PropertyDescriptorMap} parts those that it has not already */
 function give({ prototype }, parts) {

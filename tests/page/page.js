@@ -12,9 +12,9 @@ const CODES = { " ": "Space", ".": "Period", ",": "Comma" };
 
 /** One tab of a browser, for as long as `use` takes. Nothing may have gone wrong in it.
  * @param {(page: Page) => Promise<unknown>} use
- * @param {{ path?: string, first?: boolean, kept?: Record<string, string>, expects?: RegExp }} [options]
- *   first: as on a first visit, which is welcomed; kept: what the browser has kept; expects: what may go wrong */
-export async function open(use, { path = "", first = false, kept = {}, expects } = {}) {
+ * @param {{ path?: string, base?: string, first?: boolean, kept?: Record<string, string>, expects?: RegExp }} [options]
+ *   base: another address than the program's; first: as on a first visit, which is welcomed; kept: what the browser has kept; expects: what may go wrong */
+export async function open(use, { path = "", base = url, first = false, kept = {}, expects } = {}) {
   /** @type {string[]} */
   const wrong = [];
   let closing = false; // what is under way then is broken off
@@ -30,21 +30,22 @@ export async function open(use, { path = "", first = false, kept = {}, expects }
       handleDisabledFileLoadingAsSuccess: true,
       fetch: {
         interceptor: {
-          beforeAsyncRequest: async (/** @type {any} */ { request, window }) => answered(request.url, window),
+          beforeAsyncRequest: async (/** @type {any} */ { request, window }) => answered(request, window),
         },
       },
     },
   });
-  const answered = (/** @type {string} */ address, /** @type {any} */ window) => {
+  const answered = (/** @type {any} */ request, /** @type {any} */ window) => {
     complete(window);
+    if (request.method === "POST") request.headers.set("Origin", window.location.origin); // as each browser does
     if (!first) window.localStorage.setItem("first minute", "seen");
     for (const [name, value] of Object.entries(kept)) window.localStorage.setItem(name, value);
-    if (new URL(address).pathname.startsWith("/viser"))
+    if (new URL(request.url).pathname.startsWith("/viser"))
       return new window.Response(NO_STAGE, { headers: { "Content-Type": "text/html" } });
   };
   const tab = browser.newPage();
   try {
-    await tab.goto(url + path);
+    await tab.goto(base + path);
     const page = new Page(tab.mainFrame.window);
     if (page.find("#timeline")) await until("it is alive", () => page.document.body.dataset.alive);
     await use(page);

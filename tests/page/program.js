@@ -1,7 +1,7 @@
 // The real program, one for all of these tests, and its API as a person with curl would use it.
 
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
+import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -15,12 +15,15 @@ const START = `import web.http.asking; web.http.asking.ANSWER_TIMEOUT_S = ${PATI
 from web.http.security import Bucket; Bucket.take = lambda self: True; \
 from app.__main__ import main; raise SystemExit(main())`;
 
+const CLASS = ["--class", "--class-port", "0", "--class-address", "127.0.0.1"];
+
 const place = mkdtempSync(join(tmpdir(), "page-"));
 /** The folder of the worlds that are saved. */
 export const own = join(place, "worlds");
+const interpreter = process.env.PYTHON ?? join(import.meta.dirname, "../../.venv/bin/python");
 const python = spawn(
-  process.env.PYTHON ?? join(import.meta.dirname, "../../.venv/bin/python"),
-  ["-c", START, "run", "--no-browser", "--port", "0", "--seed", "5", "--paused"],
+  interpreter,
+  ["-c", START, "run", "--no-browser", "--port", "0", "--seed", "5", "--paused", ...CLASS],
   {
     env: {
       ...process.env,
@@ -40,13 +43,13 @@ process.on("exit", () => {
 });
 const ended = new Promise((resolve) => python.on("exit", resolve));
 
-/** Where the page is. @type {string} */
-export const url = await new Promise((resolve, reject) => {
+/** Where the page is, and where a class votes. @type {string[]} */
+export const [url, door] = await new Promise((resolve, reject) => {
   let said = "";
   python.stdout.on("data", (words) => {
     said += words;
-    const found = /alive at (http:\S+)/.exec(said);
-    if (found) resolve(found[1]);
+    const found = [/alive at (http:\S+)/, /votes at (http:\S+)/].map((sentence) => sentence.exec(said)?.[1] ?? "");
+    if (found.every(Boolean)) resolve(found);
   });
   ended.then(() => reject(new Error(said)));
 });
@@ -73,6 +76,9 @@ export async function until(what, found) {
     await new Promise((go) => setTimeout(go, 5));
   }
 }
+
+/** What lines of Python print, run beside the program in a folder that is deleted afterwards. @param {string} lines */
+export const byPython = (lines) => execFileSync(interpreter, ["-c", lines], { cwd: place, encoding: "utf-8" });
 
 /** @param {string} route @returns {Promise<any>} */
 export const told = async (route) => (await fetch(`${url}api/${route}`)).json();
