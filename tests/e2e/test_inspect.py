@@ -1,15 +1,14 @@
-"""Clicks on the plates that inspect; brains downloaded and uploaded."""
+"""Clicks on the plates that inspect."""
 
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.browser import on_screen, open_page, show, told, until
+from tests.e2e.browser import on_screen, open_page, show, until
 from tests.e2e.program import Program
 from tests.e2e.test_dashboard import node_on_stage
 from web.messages import Packet
@@ -63,28 +62,3 @@ def test_a_click_with_shift_on_the_map_and_a_click_into_the_pose_cells_inspect(w
         until(page, "() => document.getElementById('events').textContent.includes('packet')")
         walked.command("step")
         assert len(walked.state()["pose_cells"]["packets"]) == 2
-
-
-@pytest.mark.long
-def test_a_brain_goes_down_to_a_file_and_comes_up_again(walked, browser, tmp_path: Path):
-    walked.command("pause")
-    known = walked.state()["experiences"]
-    with open_page(browser, walked.url, refused=True, stage=False) as page:
-        page.click("#restart summary")
-        with page.expect_download() as loading:
-            page.click("#brain-save")
-        file = tmp_path / loading.value.suggested_filename
-        loading.value.save_as(file)
-        assert file.name == "brain-office-seed5.npz"
-        before = walked.state()
-
-        bad = tmp_path / "cat.npz"
-        bad.write_bytes(b"a picture of a cat")
-        page.set_input_files("#brain-file", bad)
-        told(page, "This file is no brain")
-        assert walked.state() == before
-
-        page.set_input_files("#brain-file", file)
-        told(page, "Started anew with the brain")
-        after = walked.wait(lambda state: state["tick"] == 0)
-        assert after["experiences"] >= known

@@ -65,18 +65,6 @@ def test_it_plays_to_its_end_and_what_it_lacks_is_not_there(playing: Program, br
 
 
 @pytest.mark.long
-def test_it_begins_again_and_the_office_comes_back(playing: Program, browser) -> None:
-    with open_page(browser, playing.url, stage=False) as page:
-        page.click("#restart summary")
-        expect(page.locator("#restart-same")).to_contain_text("Play from the beginning with seed 1")
-        page.click("#restart-same")
-        page.select_option("#world", "loop")
-        expect(page.locator("#explore")).to_be_visible()
-        assert "Truth" in tabs(page)
-        expect(page.locator("[data-view=office]")).to_have_text("Office")
-
-
-@pytest.mark.long
 def test_one_is_dropped_and_a_wrong_one_changes_nothing(playing: Program, browser, film: Path) -> None:
     with open_page(browser, playing.url, stage=False, refused=True) as page:
         page.select_option("#world", "loop")

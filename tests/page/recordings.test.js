@@ -59,6 +59,7 @@ test("it plays to its end, and what it lacks is not there", () =>
     await page.told("its robot goes where it went");
     page.press(" ");
     await page.told("restart it");
+    assert.match(page.text("#restart-same"), /^\s*Play from the beginning with seed/);
     await page.fill("#world", "loop");
     await until("the office is back", async () => (await state()).world === "loop" && tabs(page).includes("Truth"));
   }));
