@@ -1,8 +1,8 @@
-"""Every check: style, types, imports, then the tests; two at a time. `make test` calls this; docs/testing.md tells of the tiers.
+"""Every check: style, types, imports, then the tests; three at a time, since browsers wait.
 
---fast leaves out types, tests in a browser, tests of the whole program and tests marked as slow, and tries fewer
-examples of each law. --all adds tests marked as long, spoilt inputs by the hundred and the faults of the whole. All
-other arguments go to pytest.
+`make test` calls this; docs/testing.md tells of the tiers. --fast leaves out types, tests in a browser, tests of the
+whole program and tests marked as slow, and tries fewer examples of each law. --all adds tests marked as long, spoilt
+inputs by the hundred and the faults of the whole. All other arguments go to pytest.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_
 
 
 def main(arguments: list[str]) -> int:
-    """All checks run even when one fails. The tests begin while the types, which take longest, are still being checked;
-    they end last, so that their closing line is the last. Whoever says which tests gets these, in one run."""
+    """All checks run even when one fails. The tests begin as soon as the engine is compiled. Whoever says which tests gets
+    these, in one run."""
     everything, fast = "--all" in arguments, "--fast" in arguments
     if everything:
         os.environ["LONG"] = "1"  # for node's tests

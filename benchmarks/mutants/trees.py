@@ -7,6 +7,7 @@ import os
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -155,11 +156,17 @@ def _node_fails(tree: Path, tests: str) -> bool:
     environment = {**_environment(tree), "PYTHON": sys.executable, "PATIENCE_S": str(PATIENCE_S)}
     command = [*NODE, "--test-isolation=none", "--test-reporter=tap", tests]
     with subprocess.Popen(
-        command, cwd=tree, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        command,
+        cwd=tree,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        start_new_session=True,
     ) as running:
         assert running.stdout
         if any(line.startswith("not ok") for line in running.stdout):
-            running.terminate()
+            os.killpg(running.pid, signal.SIGTERM)  # node is a child, and the program one of node
             return True
     return running.returncode != 0
 
