@@ -51,13 +51,6 @@ def click(page: Page, *points: tuple[float, float]) -> None:
         page.mouse.click(*at(page, *point))
 
 
-def drag(page: Page, start: tuple[float, float], end: tuple[float, float]) -> None:
-    page.mouse.move(*at(page, *start))
-    page.mouse.down()
-    page.mouse.move(*at(page, *end), steps=4)
-    page.mouse.up()
-
-
 def says(page: Page, words: str) -> None:
     until(page, "(words) => document.getElementById('plan-status').textContent.includes(words)", argument=words)
 

@@ -2,25 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from pathlib import Path
-
 import cv2
 import numpy as np
 import pytest
 
-from sim2d import load_world, world_to_json
 from tests.e2e.browser import at_each, box_of, open_page, told, until
 from tests.e2e.editor import drop, edit, plan_png
 from tests.e2e.program import Program
-
-
-@pytest.fixture(scope="module")
-def own(own: Path) -> Path:
-    """With two saved worlds."""
-    for name, title in (("lab", "My laboratory"), ("school", "A school whose name is long enough for two lines")):
-        (own / f"{name}.json").write_text(world_to_json(replace(load_world("office"), name=name, title=title)))
-    return own
 
 
 @pytest.fixture
