@@ -27,12 +27,17 @@ from app.session_snapshot import load_session, save_session
 from app.situations import Situation
 from app.situations.reading import read_situation
 from app.situations.writing import file_of, link_of
+from app.views.history import History
+from app.views.inspection import inspect
+from app.views.movements import movements_of
+from app.views.snapshots import Snapshots
+from app.views.tick_stages import TickRecorder
 from app.world_editor import edited
 from sim2d import load_world
 from tests.patience import PATIENCE_S, until
 from tests.unit.app.engines import READER, an_engine, tell
 from web.http.server import Dashboard
-from web.messages import EditStep
+from web.messages import EditStep, Inspect
 from web.viewer import Viewers
 
 SEED, TICKS = 11, 600
@@ -88,6 +93,36 @@ def directly(ticks: int = TICKS) -> str:
 @pytest.fixture(scope="module")
 def expected() -> str:
     return directly()
+
+
+def test_looked_at_by_all_that_explains_it(expected: str) -> None:
+    """Stage by stage, with its snapshots and what they draw later, every inspection, every movement, every reason."""
+    session = Session(load_world("living"), SEED)
+    history = History(session)
+    snapshots = Snapshots(session, history, 1, ())
+
+    def look() -> None:
+        shown = snapshots.build(running=True, speed=1.0, real_time_factor=1.0, fault=None)
+        if shown.occupancy is not None:
+            shown.occupancy.draw_map()
+        if (movements := movements_of(session)) is not None:
+            movements()
+        for wish in ({"experience": 0}, {"view": 0}, {"x": 5, "y": 5}):
+            inspect(session, history.visits, history.events.reasons, Inspect(type="inspect", **wish))
+
+    def step(ticks: int) -> None:
+        for _ in range(ticks):
+            recorder = TickRecorder(session, snapshots.parts())
+            session.tick(recorder)
+            snapshots.refresh()
+            recorder.walk(snapshots.parts())
+            history.watch()
+            look()
+
+    play(step, lambda told: order_session(session, told))
+    for event in history.log.why:
+        history.events.reasons.of(event)
+    assert session.state_hash() == expected
 
 
 def test_in_the_engines_thread(expected: str) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from app.engine import pace
 from app.engine_thread import EngineThread
-from app.session import PARTS, SECOND, Session
+from app.session import PARTS, SECOND
 from web import messages as m
 
 from .engine_threads import OFFICE, PATIENCE_S, accept, do, refuse, snapshot, step, wait_for
@@ -47,16 +47,6 @@ def test_steps_are_counted(start: Callable[..., EngineThread]) -> None:
     assert now.time_s == pytest.approx(10.8)
 
 
-def test_stepping_is_the_same_as_the_session_alone(start: Callable[..., EngineThread]) -> None:
-    engine = start()
-    for ticks in (1, 30, 69):
-        accept(engine, step(ticks))
-    alone = Session(OFFICE, 5)
-    for _ in range(100):
-        alone.tick()
-    assert engine.session.state_hash() == alone.state_hash()
-
-
 @pytest.mark.slow
 def test_running_pauses_and_resumes_at_any_speed(start: Callable[..., EngineThread]) -> None:
     engine = start(running=True)
@@ -70,10 +60,6 @@ def test_running_pauses_and_resumes_at_any_speed(start: Callable[..., EngineThre
     later = wait_for(engine, lambda now: now.tick >= tick + 30)
     assert later.speed == 16.0
     assert accept(engine, step()).running is False
-    alone = Session(OFFICE, 5)
-    while alone.tick_count < engine.session.tick_count:
-        alone.tick()
-    assert engine.session.state_hash() == alone.state_hash()
 
 
 @pytest.mark.slow

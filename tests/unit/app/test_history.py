@@ -50,12 +50,6 @@ def test_a_map_that_has_diverged_is_told_once() -> None:
     assert warnings == ["the map has diverged: a correction rate of 0.9 is too high for all links at once"]
 
 
-def test_the_history_changes_nothing() -> None:
-    watched = a_session()
-    observed(watched, 120)
-    assert watched.state_hash() == a_session(120).state_hash()
-
-
 @pytest.mark.slow
 def test_trail_path_and_series_grow() -> None:
     session = a_session()

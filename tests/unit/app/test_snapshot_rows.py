@@ -69,7 +69,7 @@ def test_snapshots_are_immutable_and_their_rows_agree(with_goal: bool) -> None:
 
 
 def test_a_snapshot_is_of_its_moment() -> None:
-    """What the engine does later does not change the snapshot, and reading the snapshot does not change the engine."""
+    """What the engine does later does not change the snapshot."""
     session = a_session(100)
     made = snapshots(session)
     snapshot = build(made)
@@ -79,7 +79,6 @@ def test_a_snapshot_is_of_its_moment() -> None:
         build(made)
     for (name, before), (_, now) in zip(kept, arrays(snapshot), strict=True):
         assert np.array_equal(before, now, equal_nan=True), name
-    assert session.state_hash() == a_session(160).state_hash()
 
 
 def test_what_is_unchanged_is_the_same_object(monkeypatch: pytest.MonkeyPatch) -> None:

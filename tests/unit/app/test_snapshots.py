@@ -73,16 +73,6 @@ def test_goal_memory_has_times_once_there_is_a_goal(session: Session) -> None:
     assert layer.direction_rad is None or -math.pi <= layer.direction_rad <= math.pi
 
 
-def test_watching_changes_nothing(session: Session) -> None:
-    session.pilot.set_goal(0)
-    before = session.state_hash()
-    layer = build(session).occupancy
-    assert layer is not None
-    layer.draw_map()
-    assert session.state_hash() == before
-    session.pilot.cancel_goal()
-
-
 def test_the_attractor_s_invariants_are_shown(session: Session) -> None:
     cells = build(session).pose_cells
     assert cells.total == pytest.approx(1, abs=1e-5)
