@@ -37,6 +37,7 @@ from ratslam_core import (
     Recognition,
     ViewLinks,
 )
+from ratslam_core.experience_map.looks import Senses
 from ratslam_core.pose_cells.attractor_kernels import gaussian
 
 Row = dict[str, Any]
@@ -92,7 +93,7 @@ def _memory() -> Iterator[Row]:
     view = LocalView(LocalViewParams(composite_threshold=0.0, composite_surprise=255.0))
     rng, most = np.random.default_rng(6), 0.0
     for count in range(1, 50_001):  # with as little room to spare as a growing memory has, and as much
-        view._recruit(rng.integers(0, 256, view.features.size, dtype=np.uint8))
+        view._recruit(rng.integers(0, 256, view.features.size, dtype=np.uint8), faded=-1)
         most = max(most, view.memory_bytes / count) if count >= 2000 else 0.0
     yield _row("memory, views", f"2,000 to 50,000: {most:.0f} B a view", None, "-", None, "250 B a view", most <= 250)
 
@@ -196,7 +197,7 @@ def _map(experiences: int, links: int) -> Iterator[Row]:
         ms <= 1.5 * reference,
     )
     packet = Packet(10.0, 10.0, 0.0, 1.0)
-    ms = _median(lambda: made._seen_experience(packet, Recognition(17, False, 17, 2.0)), 400)
+    ms = _median(lambda: made._seen_experience(packet, Recognition(17, False, 17, 2.0), Senses()), 400)
     yield _row("choosing the experience", f"{experiences:,} experiences", ms, "-", None, "0.05 ms", ms <= 0.05)
 
 

@@ -3,7 +3,6 @@ from .experience_map.cells_only import CellsOnly
 from .experience_map.experience_map import ExperienceMap
 from .experience_map.places import HashCollision, MultipleRepresentation, Places, find_places
 from .experience_map.temporal_map import Route, TemporalMap
-from .experience_map.transitions import Link
 from .goal_memory import GoalMemory
 from .local_view.recogniser import LocalView
 from .local_view.view_links import ViewLinks
@@ -21,6 +20,7 @@ from .params import (
     SolverParams,
 )
 from .pose_cells.network import PoseCells
+from .pose_graph.transitions import Link
 from .slam import RatSlam
 from .types import Estimate, Odometry, Packet, Pose2, Recognition, wrap_angle
 

@@ -5,15 +5,13 @@ A part whose class is named with `disk.kind` is included in the brain's digest a
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ratslam_core.pose_graph.pose_graph import PoseGraph
 from ratslam_core.types import Odometry, Packet, Pose2, Recognition
-
-if TYPE_CHECKING:
-    from ratslam_core.experience_map.experience_map import ExperienceMap
 
 
 class Witness(Protocol):
@@ -27,13 +25,25 @@ class Witness(Protocol):
         ...
 
 
+class Room(Protocol):
+    """[ours] Whether there is room for what is new: a `FamiliarGround`, or `NewGround`, where there always is."""
+
+    @property
+    def familiar(self) -> bool:
+        """The place is known so well that an unknown sight becomes no view."""
+        ...
+
+    @property
+    def faded(self) -> int:
+        """The view whose room a new one gets, -1 for a room of its own."""
+        ...
+
+
 class LocalViewPart(Protocol):
     """Recognises scenes."""
 
     params: Any
-    recruits: bool  # set by the brain before each step: whether an unknown sight may become a view
     recognition: Recognition  # of the last `observe`
-    faded: int  # set likewise: the view whose room it gets, -1 for a room of its own
     image_change: float  # since the step before, as a share of what driving can explain; above 1 it cannot
 
     def __len__(self) -> int: ...
@@ -44,6 +54,7 @@ class LocalViewPart(Protocol):
         scene: int | None = None,
         ranges_m: NDArray[np.float64] | None = None,
         turned_rad: float = 0.0,
+        room: Room | None = None,
         /,
     ) -> Recognition:
         """The active cell for what is seen now, after a turn of which the wheels tell. When it raises a ValueError, nothing
@@ -52,6 +63,10 @@ class LocalViewPart(Protocol):
 
     def nearest_of(self, views: NDArray[np.int64], /) -> Recognition:
         """Which of these known views is like what was seen last."""
+        ...
+
+    def unlike_all(self, views: NDArray[np.int64], times: float, /) -> bool:
+        """Whether each of these known views differs from what was seen last by so many times the threshold."""
         ...
 
     def strength(self, seen: Recognition, /) -> float:
@@ -100,9 +115,8 @@ class ExperienceMapPart(Protocol):
     """Builds the map. The pilot and the page need more than this; for them, inherit from ExperienceMap."""
 
     active: int
-    agrees: bool
-    gate: Any  # a `Gate`, with what is held back
-    elsewhere: Recognition  # set by the brain before each step: which of the foreign views it sees
+    agrees: bool  # whether the last look agreed with where the robot believed itself to be
+    yaw_bias: float  # rad/s, learnt: odometry turns too far by so much
     ground: Any  # a `FamiliarGround`, or `NewGround(MemoryParams())`, with which every sight is learnt
 
     def __len__(self) -> int: ...
@@ -110,20 +124,6 @@ class ExperienceMapPart(Protocol):
     def local_pose(self) -> Pose2: ...
     @property
     def robot(self) -> Pose2: ...
-    @property
-    def views(self) -> NDArray[np.int64]:
-        """The view of each experience, -1 for none, (n,)."""
-        ...
-
-    @property
-    def foreign_views(self) -> NDArray[np.int64]:
-        """Views of maps that are not yet joined with the one that the robot is in; empty where there is one map."""
-        ...
-
-    def calibrated(self, odometry: Odometry, /) -> Odometry:
-        """Odometry without the errors that the map has learnt."""
-        ...
-
     def declare_kidnapped(self, *, sure: bool = True) -> None:
         """The robot was carried, not driven."""
         ...
@@ -132,15 +132,18 @@ class ExperienceMapPart(Protocol):
         """It knows again where it is."""
         ...
 
-    def step(self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int, /) -> bool:
-        """Find or make the active experience; True when it is new."""
+    def step(
+        self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int, /, *,
+        beats: int, views: LocalViewPart, witness: Witness | None,
+    ) -> bool:  # fmt: skip
+        """Find or make the active experience; True when it is new. The robot has moved so in each of the beats."""
         ...
 
     def move(self, odometry: Odometry, /) -> None:
-        """The robot moved, and nothing is looked at: between two beats, or in a part of a step."""
+        """The robot moved, and nothing is looked at: a tick between two beats."""
         ...
 
-    def correct(self) -> None:
+    def correct(self, beats: int, /) -> None:
         """Once in each beat."""
         ...
 
@@ -152,8 +155,8 @@ class Optimiser(Protocol):
 
     params: Any
 
-    def correct(self, map_: ExperienceMap, /) -> None:
-        """Change `map_.poses` (n, 3) in place; the first experience stays where it is. `map_.links` and `map_.moves`
+    def correct(self, graph: PoseGraph, /) -> None:
+        """Change `graph.poses` (n, 3) in place; the first experience stays where it is. `graph.links` and `graph.moves`
         are the constraints: where the end of each link should be, in the frame of its beginning (m, m, rad)."""
         ...
 
@@ -168,4 +171,6 @@ class KidnapDetectorPart(Protocol):
 
     def observe(self, image_change: float, ranges_m: NDArray[np.float64] | None, beats: int = 1, /) -> bool: ...
     def declare(self, experiences: int, /) -> None: ...
-    def settle(self, agrees: bool, known: int, /) -> None: ...
+    def settle(self, agrees: bool, known: int, beats: int = 1, /) -> bool:
+        """Whether the robot that was lost has found itself in these beats."""
+        ...

@@ -31,6 +31,11 @@ class Odometry:
     yaw_rate: float
     dt: float
 
+    @property
+    def still(self) -> bool:
+        """Whether the wheels do not turn."""
+        return self.speed == 0 and self.yaw_rate == 0
+
     def __post_init__(self) -> None:
         if not math.isfinite(self.speed + self.yaw_rate):  # one test for both, since two are made in each tick
             require_finite("odometry.speed", self.speed)

@@ -69,7 +69,7 @@ class LocalMovement:
 
     def sense(self, ranges_m: NDArray[np.float32], odometry: Odometry, p: DrivingParams) -> None:
         """Move the old echoes into the robot's new frame and add the new ones. ranges_m: (8,) from its middle."""
-        n, (passed, _) = len(self._angles), self._beats.take(odometry)
+        n, passed = len(self._angles), self._beats.take(odometry).beats
         for beat in range(self._beat + 1, self._beat + min(passed, self._scans)):
             start = beat % self._scans * n
             self._echoes[start : start + n] = np.inf  # no scan was made in it

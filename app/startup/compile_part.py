@@ -17,7 +17,6 @@ from numba.core.event import Event, Listener, register  # pyright: ignore[report
 
 import app.pilot.local_movement
 import ratslam_core.experience_map.places
-import ratslam_core.experience_map.relaxation
 import ratslam_core.goal_links
 import ratslam_core.local_view.echo_matcher
 import ratslam_core.local_view.front_ends.image_and_sonars
@@ -27,6 +26,7 @@ import ratslam_core.occupancy_grid
 import ratslam_core.pose_cells.activity_kernels
 import ratslam_core.pose_cells.attractor_kernels
 import ratslam_core.pose_cells.packet_kernels
+import ratslam_core.pose_graph.relaxation
 import ratslam_core.solvers.dijkstra
 import ratslam_core.solvers.laplacian
 import sim2d.camera.painting
@@ -54,10 +54,10 @@ from ratslam_core import (
     ViewLinks,
     find_places,
 )
-from ratslam_core.experience_map.experiences import Experiences
 from ratslam_core.extensions.familiar_ground import FamiliarGround
 from ratslam_core.extensions.scan_change import ScanChange
 from ratslam_core.pose_cells.activity_kernels import X, Y
+from ratslam_core.pose_graph.experiences import Experiences
 from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, load_world
 
 ANGLES = np.array(SONAR_ANGLES_RAD)
@@ -154,7 +154,7 @@ PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
                       ratslam_core.pose_cells.packet_kernels,
                       ratslam_core.local_view.front_ends.image_and_sonars, ratslam_core.local_view.echo_matcher,
                       ratslam_core.local_view.matcher, ratslam_core.local_view.view_links)),
-    "loops": (loops, (ratslam_core.experience_map.relaxation, ratslam_core.solvers.laplacian, ratslam_core.solvers.dijkstra,
+    "loops": (loops, (ratslam_core.pose_graph.relaxation, ratslam_core.solvers.laplacian, ratslam_core.solvers.dijkstra,
                       ratslam_core.experience_map.places)),
     "maps": (maps, (ratslam_core.goal_links, ratslam_core.occupancy_grid)),
 }  # fmt: skip

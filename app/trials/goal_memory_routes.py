@@ -38,7 +38,7 @@ class GoalMemoryRoutes:
         """The same that the brain's own memory is given in `RatSlam.step`."""
         brain, odometry = self._session.brain, self._session.odometry
         leap = (self._session.estimate.relocalised or brain.lost) and not brain.params.goal_memory.over_jumps
-        moves = odometry.speed != 0 or odometry.yaw_rate != 0
+        moves = not odometry.still
         self._under_way_s += odometry.dt * moves
         for memory in self._memories:
             if leap:

@@ -18,7 +18,7 @@ from app.trials.measures import MEASURES
 from app.trials.notes import Moment, Visited
 from app.trials.trial import Trial, watched
 from ratslam_core import Packet, Pose2
-from ratslam_core.experience_map.preintegrated import moved_by
+from ratslam_core.pose_graph.preintegrated import moved_by
 
 _Array = NDArray[np.float64]
 EVERY_S = 0.5  # between two rows

@@ -9,7 +9,7 @@ import numpy as np
 from app.session import Session
 from app.views.arrays import frozen
 from ratslam_core import Pose2
-from ratslam_core.experience_map.preintegrated import moved_by
+from ratslam_core.pose_graph.preintegrated import moved_by
 from web.messages import Movements
 
 

@@ -142,7 +142,7 @@ class TickRecorder:
 
     def _path_integration(self) -> str:
         odometry, params = self._odometry(), self._session.brain.params.pose_cells
-        if odometry.speed == 0 and odometry.yaw_rate == 0:
+        if odometry.still:
             return "The wheels stand: the activity stays where it is."
         ahead = odometry.speed * odometry.dt / params.cell_m
         turn = (odometry.yaw_rate + params.yaw_bias) * odometry.dt / math.tau * params.n_theta

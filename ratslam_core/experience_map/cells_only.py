@@ -6,7 +6,7 @@ import math
 
 from disk import kind
 from ratslam_core.experience_map.experience_map import ExperienceMap
-from ratslam_core.experience_map.preintegrated import moved_by
+from ratslam_core.pose_graph.preintegrated import moved_by
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, wrap_angle
 
 
@@ -19,9 +19,10 @@ class CellsOnly(ExperienceMap):
     """
 
     def step(
-        self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0, *, witness: object = None
-    ) -> bool:
-        del odometry, behaviour, witness  # only the packet counts
+        self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0, *,
+        beats: int = 1, views: object = None, witness: object = None,
+    ) -> bool:  # fmt: skip
+        del odometry, behaviour, beats, views, witness  # only the packet counts
         if self.active < 0:
             self._create(packet, seen.view, IDENTITY)
             return True

@@ -13,18 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.experience_map.looks import Looks
-from ratslam_core.experience_map.preintegrated import PreintegratedOdometry, moved_by
-from ratslam_core.experience_map.transitions import require_behaviour
+from ratslam_core.experience_map.looks import Looks, Senses
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges
-from ratslam_core.params import ExperienceMapParams, MemoryParams, PoseFilterParams, SolverParams
-from ratslam_core.parts import Optimiser, Witness
+from ratslam_core.params import ExperienceMapParams, PoseFilterParams, SolverParams
+from ratslam_core.parts import LocalViewPart, Optimiser, Witness
+from ratslam_core.pose_graph.preintegrated import PreintegratedOdometry, moved_by
+from ratslam_core.pose_graph.transitions import require_behaviour
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite
 
 
-@kind("experience map/3")
+@kind("experience map/4")
 class ExperienceMap(Looks):
     """Experiences and links. `step` finds or makes the active experience and learns the transition to it."""
 
@@ -38,14 +38,10 @@ class ExperienceMap(Looks):
         ground: FamiliarGround | NewGround | None = None,
     ) -> None:
         """shape: layers, cells along y' and x' of the pose cells; cell_m: side of one cell."""
-        super().__init__(shape, cell_m, params, filter_params)
+        super().__init__(shape, cell_m, params, filter_params, ground)
         self.optimiser: Optimiser = optimiser or ExactSolver(SolverParams())
-        self.ground = ground or NewGround(MemoryParams())
         self.transitions.reuses = isinstance(self.ground, FamiliarGround)
-        self.yaw_bias = 0.0  # rad/s, learnt
         self.agrees = True  # whether the last look agreed with where the robot believed itself to be
-        self.closures = 0  # links made to experiences that existed before
-        self.steps = 0  # of correction
         self._offset = IDENTITY  # the robot in the frame of the active experience, at the best look so far
         self._sigma = 0.0  # how far off that may be, m
         self._travel = IDENTITY  # odometry since then
@@ -56,11 +52,12 @@ class ExperienceMap(Looks):
 
     def step(
         self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0, *,
-        witness: Witness | None = None,
+        beats: int = 1, views: LocalViewPart | None = None, witness: Witness | None = None,
     ) -> bool:  # fmt: skip
         """One step: the robot moved as the odometry says, to this packet and this view. True when a new experience was made.
 
-        behaviour: 0 to 15, the local movement that led here; links remember it. witness: a look that it does not
+        behaviour: 0 to 15, the local movement that led here; links remember it. beats: how often it moved so, and for how
+        many sights this one counts. views: can be asked for more about what is seen. witness: a look that it does not
         confirm is none. ValueError for another number, and for a packet whose place or heading is not finite.
         """
         require_behaviour(behaviour)
@@ -70,12 +67,14 @@ class ExperienceMap(Looks):
         if self.active < 0:
             self._create(packet, seen.view, IDENTITY)
             return True
-        self._move(odometry)
+        for _ in range(beats):
+            self._move(odometry)
+        by = Senses(beats, views, witness)
         if seen.recruited:
             self.forget_view(seen.view)
         before = self._departure()
         # On familiar ground there is something to see, so the experiences of nothing do not count.
-        best, seen = (-1, seen) if seen.familiar else self._seen_experience(packet, seen, witness)
+        best, seen = (-1, seen) if seen.familiar else self._seen_experience(packet, seen, by)
         by_place = self.ground.of_view(self, seen.view) if best < 0 else -1
         look = None
         if best >= 0 and best != before.experience:
@@ -101,10 +100,11 @@ class ExperienceMap(Looks):
         if self.active >= 0:
             self._move(odometry)
 
-    def correct(self) -> None:
-        """One step of map correction: experiences are moved until links and map agree. ACRA 2006 section 3.3."""
-        self.steps += 1
-        self.optimiser.correct(self)
+    def correct(self, beats: int = 1) -> None:
+        """A step of map correction in each beat: experiences are moved until links and map agree. ACRA 2006 section 3.3."""
+        for _ in range(beats):
+            self.steps += 1
+            self.optimiser.correct(self)
 
     def set_params(self, params: ExperienceMapParams, filter_params: PoseFilterParams, solver: SolverParams) -> None:
         """Take new live parameters while running."""
@@ -153,12 +153,6 @@ class ExperienceMap(Looks):
     def declare_found(self) -> None:
         """[ours] The robot that was carried knows again where it is."""
         self.lost = False
-
-    def calibrated(self, odometry: Odometry) -> Odometry:
-        """[ours] Odometry without the yaw bias that the map has learnt. Wheels that stand still have no bias."""
-        if self.yaw_bias == 0.0 or (odometry.speed == 0 and odometry.yaw_rate == 0):
-            return odometry
-        return Odometry(odometry.speed, odometry.yaw_rate - self.yaw_bias, odometry.dt)
 
     def forget_view(self, view: int) -> None:
         """The view is no more: its experiences stay in the map as places where there is nothing to see."""

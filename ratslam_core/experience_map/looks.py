@@ -7,21 +7,34 @@ asks, too, whether the robot can be there (`extensions/gate.py`, `extensions/isl
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ratslam_core.experience_map.map_reading import MapReading
+from ratslam_core.experience_map.temporal_map import TemporalMap
+from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.gate import Gate
 from ratslam_core.extensions.islands import Islands, move
+from ratslam_core.extensions.pose_filter import pose_estimate
 from ratslam_core.extensions.torn import open_way_m, soften
-from ratslam_core.params import ExperienceMapParams, PoseFilterParams
-from ratslam_core.parts import Witness
+from ratslam_core.params import ExperienceMapParams, MemoryParams, PoseFilterParams
+from ratslam_core.parts import LocalViewPart, Witness
+from ratslam_core.pose_graph.pose_graph import PoseGraph
+from ratslam_core.pose_graph.relaxation import has_diverged
 from ratslam_core.types import IDENTITY, Packet, Pose2, Recognition, nothing_seen, wrap_angle
 
 
-class Looks(MapReading):
-    """An experience map that knows what it sees."""
+class Senses(NamedTuple):
+    """What can be asked of a sight, beside which view it is."""
+
+    beats: int = 1  # for how many sights it counts, since it lasts so long
+    views: LocalViewPart | None = None  # which made it out
+    witness: Witness | None = None  # a look that it does not confirm is none
+
+
+class Looks(PoseGraph):
+    """A pose graph and a robot in it that knows what it sees."""
 
     def __init__(
         self,
@@ -29,14 +42,38 @@ class Looks(MapReading):
         cell_m: float,
         params: ExperienceMapParams | None = None,
         filter_params: PoseFilterParams | None = None,
+        ground: FamiliarGround | NewGround | None = None,
     ) -> None:
-        super().__init__(shape, cell_m, params, filter_params)
+        super().__init__(shape, cell_m, params)
+        self.ground = ground or NewGround(MemoryParams())
+        self.active = -1
+        self.pose_filter = pose_estimate(filter_params or PoseFilterParams())
+        self._temporal_map = TemporalMap(self)
         self.gate = Gate(filter_params or PoseFilterParams())
         self.islands = Islands()
-        self.elsewhere = nothing_seen()  # what of the views of other islands it sees
         self._foreign_views: tuple[int, int, NDArray[np.int64]] = (0, 0, np.zeros(0, np.int64))
         self.lost = False  # it knows that it was carried away and has not found itself again
         self.corrected = 0  # how often looks that were held back proved the robot wrong
+
+    @property
+    def local_pose(self) -> Pose2:
+        """Where the robot believes itself to be, in the frame of the active experience."""
+        return self.pose_filter.local
+
+    @property
+    def robot(self) -> Pose2:
+        """The robot in the map."""
+        return self.pose(self.active).compose(self.local_pose)
+
+    @property
+    def temporal_map(self) -> TemporalMap:
+        """Times and routes over the current links; the same object for as long as the map lives."""
+        return self._temporal_map
+
+    @property
+    def diverged(self) -> bool:
+        """Whether correction with the sweep "all at once" has thrown the map apart: `relaxation.sweep_all_at_once`."""
+        return self.params.sweep == "all at once" and has_diverged(self.poses, self.moves)
 
     @property
     def foreign_views(self) -> NDArray[np.int64]:
@@ -48,9 +85,7 @@ class Looks(MapReading):
             self._foreign_views = islands.begun, islands.joined, np.unique(views[views >= 0]).astype(np.int64)
         return self._foreign_views[2]
 
-    def _seen_experience(
-        self, packet: Packet, seen: Recognition, witness: Witness | None = None
-    ) -> tuple[int, Recognition]:
+    def _seen_experience(self, packet: Packet, seen: Recognition, by: Senses) -> tuple[int, Recognition]:
         """The experience that the robot sees, the most energetic of those that it can see, -1 for none; and as what.
 
         When what was held back has won, it is one beyond reach; where that lies on another island, the two were joined.
@@ -59,19 +94,19 @@ class Looks(MapReading):
         best = self._most_energetic(packet, seen.view, reach)
         if seen.view < 0 or not self.params.match_view:
             return best, seen
-        for look in (seen, self.elsewhere) if self.islands.begun else ():
+        for look in (seen, self._elsewhere(by)) if self.islands.begun else ():
             foreign = self._foreign(packet, look) if look.view >= 0 else -1
             if foreign >= 0:
-                return (foreign, look) if self._crosses(foreign, packet, look, witness) else (best, seen)
+                return (foreign, look) if self._crosses(foreign, packet, look, by) else (best, seen)
         if math.isinf(reach):
             return best, seen
         if best >= 0 and not self.lost and self._turns(best, packet, seen):
-            return (best if self._jumps(best, packet, seen, witness) else -1), seen
+            return (best if self._jumps(best, packet, seen, by) else -1), seen
         if (best >= 0 and not self._experiences.doubtful[best]) or self._sees_where_it_is(seen.view, reach):
-            self.gate.doubt()
+            self.gate.doubt(by.beats)
             return best, seen
         far = self._most_energetic(packet, seen.view, reach, beyond=True)
-        return (far if far >= 0 and self._jumps(far, packet, seen, witness) else best), seen
+        return (far if far >= 0 and self._jumps(far, packet, seen, by) else best), seen
 
     def _turns(self, experience: int, packet: Packet, seen: Recognition) -> bool:
         """[ours] Whether a look would turn the robot farther than its heading can be off, wherever it puts it.
@@ -122,23 +157,23 @@ class Looks(MapReading):
             packet, view, self.params, self.robot, reach_m, self.islands.current, foreign, beyond
         )
 
-    def _crosses(self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None) -> bool:
+    def _crosses(self, experience: int, packet: Packet, seen: Recognition, by: Senses) -> bool:
         """Whether a look at another island is believed; the robot's own is then joined to it."""
-        robot, claimed = self.robot, self._claimed(experience, packet, seen, witness)
-        if claimed is None or not self._proved(claimed, self._needed(claimed), seen.view):
+        robot, claimed = self.robot, self._claimed(experience, packet, seen, by.witness)
+        if claimed is None or not self._proved(claimed, self._needed(claimed), seen, by):
             return False
         self.islands.join(int(self.island_of[experience]), self.island_of, self.poses, robot, claimed)
         return True
 
-    def _jumps(self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None) -> bool:
+    def _jumps(self, experience: int, packet: Packet, seen: Recognition, by: Senses) -> bool:
         """Whether a look at the robot's own island is believed although it is beyond reach."""
-        robot, claimed = self.robot, self._claimed(experience, packet, seen, witness)
+        robot, claimed = self.robot, self._claimed(experience, packet, seen, by.witness)
         if claimed is None:
             return False
-        if not self.lost and self._drifted_to(claimed, experience):
-            return self._proved(claimed, self.params.join_sights, seen.view)
+        if not self.lost and self._drifted_to(claimed, experience, by.beats):
+            return self._proved(claimed, self.params.join_sights, seen, by)
         needed = self._needed(claimed) if self.lost else self.gate.params.gate_sights
-        if not self._proved(claimed, needed, seen.view):
+        if not self._proved(claimed, needed, seen, by):
             return False
         self.corrected += 1
         if self.lost and experience < self.islands.landed:
@@ -149,21 +184,41 @@ class Looks(MapReading):
             soften(self.transitions, experience, self.gate.known, off, self.params.odometry_sigma)
         return True
 
-    def _drifted_to(self, claimed: Pose2, experience: int) -> bool:
+    def _drifted_to(self, claimed: Pose2, experience: int, beats: int) -> bool:
         """Whether odometry may have led so far astray since it was last at this experience.
 
         Looks at what the robot has just made say nothing of that. test_gate.py::test_a_long_loop_closes_soon.
         """
         drift, off = self.gate.params.gate_drift, self._off(claimed)
-        if drift == 0.0 or self.gate.sights < self.params.join_sights - self.gate.beats:
+        if drift == 0.0 or self.gate.sights < self.params.join_sights - beats:
             return False  # it would change nothing yet
         return off <= drift * open_way_m(self.transitions, experience, len(self))
 
     def _off(self, claimed: Pose2) -> float:
         return math.hypot(claimed.x - self.robot.x, claimed.y - self.robot.y)
 
-    def _proved(self, claimed: Pose2, needed: int, view: int) -> bool:
-        return self.gate.believes(self.robot, claimed, needed, len(self), view, self.params.join_views)
+    def _proved(self, claimed: Pose2, needed: int, seen: Recognition, by: Senses) -> bool:
+        return self.gate.believes(
+            self.robot, claimed, needed, len(self), view=seen.view, views=self.params.join_views, beats=by.beats,
+            surprised=self._misses_what_it_expects(by.views),
+        )  # fmt: skip
+
+    def _elsewhere(self, by: Senses) -> Recognition:
+        """Which of the views of other islands the robot sees."""
+        foreign = self.foreign_views
+        return nothing_seen() if by.views is None or len(foreign) == 0 else by.views.nearest_of(foreign)
+
+    def _misses_what_it_expects(self, views: LocalViewPart | None) -> bool:
+        """[ours] Whether a known view is seen, but the place where the robot believes itself to be is known and looks different.
+
+        test_gate.py::test_who_misses_what_it_expects_gives_way_sooner.
+        """
+        if views is None or not self.gate.sights or views.recognition.view < 0 or views.recognition.recruited:
+            return False
+        expected = self.views[self.ground.near]
+        if np.any(expected == views.recognition.view):
+            return False
+        return views.unlike_all(expected, self.gate.params.gate_unlike)
 
     def _needed(self, claimed: Pose2) -> int:
         """How many sights must agree on `claimed` before a robot that is lost believes it.

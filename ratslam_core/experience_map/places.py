@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ratslam_core.experience_map.map_reading import MapReading
+from ratslam_core.pose_graph.pose_graph import PoseGraph
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class Places:
         return np.flatnonzero(self.place_of == self.place_of[experience])
 
 
-def find_places(map_: MapReading, radius_m: float = 0.5) -> Places:
+def find_places(map_: PoseGraph, radius_m: float = 0.5) -> Places:
     """Group the experiences of a map, whichever way they face, and find multiple representations and hash collisions.
 
     radius_m: how far (m) an experience may be from the first of its place. Two states of the pose cells are the same

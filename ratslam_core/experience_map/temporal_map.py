@@ -7,16 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
+from ratslam_core.pose_graph.pose_graph import PoseGraph
 from ratslam_core.solvers import dijkstra
-
-if TYPE_CHECKING:
-    from ratslam_core.experience_map.map_reading import MapReading
 
 
 @kind("route/1")
@@ -46,8 +43,8 @@ class TemporalMap:
 
     CACHES = ("_goal", "_asked", "_times", "_parent")  # snapshots of the brain leave them out
 
-    def __init__(self, experiences: MapReading) -> None:
-        self._map = experiences
+    def __init__(self, graph: PoseGraph) -> None:
+        self._map = graph
         self._goal: tuple[int, ...] | None = None
         self._asked: _Asked | None = None  # the links and places that the answer holds for
         self._times = np.zeros(0)
@@ -105,7 +102,7 @@ class TemporalMap:
 class _Asked:
     """Links, their times, and for shortcuts the places, as they are now."""
 
-    def __init__(self, map_: MapReading, delays: NDArray[np.float64] | None) -> None:
+    def __init__(self, map_: PoseGraph, delays: NDArray[np.float64] | None) -> None:
         graph, reach = map_.transitions.graph, float(map_.params.shortcut_m)
         self.seconds = np.maximum(map_.transitions.seconds(map_.poses, map_.pace), dijkstra.LEAST_S)
         if delays is not None:

@@ -9,19 +9,15 @@ plain twin: sweeps and nothing else.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.experience_map import relaxation
 from ratslam_core.extensions import robust_weights
 from ratslam_core.extensions.graduated_trust import contradiction, kept
 from ratslam_core.params import SolverParams
-
-if TYPE_CHECKING:
-    from ratslam_core.experience_map.experience_map import ExperienceMap
+from ratslam_core.pose_graph import relaxation
+from ratslam_core.pose_graph.pose_graph import PoseGraph
 
 
 @kind("exact solver/1")
@@ -34,81 +30,81 @@ class ExactSolver:
         self._solved_at = self._closures_at_solve = 0
         self._rest_after_solve = 0.0
 
-    def correct(self, map_: ExperienceMap) -> None:
+    def correct(self, graph: PoseGraph) -> None:
         """One step of map correction."""
-        self._sweeps.correct(map_)
-        p = map_.params
+        self._sweeps.correct(graph)
+        p = graph.params
         rest = max(p.solve_every, self._rest_after_solve)
-        due = p.solve_every and map_.steps - self._solved_at >= rest
-        if due and map_.closures > self._closures_at_solve:
-            self._solve(map_)
+        due = p.solve_every and graph.steps - self._solved_at >= rest
+        if due and graph.closures > self._closures_at_solve:
+            self._solve(graph)
 
-    def _solve(self, map_: ExperienceMap) -> None:
-        before = map_.poses.copy()
-        given_up = self._given_up(map_)
-        learnt, work = self._settle(map_, None)
-        if map_.params.robust and self.params.closures == "graduated" and self._contradicted(map_, given_up):
-            map_.poses[:] = before  # many false closures would have led it far astray, and the bias, too
-            self._learn(map_, -learnt)
-            share, trying = kept(*_given(map_), self._odometry(map_), map_.params.odometry_sigma, self.params)
-            work += trying + self._settle(map_, share)[1]
-        self._solved_at, self._closures_at_solve = map_.steps, map_.closures
+    def _solve(self, graph: PoseGraph) -> None:
+        before = graph.poses.copy()
+        given_up = self._given_up(graph)
+        learnt, work = self._settle(graph, None)
+        if graph.params.robust and self.params.closures == "graduated" and self._contradicted(graph, given_up):
+            graph.poses[:] = before  # many false closures would have led it far astray, and the bias, too
+            self._learn(graph, -learnt)
+            share, trying = kept(*_given(graph), self._odometry(graph), graph.params.odometry_sigma, self.params)
+            work += trying + self._settle(graph, share)[1]
+        self._solved_at, self._closures_at_solve = graph.steps, graph.closures
         self._rest_after_solve = work / self.params.work_a_step
 
-    def _contradicted(self, map_: ExperienceMap, given_up: NDArray[np.bool_]) -> bool:
+    def _contradicted(self, graph: PoseGraph, given_up: NDArray[np.bool_]) -> bool:
         """Whether all closures are put on trial: one that was believed is left far off, or one that was given up agrees.
 
         One that was given up and is still far off is no news. test_graduated_trust.py::test_a_lie_is_tried_once.
         """
-        t = map_.transitions
-        looks = np.flatnonzero(~self._odometry(map_) & (t.weight[: t.count] > 0.0))
-        off, old = contradiction(*_given(map_), looks, map_.params.odometry_sigma, self.params), given_up[looks]
+        t = graph.transitions
+        looks = np.flatnonzero(~self._odometry(graph) & (t.weight[: t.count] > 0.0))
+        off, old = contradiction(*_given(graph), looks, graph.params.odometry_sigma, self.params), given_up[looks]
         far = off > self.params.closure_trial / self.params.closure_bar
         return bool(np.any(far & ~old) or np.any((off < 1.0) & old))
 
-    def _given_up(self, map_: ExperienceMap) -> NDArray[np.bool_]:
+    def _given_up(self, graph: PoseGraph) -> NDArray[np.bool_]:
         """The closures in which the last trial ended without belief, and that were not measured since."""
-        t = map_.transitions
-        graduated = map_.params.robust and self.params.closures == "graduated"
-        unbelieved: NDArray[np.bool_] = (t.believed[: t.count] == 0.0) & ~self._odometry(map_) & graduated
+        t = graph.transitions
+        graduated = graph.params.robust and self.params.closures == "graduated"
+        unbelieved: NDArray[np.bool_] = (t.believed[: t.count] == 0.0) & ~self._odometry(graph) & graduated
         return unbelieved
 
-    def _odometry(self, map_: ExperienceMap) -> NDArray[np.bool_]:
-        return map_.transitions.chain[: map_.transitions.count]
+    def _odometry(self, graph: PoseGraph) -> NDArray[np.bool_]:
+        return graph.transitions.chain[: graph.transitions.count]
 
-    def _settle(self, map_: ExperienceMap, share: NDArray[np.float64] | None) -> tuple[float, float]:
+    def _settle(self, graph: PoseGraph, share: NDArray[np.float64] | None) -> tuple[float, float]:
         """One exact correction; returns the bias it learnt (rad/s) and its work.
 
         share: how far each row is kept, 0 to 1; None: by how well it fits.
         """
-        t, p = map_.transitions, map_.params
-        poses, ends, moves, weights = _given(map_)
+        t, p = graph.transitions, graph.params
+        poses, ends, moves, weights = _given(graph)
         turning = t.turning_s[: t.count] if p.calibrate else None
         if share is None and p.robust:
-            if self._given_up(map_).any():  # the verdict of the last trial stands
+            if self._given_up(graph).any():  # the verdict of the last trial stands
                 share = np.divide(t.believed[: t.count], weights, out=np.zeros(t.count), where=weights > 0.0)
             else:
                 share = robust_weights.trust(
-                    poses, ends, moves, weights, self._odometry(map_), p.odometry_sigma, self.params
+                    poses, ends, moves, weights, self._odometry(graph), p.odometry_sigma, self.params
                 )
         t.believed[: t.count] = weights if share is None else weights * share
         doubt = (p.odometry_sigma * self.params.rad_per_m / self.params.bias_sigma) ** 2  # in the unit of the weights
-        believed, known = t.believed[: t.count], map_.yaw_bias
+        believed, known = t.believed[: t.count], graph.yaw_bias
         more, work = relaxation.solve(poses, ends, moves, believed, turning, self.params, known, doubt)
         if turning is not None:
-            self._learn(map_, more)
+            self._learn(graph, more)
         return more, work
 
-    def _learn(self, map_: ExperienceMap, bias: float) -> None:
+    def _learn(self, graph: PoseGraph, bias: float) -> None:
         """Take so much more for the bias of the yaw rate (rad/s), also in what was measured before."""
-        t = map_.transitions
-        map_.yaw_bias += bias
+        t = graph.transitions
+        graph.yaw_bias += bias
         t.move[: t.count, 2] -= bias * t.turning_s[: t.count]
 
 
 def _given(
-    map_: ExperienceMap,
+    graph: PoseGraph,
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
     """Poses, ends, moves and weights of all rows, as views."""
-    t = map_.transitions
-    return map_.poses, t.ends[: t.count], t.move[: t.count], t.weight[: t.count]
+    t = graph.transitions
+    return graph.poses, t.ends[: t.count], t.move[: t.count], t.weight[: t.count]

@@ -12,7 +12,7 @@ test_familiar_ground.py. `NewGround` is the plain twin: every place is new for e
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numba import njit
@@ -20,14 +20,32 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.beats import weight
+from ratslam_core.extensions.islands import Islands
+from ratslam_core.extensions.pose_filter import PoseEstimate
 from ratslam_core.params import MemoryParams
-from ratslam_core.types import Odometry, Recognition
-
-if TYPE_CHECKING:
-    from ratslam_core.experience_map.experience_map import ExperienceMap
-    from ratslam_core.experience_map.transitions import Transitions
+from ratslam_core.pose_graph.transitions import Transitions
+from ratslam_core.types import Odometry, Pose2, Recognition
 
 MOST_NEAR = 256  # experiences near the robot that are looked at
+
+
+class Map(Protocol):
+    """What has to be known of an experience map."""
+
+    active: int
+    agrees: bool  # whether the last look agreed with where the robot believed itself to be
+    islands: Islands
+    pose_filter: PoseEstimate
+
+    def __len__(self) -> int: ...
+    @property
+    def poses(self) -> NDArray[np.float64]: ...
+    @property
+    def views(self) -> NDArray[np.int64]: ...
+    @property
+    def island_of(self) -> NDArray[np.int32]: ...
+    @property
+    def robot(self) -> Pose2: ...
 
 
 @kind("familiar ground/1")
@@ -72,7 +90,7 @@ class FamiliarGround:
         """The robot was carried away: nothing is near."""
         self.familiar, self.faded, self._found = False, -1, 0
 
-    def of_view(self, map_: ExperienceMap, view: int) -> int:
+    def of_view(self, map_: Map, view: int) -> int:
         """The experience of this view that is nearest to the robot, of those near it; -1 for none.
 
         The pose cells have drifted from it, but map and image agree that the robot is there.
@@ -101,9 +119,7 @@ class FamiliarGround:
         self.links_spared += tied
         return tied
 
-    def note(
-        self, map_: ExperienceMap, seen: Recognition, created: bool, odometry: Odometry, lost: bool, beats: int = 1
-    ) -> None:
+    def note(self, map_: Map, seen: Recognition, created: bool, odometry: Odometry, lost: bool, beats: int = 1) -> None:
         """The end of a step: count what was seen for the place where the robot was, and look where it is now.
 
         Only sights on the way count, since one that lasts says no more than one; and neither do those of nothing. An
@@ -114,8 +130,7 @@ class FamiliarGround:
             self._share = np.concatenate([self._share, np.zeros_like(self._share)])
             self._unseen = np.concatenate([self._unseen, np.zeros_like(self._unseen)])
         self.views_faded += seen.recruited and seen.view == self.faded
-        under_way = odometry.speed != 0 or odometry.yaw_rate != 0
-        if under_way and (seen.view >= 0 or seen.familiar):
+        if not odometry.still and (seen.view >= 0 or seen.familiar):
             hit = map_.agrees and not (created or self._let_go)
             _count(self._share, self._unseen, self.near, float(hit), weight(1 / self.params.sights, beats), beats)
             if hit:
@@ -125,10 +140,10 @@ class FamiliarGround:
         self._let_go = False
         self._look(map_, lost)
 
-    def _look(self, map_: ExperienceMap, lost: bool) -> None:
+    def _look(self, map_: Map, lost: bool) -> None:
         p, robot = self.params, map_.robot
         self.forget()
-        if lost or getattr(map_.pose_filter, "sigma_m", math.inf) > p.sure_m:
+        if lost or map_.pose_filter.sigma_m > p.sure_m:
             return
         self._found, total = _near(
             map_.poses, map_.views, map_.island_of, map_.islands.current, self._share, robot.x, robot.y, robot.heading_rad,
@@ -138,7 +153,7 @@ class FamiliarGround:
         if self._found >= p.views and not self.familiar:
             self.faded = self._oldest(map_)
 
-    def _oldest(self, map_: ExperienceMap) -> int:
+    def _oldest(self, map_: Map) -> int:
         """The view of the experience near the robot that was longest not recognised; of equals, the first."""
         others = self.near[self.near != map_.active]
         return int(map_.views[others[np.argmax(self._unseen[others])]]) if len(others) else -1
@@ -164,7 +179,7 @@ class NewGround:
     def forget(self) -> None:
         """There is nothing to forget."""
 
-    def of_view(self, _map: ExperienceMap, _view: int) -> int:
+    def of_view(self, _map: Map, _view: int) -> int:
         return -1
 
     def spare(self) -> bool:
@@ -174,7 +189,7 @@ class NewGround:
         return False
 
     def note(
-        self, _map: ExperienceMap, _seen: Recognition, _created: bool, _odometry: Odometry, _lost: bool, _beats: int = 1
+        self, _map: Map, _seen: Recognition, _created: bool, _odometry: Odometry, _lost: bool, _beats: int = 1
     ) -> None:
         """Nothing is counted."""
 

@@ -18,15 +18,13 @@ from ratslam_core.params import PoseFilterParams
 from ratslam_core.types import Pose2, wrap_angle
 
 
-@kind("gate/2")
+@kind("gate/3")
 class Gate:
     """How far looks may reach, and the hypothesis that those beyond have in common."""
 
     def __init__(self, params: PoseFilterParams) -> None:
         self.params = params
         self.sights = 0  # that agree on the hypothesis
-        self.beats = 1  # for how many sights one counts, since it lasts so long
-        self.surprised = False  # where it believes itself to be, the robot expects something else than it sees
         self.needed = params.gate_sights  # that must agree before it is believed
         self.known = 0  # how many experiences there were when it arose
         self._views: list[int] = []  # that were seen at these sights
@@ -42,34 +40,45 @@ class Gate:
         """Where the robot would be by what was held back; None without a hypothesis."""
         return self._other.compose(self._robot.inverse().compose(robot)) if self.sights else None
 
-    def doubt(self) -> None:
-        """A sight spoke against the hypothesis."""
-        self.sights = max(self.sights - self.beats, 0)
+    def doubt(self, times: int = 1) -> None:
+        """A sight spoke against the hypothesis; it counts so many times."""
+        self.sights = max(self.sights - times, 0)
 
     def dismiss(self) -> None:
         """There is no doubt any more."""
         self.sights = 0
 
     def believes(
-        self, robot: Pose2, claimed: Pose2, needed: int, experiences: int, view: int = -1, views: int = 1
+        self,
+        robot: Pose2,
+        claimed: Pose2,
+        needed: int,
+        experiences: int,
+        *,
+        view: int = -1,
+        views: int = 1,
+        beats: int = 1,
+        surprised: bool = False,
     ) -> bool:
         """Weigh one look beyond reach: whether the robot should believe that it is at `claimed`, not where it believes to be.
 
         A sight that contradicts the hypothesis takes one away from those that agree; with the last of them, its own claim
         takes their place. needed: how many must agree; experiences: how many there are; view: what it sees; views: how
-        many different ones must be among those that agree, since a robot that stands sees one thing all the time.
+        many different ones must be among those that agree, since a robot that stands sees one thing all the time; beats: for how
+        many sights this one counts, since it lasts so long; surprised: where it believes itself to be, the robot expects
+        something else than it sees.
         """
         self.needed = needed
         expected = self.hypothesis(robot)
         if expected is not None and not self._alike(expected, claimed):
-            self.doubt()
+            self.doubt(beats)
             if self.sights > 0:
                 return False
         if self.sights == 0:
             self.known, self._views = experiences, []
         if view not in self._views:
             self._views.append(view)
-        self.sights += self.beats * (self.params.gate_surprise if self.surprised else 1)
+        self.sights += beats * (self.params.gate_surprise if surprised else 1)
         self._robot, self._other = robot, claimed
         if self.sights < needed or len(self._views) < views:
             return False

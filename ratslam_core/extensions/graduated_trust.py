@@ -14,8 +14,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ratslam_core.experience_map import relaxation
 from ratslam_core.params import SolverParams
+from ratslam_core.pose_graph import relaxation
+from ratslam_core.pose_graph.pose_graph import disagreement
 
 MOST_ROUNDS = 100
 DECIDED = 0.01  # a share this near to 0 or 1 no longer changes
@@ -59,6 +60,6 @@ def contradiction(
     p: SolverParams,
 ) -> NDArray[np.float64]:
     """How far the map contradicts each of these rows, as a share of the bar: a row above 1 is one to give up."""
-    ex, ey, turn = relaxation.disagreement(poses, ends[rows], moves[rows]).T
+    ex, ey, turn = disagreement(poses, ends[rows], moves[rows]).T
     variance = sigma**2 / weights[rows] + p.closure_sigma**2
     return (ex**2 + ey**2 + (turn / p.rad_per_m) ** 2) / variance / p.closure_bar

@@ -56,8 +56,8 @@ class KidnapDetector:
         self.kidnapped, self._known_before = True, experiences
         self._agreed = self._settled = 0
 
-    def settle(self, agrees: bool, known: int) -> None:
-        """One more beat; decides whether the robot is still lost.
+    def settle(self, agrees: bool, known: int, beats: int = 1) -> bool:
+        """So many more beats; whether the robot has found itself in them.
 
         It is no longer lost once `found_again` sights of experiences from before the kidnap, taking into account the
         odometry between them, agree on where it is. New experiences in between count neither way: perhaps only a wall
@@ -68,8 +68,13 @@ class KidnapDetector:
         recognised, -1 for none. test_kidnap_detector.py::{test_a_changed_place_does_not_keep_the_robot_lost,
         test_nobody_is_lost_for_ever}.
         """
-        if not self.kidnapped:
-            return
+        lost = self.kidnapped
+        for _ in range(beats):
+            if self.kidnapped:
+                self._settle(agrees, known)
+        return lost and not self.kidnapped
+
+    def _settle(self, agrees: bool, known: int) -> None:
         if not agrees:
             self._agreed = self._settled = 0
         self._agreed += 0 <= known < self._known_before
@@ -93,5 +98,6 @@ class NeverKidnapped:
     def declare(self, _experiences: int) -> None:
         """Being told changes nothing."""
 
-    def settle(self, _agrees: bool, _known: int) -> None:
+    def settle(self, _agrees: bool, _known: int, _beats: int = 1) -> bool:
         """The robot is never lost."""
+        return False

@@ -14,8 +14,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from disk import kind
-from ratslam_core.experience_map.preintegrated import PreintegratedOdometry
-from ratslam_core.experience_map.transitions import Transitions
+from ratslam_core.pose_graph.preintegrated import PreintegratedOdometry
+from ratslam_core.pose_graph.transitions import Transitions
 from ratslam_core.types import Odometry, Pose2
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ratslam_core.experience_map.relaxation import disagreement
 from ratslam_core.params import SolverParams
+from ratslam_core.pose_graph.pose_graph import disagreement
 
 
 def trust(

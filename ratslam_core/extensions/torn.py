@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ratslam_core.experience_map.transitions import Transitions
+from ratslam_core.pose_graph.transitions import Transitions
 
 
 def soften(t: Transitions, first: int, last: int, off_m: float, sigma: float) -> NDArray[np.intp]:

@@ -30,6 +30,7 @@ def check(brain: RatSlam) -> None:
     fresh = RatSlam(brain.params, np.random.default_rng(0), sonar_angles_rad=_sonars(brain), **handed)
     same_kind("brain", brain, fresh)
     _agree(brain, handed)
+    _are_the_brains(brain)
     if "pose_cells" not in handed:
         pose_cells(brain.pose_cells, fresh.pose_cells)
     if _is_ours(brain.local_view):
@@ -41,7 +42,7 @@ def check(brain: RatSlam) -> None:
     association = brain.association
     learnt(association._learnt_s, views, number("time", association._time_s, 0.0, LONGEST))
     number("learning rate", association.learning_rate, 0.0, 2.0)
-    memories.goal_memory(brain.goal_memory, number("time under way", brain._under_way_s, 0.0, LONGEST))
+    memories.goal_memory(brain.goal_memory, number("time under way", brain.memories._under_way_s, 0.0, LONGEST))
     sonars = 0
     if brain.occupancy is not None and brain.map_grid is not None:
         sonars = memories.occupancy(brain.occupancy, shape)
@@ -84,7 +85,8 @@ def _agree(brain: RatSlam, handed: dict[str, Any]) -> None:
     """All parts have the brain's parameters, and the shape and cell size of its pose cells."""
     p = brain.params
     parts: list[tuple[Any, object]] = [
-        (brain.view_links, p.local_view), (brain.association, p.local_view), (brain.goal_memory, p.goal_memory)
+        (brain.view_links, p.local_view), (brain.association, p.local_view), (brain.goal_memory, p.goal_memory),
+        (brain.localisation, p.pose_cells),
     ]  # fmt: skip
     of_ours = (("pose_cells", p.pose_cells), ("local_view", p.local_view), ("experience_map", p.experience_map))
     parts += [(getattr(brain, name), own) for name, own in of_ours if name not in handed]
@@ -98,6 +100,18 @@ def _agree(brain: RatSlam, handed: dict[str, Any]) -> None:
     maps = [brain.experience_map] if "experience_map" not in handed else []
     for part in (*maps, brain.goal_memory, *((brain.occupancy,) if brain.occupancy else ())):
         true(part.cell_m == cell_m, f"a cell of {type(part).__name__} must be {cell_m} m wide")
+
+
+def _are_the_brains(brain: RatSlam) -> None:
+    """What holds parts of the brain holds no others."""
+    cells, memories = brain.localisation, brain.memories
+    true(
+        cells.pose_cells is brain.pose_cells and cells.association is brain.association,
+        "the brain moves other pose cells",
+    )
+    held = (memories.goal_memory, memories.occupancy, memories.map_grid)
+    own = (brain.goal_memory, brain.occupancy, brain.map_grid)
+    true(all(a is b for a, b in zip(held, own, strict=True)), "the brain learns in other memories")
 
 
 def _kidnap_detector(detector: KidnapDetector, experiences: int, sonars: int) -> None:

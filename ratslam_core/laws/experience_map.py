@@ -8,13 +8,13 @@ from __future__ import annotations
 import numpy as np
 
 from ratslam_core.experience_map.experience_map import ExperienceMap, _Arrival
-from ratslam_core.experience_map.preintegrated import PreintegratedOdometry
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import MOST_NEAR, FamiliarGround
 from ratslam_core.extensions.odometry_edges import OdometryEdges
 from ratslam_core.extensions.pose_filter import PoseFilter
 from ratslam_core.laws import experiences as law
 from ratslam_core.laws.measures import FAR_M, MOST, array, number, pose, true, whole, within
+from ratslam_core.pose_graph.preintegrated import PreintegratedOdometry
 
 LONGEST = 1e12  # metres and seconds
 FASTEST = 10.0  # rad/s, the largest yaw bias
@@ -52,7 +52,6 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     gate = map_.gate
     for name in ("sights", "needed", "known"):
         whole(name, getattr(gate, name))
-    whole("for how many sights one counts", gate.beats, 1)
     whole("the latest island", map_.islands.begun)
     whole("the island", map_.islands.current, 0, map_.islands.begun)
     whole("the first experience of the latest island", map_.islands.landed, 0, n)

@@ -10,11 +10,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ratslam_core.experience_map.adjacency import Adjacency
-from ratslam_core.experience_map.experiences import BUCKET, Experiences
-from ratslam_core.experience_map.transitions import BEHAVIOURS, Transitions
 from ratslam_core.laws.measures import FAR_M, MOST, TURN, apart, array, true, whole, within
 from ratslam_core.laws.views import places
+from ratslam_core.pose_graph.adjacency import Adjacency
+from ratslam_core.pose_graph.experiences import BUCKET, Experiences
+from ratslam_core.pose_graph.transitions import BEHAVIOURS, Transitions
 
 LARGEST = 1e12  # of weights and seconds
 

@@ -29,7 +29,6 @@ def local_view(view: LocalView) -> None:
     array("features", view.features, np.uint8, (size,))
     if view._last is not None:
         array("the last features", view._last, np.uint8, (size,))
-    whole("the faded view", view.faded, -1, count - 1)
     number("surprise", view.image_change, 0.0)
     whole("false positives", view.false_positives)
     if isinstance(view.front_end, ComplexCells | HueSaturation | ImageAndSonars):

@@ -16,12 +16,13 @@ from ratslam_core.local_view.echo_matcher import EchoMatcher, heard_apart
 from ratslam_core.local_view.front_ends import FrontEnd, named_front_end
 from ratslam_core.local_view.matcher import Features, Matcher, least_difference, sub_column, turned_apart
 from ratslam_core.params import LocalViewParams
+from ratslam_core.parts import Room
 from ratslam_core.types import Recognition, nothing_seen
 
 NOTHING = -1
 
 
-@kind("local view/2")
+@kind("local view/3")
 class LocalView:
     """The known scenes. `observe` recognises an image or recruits a new cell for it."""
 
@@ -43,8 +44,6 @@ class LocalView:
         self.recognition = nothing_seen()
         self.image_change = 0.0  # since the image before, as a share of what driving can explain; above 1 it cannot
         self.false_positives = 0  # so far
-        self.recruits = True  # whether an unknown sight becomes a view
-        self.faded = -1  # the view whose room it then gets; -1: a room of its own
         self._templates = np.zeros((1024, size), np.uint8)
         self._count = 0
         self._matcher = matcher_of(end)
@@ -91,6 +90,14 @@ class LocalView:
         view = int(views[best])
         return Recognition(view, False, view, apart, self._facing(view, shift))
 
+    def unlike_all(self, views: NDArray[np.int64], times: float) -> bool:
+        """[ours] Whether what was seen last differs from each of these known views by more than so many times the threshold.
+
+        test_gate.py::test_who_misses_what_it_expects_gives_way_sooner.
+        """
+        limit = times * self.front_end.threshold(self.params)
+        return len(views) > 0 and all(self.difference_to(int(v)) > limit for v in views if v >= 0)
+
     def strength(self, seen: Recognition) -> float:
         """How sure a recognition is: 1 for a new or an equal view, 0 for one that is only just recognised."""
         vague, limit = self.front_end.vague, self.front_end.threshold(self.params)
@@ -104,12 +111,14 @@ class LocalView:
         scene: int | None = None,
         ranges_m: NDArray[np.floating] | None = None,
         turned_rad: float = 0.0,
+        room: Room | None = None,
     ) -> Recognition:
         """The active cell for what is seen now; a new one if no known one is like it.
 
         image: (h, w) grey or (h, w, 3) RGB, uint8. scene: for the front end "scene numbers", which looks at nothing
         else. ranges_m: of the sonars, for "image and sonars", shape (n_sonars,); without them the image alone counts.
-        turned_rad: what the wheels say of the turn since the image before, left positive.
+        turned_rad: what the wheels say of the turn since the image before, left positive. room: whether a new cell may be
+        recruited, and whose room it gets.
 
         [ours] An image that shows nothing (a wall at arm's length) activates no cell and recruits none, since such
         images look alike everywhere. test_local_view.py::test_a_bland_view_shows_nothing. With vision off, no image
@@ -125,10 +134,12 @@ class LocalView:
             self.recognition = Recognition(NOTHING, False, best, apart)
         elif apart <= self.front_end.threshold(self.params):
             self.recognition = self._recognised(best, apart, shift)
-        elif not self.recruits:
+        elif room is not None and room.familiar:
             self.recognition = Recognition(NOTHING, False, best, apart, familiar=True)
         else:
-            self.recognition = Recognition(self._recruit(features), True, best, apart)
+            self.recognition = Recognition(
+                self._recruit(features, -1 if room is None else room.faded), True, best, apart
+            )
         return self.recognition
 
     def _recognised(self, best: int, apart: float, shift: int) -> Recognition:
@@ -186,11 +197,11 @@ class LocalView:
     def _least_apart(self, new: Features, stored: Features, most: int) -> float:
         return least_difference(new, stored, most, self.front_end.columns, self.front_end.rows)
 
-    def _recruit(self, features: Features) -> int:
-        if self.faded >= 0:
-            self._templates[self.faded] = features
-            self._matcher.replaced(self.faded, features)
-            return self.faded
+    def _recruit(self, features: Features, faded: int) -> int:
+        if faded >= 0:
+            self._templates[faded] = features
+            self._matcher.replaced(faded, features)
+            return faded
         if self._count == len(self._templates):
             more = np.zeros(
                 (self._count // 2, features.size), np.uint8

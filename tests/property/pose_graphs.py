@@ -10,8 +10,8 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from ratslam_core import SolverParams
-from ratslam_core.experience_map.adjacency import Adjacency
-from ratslam_core.experience_map.relaxation import solve, sweep
+from ratslam_core.pose_graph.adjacency import Adjacency
+from ratslam_core.pose_graph.relaxation import solve, sweep
 
 EXAMPLES = settings(max_examples=60)
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core import SolverParams
-from ratslam_core.experience_map.relaxation import solve
+from ratslam_core.pose_graph.relaxation import solve
 from ratslam_core.solvers import cholesky, laplacian
 from ratslam_core.solvers.laplacian import Elimination, eliminate
 from tests.unit.ratslam_core import literal

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ratslam_core import SolverParams
-from ratslam_core.experience_map.relaxation import solve
+from ratslam_core.pose_graph.relaxation import solve
 from ratslam_core.solvers.laplacian import eliminate
 
 from .pose_graphs import EXAMPLES, Graph, disturb, graphs, true_moves, turned, wrap

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core.experience_map import relaxation
-from ratslam_core.experience_map.adjacency import Adjacency
-from ratslam_core.experience_map.relaxation import sweep
+from ratslam_core.pose_graph import pose_graph, relaxation
+from ratslam_core.pose_graph.adjacency import Adjacency
+from ratslam_core.pose_graph.relaxation import sweep
 from tests.unit.ratslam_core import literal
 
 from .pose_graphs import EXAMPLES, Graph, disturb, graphs, turned, wrap
@@ -122,10 +122,10 @@ def test_an_experience_without_links_stays(interpreted: bool, monkeypatch: pytes
 def test_headings_are_wrapped_and_faced_exactly(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if interpreted:
         literal.interpret(relaxation, monkeypatch)
-    assert relaxation._wrapped(-math.pi) == math.pi
-    assert relaxation._wrapped(math.pi) == math.pi
+    assert pose_graph.wrapped(-math.pi) == math.pi
+    assert pose_graph.wrapped(math.pi) == math.pi
     for angle in np.linspace(-math.pi, math.pi, 1001):
         c, s = relaxation._facing(angle)
         assert (c, s) == pytest.approx((math.cos(angle), math.sin(angle)), abs=2e-14, rel=0)
         for turns in (-2, -1, 1, 3):
-            assert abs(wrap(relaxation._wrapped(angle + 2 * math.pi * turns) - angle)) < 1e-12
+            assert abs(wrap(pose_graph.wrapped(angle + 2 * math.pi * turns) - angle)) < 1e-12

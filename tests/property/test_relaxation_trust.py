@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ratslam_core import SolverParams
-from ratslam_core.experience_map import relaxation
-from ratslam_core.experience_map.relaxation import solve
 from ratslam_core.extensions import robust_weights
+from ratslam_core.pose_graph import relaxation
+from ratslam_core.pose_graph.relaxation import solve
 from tests.unit.ratslam_core import literal
 
 from .pose_graphs import EXAMPLES

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core.experience_map import relaxation
-from ratslam_core.experience_map.relaxation import has_diverged, sweep_all_at_once
+from ratslam_core.pose_graph import relaxation
+from ratslam_core.pose_graph.relaxation import has_diverged, sweep_all_at_once
 from tests.unit.ratslam_core import literal
 
 from .pose_graphs import EXAMPLES, Graph, disturb, graphs, turned, wrap

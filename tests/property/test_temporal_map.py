@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core import ExperienceMapParams, TemporalMap
-from ratslam_core.experience_map import transitions
+from ratslam_core.pose_graph import transitions
 from ratslam_core.solvers import dijkstra
 from tests.property.timed_links import LEAST_S, Links, by_scipy, change, check_route, links, relax, ways_of
 from tests.unit.ratslam_core import literal

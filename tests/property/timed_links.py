@@ -13,7 +13,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra as scipy_dijkstra
 
 from ratslam_core import ExperienceMapParams, TemporalMap
-from ratslam_core.experience_map.transitions import Transitions
+from ratslam_core.pose_graph.transitions import Transitions
 
 LEAST_S = 1e-3
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core import ExperienceMapParams, Pose2, TemporalMap
-from ratslam_core.experience_map.transitions import Transitions
+from ratslam_core.pose_graph.transitions import Transitions
 from sim2d import Drive, SimParams, Simulator, Start, Wall, World
 
 GREY = (160, 160, 160)

@@ -58,7 +58,7 @@ def test_a_changed_file_is_refused(file: Path, tmp_path: Path) -> None:
         (lambda tree, _: tree["state"].update(kind="os:system"), "no class is of the kind 'os:system'"),
         (
             lambda tree, _: tree["state"].update(kind="ratslam/7"),
-            "ratslam/7 was made by another version .* has ratslam/3",
+            "ratslam/7 was made by another version .* has ratslam/4",
         ),
         (lambda tree, _: tree["state"].update(kind=3), "no class is of the kind '3'"),
         (lambda tree, _: tree["state"]["state"]["pose_cells"]["state"].update(more=1), "PoseCells differs in more"),
@@ -170,8 +170,8 @@ MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "exper
         (write("association._learnt_s", {"list": []}), "each of .* views must have a time, got 0"),
         (write("association.learning_rate", {"float": "nan"}), "learning_rate must be a number, got nan"),
         (
-            lambda tree, _: at(tree, "pose_cells")[0].update(pose_cells={"same": 0}),
-            "must be a PoseCells, got a RatSlam",
+            lambda tree, _: at(tree, "local_view")[0].update(local_view={"same": 0}),
+            "must be a LocalView, got a RatSlam",
         ),
         (write("pose_cells._spare_owner", {"same": 26}), "an array is in two places at once"),
         (lambda tree, _: tree["state"].update(kind="os"), "no class is of the kind 'os'"),

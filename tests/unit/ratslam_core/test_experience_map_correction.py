@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ratslam_core import ExperienceMapParams, Odometry, Pose2, Recognition, SolverParams
-from ratslam_core.experience_map import relaxation
+from ratslam_core.pose_graph import relaxation
 
 from .drives import Robot
 

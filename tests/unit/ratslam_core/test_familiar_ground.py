@@ -160,7 +160,7 @@ def test_without_an_experience_map_every_sight_is_learnt() -> None:
     assert isinstance(brain.experience_map.ground, NewGround)
     image = np.random.default_rng(0).integers(0, 255, (48, 64), np.uint8)
     brain.step(image, STILL)
-    assert brain.local_view.recruits
+    assert not brain.experience_map.ground.familiar
 
 
 def test_a_place_has_room_for_so_many_views_and_the_oldest_fades() -> None:

@@ -82,9 +82,8 @@ def test_a_sight_against_it_takes_one_away_and_the_last_gives_way() -> None:
 
 def test_who_misses_what_it_expects_gives_way_sooner() -> None:
     gate = Gate(P)
-    gate.surprised = True
     taken = 1
-    while not gate.believes(HERE, THERE, P.gate_sights, 7):
+    while not gate.believes(HERE, THERE, P.gate_sights, 7, surprised=True):
         taken += 1
     assert taken == -(-P.gate_sights // P.gate_surprise)
 
@@ -179,7 +178,7 @@ def test_what_was_made_in_doubt_is_no_witness() -> None:
 def test_so_many_different_views_must_agree(seen: list[int], views: int, needed: int) -> None:
     """Who stands before one view and sees it for ever has seen one thing."""
     gate = Gate(P)
-    believed = [gate.believes(HERE, THERE, needed, 7, view, views) for view in seen]
+    believed = [gate.believes(HERE, THERE, needed, 7, view=view, views=views) for view in seen]
     ready = [k + 1 >= needed and len(set(seen[: k + 1])) >= views for k in range(len(seen))]
     first = ready.index(True) if True in ready else len(seen)
     assert believed[: first + 1] == ready[: first + 1]
@@ -187,8 +186,7 @@ def test_so_many_different_views_must_agree(seen: list[int], views: int, needed:
 
 def test_a_sight_that_lasts_counts_for_several() -> None:
     gate = Gate(P)
-    gate.beats = 5
-    assert [gate.believes(HERE, THERE, 12, 7) for _ in range(3)] == [False, False, True]
-    gate.believes(HERE, THERE, 12, 7)
-    gate.doubt()
+    assert [gate.believes(HERE, THERE, 12, 7, beats=5) for _ in range(3)] == [False, False, True]
+    gate.believes(HERE, THERE, 12, 7, beats=5)
+    gate.doubt(5)
     assert gate.sights == 0

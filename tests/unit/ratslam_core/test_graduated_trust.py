@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from app.evaluation.alignment import rmse
 from ratslam_core import ExperienceMap, ExperienceMapParams, Packet, Pose2, SolverParams
-from ratslam_core.experience_map import relaxation
 from ratslam_core.extensions import exact_solver
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.graduated_trust import contradiction, kept
+from ratslam_core.pose_graph import relaxation
 
 from .graphs import Graph, city
 

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2, PoseFilterParams
-from ratslam_core.experience_map.experiences import Experiences
 from ratslam_core.extensions.islands import Islands, move
+from ratslam_core.pose_graph.experiences import Experiences
 from ratslam_core.types import Recognition, nothing_seen
 
 from .drives import Robot, relative
@@ -176,7 +176,7 @@ def test_an_own_view_does_not_hide_that_of_another_island(hidden: bool) -> None:
     robot.see(20, new=True)
     for _ in range(NEEDED):
         assert robot.map.islands.joined == 0
-        robot.map.elsewhere = Recognition(2, False, 2, 1.0, 0.0) if hidden else nothing_seen()
+        robot.views.sees = Recognition(2, False, 2, 1.0, 0.0) if hidden else nothing_seen()
         robot.see(20)
     assert robot.map.islands.joined == hidden
     assert robot.map.active == (2 if hidden else 6)
@@ -188,7 +188,7 @@ def test_what_is_seen_elsewhere_counts_for_where_it_is_and_not_for_here() -> Non
     robot = carried(to=Pose2(4.0, 0.0, 1.0))
     robot.see(20, new=True)
     for _ in range(NEEDED):
-        robot.map.elsewhere = Recognition(4, False, 4, 1.0, 1.0)
+        robot.views.sees = Recognition(4, False, 4, 1.0, 1.0)
         robot.see(20)
     assert robot.map.active == 4
     assert robot.map.robot.heading_rad == pytest.approx(1.0)

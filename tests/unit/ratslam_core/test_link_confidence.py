@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2
-from ratslam_core.experience_map.transitions import Transitions
 from ratslam_core.laws.experiences import transitions as transitions_law
+from ratslam_core.pose_graph.transitions import Transitions
 
 from .drives import EXACT, Robot
 from .test_transitions import HOME, drive_there_and_back, two_places

@@ -55,15 +55,6 @@ def test_equal_inputs_give_equal_runs() -> None:
     assert np.array_equal(runs[0][2], runs[1][2])
 
 
-def test_the_learnt_bias_is_taken_off_while_the_wheels_turn() -> None:
-    _, brain = start()
-    brain.experience_map.yaw_bias = 0.05
-    assert brain.experience_map.calibrated(Odometry(0.3, 0.2, 0.1)) == Odometry(0.3, 0.2 - 0.05, 0.1)
-    assert brain.experience_map.calibrated(Odometry(0.0, 0.2, 0.1)).yaw_rate == pytest.approx(0.15)
-    still = Odometry(0.0, 0.0, 0.1)
-    assert brain.experience_map.calibrated(still) is still
-
-
 def test_new_parameters_reach_every_part_and_the_size_is_refused() -> None:
     circle, brain = start()
     new = RatSlamParams(

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from ratslam_core import Pose2
-from ratslam_core.experience_map.transitions import Transitions
 from ratslam_core.extensions.torn import open_way_m, soften, torn
+from ratslam_core.pose_graph.transitions import Transitions
 
 
 def a_backbone(experiences: int, closures: list[tuple[int, int]]) -> Transitions:

@@ -1,37 +1,35 @@
-"""Reading an experience map. How it is learnt is in experience_map.py."""
+"""The pose graph: experiences with their poses in the map, and the links between them that map correction works on.
+
+How it is learnt is in experience_map.py; `places.py` and `temporal_map.py` read it. ACRA 2006 sections 3.2 and 3.3.
+"""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from ratslam_core.experience_map import relaxation
-from ratslam_core.experience_map.experiences import Experiences
-from ratslam_core.experience_map.temporal_map import TemporalMap
-from ratslam_core.experience_map.transitions import Link, Transitions
-from ratslam_core.extensions.pose_filter import pose_estimate
-from ratslam_core.params import ExperienceMapParams, PoseFilterParams
+from ratslam_core.params import ExperienceMapParams
+from ratslam_core.pose_graph.experiences import Experiences
+from ratslam_core.pose_graph.transitions import Link, Transitions
 from ratslam_core.types import Packet, Pose2, pose_of
 
 
-class MapReading:
-    """Experiences with their poses, links with their times, the robot in the map."""
+class PoseGraph:
+    """Experiences with their poses, links with their times."""
 
-    def __init__(
-        self,
-        shape: tuple[int, int, int],
-        cell_m: float,
-        params: ExperienceMapParams | None = None,
-        filter_params: PoseFilterParams | None = None,
-    ) -> None:
+    def __init__(self, shape: tuple[int, int, int], cell_m: float, params: ExperienceMapParams | None = None) -> None:
+        """shape: layers, cells along y' and x' of the pose cells; cell_m: side of one cell."""
         self.params = params or ExperienceMapParams()
         self.shape, self.cell_m = shape, cell_m
         self._experiences = Experiences(shape)
         self.transitions = Transitions()
-        self.active = -1
-        self.pose_filter = pose_estimate(filter_params or PoseFilterParams())
+        self.yaw_bias = 0.0  # rad/s, learnt: odometry turns too far by so much
+        self.closures = 0  # links made to experiences that existed before
+        self.steps = 0  # of correction
         self._driven_m = self._driving_s = 0.0
-        self._temporal_map = TemporalMap(self)
 
     def __len__(self) -> int:
         return self._experiences.count
@@ -79,18 +77,6 @@ class MapReading:
             raise ValueError(f"experience must be from 0 to {len(self) - 1}, got {experience!r}")
         return experience
 
-    # ------------------------------------------------------------ the robot
-
-    @property
-    def local_pose(self) -> Pose2:
-        """Where the robot believes itself to be, in the frame of the active experience."""
-        return self.pose_filter.local
-
-    @property
-    def robot(self) -> Pose2:
-        """The robot in the map."""
-        return self.pose(self.active).compose(self.local_pose)
-
     # ------------------------------------------------------------ links
 
     @property
@@ -132,11 +118,6 @@ class MapReading:
         """Seconds per metre, averaged over all driving so far; 0 before the robot has driven and when `pace_floor` is off."""
         return self._driving_s / self._driven_m if self._driven_m > 0 and self.params.pace_floor else 0.0
 
-    @property
-    def temporal_map(self) -> TemporalMap:
-        """Times and routes over the current links; the same object for as long as the map lives."""
-        return self._temporal_map
-
     def link(self, i: int, j: int) -> Link:
         """The link from experience i to j; ValueError when there is none."""
         row = self.transitions.row_of.get((i, j))
@@ -152,14 +133,9 @@ class MapReading:
         weight = t.believed[rows]
         if weight.sum() <= 0:
             return 0.0, 0.0
-        apart = relaxation.disagreement(self.poses, t.ends[rows], t.move[rows]) ** 2 * weight[:, None]
+        apart = disagreement(self.poses, t.ends[rows], t.move[rows]) ** 2 * weight[:, None]
         total = weight.sum()
         return float(np.sqrt(apart[:, :2].sum() / total)), float(np.sqrt(apart[:, 2].sum() / total))
-
-    @property
-    def diverged(self) -> bool:
-        """Whether correction with the sweep "all at once" has thrown the map apart: `relaxation.sweep_all_at_once`."""
-        return self.params.sweep == "all at once" and relaxation.has_diverged(self.poses, self.moves)
 
     @property
     def dropped_links(self) -> tuple[tuple[int, int], ...]:
@@ -169,3 +145,25 @@ class MapReading:
     @property
     def _travelled(self) -> NDArray[np.int64]:
         return np.flatnonzero(self.transitions.travelled[: self.transitions.count])
+
+
+@njit(cache=True, nogil=True, inline="always")
+def wrapped(angle: float) -> float:
+    if angle > math.pi or angle <= -math.pi:
+        angle -= 2.0 * math.pi * math.ceil(angle / (2.0 * math.pi) - 0.5)
+    return angle
+
+
+@njit(cache=True, nogil=True)
+def disagreement(
+    poses: NDArray[np.float64], links: NDArray[np.int64], moves: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Where each link says its end is, minus where the map has it: dx, dy (m) in the map's frame, angle (rad), shape (m, 3)."""
+    out = np.empty((len(links), 3))
+    for row in range(len(links)):
+        i, j = links[row]
+        c, s = math.cos(poses[i, 2]), math.sin(poses[i, 2])
+        out[row, 0] = poses[i, 0] + c * moves[row, 0] - s * moves[row, 1] - poses[j, 0]
+        out[row, 1] = poses[i, 1] + s * moves[row, 0] + c * moves[row, 1] - poses[j, 1]
+        out[row, 2] = wrapped(poses[i, 2] + moves[row, 2] - poses[j, 2])
+    return out

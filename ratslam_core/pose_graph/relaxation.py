@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.experience_map.adjacency import Adjacency
 from ratslam_core.params import SolverParams
+from ratslam_core.pose_graph.adjacency import Adjacency
+from ratslam_core.pose_graph.pose_graph import PoseGraph, disagreement, wrapped
 from ratslam_core.solvers.laplacian import eliminate
-
-if TYPE_CHECKING:
-    from ratslam_core.experience_map.experience_map import ExperienceMap
 
 DIVERGED = 10.0  # times the length of all links together: where no map that fits them puts an experience
 LEAST_STRENGTH = 1e-9  # below it, only rounding tells a bias from a bend in the way
@@ -28,9 +26,9 @@ class Relaxation:
     def __init__(self, params: SolverParams) -> None:
         self.params = params
 
-    def correct(self, map_: ExperienceMap) -> None:
+    def correct(self, graph: PoseGraph) -> None:
         """One step of map correction. test_relaxation_sweep.py::test_a_sweep_never_raises_the_residual."""
-        t, p, poses = map_.transitions, map_.params, map_.poses
+        t, p, poses = graph.transitions, graph.params, graph.poses
         ends, moves = t.ends[: t.count], t.move[: t.count]
         for _ in range(p.sweeps):
             if p.sweep == "by link":
@@ -83,13 +81,13 @@ def _sweep(
             w = weights[row]
             dx += w * (poses[other, 0] + (sign * (c[begin] * ahead - s[begin] * aside) - x))
             dy += w * (poses[other, 1] + (sign * (s[begin] * ahead + c[begin] * aside) - y))
-            turn += w * _wrapped(poses[other, 2] + (sign * moves[row, 2] - heading))
+            turn += w * wrapped(poses[other, 2] + (sign * moves[row, 2] - heading))
             total += w
         if total > 0.0:
             share = gain / total
             poses[i, 0] = x + share * dx
             poses[i, 1] = y + share * dy
-            poses[i, 2] = _wrapped(heading + share * turn)
+            poses[i, 2] = wrapped(heading + share * turn)
 
 
 def sweep_by_link(
@@ -132,8 +130,8 @@ def _sweep_by_link(
                 sign = 1.0 if half & np.uint64(1) else -1.0
                 poses[i, 0] += alpha * (poses[other, 0] + sign * turned[row, 0] - poses[i, 0])
                 poses[i, 1] += alpha * (poses[other, 1] + sign * turned[row, 1] - poses[i, 1])
-                turn = _wrapped(poses[other, 2] + sign * moves[row, 2] - poses[i, 2])
-                poses[i, 2] = _wrapped(poses[i, 2] + alpha * turn)
+                turn = wrapped(poses[other, 2] + sign * moves[row, 2] - poses[i, 2])
+                poses[i, 2] = wrapped(poses[i, 2] + alpha * turn)
 
 
 def sweep_all_at_once(
@@ -203,13 +201,6 @@ def _facing(angle: float) -> tuple[float, float]:
     return 1 - 2 * s * s, 2 * s * c
 
 
-@njit(cache=True, nogil=True, inline="always")
-def _wrapped(angle: float) -> float:
-    if angle > math.pi or angle <= -math.pi:
-        angle -= 2.0 * math.pi * math.ceil(angle / (2.0 * math.pi) - 0.5)
-    return angle
-
-
 class Solution(NamedTuple):
     """The outcome of an exact correction."""
 
@@ -258,21 +249,6 @@ def solve(
     across, up = np.ascontiguousarray(off.T)
     poses[:, :2] += net.solve(np.stack([_asked(n, links, across), _asked(n, links, up)], axis=1))
     return Solution(bias, net.work + p.work_an_experience * n)
-
-
-@njit(cache=True, nogil=True)
-def disagreement(
-    poses: NDArray[np.float64], links: NDArray[np.int64], moves: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Where each link says its end is, minus where the map has it: dx, dy (m) in the map's frame, angle (rad), shape (m, 3)."""
-    out = np.empty((len(links), 3))
-    for row in range(len(links)):
-        i, j = links[row]
-        c, s = math.cos(poses[i, 2]), math.sin(poses[i, 2])
-        out[row, 0] = poses[i, 0] + c * moves[row, 0] - s * moves[row, 1] - poses[j, 0]
-        out[row, 1] = poses[i, 1] + s * moves[row, 0] + c * moves[row, 1] - poses[j, 1]
-        out[row, 2] = _wrapped(poses[i, 2] + moves[row, 2] - poses[j, 2])
-    return out
 
 
 @njit(cache=True, nogil=True)

@@ -22,7 +22,7 @@ class PreintegratedOdometry:
     def add(self, moved: Pose2, odometry: Odometry) -> None:
         self.moved = self.moved.compose(moved)
         self.way_m += abs(odometry.speed * odometry.dt)
-        self.turning_s += odometry.dt * (odometry.speed != 0 or odometry.yaw_rate != 0)
+        self.turning_s += odometry.dt * (not odometry.still)
         self.time_s += odometry.dt
 
 

@@ -18,8 +18,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.experience_map.adjacency import Adjacency
 from ratslam_core.params import ExperienceMapParams
+from ratslam_core.pose_graph.adjacency import Adjacency
 from ratslam_core.types import Pose2, wrap_angle
 
 BEHAVIOURS = 16

@@ -1,0 +1,70 @@
+"""Where the pose cells say that the robot is: path integration, visual association and attractor. ACRA 2004 section 4."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from disk import kind
+from ratslam_core.beats import Tick
+from ratslam_core.params import PoseCellParams
+from ratslam_core.parts import PoseCellsPart
+from ratslam_core.types import Odometry, Packet, Recognition
+from ratslam_core.visual_association import VisualAssociation
+
+
+@kind("localisation/1")
+class Localisation:
+    """Moves the packets, lets views put activity there, and lets the packets compete."""
+
+    def __init__(self, pose_cells: PoseCellsPart, association: VisualAssociation, params: PoseCellParams) -> None:
+        self.pose_cells, self.association, self.params = pose_cells, association, params
+
+    def step(
+        self, seen: Recognition, strength: float, tick: Tick, lost: bool, watch: Callable[[str], None]
+    ) -> tuple[Packet, bool]:
+        """The winning packet at the end of the tick, and whether it has jumped.
+
+        strength: how sure the recognition is, 0 to 1; lost: the robot knows that it was carried away; watch: called
+        with the name of each stage after it.
+
+        Several beats in one tick: the way is driven beat by beat, and the image, which belongs to its end, is associated
+        there once for each. The attractor follows every such part of a stage.
+
+        [ours] The image belongs to the end of the movement, so path integration comes first. Otherwise every view would
+        be linked one step behind. ACRA 2004 section 4 associates first (`pose_cells.move_first` off). test_papers.py.
+        """
+
+        def integrate(_seen: Recognition) -> None:
+            self._integrate(tick.moved)
+
+        def associate(seen: Recognition) -> None:
+            self.association.step(seen, strength, tick.moved.dt, self.pose_cells, lost)
+
+        stages = [("path integration", integrate), ("injection", associate)]
+        jumped = False
+        for stage, do in stages if self.params.move_first else stages[::-1]:
+            for beat in range(tick.beats):
+                do(seen if beat == 0 else again(seen))
+                if beat < tick.beats - 1:
+                    jumped |= self._attract()[1]
+            watch(stage)
+        packet, jumps = self._attract()
+        watch("attractor")
+        return packet, jumped or jumps
+
+    def _integrate(self, moved: Odometry) -> None:
+        """With `yaw_bias`, the cells turn too far and the map does not: ACRA 2005 5.2, figures 8 to 10. test_biased_loop.py."""
+        yaw_rate = moved.yaw_rate + (0.0 if moved.still else self.params.yaw_bias)
+        self.pose_cells.integrate(moved.speed * moved.dt, yaw_rate * moved.dt)
+
+    def _attract(self) -> tuple[Packet, bool]:
+        """One step of the attractor. Returns the winner, and whether it has jumped from where it was."""
+        expected, packet = self.pose_cells.winner, self.pose_cells.attract()
+        jump = self.pose_cells.cells_apart(expected.x, expected.y, packet.x, packet.y)
+        return packet, jump > self.params.snap_cells
+
+
+def again(seen: Recognition) -> Recognition:
+    """The same sight a beat later. A view that was just recruited is known by then, and equal to itself."""
+    return replace(seen, recruited=False, best_view=seen.view, difference=0.0) if seen.recruited else seen
