@@ -203,6 +203,6 @@ def _nobody(_order: Order) -> object:
 
 
 def is_lost(session: Session) -> bool:
-    """Whether the brain has declared itself lost, or a second packet holds more than a fifth of the activity."""
-    packets = session.brain.pose_cells.packets
-    return session.brain.lost or (len(packets) > 1 and packets[1].mass > 0.2)
+    """Whether a brain that was carried believes no place, or else a second packet holds more than a fifth of the activity."""
+    brain, packets = session.brain, session.brain.pose_cells.packets
+    return brain.lost if brain.carried else len(packets) > 1 and packets[1].mass > 0.2

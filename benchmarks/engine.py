@@ -211,7 +211,7 @@ def _close(made: ExperienceMap, rng: np.random.Generator, odometry: Odometry) ->
     """A closure between two of its experiences, chosen at random."""
     before, (a, b) = len(made), (int(v) for v in rng.integers(0, len(made), 2))
     x, y, _theta, view = made.cell_state(b)
-    made.active = a
+    made.here = a
     made.step(Packet(x, y, 0.0, 1.0), Recognition(view, False, view, 2.0), odometry)
     if len(made) > before:
         raise AssertionError(f"a look from {a} to {b} made a new experience where a loop was to be closed")

@@ -76,7 +76,7 @@ class Brain:
         if optimiser is None:
             optimiser = ExactSolver(p.solver) if p.solver.enabled else Relaxation(p.solver)
         shape, cell_m = self.pose_cells.shape, p.pose_cells.cell_m
-        return kind(shape, cell_m, p.experience_map, p.pose_filter, optimiser, ground(p.memory))
+        return kind(shape, cell_m, p.experience_map, p.pose_filter, optimiser, ground(p.memory), p.evidence)
 
     @property
     def view_links(self) -> ViewLinks:
@@ -84,7 +84,12 @@ class Brain:
 
     @property
     def lost(self) -> bool:
-        """Whether the robot knows that it was carried away and has not found itself again."""
+        """Whether the robot knows that it was carried away, and believes no place."""
+        return self.carried and self.experience_map.lost
+
+    @property
+    def carried(self) -> bool:
+        """Whether the robot knows that it was carried away, and has not been put onto the map again."""
         return self.kidnap_detector.kidnapped
 
     def declare_kidnapped(self, *, sure: bool = True) -> None:
@@ -93,7 +98,7 @@ class Brain:
         sure: nothing else can explain it.
         """
         self.kidnap_detector.declare(len(self.experience_map))
-        if self.lost:
+        if self.carried:
             self.experience_map.declare_kidnapped(sure=sure)
 
     def forget_view(self, view: int) -> None:
@@ -120,7 +125,7 @@ class Brain:
         self.localisation.params = params.pose_cells
         self.local_view.params = params.local_view
         self.association.set_params(params.local_view)
-        self.experience_map.set_params(params.experience_map, params.pose_filter, params.solver)
+        self.experience_map.set_params(params.experience_map, params.pose_filter, params.solver, params.evidence)
         self.experience_map.ground.params = params.memory
         self.kidnap_detector.params, self.kidnap_detector.view_params = params.kidnap, params.local_view
         self.memories.set_params(params.goal_memory, params.occupancy)

@@ -55,7 +55,7 @@ class Memories:
             return
         for _ in range(tick.beats):
             self.occupancy.update(packet, scan)
-        self.map_grid.add(map_.active, map_.local_pose, scan)
+        self.map_grid.add(map_.here, map_.pose_filter.local, scan)
 
     def _learn_way(self, tick: Tick, pose_cells: PoseCellsPart, leapt: bool) -> None:
         """[ours] The robot did not drive where the packet jumped, so nothing is linked across the jump.

@@ -61,8 +61,20 @@ class LocalViewPart(Protocol):
         may have changed."""
         ...
 
-    def nearest_of(self, views: NDArray[np.int64], /) -> Recognition:
-        """Which of these known views is like what was seen last."""
+    @property
+    def column_rad(self) -> float:
+        """The heading that a view shifted by a column stands for, 0 where none is told."""
+        ...
+
+    def apart_at(
+        self, views: NDArray[np.int64], shifts: NDArray[np.int64], slack: int, /
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """How unlike each of these known views (k,) is to what was seen last, shifted by so many columns, give or take
+        `slack`, in any unit; and by how many of these columns it is least unlike."""
+        ...
+
+    def difference_to(self, view: int, /) -> float:
+        """How unlike a known view is to what was seen last, in the unit of `Recognition.difference`."""
         ...
 
     def unlike_all(self, views: NDArray[np.int64], times: float, /) -> bool:
@@ -114,12 +126,23 @@ class PoseCellsPart(Protocol):
 class ExperienceMapPart(Protocol):
     """Builds the map. The pilot and the page need more than this; for them, inherit from ExperienceMap."""
 
-    active: int
+    here: int  # the experience at which the map is learnt
+    carried: bool  # it knows that it was carried away, and has not been put onto the map again
     agrees: bool  # whether the last look agreed with where the robot believed itself to be
     yaw_bias: float  # rad/s, learnt: odometry turns too far by so much
     ground: Any  # a `FamiliarGround`, or `NewGround(MemoryParams())`, with which every sight is learnt
 
     def __len__(self) -> int: ...
+    @property
+    def active(self) -> int:
+        """The experience at which it believes itself to be."""
+        ...
+
+    @property
+    def lost(self) -> bool:
+        """It was carried, and believes no place."""
+        ...
+
     @property
     def local_pose(self) -> Pose2: ...
     @property
@@ -147,7 +170,7 @@ class ExperienceMapPart(Protocol):
         """Once in each beat."""
         ...
 
-    def set_params(self, params: Any, filter_params: Any, solver_params: Any, /) -> None: ...
+    def set_params(self, params: Any, filter_params: Any, solver_params: Any, evidence: Any, /) -> None: ...
 
 
 class Optimiser(Protocol):
@@ -171,6 +194,7 @@ class KidnapDetectorPart(Protocol):
 
     def observe(self, image_change: float, ranges_m: NDArray[np.float64] | None, beats: int = 1, /) -> bool: ...
     def declare(self, experiences: int, /) -> None: ...
+    def find(self) -> None: ...
     def settle(self, agrees: bool, known: int, beats: int = 1, /) -> bool:
         """Whether the robot that was lost has found itself in these beats."""
         ...

@@ -58,16 +58,16 @@ class RatSlam(Brain):
         tick = self.beats.take(odometry).without(map_.yaw_bias)
         watch("view match")
         self._notice_kidnap(scan, tick)
-        packet, jumped = self.localisation.step(seen, self.local_view.strength(seen), tick, self.lost, watch)
+        packet, jumped = self.localisation.step(seen, self.local_view.strength(seen), tick, self.carried, watch)
         created = map_.step(
             packet, seen, tick.latest, behaviour, beats=tick.beats, views=self.local_view, witness=witness
         )
         self._settle(seen, created, tick)
-        map_.ground.note(map_, seen, created, tick.moved, self.lost, tick.beats)
+        map_.ground.note(map_, seen, created, tick.moved, self.carried, tick.beats)
         watch("experience")
         map_.correct(tick.beats)
         watch("correction")
-        self.memories.learn(tick, scan, self.pose_cells, map_, packet, jumped or self.lost)
+        self.memories.learn(tick, scan, self.pose_cells, map_, packet, jumped or self.carried)
         watch("memories")
         self.relocalisations += jumped
         return Estimate(map_.active, created, map_.robot, packet, seen, jumped)
@@ -78,8 +78,11 @@ class RatSlam(Brain):
 
     def _settle(self, seen: Recognition, created: bool, tick: Tick) -> None:
         known = NOTHING if created or seen.view == NOTHING else self.experience_map.active
-        if self.kidnap_detector.settle(self.experience_map.agrees, known, tick.beats):
-            self.experience_map.declare_found()
+        map_ = self.experience_map
+        if self.carried and not map_.carried:
+            self.kidnap_detector.find()
+        elif self.kidnap_detector.settle(map_.agrees, known, tick.beats):
+            map_.declare_found()
 
     def _coast(self, tick: Tick, watch: Callable[[str], None]) -> Estimate:
         """A tick between two beats: the movement is kept for the next one, and the robot moves on in the map."""

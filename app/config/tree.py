@@ -10,6 +10,7 @@ from typing import Any
 from app.pilot.params import PilotParams
 from disk import kind
 from ratslam_core.params import (
+    EvidenceParams,
     ExperienceMapParams,
     GoalMemoryParams,
     KidnapParams,
@@ -42,6 +43,7 @@ class Config:
     pose_filter: PoseFilterParams = PoseFilterParams()
     solver: SolverParams = SolverParams()
     memory: MemoryParams = MemoryParams()
+    evidence: EvidenceParams = EvidenceParams()
     robot: SimParams = SimParams()
     office: OfficeParams = OfficeParams()
     pilot: PilotParams = PilotParams()

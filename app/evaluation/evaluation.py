@@ -58,9 +58,10 @@ class Evaluation:
         self._count += 1
         self.path_m += abs(truth.speed) * odometry.dt
         if created:
-            if experiences.active >= len(self._made_at):
+            newest = experiences.here
+            if newest >= len(self._made_at):
                 self._made_at = np.concatenate([self._made_at, np.full_like(self._made_at, np.nan)])
-            self._made_at[experiences.active] = truth.x, truth.y, truth.heading_rad, time_s
+            self._made_at[newest] = truth.x, truth.y, truth.heading_rad, time_s
         self._judge(time_s, truth, experiences, abs(truth.speed) * odometry.dt)
 
     def kidnapped(self, time_s: float, experiences: ExperienceMap) -> None:

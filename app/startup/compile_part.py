@@ -17,6 +17,7 @@ from numba.core.event import Event, Listener, register  # pyright: ignore[report
 
 import app.pilot.local_movement
 import ratslam_core.experience_map.places
+import ratslam_core.extensions.evidence
 import ratslam_core.goal_links
 import ratslam_core.local_view.echo_matcher
 import ratslam_core.local_view.front_ends.image_and_sonars
@@ -141,6 +142,13 @@ def loops() -> None:
     made.temporal_map.times_to(0)
     made.step(Packet(30.0, 30.0, 0.0, 1.0), Recognition(99, True, -1, 2.0), Odometry(0.3, 0.1, 0.1))
     made.temporal_map.times_to(0)  # is mended now
+    rng, seen_by = np.random.default_rng(1), LocalView(config.local_view)
+    for _ in range(20):
+        seen_by.observe(rng.integers(0, 256, (48, 64), np.uint8), None, RANGES)
+    made.declare_kidnapped()
+    for _ in range(3):
+        made.evidence.move(Odometry(0.3, 0.1, 0.1))
+        made.evidence.observe(made, seen_by, made.islands.current)
     local = LocalMovement(ANGLES, config.pilot.echo_s)
     RouteFollower(0, Bars()).step(made, local, 0.1, config.pilot)
     find_places(made)
@@ -155,7 +163,7 @@ PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
                       ratslam_core.local_view.front_ends.image_and_sonars, ratslam_core.local_view.echo_matcher,
                       ratslam_core.local_view.matcher, ratslam_core.local_view.view_links)),
     "loops": (loops, (ratslam_core.pose_graph.relaxation, ratslam_core.solvers.laplacian, ratslam_core.solvers.dijkstra,
-                      ratslam_core.experience_map.places)),
+                      ratslam_core.extensions.evidence, ratslam_core.experience_map.places)),
     "maps": (maps, (ratslam_core.goal_links, ratslam_core.occupancy_grid)),
 }  # fmt: skip
 

@@ -20,7 +20,7 @@ NEW_GROUND, LONG_AGO_S = 20, 30.0  # after so many new experiences, one that was
 DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
-@kind("event_watch/2")
+@kind("event_watch/3")
 class EventWatch:
     """Call `watch` after each tick."""
 
@@ -33,6 +33,7 @@ class EventWatch:
         self._new = 0  # experiences since the robot was last at one that it made long before
         self.last_snap: Snap | None = None
         self.lost = False
+        self._at_a_loss = False  # lost, or not yet on the map again although it believes a place
         self._before = session.brain.pose_cells.winner
         self._goal_state: tuple[int | None, str] = None, ""  # the goal, and what was last true of it
         self._false_marked, self._false_due_s = 0, 0.0
@@ -87,12 +88,13 @@ class EventWatch:
             self.closures.closed(event, before, now)
 
     def _watch_packets(self) -> None:
-        session, lost = self._session, is_lost(self._session)
-        if lost and not self.lost:
+        session, carried = self._session, self._session.brain.carried
+        lost = carried or is_lost(session)
+        if lost and not self._at_a_loss:
             packets = len(session.brain.pose_cells.packets)
-            why = "the image jumped: carried away?" if session.brain.lost else f"{packets} packets compete"
+            why = "the image jumped: carried away?" if carried else f"{packets} packets compete"
             self.reasons.lost(self._log.note("lost", why))
-        self.lost = lost
+        self._at_a_loss, self.lost = lost, is_lost(session)
 
     def _watch_goal(self) -> None:
         """Marks what is true of the goal. What a robot that is lost believes of it waits until it knows where it is."""

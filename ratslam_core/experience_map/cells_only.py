@@ -23,7 +23,7 @@ class CellsOnly(ExperienceMap):
         beats: int = 1, views: object = None, witness: object = None,
     ) -> bool:  # fmt: skip
         del odometry, behaviour, beats, views, witness  # only the packet counts
-        if self.active < 0:
+        if self.here < 0:
             self._create(packet, seen.view, IDENTITY)
             return True
         dx, dy, dtheta = self._experiences.cells_from(0, packet)

@@ -17,7 +17,7 @@ from ratslam_core.experience_map.looks import Looks, Senses
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges
-from ratslam_core.params import ExperienceMapParams, PoseFilterParams, SolverParams
+from ratslam_core.params import EvidenceParams, ExperienceMapParams, PoseFilterParams, SolverParams
 from ratslam_core.parts import LocalViewPart, Optimiser, Witness
 from ratslam_core.pose_graph.preintegrated import PreintegratedOdometry, moved_by
 from ratslam_core.pose_graph.transitions import require_behaviour
@@ -36,9 +36,10 @@ class ExperienceMap(Looks):
         filter_params: PoseFilterParams | None = None,
         optimiser: Optimiser | None = None,
         ground: FamiliarGround | NewGround | None = None,
+        evidence: EvidenceParams | None = None,
     ) -> None:
         """shape: layers, cells along y' and x' of the pose cells; cell_m: side of one cell."""
-        super().__init__(shape, cell_m, params, filter_params, ground)
+        super().__init__(shape, cell_m, params, filter_params, ground, evidence)
         self.optimiser: Optimiser = optimiser or ExactSolver(SolverParams())
         self.transitions.reuses = isinstance(self.ground, FamiliarGround)
         self.agrees = True  # whether the last look agreed with where the robot believed itself to be
@@ -64,12 +65,14 @@ class ExperienceMap(Looks):
         for name in ("x", "y", "heading_rad"):
             require_finite(f"packet.{name}", getattr(packet, name))
         self.agrees = True
-        if self.active < 0:
+        if self.here < 0:
             self._create(packet, seen.view, IDENTITY)
             return True
         for _ in range(beats):
             self._move(odometry)
         by = Senses(beats, views, witness)
+        if self.evidence.known and views is not None and seen.view >= 0:
+            self.evidence.observe(self, views, self.islands.current)
         if seen.recruited:
             self.forget_view(seen.view)
         before = self._departure()
@@ -84,9 +87,9 @@ class ExperienceMap(Looks):
             return False
         best = max(best, by_place)
         if best < 0:
-            self._create(packet, seen.view, self.robot)
+            self._create(packet, seen.view, self.robot_here)
             driven = self._learn_link(before, behaviour)
-            self._edges.made(self.active, driven, self.transitions, self._weight_of_way)
+            self._edges.made(self.here, driven, self.transitions, self._weight_of_way)
             return True
         if best != before.experience:
             self._enter(best, *(look or (self._look_by_view(best, seen), self._deviation(seen))))
@@ -97,7 +100,7 @@ class ExperienceMap(Looks):
 
     def move(self, odometry: Odometry) -> None:
         """The robot moved as the odometry says, and nothing is looked at: a part of a step, or a tick between two."""
-        if self.active >= 0:
+        if self.here >= 0:
             self._move(odometry)
 
     def correct(self, beats: int = 1) -> None:
@@ -106,8 +109,15 @@ class ExperienceMap(Looks):
             self.steps += 1
             self.optimiser.correct(self)
 
-    def set_params(self, params: ExperienceMapParams, filter_params: PoseFilterParams, solver: SolverParams) -> None:
+    def set_params(
+        self,
+        params: ExperienceMapParams,
+        filter_params: PoseFilterParams,
+        solver: SolverParams,
+        evidence: EvidenceParams,
+    ) -> None:
         """Take new live parameters while running."""
+        self.evidence.params = evidence
         self.params, self.optimiser.params = params, solver
         self.pose_filter.params = self.gate.params = filter_params
 
@@ -138,7 +148,7 @@ class ExperienceMap(Looks):
     def declare_kidnapped(self, *, sure: bool = True) -> None:
         """[ours] The robot was carried, not driven: the way here is no transition, and odometry starts afresh.
 
-        sure: it cannot have been otherwise; if not, looks that put it elsewhere than odometry does count for less.
+        sure: it cannot have been otherwise; if not, it is as likely where odometry leads as at a new place.
         test_experience_map_transitions.py::test_a_kidnap_makes_no_way.
         """
         self._kidnapped, self._sigma = True, self.params.carried_sigma
@@ -147,12 +157,15 @@ class ExperienceMap(Looks):
         self.ground.forget()
         self.gate.dismiss()
         if self.params.islands:
-            self.islands.begin(len(self), sure=sure or (self.lost and self.islands.sure))
-        self.lost = True
+            island, robot = self.islands.current, self.robot_here
+            sure |= self.carried and self.evidence.sure
+            self.islands.begin(len(self))
+            self.evidence.begin(robot, island, len(self), sure=sure)
+        self.carried = True
 
     def declare_found(self) -> None:
         """[ours] The robot that was carried knows again where it is."""
-        self.lost = False
+        self.carried = False
 
     def forget_view(self, view: int) -> None:
         """The view is no more: its experiences stay in the map as places where there is nothing to see."""
@@ -164,24 +177,25 @@ class ExperienceMap(Looks):
         moved, way_m = moved_by(odometry), abs(odometry.speed * odometry.dt)
         self._travel = self._travel.compose(moved)
         self._leg.add(moved, odometry)
+        self.evidence.move(odometry)
         self._edges.move(moved, odometry)
         self._driven_m += way_m
         self._driving_s += odometry.dt * (odometry.speed != 0)
         self.pose_filter.move(moved, self.params.odometry_drift * way_m)
 
     def _departure(self) -> _Departure:
-        return _Departure(self.active, self._offset.compose(self._travel), self._sigma, self._kidnapped)
+        return _Departure(self.here, self._offset.compose(self._travel), self._sigma, self._kidnapped)
 
     def _look_by_view(self, experience: int, seen: Recognition) -> Pose2:
         """[ours] The look without the pose cells: the robot is where the view was taken. See `FamiliarGround.of_view`."""
         turn = seen.facing_rad
         if turn is None:
-            turn = self.pose(experience).inverse().compose(self.robot).heading_rad
+            turn = self.pose(experience).inverse().compose(self.robot_here).heading_rad
         return Pose2(0.0, 0.0, turn)
 
     def _create(self, packet: Packet, view: int, pose: Pose2) -> None:
-        self.active = self._experiences.add(packet, view, pose, self.islands.current)
-        self._experiences.doubtful[self.active] = self.gate.sights > 0
+        self.here = self._experiences.add(packet, view, pose, self.islands.current)
+        self._experiences.doubtful[self.here] = self.gate.sights > 0
         self.transitions.graph.add_node()
         landed = self._kidnapped and self.params.islands  # on an island of its own the robot knows where it is
         self.pose_filter.make(sure=landed)
@@ -190,9 +204,9 @@ class ExperienceMap(Looks):
     def _enter(self, experience: int, look: Pose2, sigma: float) -> None:
         """Make a known experience active."""
         self._edges.look()
-        self.pose_filter.local = self.pose(experience).inverse().compose(self.robot)
+        self.pose_filter.local = self.pose(experience).inverse().compose(self.robot_here)
         self._offset, self._travel, self._sigma, self._kidnapped = look, IDENTITY, sigma, False
-        self.active = experience
+        self.here = experience
         self.agrees = self.pose_filter.see(look, sigma)
 
     def _see_better(self, seen: Recognition) -> None:
@@ -213,7 +227,7 @@ class ExperienceMap(Looks):
     def _learn_link(self, before: _Departure, behaviour: int) -> int:
         """Learn move and time of the transition to the active experience, and return its row, -1 for none. Repeats are averaged.
         ACRA 2006 eqs. 5-6."""
-        i, j, t, leg = before.experience, self.active, self.transitions, self._leg
+        i, j, t, leg = before.experience, self.here, self.transitions, self._leg
         self._leg = PreintegratedOdometry()
         row = None if before.kidnapped else t.row_of.get((i, j))
         if row is None and not before.kidnapped and self.ground.well_tied(t, i, j):

@@ -13,16 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core.experience_map.temporal_map import TemporalMap
+from ratslam_core.extensions.evidence import Belief, Evidence
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.gate import Gate
 from ratslam_core.extensions.islands import Islands, move
 from ratslam_core.extensions.pose_filter import pose_estimate
 from ratslam_core.extensions.torn import open_way_m, soften
-from ratslam_core.params import ExperienceMapParams, MemoryParams, PoseFilterParams
+from ratslam_core.params import EvidenceParams, ExperienceMapParams, MemoryParams, PoseFilterParams
 from ratslam_core.parts import LocalViewPart, Witness
 from ratslam_core.pose_graph.pose_graph import PoseGraph
 from ratslam_core.pose_graph.relaxation import has_diverged
-from ratslam_core.types import IDENTITY, Packet, Pose2, Recognition, nothing_seen, wrap_angle
+from ratslam_core.types import IDENTITY, Packet, Pose2, Recognition, wrap_angle
 
 
 class Senses(NamedTuple):
@@ -43,27 +44,51 @@ class Looks(PoseGraph):
         params: ExperienceMapParams | None = None,
         filter_params: PoseFilterParams | None = None,
         ground: FamiliarGround | NewGround | None = None,
+        evidence: EvidenceParams | None = None,
     ) -> None:
         super().__init__(shape, cell_m, params)
         self.ground = ground or NewGround(MemoryParams())
-        self.active = -1
+        self.here = -1  # the experience at which the map is being learnt
+        self.evidence = Evidence(evidence or EvidenceParams())
         self.pose_filter = pose_estimate(filter_params or PoseFilterParams())
         self._temporal_map = TemporalMap(self)
         self.gate = Gate(filter_params or PoseFilterParams())
         self.islands = Islands()
-        self._foreign_views: tuple[int, int, NDArray[np.int64]] = (0, 0, np.zeros(0, np.int64))
-        self.lost = False  # it knows that it was carried away and has not found itself again
+        self.carried = False  # it knows that it was carried away and has not found itself again
         self.corrected = 0  # how often looks that were held back proved the robot wrong
+
+    @property
+    def active(self) -> int:
+        """The experience at which the robot believes itself to be."""
+        belief = self.belief
+        return self.here if belief is None else belief.experience
 
     @property
     def local_pose(self) -> Pose2:
         """Where the robot believes itself to be, in the frame of the active experience."""
-        return self.pose_filter.local
+        belief = self.belief
+        return self.pose_filter.local if belief is None else self.pose(belief.experience).inverse().compose(belief.pose)
 
     @property
     def robot(self) -> Pose2:
-        """The robot in the map."""
-        return self.pose(self.active).compose(self.local_pose)
+        """Where the robot believes itself to be, in the map."""
+        belief = self.belief
+        return self.robot_here if belief is None else belief.pose
+
+    @property
+    def robot_here(self) -> Pose2:
+        """Where the robot is on its submap."""
+        return self.pose(self.here).compose(self.pose_filter.local)
+
+    @property
+    def lost(self) -> bool:
+        """Whether the robot knows that it was carried away, and believes no place."""
+        return self.carried and self.evidence.belief is None
+
+    @property
+    def belief(self) -> Belief | None:
+        """Where a robot that was carried believes itself to be on the map, apart from which it still maps; None for nowhere."""
+        return self.evidence.belief if self.carried else None
 
     @property
     def temporal_map(self) -> TemporalMap:
@@ -75,32 +100,23 @@ class Looks(PoseGraph):
         """Whether correction with the sweep "all at once" has thrown the map apart: `relaxation.sweep_all_at_once`."""
         return self.params.sweep == "all at once" and has_diverged(self.poses, self.moves)
 
-    @property
-    def foreign_views(self) -> NDArray[np.int64]:
-        """The views of other islands. Where the robot has been on its own, it made views that hide them."""
-        islands = self.islands
-        if self._foreign_views[:2] != (islands.begun, islands.joined):
-            apart = islands.begun > islands.joined
-            views = self.views[self.island_of != islands.current] if apart else self.views[:0]
-            self._foreign_views = islands.begun, islands.joined, np.unique(views[views >= 0]).astype(np.int64)
-        return self._foreign_views[2]
-
     def _seen_experience(self, packet: Packet, seen: Recognition, by: Senses) -> tuple[int, Recognition]:
         """The experience that the robot sees, the most energetic of those that it can see, -1 for none; and as what.
 
-        When what was held back has won, it is one beyond reach; where that lies on another island, the two were joined.
+        When what was held back has won, it is one beyond reach; where that lies on another submap, the two were merged.
         """
-        reach = math.inf if self.lost and not self.params.islands else self.gate.reach_m(self.pose_filter.sigma_m)
+        reach = math.inf if self.carried and not self.params.islands else self.gate.reach_m(self.pose_filter.sigma_m)
         best = self._most_energetic(packet, seen.view, reach)
         if seen.view < 0 or not self.params.match_view:
             return best, seen
-        for look in (seen, self._elsewhere(by)) if self.islands.begun else ():
-            foreign = self._foreign(packet, look) if look.view >= 0 else -1
-            if foreign >= 0:
-                return (foreign, look) if self._crosses(foreign, packet, look, by) else (best, seen)
+        if self.evidence.known:
+            if (merged := self._merged(by)) is not None:
+                return merged
+            if len(self._of_view(seen.view, own=False)):
+                return best, seen  # it is weighed as evidence for another submap, and not as a look at this one
         if math.isinf(reach):
             return best, seen
-        if best >= 0 and not self.lost and self._turns(best, packet, seen):
+        if best >= 0 and not self.carried and self._turns(best, packet, seen):
             return (best if self._jumps(best, packet, seen, by) else -1), seen
         if (best >= 0 and not self._experiences.doubtful[best]) or self._sees_where_it_is(seen.view, reach):
             self.gate.doubt(by.beats)
@@ -117,31 +133,13 @@ class Looks(PoseGraph):
         if most >= math.pi:
             return False
         claimed = self.pose(experience).compose(self._look(experience, packet, seen))
-        return abs(wrap_angle(claimed.heading_rad - self.robot.heading_rad)) > most
-
-    def _foreign(self, packet: Packet, seen: Recognition) -> int:
-        """The experience of another island that the robot sees, wherever its packet is; -1 for none.
-
-        One where the robot would be had it not been carried comes first: perhaps it was not. Then the most energetic;
-        then, of those of the view alone, the one nearest to where the robot would be by what it holds back.
-        """
-        others = self._of_view(seen.view, own=False)
-        if len(others) == 0:
-            return -1
-        uncarried = self._away(others, self.robot)
-        if uncarried.min() <= self.gate.params.snap_m:
-            return int(others[np.argmin(uncarried)])
-        best = self._most_energetic(packet, seen.view, math.inf, foreign=True)
-        if best >= 0:
-            return best
-        expected = self.gate.hypothesis(self.robot)
-        return int(others[0 if expected is None else np.argmin(self._away(others, expected))])
+        return abs(wrap_angle(claimed.heading_rad - self.robot_here.heading_rad)) > most
 
     def _sees_where_it_is(self, view: int, reach_m: float) -> bool:
         """Whether an experience of this view that was not made in doubt lies within reach, wherever the packet is."""
         own = self._of_view(view, own=True)
         own = own[~self._experiences.doubtful[own]]
-        return bool(len(own)) and self._away(own, self.robot).min() <= reach_m
+        return bool(len(own)) and self._away(own, self.robot_here).min() <= reach_m
 
     def _of_view(self, view: int, *, own: bool) -> NDArray[np.int64]:
         found = self._experiences.of_view(view)
@@ -150,36 +148,43 @@ class Looks(PoseGraph):
     def _away(self, which: NDArray[np.int64], pose: Pose2) -> NDArray[np.float64]:
         return np.hypot(self.poses[which, 0] - pose.x, self.poses[which, 1] - pose.y)
 
-    def _most_energetic(
-        self, packet: Packet, view: int, reach_m: float, *, foreign: bool = False, beyond: bool = False
-    ) -> int:
+    def _most_energetic(self, packet: Packet, view: int, reach_m: float, *, beyond: bool = False) -> int:
         return self._experiences.most_energetic(
-            packet, view, self.params, self.robot, reach_m, self.islands.current, foreign, beyond
+            packet, view, self.params, self.robot_here, reach_m, self.islands.current, beyond
         )
 
-    def _crosses(self, experience: int, packet: Packet, seen: Recognition, by: Senses) -> bool:
-        """Whether a look at another island is believed; the robot's own is then joined to it."""
-        robot, claimed = self.robot, self._claimed(experience, packet, seen, by.witness)
-        if claimed is None or not self._proved(claimed, self._needed(claimed), seen, by):
-            return False
-        self.islands.join(int(self.island_of[experience]), self.island_of, self.poses, robot, claimed)
-        return True
+    def _merged(self, by: Senses) -> tuple[int, Recognition] | None:
+        """The experience that the robot is at, and as what it sees it, if the evidence for that place is so strong that the
+        submap is merged there; it then is. None if not.
+        """
+        belief = self.evidence.belief
+        if belief is None or belief.log_odds < self.evidence.params.merge or by.views is None:
+            return None
+        look = self.pose(belief.experience).inverse().compose(belief.pose)
+        if by.witness is not None and by.witness.confirms(self, belief.experience, look) is None:
+            return None
+        view = int(self.views[belief.experience])
+        other = int(self.island_of[belief.experience])
+        self.islands.join(other, self.island_of, self.poses, self.robot_here, belief.pose)
+        self.evidence.end(len(self) if np.any(self.island_of != self.islands.current) else 0)
+        self.carried = False
+        return belief.experience, Recognition(view, False, view, by.views.difference_to(view), belief.facing_rad)
 
     def _jumps(self, experience: int, packet: Packet, seen: Recognition, by: Senses) -> bool:
         """Whether a look at the robot's own island is believed although it is beyond reach."""
-        robot, claimed = self.robot, self._claimed(experience, packet, seen, by.witness)
+        robot, claimed = self.robot_here, self._claimed(experience, packet, seen, by.witness)
         if claimed is None:
             return False
-        if not self.lost and self._drifted_to(claimed, experience, by.beats):
+        if not self.carried and self._drifted_to(claimed, experience, by.beats):
             return self._proved(claimed, self.params.join_sights, seen, by)
-        needed = self._needed(claimed) if self.lost else self.gate.params.gate_sights
+        needed = self.params.join_sights if self.carried else self.gate.params.gate_sights
         if not self._proved(claimed, needed, seen, by):
             return False
         self.corrected += 1
-        if self.lost and experience < self.islands.landed:
+        if self.carried and experience < self.islands.landed:
             self.transitions.forget_across(self.islands.landed)
             move(np.arange(self.islands.landed, len(self)), self.poses, robot, claimed)
-        elif not self.lost:
+        elif not self.carried:
             off = math.hypot(claimed.x - robot.x, claimed.y - robot.y)
             soften(self.transitions, experience, self.gate.known, off, self.params.odometry_sigma)
         return True
@@ -195,18 +200,13 @@ class Looks(PoseGraph):
         return off <= drift * open_way_m(self.transitions, experience, len(self))
 
     def _off(self, claimed: Pose2) -> float:
-        return math.hypot(claimed.x - self.robot.x, claimed.y - self.robot.y)
+        return math.hypot(claimed.x - self.robot_here.x, claimed.y - self.robot_here.y)
 
     def _proved(self, claimed: Pose2, needed: int, seen: Recognition, by: Senses) -> bool:
         return self.gate.believes(
-            self.robot, claimed, needed, len(self), view=seen.view, views=self.params.join_views, beats=by.beats,
+            self.robot_here, claimed, needed, len(self), view=seen.view, views=self.params.join_views, beats=by.beats,
             surprised=self._misses_what_it_expects(by.views),
         )  # fmt: skip
-
-    def _elsewhere(self, by: Senses) -> Recognition:
-        """Which of the views of other islands the robot sees."""
-        foreign = self.foreign_views
-        return nothing_seen() if by.views is None or len(foreign) == 0 else by.views.nearest_of(foreign)
 
     def _misses_what_it_expects(self, views: LocalViewPart | None) -> bool:
         """[ours] Whether a known view is seen, but the place where the robot believes itself to be is known and looks different.
@@ -219,15 +219,6 @@ class Looks(PoseGraph):
         if np.any(expected == views.recognition.view):
             return False
         return views.unlike_all(expected, self.gate.params.gate_unlike)
-
-    def _needed(self, claimed: Pose2) -> int:
-        """How many sights must agree on `claimed` before a robot that is lost believes it.
-
-        Perhaps it was not carried: then only where odometry leads to is a few sights worth.
-        test_islands.py::test_who_was_perhaps_not_carried_asks_for_more.
-        """
-        plain = self.islands.sure or self._off(claimed) <= self.gate.params.snap_m
-        return self.params.join_sights if plain else max(self.params.join_sights, self.params.doubtful_sights)
 
     def _claimed(
         self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None = None

@@ -32,7 +32,7 @@ MOST_NEAR = 256  # experiences near the robot that are looked at
 class Map(Protocol):
     """What has to be known of an experience map."""
 
-    active: int
+    here: int
     agrees: bool  # whether the last look agreed with where the robot believed itself to be
     islands: Islands
     pose_filter: PoseEstimate
@@ -45,7 +45,7 @@ class Map(Protocol):
     @property
     def island_of(self) -> NDArray[np.int32]: ...
     @property
-    def robot(self) -> Pose2: ...
+    def robot_here(self) -> Pose2: ...
 
 
 @kind("familiar ground/1")
@@ -100,7 +100,7 @@ class FamiliarGround:
         if len(own) == 0:
             return -1
         self.adopted += 1
-        robot = map_.robot
+        robot = map_.robot_here
         return int(own[np.argmin(np.hypot(map_.poses[own, 0] - robot.x, map_.poses[own, 1] - robot.y))])
 
     def spare(self) -> bool:
@@ -134,14 +134,14 @@ class FamiliarGround:
             hit = map_.agrees and not (created or self._let_go)
             _count(self._share, self._unseen, self.near, float(hit), weight(1 / self.params.sights, beats), beats)
             if hit:
-                self._unseen[map_.active] = 0
+                self._unseen[map_.here] = 0
         if created:
-            self._share[map_.active] = self._share[self.near].mean() if self._found else 0.0
+            self._share[map_.here] = self._share[self.near].mean() if self._found else 0.0
         self._let_go = False
         self._look(map_, lost)
 
     def _look(self, map_: Map, lost: bool) -> None:
-        p, robot = self.params, map_.robot
+        p, robot = self.params, map_.robot_here
         self.forget()
         if lost or map_.pose_filter.sigma_m > p.sure_m:
             return
@@ -155,7 +155,7 @@ class FamiliarGround:
 
     def _oldest(self, map_: Map) -> int:
         """The view of the experience near the robot that was longest not recognised; of equals, the first."""
-        others = self.near[self.near != map_.active]
+        others = self.near[self.near != map_.here]
         return int(map_.views[others[np.argmax(self._unseen[others])]]) if len(others) else -1
 
 

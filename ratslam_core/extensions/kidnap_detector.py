@@ -56,6 +56,10 @@ class KidnapDetector:
         self.kidnapped, self._known_before = True, experiences
         self._agreed = self._settled = 0
 
+    def find(self) -> None:
+        """The robot has found itself."""
+        self.kidnapped = False
+
     def settle(self, agrees: bool, known: int, beats: int = 1) -> bool:
         """So many more beats; whether the robot has found itself in them.
 
@@ -97,6 +101,9 @@ class NeverKidnapped:
 
     def declare(self, _experiences: int) -> None:
         """Being told changes nothing."""
+
+    def find(self) -> None:
+        """It was never lost."""
 
     def settle(self, _agrees: bool, _known: int, _beats: int = 1) -> bool:
         """The robot is never lost."""

@@ -8,6 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from ratslam_core.experience_map.experience_map import ExperienceMap, _Arrival
+from ratslam_core.extensions.evidence import MOST as MOST_HYPOTHESES
+from ratslam_core.extensions.evidence import SUBMAP, Belief, Evidence
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import MOST_NEAR, FamiliarGround
 from ratslam_core.extensions.odometry_edges import OdometryEdges
@@ -28,7 +30,7 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     n = len(map_)
     within("an island", map_._experiences.island[:n], 0, map_.islands.begun)
     law.transitions(map_.transitions, n)
-    whole("the active experience", map_.active, 0 if n else -1, n - 1)
+    whole("the active experience", map_.here, 0 if n else -1, n - 1)
     pose("the robot's place", map_.pose_filter.local)
     if isinstance(map_.pose_filter, PoseFilter):
         number("how far off it may be", map_.pose_filter.sigma_m, 0.0, LONGEST)
@@ -56,19 +58,25 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     whole("the island", map_.islands.current, 0, map_.islands.begun)
     whole("the first experience of the latest island", map_.islands.landed, 0, n)
     whole("joined islands", map_.islands.joined, 0, map_.islands.begun)
-    _foreign_views(map_, views)
+    _evidence(map_.evidence, n, map_.islands.begun)
     pose("the robot at the latest sight", gate._robot)
     pose("where it was put", gate._other)
 
 
-def _foreign_views(map_: ExperienceMap, views: int) -> None:
-    known = map_._foreign_views
-    true(isinstance(known, tuple) and len(known) == 3, "what is known of other islands must have three parts")
-    begun, joined, foreign = known
-    whole("the islands when their views were gathered", begun)
-    whole("the joined islands when their views were gathered", joined)
-    seen = array("views of other islands", foreign, np.int64, (np.size(foreign),))
-    within("a view of another island", seen, 0, views - 1)
+def _evidence(evidence: Evidence, n: int, submaps: int) -> None:
+    whole("experiences among which the evidence is", evidence.known, 0, n)
+    whole("hypotheses", evidence._count, 0, MOST_HYPOTHESES)
+    rows = array("hypotheses", evidence._rows, np.float64, (MOST_HYPOTHESES, 6))
+    within("a hypothesis", rows, -FAR_M, FAR_M)
+    within("a hypothesis' submap", rows[: evidence._count, SUBMAP], 0, submaps)
+    number("the way since the last observation", evidence._units, 0.0, 1.0)
+    true(isinstance(evidence.sure, bool), "the robot was surely carried, or not")
+    if evidence.belief is not None:
+        true(isinstance(evidence.belief, Belief), "what is believed must be a belief")
+        whole("the experience that is believed", evidence.belief.experience, 0, n - 1)
+        pose("the place that is believed", evidence.belief.pose)
+        number("log odds", evidence.belief.log_odds, -FAR_M, FAR_M)
+        number("the facing that is believed", evidence.belief.facing_rad, -FAR_M, FAR_M)
 
 
 def _ground(ground: FamiliarGround, n: int, views: int) -> None:

@@ -36,7 +36,7 @@ def local_view(view: LocalView) -> None:
         same = all(np.array_equal(value, vars(fresh)[name]) for name, value in vars(front_end).items())
         true(same, "the front end must be that of the parameters")
     _recognition(view.recognition, count)
-    for matcher in (view._matcher, view._among):
+    for matcher in (view._matcher,):
         _matcher(matcher, matcher_of(view.front_end))
 
 

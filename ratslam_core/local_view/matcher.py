@@ -96,6 +96,37 @@ def least_difference(new: Features, stored: Features, most: int, columns: int, r
 
 
 @njit(cache=True, nogil=True)
+def apart_at(
+    known: NDArray[np.uint8],
+    new: Features,
+    views: NDArray[np.int64],
+    shifts: NDArray[np.int64],
+    slack: int,
+    most: int,
+    columns: int,
+    rows: int,
+    echoes: int,
+    echo_weight: float,
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """For each of these views its least `difference` at shifts within `slack` of the one given, and that shift."""
+    n, size = len(views), columns * rows
+    least, by = np.full(n, np.inf), np.zeros(n, np.int64)
+    for k in range(n):
+        stored = known[views[k]]
+        heard = 0
+        for e in range(size, size + echoes):
+            if new[e] > 0 and stored[e] > 0:
+                heard += abs(np.int64(new[e]) - np.int64(stored[e]))
+        for shift in range(max(shifts[k] - slack, -most), min(shifts[k] + slack, most) + 1):
+            apart = difference(new, stored, shift, columns, rows)
+            if apart < least[k]:
+                least[k], by[k] = apart, shift
+        if echoes > 0:
+            least[k] += echo_weight * heard / echoes
+    return least, by
+
+
+@njit(cache=True, nogil=True)
 def sub_column(new: Features, stored: Features, shift: int, columns: int, rows: int) -> float:
     """The shift to a fraction of a column: where the flanks of the difference on both sides of its minimum meet."""
     left = difference(new, stored, shift - 1, columns, rows)

@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.local_view.echo_matcher import EchoMatcher, heard_apart
 from ratslam_core.local_view.front_ends import FrontEnd, named_front_end
-from ratslam_core.local_view.matcher import Features, Matcher, least_difference, sub_column, turned_apart
+from ratslam_core.local_view.matcher import Features, Matcher, apart_at, least_difference, sub_column, turned_apart
 from ratslam_core.params import LocalViewParams
 from ratslam_core.parts import Room
 from ratslam_core.types import Recognition, nothing_seen
 
 NOTHING = -1
+MOST_SHIFT = 6  # columns; beyond, too little is left to compare
 
 
 @kind("local view/3")
@@ -47,7 +48,6 @@ class LocalView:
         self._templates = np.zeros((1024, size), np.uint8)
         self._count = 0
         self._matcher = matcher_of(end)
-        self._among = matcher_of(end)  # for some of the views; the other one remembers all of them
         self._last: Features | None = None
 
     def __len__(self) -> int:
@@ -76,19 +76,32 @@ class LocalView:
         apart = self._least_apart(self.features, stored, most)
         return self._levels(apart + self._heard_apart(self.features, stored), self.features)
 
-    def nearest_of(self, views: NDArray[np.int64]) -> Recognition:
-        """[ours] Which of these known views is like what was seen last, whatever else is more like it; `NOTHING` if none is.
+    def apart_at(
+        self, views: NDArray[np.int64], shifts: NDArray[np.int64], slack: int
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """[ours] How unlike (bytes) each of these views (k,) is to what was seen last, shifted by so many columns, give or take
+        `slack`; and by which of these it is least unlike, (k,). A front end that knows no shifts compares views as they are.
+        test_recogniser.py::test_a_view_is_compared_under_the_turn_that_is_asked_for."""
+        end = self.front_end
+        most, slack = (min(MOST_SHIFT, end.columns - 1), slack) if end.shifts else (0, 0)
+        shifts = np.clip(shifts, -most, most)
+        return apart_at(
+            self.templates,
+            self.features,
+            views,
+            shifts,
+            slack,
+            most,
+            end.columns,
+            end.rows,
+            end.echoes,
+            end.echo_weight,
+        )
 
-        test_recogniser.py::test_a_view_is_looked_for_among_some.
-        """
-        most = self.params.shift if self.front_end.shifts else 0
-        best, apart, shift = self._among.nearest(self.templates[views], self.features, most)
-        apart = self._levels(apart, self.features)
-        limit = self.front_end.threshold(self.params)
-        if self.recognition.view == NOTHING or best < 0 or apart > limit:
-            return nothing_seen()
-        view = int(views[best])
-        return Recognition(view, False, view, apart, self._facing(view, shift))
+    @property
+    def column_rad(self) -> float:
+        """The heading that a shift by a column stands for, 0 where none is told."""
+        return self.params.field_of_view / self.front_end.columns if self.front_end.shifts else 0.0
 
     def unlike_all(self, views: NDArray[np.int64], times: float) -> bool:
         """[ours] Whether what was seen last differs from each of these known views by more than so many times the threshold.

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from disk import kind
+from ratslam_core.params.evidence import EvidenceParams
 from ratslam_core.params.experience_map import ExperienceMapParams
 from ratslam_core.params.goal_memory import GoalMemoryParams
 from ratslam_core.params.kidnap import KidnapParams
@@ -20,6 +21,7 @@ from ratslam_core.params.pose_filter import PoseFilterParams
 from ratslam_core.params.solver import SolverParams
 
 __all__ = [
+    "EvidenceParams",
     "ExperienceMapParams",
     "GoalMemoryParams",
     "KidnapParams",
@@ -49,3 +51,4 @@ class RatSlamParams:
     pose_filter: PoseFilterParams = PoseFilterParams()
     solver: SolverParams = SolverParams()
     memory: MemoryParams = MemoryParams()
+    evidence: EvidenceParams = EvidenceParams()

@@ -150,22 +150,16 @@ ADDITIONS = (
         {"pose_filter.gate_surprise": 1},
     ),
     Addition(
-        "islands",
-        "a robot that was carried away begins a map of its own, which many looks that agree join to the other",
+        "law of evidence",
+        "a robot that was carried away maps a submap, acts where it believes itself to be, and merges at odds of 1000 to 1",
         "a single look that is believed while lost ties places together that are far apart",
         {"experience_map.islands": False},
     ),
     Addition(
-        "different views for an island",
-        "eight different views must agree before an island is joined",
+        "different views",
+        "eight different views must agree before what was held back is believed",
         "one view, seen for a second, joins rooms that look alike",
         {"experience_map.join_views": 1},
-    ),
-    Addition(
-        "doubtful alarms",
-        "if the image alone does not say that the robot was carried, an island is joined far from odometry by many sights only",
-        "a false alarm in one of two twins would join its island in the other",
-        {"experience_map.doubtful_sights": 1},
     ),
     Addition(
         "kidnap detector",

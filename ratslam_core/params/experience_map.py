@@ -89,7 +89,7 @@ class ExperienceMapParams:
     )
     islands: bool = param(
         True,
-        meaning="a robot that was carried away maps an island, which is joined when looks agree; off = it believes each look",
+        meaning="a robot that was carried maps a submap, merged where evidence is strong; off = it believes each look",
         source="ours",
     )
     join_sights: int = param(
@@ -97,7 +97,7 @@ class ExperienceMapParams:
         unit="sights",
         low=1,
         high=10_000,
-        meaning="sights, one a beat, that must agree on where an island lies, or on where a robot is that knows itself lost",
+        meaning="sights, one a beat, that must agree where odometry has drifted far enough to explain them",
         source="ours",
     )
     join_views: int = param(
@@ -106,14 +106,6 @@ class ExperienceMapParams:
         low=1,
         high=1000,
         meaning="so many different views must be among them, since who stands still sees one thing all the time",
-        source="ours",
-    )
-    doubtful_sights: int = param(
-        150,
-        unit="sights",
-        low=1,
-        high=10_000,
-        meaning="so many must agree if perhaps it was not carried, and they put it elsewhere than odometry does",
         source="ours",
     )
     zone_offset: bool = param(

@@ -109,13 +109,12 @@ class Experiences:
         robot: Pose2,
         reach_m: float = math.inf,
         island: int = 0,
-        foreign: bool = False,
         beyond: bool = False,
     ) -> int:
         """The experience with the most energy above the threshold, the oldest of equals; -1 for none.
 
         Where views tell experiences apart (`match_view`), only those count that are within `reach_m` of the robot in the
-        map, or with `beyond` farther away, and lie on this island, or with `foreign` on any other.
+        map, or with `beyond` farther away, and lie on this island.
 
         [ours] When there is nothing to see, only the pose cells tell places apart, and they may use the same cells for
         places far apart. The experience must then be near the robot in the map, too.
@@ -128,7 +127,7 @@ class Experiences:
             near = min(p.blind_m, reach_m) if view < 0 else reach_m
             return _best_in_chain(
                 newest, self._before_of_view, self.at, *state, old, -1, p.threshold, self.pose, robot.x, robot.y, near,
-                self.island, island, foreign, beyond,
+                self.island, island, beyond,
             )[0]  # fmt: skip
         if old:
             return _best_of_all(self.at[: self.count], *state, p.threshold)
@@ -199,12 +198,11 @@ def _best_in_chain(
     near: float,
     islands: NDArray[np.int32],
     island: int,
-    foreign: bool,
     beyond: bool,
 ) -> tuple[int, float]:
     i = newest
     while i >= 0:
-        counts = (islands[i] != island) == foreign
+        counts = island < 0 or islands[i] == island
         if counts and (near == np.inf or (math.hypot(pose[i, 0] - near_x, pose[i, 1] - near_y) > near) == beyond):
             energy = _energy(x, y, theta, at, i, n_theta, n_y, n_x, zone_xy, zone_theta, old)
             if energy > most or (energy == most and i < best):
@@ -244,7 +242,7 @@ def _best_in_buckets(
                 head = newest[bucket]
                 best, most = _best_in_chain(
                     head, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy, zone_theta, False, best, most,
-                    pose, 0.0, 0.0, np.inf, islands, -1, True, False,
+                    pose, 0.0, 0.0, np.inf, islands, -1, False,
                 )  # fmt: skip
     return best
 

@@ -92,9 +92,10 @@ def page_fields(snapshot: Snapshot) -> dict[str, Any]:
 
 def _told(snapshot: Snapshot) -> dict[str, Any]:
     """The robot's sentence and the goal's."""
-    goal, time, situation = snapshot.goal, snapshot.time, snapshot.situation
+    goal, time, situation, belief = snapshot.goal, snapshot.time, snapshot.situation, snapshot.belief
     facts = Facts(
-        snapshot.lost, len(snapshot.pose_cells.packets), snapshot.mode, None if goal is None else goal.state,
+        snapshot.lost, len(snapshot.pose_cells.packets), 0 if belief is None else belief.places,
+        None if belief is None else belief.odds, snapshot.mode, None if goal is None else goal.state,
         running=snapshot.running, past=time is not None and time.past, faulty=snapshot.fault is not None,
         over=snapshot.recording is not None and snapshot.recording.over,
         played_ahead=situation is not None and situation.state == "playing",

@@ -160,6 +160,10 @@ class Belief:
     spared: int  # sights on familiar ground that became no experience
     links_spared: int  # links between places that had enough of them
     forgotten: int  # links of views to pose cells
+    odds: float | None = (
+        None  # of where it believes itself to be, against all else; None: not carried, or it believes nothing
+    )
+    places: int = 0  # where a robot that was carried may be
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,8 +41,10 @@ class GoalChip:
 class Facts:
     """What the robot's sentence is made of, and the goal's."""
 
-    lost: bool = False  # the robot knows that it was carried away, or packets compete
+    lost: bool = False  # the robot was carried and believes no place, or packets compete
     packets: int = 1
+    places: int = 0  # where a robot that was carried may be
+    odds: float | None = None  # of where it believes itself to be, as long as the maps are not merged
     mode: Literal["explore", "manual", "goal", "recorded"] = "explore"
     goal: GoalState | None = None
     running: bool = True
@@ -88,7 +90,9 @@ def robot_told(facts: Facts) -> Chip:
     if not facts.running:
         return Chip("play", "good", "playing up to a moment") if facts.played_ahead else Chip("pause", "", "paused")
     if facts.lost:
-        return Chip("lost", "lost", f"lost: {facts.packets} packets" if facts.packets > 1 else "lost")
+        return Chip("lost", "lost", _lost(facts))
+    if facts.odds is not None and facts.mode in ("explore", "recorded"):
+        return Chip("compass", "good", f"believes it is here, {odds_words(facts.odds)}")
     if facts.mode == "recorded":
         return Chip("play", "good", "playing a recording")
     if facts.mode == "manual":
@@ -107,6 +111,17 @@ def goal_told(goal: Goal) -> GoalChip:
     metres = "" if not ahead or goal.remaining_m is None else f"{goal.remaining_m:.{int(goal.remaining_m < 100)}f} m"
     known = ahead and goal.eta_s is not None and math.isfinite(goal.eta_s)
     return GoalChip(icon, words, short, metres, seconds_words(goal.eta_s) if known and goal.eta_s is not None else "")
+
+
+def _lost(facts: Facts) -> str:
+    if facts.places:
+        return "lost: one place is possible" if facts.places == 1 else f"lost: {facts.places} places possible"
+    return f"lost: {facts.packets} packets" if facts.packets > 1 else "lost"
+
+
+def odds_words(odds: float) -> str:
+    """40:1, or more than a thousand to one."""
+    return f"{odds:.0f}:1" if odds < 1000 else "over 1000:1"
 
 
 def seconds_words(seconds: float) -> str:

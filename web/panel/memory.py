@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from web.messages import Belief, Goal, PoseCellLayer, Snap, Snapshot
-from web.messages.told import goal_told
+from web.messages.told import goal_told, odds_words
 from web.panel.part import Content
 from web.panel.words import clock, counted, number, often, percent, table, thousands
 
@@ -57,9 +57,13 @@ def _belief(snapshot: Snapshot) -> dict[str, Any]:
         ("looks held back", _held_back(belief, snapshot)),
         ("proved wrong by them", often(belief.corrected) if belief.corrected else "never"),
     ]
+    if belief.odds is not None:
+        rows.append(("odds of this place", odds_words(belief.odds)))
+    if belief.places:
+        rows.append(("places that are possible", thousands(belief.places)))
     if belief.apart or belief.joined:
-        rows.append(("islands joined", thousands(belief.joined)))
-        rows.append(("experiences on other islands", thousands(belief.apart)))
+        rows.append(("submaps merged", thousands(belief.joined)))
+        rows.append(("experiences on other submaps", thousands(belief.apart)))
     return table(title, rows)
 
 

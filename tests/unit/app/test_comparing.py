@@ -117,8 +117,8 @@ def test_an_addition_begins_by_its_name_and_the_page_is_told_which_are_off() -> 
         ("experience_map.solve_every", 50, 0),
         ("experience_map.sweep", "by experience", "by link"),
     }
-    tell(engine, type="compare_brains", pair="islands", since="now")
-    assert (shown(engine).second.name, shown(engine).since_s) == ("without islands", 2.0)
+    tell(engine, type="compare_brains", pair="law of evidence", since="now")
+    assert (shown(engine).second.name, shown(engine).since_s) == ("without law of evidence", 2.0)
     tell(engine, type="set_parameter", name="pose_cells.carry", value=False)
     tell(engine, type="set_parameter", name="memory.familiar", value=False)
     off = ("carry", "familiar ground")

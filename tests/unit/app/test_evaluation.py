@@ -100,6 +100,10 @@ class Map:
         self.local_pose = Pose2(0.0, 0.0, 0.0)
 
     @property
+    def here(self) -> int:
+        return self.active
+
+    @property
     def robot(self) -> Pose2:
         return Pose2(*self.poses[self.active]).compose(self.local_pose)
 

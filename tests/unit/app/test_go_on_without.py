@@ -16,7 +16,7 @@ OFFICE = load_world("office")
 
 
 def test_without_the_views_that_led_to_it_there_is_no_such_snap() -> None:
-    engine = an_engine(OFFICE)
+    engine = an_engine(OFFICE, 8)
     run_for(engine, 2400)
     tell(engine, type="kidnap")
     while not (snaps := of_kind(engine, "snap")):

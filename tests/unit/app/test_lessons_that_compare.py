@@ -96,7 +96,7 @@ def test_what_is_compared_from_a_lesson_begins_as_the_lesson_did_and_takes_its_s
     lesson = short_lesson(scene={**SCENE, "seed": 9, "set": {"robot.gyro_bias": 0.02}})
     engine = an_engine(OFFICE)
     engine.begin_lesson(Teaching(lesson, 9, engine.next_config))
-    for pair in ("carry", "islands"):  # the second begins from what is no longer the lesson's own run
+    for pair in ("carry", "law of evidence"):  # the second begins from what is no longer the lesson's own run
         tell(engine, type="compare_brains", pair=pair)
         session = engine.run.session
         assert (engine.run.lesson, session.seed, session.tick_count) == (None, 9, 0)

@@ -42,7 +42,7 @@ def test_a_snap_is_explained_by_views_that_put_activity_where_it_led() -> None:
 
 def snapped() -> tuple[Session, History]:
     """A robot that was carried away and has just relocalised for the first time."""
-    session = Session(OFFICE, 3)
+    session = Session(OFFICE, 8)
     history = watched(session, 2400)
     session.kidnap()
     for _ in range(3000):

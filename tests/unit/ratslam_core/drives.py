@@ -22,7 +22,6 @@ from ratslam_core import (
     RatSlamParams,
     Recognition,
 )
-from ratslam_core.types import nothing_seen
 
 SHAPE = (36, 64, 64)
 CELL_M = 0.25
@@ -33,16 +32,6 @@ COLUMN_RAD = math.radians(50) / 12
 SONARS = (-0.5, 0.0, 0.5)
 # each passage counts 1, and who is carried stays on the map
 EXACT = ExperienceMapParams(anchor_sigma=0.0, odometry_drift=0.0, sweeps=0, solve_every=0, islands=False)
-
-
-class Elsewhere:
-    """A local view that can be asked which of the views of another island is seen."""
-
-    def __init__(self) -> None:
-        self.recognition = self.sees = nothing_seen()
-
-    def nearest_of(self, _views: np.ndarray) -> Recognition:
-        return self.sees
 
 
 class Robot:
@@ -57,7 +46,6 @@ class Robot:
         self.map = ExperienceMap(SHAPE, CELL_M, params, filter_params or PoseFilterParams(gate=False))
         self.pose = start or Pose2(0.0, 0.0, 0.0)
         self.behaviour = 0
-        self.views = Elsewhere()
 
     def packet(self, at: Pose2 | None = None) -> Packet:
         at = at or self.pose
@@ -69,13 +57,7 @@ class Robot:
     ) -> bool:  # fmt: skip
         """See a view, without moving unless told how."""
         seen = Recognition(view, new, view, difference, facing)
-        return self.map.step(
-            packet or self.packet(),
-            seen,
-            odometry or Odometry(0.0, 0.0, 0.1),
-            self.behaviour,
-            views=self.views,  # type: ignore[arg-type]
-        )
+        return self.map.step(packet or self.packet(), seen, odometry or Odometry(0.0, 0.0, 0.1), self.behaviour)
 
     def go(self, forwards: float, turn: float, view: int, *, steps: int = 10, **look: object) -> bool:
         """Drive an arc in steps of 0.1 s; there is something to see only at its end."""

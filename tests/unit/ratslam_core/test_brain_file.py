@@ -111,12 +111,6 @@ def reshape(path: str, how: Any) -> Any:
     return change
 
 
-def see_elsewhere(tree: Any, arrays: list[np.ndarray]) -> None:
-    """The views of other islands have one that nobody has seen."""
-    holder, name = at(tree, f"{MAP}._foreign_views")
-    arrays[holder[name]["tuple"][2]["array"]] = np.array([2**62])
-
-
 MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "experience_map._experiences"
 
 
@@ -143,8 +137,8 @@ MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "exper
         (write("local_view._count", 2000), "the number of views must be a whole number from 0 to 1024"),
         (reshape("local_view.features", lambda a: a[:5]), r"features must have shape \(104\)"),
         (put("local_view._matcher._masks", (0, 0), 7), "masks must be those of the shifts"),
-        (reshape("local_view._among._masks", lambda a: a[:7]), r"masks must have shape \(23, 96\)"),
-        (reshape("local_view._among._shifted", lambda a: a[:13]), r"the shifted view must have shape \(23, 96\)"),
+        (reshape("local_view._matcher._masks", lambda a: a[:7]), r"masks must have shape \(23, 96\)"),
+        (reshape("local_view._matcher._shifted", lambda a: a[:13]), r"the shifted view must have shape \(23, 96\)"),
         (write("local_view._templates", 5), "must be a ndarray, got a int"),
         (write("local_view.recognition.view", 800), "the recognised view must be a whole number from -1 to"),
         (put(f"{KNOWN}._before_of_view", 0, 0), "each experience must know the one before it of its view"),
@@ -157,11 +151,11 @@ MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "exper
         (put(f"{GRAPH}._room", 0, 0), "a block of half-edges must have room"),
         (put(f"{MAP}.transitions.ends", (0, 1), -3), "an end must be from 0 to"),
         (put(f"{MAP}.transitions.behaviour", 0, 77), "behaviour must be from 0 to 15"),
-        (write(f"{MAP}.active", -1), "the active experience must be a whole number from 0 to"),
+        (write(f"{MAP}.here", -1), "the active experience must be a whole number from 0 to"),
         (write(f"{MAP}._temporal_map", {"same": 0}), "must be a TemporalMap, got a RatSlam"),
         (put("goal_memory._place", 3, 1), "the plane must be empty"),
         (reshape("goal_memory._keys", lambda a: a[:-1]), "times must have shape"),
-        (see_elsewhere, "a view of another island must be from 0 to"),
+        (write(f"{MAP}.evidence._count", 33), "hypotheses must be a whole number from 0 to 32"),
         (write("goal_memory._used", 4096), "the number of links must be a whole number from 0 to 2048"),
         (reshape("map_grid._scans", lambda a: a[:, :2]), "scans must have shape"),
         (put("map_grid._count", 255, 1), "may have scans"),

@@ -182,3 +182,11 @@ def test_a_view_that_is_no_more_leaves_blind_experiences(steps: list[tuple[bool,
             expected.append(view)
         assert known.view[: known.count].tolist() == expected
         law(known, 5)
+
+
+@given(st.lists(st.integers(0, 3), max_size=40), st.integers(0, 4))
+def test_the_experiences_of_a_view_are_found_newest_first(views: list[int], asked: int) -> None:
+    known = Experiences((36, 64, 64))
+    for view in views:
+        known.add(Packet(1.0, 2.0, 0.0, 1.0), view, Pose2(0.0, 0.0, 0.0))
+    assert known.of_view(asked).tolist() == [i for i in reversed(range(len(views))) if views[i] == asked]

@@ -101,7 +101,7 @@ def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: 
     assert brain.local_view.image_change == pytest.approx(alike)
     assert brain.lost is noticed
     if noticed:
-        assert brain.experience_map.islands.sure is (alike > 1)
+        assert brain.experience_map.evidence.sure is (alike > 1)
 
 
 def _unlikeness(circle: Circle) -> float:

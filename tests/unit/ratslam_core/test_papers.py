@@ -110,7 +110,7 @@ ELSEWHERE = {
     "pose_filter.gate_drift": "test_gate.py: a loop that is too long for its drift, of which this run has none",
     "local_view.min_pattern": "test_image_and_sonars.py: here a bare wall makes an experience with a view or without one",
     "solver.closures": "test_graduated_trust.py: many false closures, of which this run has none",
-    "experience_map.doubtful_sights": "test_islands.py: an alarm that the sonars raised, of which this run has none",
+    "experience_map.join_views": "test_gate.py: looks that are held back, of which this run has none",
     "pose_filter.gate_surprise": "test_gate.py: a robot that misses what it expects, which this one never does",
     "kidnap.usual_times": "test_kidnap_detector.py: images that always jump, which these do not",
 }

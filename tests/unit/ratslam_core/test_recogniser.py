@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ratslam_core import LocalView, LocalViewParams, Recognition
 from ratslam_core.local_view.front_ends import FrontEnd
+from ratslam_core.local_view.recogniser import MOST_SHIFT
 
 FOV = math.radians(50)
 Bytes = NDArray[np.uint8]
@@ -180,21 +181,23 @@ def test_without_facing_a_shift_tells_no_heading() -> None:
     assert (seen.view, seen.recruited, seen.facing_rad) == (0, False, None)
 
 
-@given(st.lists(st.integers(0, 9), max_size=6, unique=True), st.integers(0, 60))
-def test_a_view_is_looked_for_among_some(some: list[int], level: int) -> None:
-    """The views are 6 grey levels apart, and those within 5 are alike: the nearest of those that are asked for."""
-    local_view = LocalView(LocalViewParams(shift=0), front_end=AsItIs(limit=10.0))
-    for view in range(10):
-        assert local_view.observe(even(1 + 6 * view)).view == view
-    local_view.observe(even(1 + level))
-    found = local_view.nearest_of(np.array(some, np.int64))
-    near = sorted(some, key=lambda view: (abs(6 * view - level), some.index(view)))
-    assert found.view == (near[0] if near and abs(6 * near[0] - level) <= 5 else -1)
-    assert not found.recruited
-
-
-def test_where_nothing_is_seen_no_view_is_like_it() -> None:
-    local_view = LocalView(front_end=AsItIs(limit=99.0))
-    local_view.observe(even(20))
-    local_view.observe(even(0))
-    assert local_view.nearest_of(np.array([0])).view == -1
+@given(st.integers(-9, 9), st.integers(0, 2), st.integers(0, 2**32 - 1))
+def test_a_view_is_compared_under_the_turn_that_is_asked_for(shift: int, slack: int, seed: int) -> None:
+    """As the sum of absolute differences over the columns that overlap says, byte by byte, echoes beside them."""
+    local_view = LocalView(LocalViewParams(composite_threshold=0.0, composite_surprise=255.0))
+    rng = np.random.default_rng(seed)
+    for _ in range(3):
+        local_view._recruit(rng.integers(0, 256, local_view.features.size, np.uint8), faded=-1)
+    local_view.features = rng.integers(0, 256, local_view.features.size, np.uint8)
+    apart, by = local_view.apart_at(np.array([2, 0]), np.array([shift, shift]), slack)
+    asked = int(np.clip(shift, -MOST_SHIFT, MOST_SHIFT))
+    tried = [s for s in range(asked - slack, asked + slack + 1) if abs(s) <= MOST_SHIFT]
+    for k, view in enumerate((2, 0)):
+        new, stored = (f.astype(int) for f in (local_view.features, local_view.stored(view)))
+        heard = np.abs(new[96:] - stored[96:])[(new[96:] > 0) & (stored[96:] > 0)].sum() / 8
+        means = [
+            np.abs(new[8 * max(s, 0) : 96 - 8 * max(-s, 0)] - stored[8 * max(-s, 0) : 96 - 8 * max(s, 0)]).mean()
+            for s in tried
+        ]
+        assert by[k] == tried[int(np.argmin(means))]
+        assert apart[k] == pytest.approx(min(means) + local_view.front_end.echo_weight * heard)

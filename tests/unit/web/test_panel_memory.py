@@ -89,7 +89,7 @@ def test_the_memory_tells_how_sure_the_robot_is_and_what_it_holds_back(page: Pag
     assert "islands" not in words
     doubting = replace(sure, off_m=np.inf, other=Pose(x + 3.0, y + 4.0, 0.0), sights=34, corrected=1, apart=7, joined=2)
     words = memory(page, replace(snapshot, belief=doubting))
-    for told in ("it does not know", "34 of 300 sights for a place 5.0 m away", "'once'", "'islands joined', '2'"):
+    for told in ("it does not know", "34 of 300 sights for a place 5.0 m away", "'once'", "'submaps merged', '2'"):
         assert told in words
-    assert "'experiences on other islands', '7'" in words
+    assert "'experiences on other submaps', '7'" in words
     assert "it has no experience map" in memory(page, replace(snapshot, belief=None))

@@ -1,0 +1,318 @@
+"""Where a robot that was carried is, by the evidence; and a submap, which is merged as a whole when it is strong enough."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, PoseFilterParams, Recognition
+from ratslam_core.extensions import evidence as law
+from ratslam_core.extensions.evidence import AGAINST, FOR, LIKENESS, NATS, PRIOR, Evidence, nats
+from ratslam_core.extensions.islands import Islands, move
+from ratslam_core.params import EvidenceParams
+
+from .drives import CELL_M, SHAPE, relative
+
+COLUMN_RAD = math.radians(50) / 12
+DRIVE = Odometry(0.3, 0.0, 0.1)
+poses = st.builds(Pose2, st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3))
+
+
+@dataclass
+class Sights:
+    """A local view that sees the robot's true place: views taken near it are a third as unlike as others are."""
+
+    taken: list[Pose2]
+    robot: Pose2 = field(default_factory=lambda: Pose2(0.0, 0.0, 0.0))
+    twin: Pose2 | None = None  # a place that looks the same as where the robot is
+    column_rad: float = COLUMN_RAD
+
+    def apart_at(self, views: np.ndarray, shifts: np.ndarray, slack: int) -> tuple[np.ndarray, np.ndarray]:
+        apart, by = 10.0 + views % 7 / 7, shifts.copy()
+        for k, view in enumerate(views):
+            for place in (self.robot, *([self.twin] if self.twin is not None else [])):
+                seen = self.taken[view].inverse().compose(place)
+                shift = round(seen.heading_rad / COLUMN_RAD)
+                if (
+                    math.hypot(seen.x, seen.y) <= 0.5
+                    and abs(seen.heading_rad) <= 0.3
+                    and abs(shift - shifts[k]) <= slack
+                ):
+                    apart[k], by[k] = 3.0 + 2.0 * math.hypot(seen.x, seen.y), shift
+        return apart, by
+
+    def difference_to(self, view: int) -> float:
+        return float(self.apart_at(np.array([view]), np.zeros(1, np.int64), 6)[0][0])
+
+    def unlike_all(self, _views: np.ndarray, _times: float) -> bool:
+        return False
+
+    @property
+    def recognition(self) -> Recognition:
+        return Recognition(-1, False, -1, math.inf)
+
+
+@dataclass
+class Known:
+    """A map of a corridor along x: a view each 0.4 m, facing along it."""
+
+    count: int = 30
+    y: float = 0.0
+
+    @property
+    def poses(self) -> np.ndarray:
+        return np.array([[0.4 * k, self.y, 0.0] for k in range(self.count)])
+
+    @property
+    def views(self) -> np.ndarray:
+        return np.arange(self.count)
+
+    @property
+    def island_of(self) -> np.ndarray:
+        return np.zeros(self.count, np.int32)
+
+    @property
+    def taken(self) -> list[Pose2]:
+        return [Pose2(*row) for row in self.poses.tolist()]
+
+
+def carried(known: Known, expected: Pose2 | None = None, *, sure: bool = True) -> Evidence:
+    evidence = Evidence(EvidenceParams())
+    evidence.begin(expected or Pose2(50.0, 50.0, 0.0), 0, known.count, sure=sure)
+    return evidence
+
+
+def drive(evidence: Evidence, known: Known, sights: Sights, ticks: int, odometry: Odometry = DRIVE) -> None:
+    """The robot sees after each tick."""
+    for _ in range(ticks):
+        turn = odometry.yaw_rate * odometry.dt
+        way = odometry.speed * odometry.dt
+        moved = Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn)
+        sights.robot = sights.robot.compose(moved)
+        sights.twin = None if sights.twin is None else sights.twin.compose(moved)
+        evidence.move(odometry)
+        evidence.observe(known, sights, 1)
+
+
+@pytest.mark.parametrize("ring", range(len(NATS)))
+def test_the_less_alike_the_less_it_says_and_never_too_much(ring: int) -> None:
+    said = [nats(likeness, ring) for likeness in np.linspace(0, 3, 200)]
+    assert np.all(np.diff(said) <= 0)
+    assert AGAINST <= min(said) < 0 < max(said) <= FOR
+    assert nats(float(LIKENESS[3]), ring) == pytest.approx(NATS[ring][3])
+
+
+@given(st.lists(st.tuples(st.floats(-1, 1), st.floats(-2, 2), st.floats(0.01, 0.5)), max_size=20), poses)
+def test_hypotheses_move_by_odometry(ticks: list[tuple[float, float, float]], start: Pose2) -> None:
+    evidence = carried(Known(), start)
+    pose = start
+    for speed, yaw_rate, dt in ticks:
+        evidence.move(Odometry(speed, yaw_rate, dt))
+        turn = yaw_rate * dt
+        pose = pose.compose(Pose2(speed * dt * math.cos(turn / 2), speed * dt * math.sin(turn / 2), turn))
+    x, y, heading = evidence.hypotheses[0, :3]
+    assert (x, y) == pytest.approx((pose.x, pose.y), abs=1e-9)
+    assert math.remainder(heading - pose.heading_rad, math.tau) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_it_believes_where_it_is_and_is_surer_with_every_metre() -> None:
+    known = Known()
+    evidence, sights = carried(known), Sights(known.taken, Pose2(2.0, 0.1, 0.05))
+    drive(evidence, known, sights, 4)
+    assert evidence.belief is None  # one look, however good
+    drive(evidence, known, sights, 30)
+    believed = evidence.belief
+    assert believed is not None
+    assert math.hypot(believed.pose.x - sights.robot.x, believed.pose.y - sights.robot.y) < 0.4
+    assert abs(believed.pose.heading_rad - sights.robot.heading_rad) < 0.15
+    odds = believed.log_odds
+    drive(evidence, known, sights, 50)
+    assert evidence.belief is not None
+    assert evidence.belief.log_odds > max(odds, evidence.params.merge)
+
+
+def test_who_stands_still_sees_one_thing() -> None:
+    known = Known()
+    evidence, sights = carried(known), Sights(known.taken, Pose2(2.0, 0.0, 0.0))
+    drive(evidence, known, sights, 1)
+    before = evidence.hypotheses[:, law.ODDS].copy()
+    drive(evidence, known, sights, 100, Odometry(0.0, 0.0, 0.1))
+    assert evidence.hypotheses[: len(before), law.ODDS] == pytest.approx(before)
+    assert evidence.belief is None
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.floats(-0.4, 0.4))
+def test_on_new_ground_it_believes_nothing(yaw_rate: float) -> None:
+    known = Known()
+    evidence, sights = carried(known), Sights(known.taken, Pose2(0.0, 40.0, 1.0))
+    for _ in range(20):
+        drive(evidence, known, sights, 5, Odometry(0.3, yaw_rate, 0.1))
+        assert evidence.belief is None
+
+
+def test_of_two_places_that_look_the_same_neither_is_believed() -> None:
+    """In a twin corridor the same can be seen, metre by metre."""
+    known = Known(60)
+    rows = known.poses
+    evidence = carried(known)
+    sights = Sights(known.taken, Pose2(2.0, 0.0, 0.0), Pose2(14.0, 0.0, 0.0))
+    for _ in range(12):
+        drive(evidence, known, sights, 5)
+        assert evidence.belief is None
+    odds = np.sort(evidence.hypotheses[:, law.ODDS])[-2:]
+    assert odds[0] == pytest.approx(odds[1], abs=0.5)
+    assert np.array_equal(rows, known.poses)
+
+
+def test_who_was_perhaps_not_carried_is_as_likely_where_odometry_leads_as_at_a_new_place() -> None:
+    for sure, odds in ((True, PRIOR), (False, 0.0)):
+        evidence = carried(Known(), Pose2(2.0, 0.0, 0.0), sure=sure)
+        assert evidence.hypotheses[0, law.ODDS] == odds
+
+
+def test_the_likeliest_of_those_that_meet_stays() -> None:
+    rows = np.zeros((law.MOST, 6))
+    rows[:4, :4] = [[0, 0, 0, 1.0], [0.2, 0, 0.1, 3.0], [5, 0, 0, 2.0], [9, 9, 0, law.FORGOTTEN - 1]]
+    assert law._merge(rows, 4) == 2
+    assert rows[:2, law.ODDS].tolist() == [3.0, 2.0]
+    rows[:2, law.SUBMAP] = [0, 1]
+    rows[1, :3] = rows[0, :3]
+    assert law._merge(rows, 2) == 2  # on two submaps, the same numbers are two places
+
+
+def test_what_was_gathered_fades_with_the_way_and_no_doubt_does() -> None:
+    rows = np.zeros((2, 6))
+    rows[:, law.ODDS] = 4.0, -3.0
+    law._weigh(rows, np.full(2, -1), np.full(2, np.inf), 0.5, 0.2)
+    assert rows[:, law.ODDS].tolist() == pytest.approx([4.0 * (1 - 0.1), -3.0])
+
+
+# ---------------------------------------------------------------- submaps
+
+
+@given(poses, poses, st.lists(poses, min_size=1, max_size=6))
+def test_what_is_moved_keeps_its_shape(robot: Pose2, claimed: Pose2, made: list[Pose2]) -> None:
+    rows = np.array([[p.x, p.y, p.heading_rad] for p in [*made, robot]])
+    before = rows.copy()
+    move(np.arange(len(made) + 1), rows, robot, claimed)
+    assert rows[-1, :2] == pytest.approx([claimed.x, claimed.y], abs=1e-9)
+    for k in range(len(made)):
+        was, now = relative(before[-1], before[k]), relative(rows[-1], rows[k])
+        assert (now.x, now.y) == pytest.approx((was.x, was.y), abs=1e-9)
+
+
+@pytest.mark.parametrize(("at", "other"), [(2, 1), (1, 2)])
+def test_the_younger_submap_becomes_part_of_the_older(at: int, other: int) -> None:
+    islands, of = Islands(), np.array([0, 0, 1, 2, 2], np.int32)
+    rows = np.zeros((5, 3))
+    for experiences in (2, 3):
+        islands.begin(experiences)
+    islands.current = at
+    islands.join(other, of, rows, Pose2(0.0, 0.0, 0.0), Pose2(1.0, 2.0, 0.0))
+    assert of.tolist() == [0, 0, 1, 1, 1]
+    moved = [1.0, 2.0] if at == 2 else [-1.0, -2.0]
+    assert rows[:, :2].tolist() == [[0.0, 0.0]] * 3 + [moved] * 2
+    assert (islands.current, islands.begun, islands.joined) == (1, 2, 1)
+
+
+class Robot:
+    """Maps a corridor, is carried, and drives on. Its packet is where odometry has it, and each of its views is new at first."""
+
+    def __init__(self) -> None:
+        params = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0)
+        self.map = ExperienceMap(SHAPE, CELL_M, params, PoseFilterParams())
+        self.pose = Pose2(0.0, 0.0, 0.0)
+        self.sights = Sights([])
+        self.confirmed: Pose2 | None = Pose2(0.0, 0.0, 0.0)
+
+    def see(self, *, new: bool) -> None:
+        self.sights.robot = self.pose
+        if new:
+            self.sights.taken.append(self.pose)
+        view = len(self.sights.taken) - 1
+        packet = Packet(32 + 4 * self.pose.x % 64, 32 + self.pose.y % 64, self.pose.heading_rad, 1.0)
+        seen = Recognition(view, new, view, 1.0, 0.0)
+        self.map.step(packet, seen, DRIVE, views=self.sights, witness=self)  # type: ignore[arg-type]
+
+    def drive(self, ticks: int, every: int = 13) -> None:
+        for tick in range(ticks):
+            self.pose = self.pose.compose(Pose2(0.03, 0.0, 0.0))
+            self.see(new=tick % every == 0)
+
+    def confirms(self, _map: object, _experience: int, look: Pose2) -> tuple[Pose2, float] | None:
+        return (look, math.inf) if self.confirmed is not None else None
+
+    def carry(self, to: Pose2) -> None:
+        self.map.declare_kidnapped()
+        self.pose = to
+
+
+def test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole() -> None:
+    robot = Robot()
+    robot.drive(400)
+    map_, known = robot.map, len(robot.map)
+    before = map_.poses.copy()
+    robot.carry(Pose2(2.0, 0.1, 0.0))
+    assert map_.lost
+    believed = 0
+    while map_.islands.joined == 0:
+        robot.drive(1)
+        assert np.array_equal(map_.poses[:known], before)
+        if map_.belief is not None:
+            believed += 1
+            assert not map_.lost
+            assert map_.active < known <= map_.here  # it acts on the map, and learns beside it
+            assert math.hypot(map_.robot.x - robot.pose.x, map_.robot.y - robot.pose.y) < 0.5
+            assert not any(min(ends) < known <= max(ends) for ends in map_.transitions.row_of)
+    assert believed > 5
+    assert not map_.carried
+    assert not map_.lost
+    assert map_.active < known
+    assert np.all(map_.island_of == 0)
+    made = np.array([[p.x, p.y] for p in robot.sights.taken[known:]])
+    off = map_.poses[known:, :2] - made[: len(map_) - known]
+    assert np.ptp(off, axis=0) == pytest.approx([0.0, 0.0], abs=0.05)  # as a whole
+    assert np.abs(off).max() < 0.5
+
+
+def test_a_submap_is_not_merged_where_a_witness_does_not_confirm_it() -> None:
+    robot = Robot()
+    robot.drive(400)
+    robot.carry(Pose2(2.0, 0.1, 0.0))
+    robot.confirmed = None
+    robot.drive(120)
+    assert robot.map.evidence.belief is not None
+    assert robot.map.evidence.belief.log_odds > robot.map.evidence.params.merge
+    assert robot.map.islands.joined == 0
+    robot.confirmed = Pose2(0.0, 0.0, 0.0)
+    robot.drive(1)
+    assert robot.map.islands.joined == 1
+
+
+def test_without_submaps_the_first_look_is_believed() -> None:
+    robot = Robot()
+    robot.map.params = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0, islands=False)
+    robot.drive(400)
+    robot.carry(Pose2(2.0, 0.1, 0.0))
+    seen = Recognition(4, False, 4, 1.0, 0.0)
+    x, y, theta, _ = robot.map.cell_state(4)
+    robot.map.step(Packet(x, y, theta, 1.0), seen, DRIVE, views=robot.sights)  # type: ignore[arg-type]
+    assert robot.map.active == 4
+    assert robot.map.evidence.known == 0
+
+
+def test_a_doubtful_jump_after_a_sure_one_makes_nothing_doubtful() -> None:
+    robot = Robot()
+    robot.drive(50)
+    robot.map.declare_kidnapped()
+    robot.map.declare_kidnapped(sure=False)
+    assert robot.map.evidence.sure
+    robot.map.declare_found()
+    robot.map.declare_kidnapped(sure=False)
+    assert not robot.map.evidence.sure
