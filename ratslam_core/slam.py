@@ -77,7 +77,7 @@ class RatSlam(Brain):
             self.declare_kidnapped(sure=self.kidnap_detector.sure)
 
     def _settle(self, seen: Recognition, created: bool, tick: Tick) -> None:
-        known = NOTHING if created or seen.view == NOTHING else self.experience_map.active
+        known = NOTHING if created or seen.view == NOTHING else self.experience_map.here
         map_ = self.experience_map
         if self.carried and not map_.carried:
             self.kidnap_detector.find()

@@ -18,7 +18,7 @@ class EvidenceParams:
     )
     unit_rad: float = param(1.0, unit="rad", low=0.01, high=100.0, meaning="and so is a turn this wide", source="ours")
     believe: float = param(
-        1.1,
+        0.7,
         unit="nats",
         low=-10.0,
         high=100.0,

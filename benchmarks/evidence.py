@@ -1,0 +1,282 @@
+"""What an observation tells a robot that was carried away, and how soon it finds itself: what `extensions/evidence.py` rests on.
+
+    python -m benchmarks.evidence fit                  # the curves, and how well those in use are calibrated
+    python -m benchmarks.evidence kidnaps office living --seeds 50 --minutes 12
+    python -m benchmarks.evidence picture office --first 500006 --minutes 12 --out docs/pictures/evidence.svg
+
+fit: robots drive over ground that they know. How alike are the views near where they truly are, and those near a wrong
+place that looked right one or two units of way before? The logarithm of the ratio of both shares is what an observation
+says. Calibrated: given a wrong place, the mean of e to that power is at most 1.
+
+kidnaps: each robot explores, is carried 3 m or more and turned, and has two minutes. One judge, the evaluation: where
+the active experience was made, and the robot beside it, within 1 m and 0.6 rad for half a second.
+"""
+
+# matplotlib tells no types.
+# pyright: reportUnknownMemberType=false
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import astuple, dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.config import Config
+from app.session import Session
+from ratslam_core.extensions.evidence import LIKE, LIKENESS, ODDS, RINGS, nats
+from ratslam_core.types import Pose2
+from sim2d import load_world, world_names
+
+WORLDS = ("office", "living", "campus", "corridors", "two-goals", "twins")
+SEEDS = (910001, 910002)
+OFF: dict[str, float | int | bool | str] = {"goal_memory.enabled": False, "occupancy.enabled": False}
+EDGES = np.array([0.0, *(LIKENESS[:-1] + LIKENESS[1:]) / 2, 9.0])
+WRONG_M, WRONG_RAD = 2.0, 1.0  # a place is wrong if it is so far from the true one, or turned so far
+SECONDS, EVERY_UNIT = 300, 0.25
+NEAR_RIGHT_M, NEAR_RIGHT_RAD, STAYS = 1.0, 0.6, 6  # ticks
+
+Rows = NDArray[np.float64]
+Job = tuple[str, int, float]  # world, seed, minutes of exploring
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
+    parser.add_argument("what", choices=("fit", "kidnaps", "picture"))
+    parser.add_argument("worlds", nargs="*", metavar="WORLD", help="default: " + ", ".join(WORLDS))
+    parser.add_argument("--seeds", type=int, default=0, help="how many in each world (default: fit 2, kidnaps 10)")
+    parser.add_argument("--first", type=int, default=0, help="the first of them (default: fit 910001, kidnaps 520000)")
+    parser.add_argument("--out", type=Path, default=Path("evidence.svg"), help="of the picture")
+    parser.add_argument("--minutes", type=float, default=8.0, help="of exploring before (default 8)")
+    args = parser.parse_args()
+    if unknown := set(args.worlds) - {name for name, _ in world_names()}:
+        parser.error(f"no world is called {', '.join(sorted(unknown))}")
+    first = args.first or (SEEDS[0] if args.what == "fit" else 520_000)
+    seeds = range(first, first + (args.seeds or (len(SEEDS) if args.what == "fit" else 10)))
+    jobs = [(world, seed, args.minutes) for world in args.worlds or WORLDS for seed in seeds]
+    if args.what == "picture":
+        _draw(_explored(jobs[0]), args.out)
+        return 0
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        if args.what == "fit":
+            told = list(pool.map(_likenesses, jobs))
+            _print_fit([(world, rows) for (world, _, _), rows in zip(jobs, told, strict=True)])
+        else:
+            _print_kidnaps(list(zip(jobs, pool.map(_kidnapped, jobs), strict=True)))
+    return 0
+
+
+# ---------------------------------------------------------------- what an observation says
+
+
+@dataclass(slots=True)
+class _Wrong:
+    """A place that looked right although it is wrong, and moves as the robot does."""
+
+    x: float
+    y: float
+    heading: float
+    units: float = 0.0
+
+    def move(self, way: float, turn: float) -> None:
+        middle = self.heading + turn / 2
+        self.x, self.y = self.x + way * math.cos(middle), self.y + way * math.sin(middle)
+        self.heading, self.units = self.heading + turn, self.units + abs(way) + abs(turn)
+
+
+def _likenesses(job: Job) -> Rows:
+    """Rows: 1 for the true place, 0 for a wrong one; then the likeness of the nearest views of each ring, NaN for none."""
+    session = _explored(job)
+    map_, view = session.brain.experience_map, session.brain.local_view
+    births, kept = session.evaluation.births(len(map_)), map_.views.copy()
+    rows: list[list[float]] = []
+    wrong: list[_Wrong] = []
+    units = 0.0
+    for _ in range(SECONDS * 10):
+        session.tick()
+        way, turn = session.odometry.speed * session.odometry.dt, session.odometry.yaw_rate * session.odometry.dt
+        for place in wrong:
+            place.move(way, turn)
+        units += abs(way) + abs(turn)
+        if units < EVERY_UNIT or view.recognition.view < 0:
+            continue
+        units = 0.0
+        known = np.where(map_.views[: len(kept)] == kept, kept, -1)
+        looking = _Looking(session, births, known)
+        truth = session.simulator.truth
+        rows.append([1.0, *looking.rings(truth.x, truth.y, truth.heading_rad)])
+        rows += [[0.0, *looking.rings(p.x, p.y, p.heading)] for p in wrong if 1.0 <= p.units < 1.0 + EVERY_UNIT]
+        wrong = [place for place in wrong if place.units < 1.0 + EVERY_UNIT][-40:] + looking.wrong(wrong)
+    return np.array(rows)
+
+
+class _Looking:
+    """One observation, compared with the stored views as if their map were true."""
+
+    def __init__(self, session: Session, births: Rows, known: NDArray[np.int64]) -> None:
+        self._truth, self._view = session.simulator.truth, session.brain.local_view
+        self._births, self._known = births, known
+        self._own = np.flatnonzero(known >= 0)
+        self._apart, self._shifts = self._view.apart_at(known[self._own], np.zeros(len(self._own), np.int64), 2)
+        self._usual = max(float(np.partition(self._apart, len(self._apart) // 10)[len(self._apart) // 10]), 1e-9)
+
+    def rings(self, x: float, y: float, heading: float) -> list[float]:
+        turn = np.remainder(heading - self._births[:, 2] + math.pi, 2 * math.pi) - math.pi
+        away = np.hypot(self._births[:, 0] - x, self._births[:, 1] - y)
+        found: list[float] = []
+        for near_m, near_rad in RINGS:
+            which = np.flatnonzero((self._known >= 0) & (away <= near_m) & (np.abs(turn) <= near_rad))
+            if any(not math.isnan(likeness) for likeness in found) or not len(which):
+                found.append(math.nan)  # a nearer ring counts, or there is nothing
+                continue
+            shifts = np.rint(turn[which] / self._view.column_rad).astype(np.int64)
+            found.append(float(self._view.apart_at(self._known[which], shifts, 2)[0].min()) / self._usual)
+        return found
+
+    def wrong(self, others: Sequence[_Wrong]) -> list[_Wrong]:
+        """At most two new places that look right and are wrong, apart from these."""
+        found: list[_Wrong] = []
+        for i in np.argsort(self._apart, kind="stable")[:40]:
+            x, y, heading = self._births[self._own[i], :3].tolist()
+            heading += float(self._shifts[i]) * self._view.column_rad
+            off_m = math.hypot(x - self._truth.x, y - self._truth.y)
+            off = off_m > WRONG_M or abs(math.remainder(heading - self._truth.heading_rad, math.tau)) > WRONG_RAD
+            new = all(math.hypot(x - p.x, y - p.y) > 0.7 for p in (*others, *found))
+            if off and new and self._apart[i] <= LIKE * self._usual and len(found) < 2:
+                found.append(_Wrong(x, y, heading))
+        return found
+
+
+def _print_fit(told: Sequence[tuple[str, Rows]]) -> None:
+    everything = np.concatenate([rows for _, rows in told])
+    print("likeness           " + " ".join(f"{r:5.2f}" for r in LIKENESS))
+    for ring, (near_m, near_rad) in enumerate(RINGS):
+        print(f"{near_m:.1f} m, {near_rad:.2f} rad:  " + " ".join(f"{said:5.1f}" for said in _curve(everything, ring)))
+    print(
+        "\nin use, in each world: nats for the true place, against it, mean of e^nats at wrong places (calibrated: at most 1)"
+    )
+    for world in dict.fromkeys(name for name, _ in told):
+        rows = np.concatenate([found for name, found in told if name == world])
+        right, wrong = (np.array(list(_said(rows[rows[:, 0] == kind]))) for kind in (1.0, 0.0))
+        print(f"{world:10s} {right.mean():5.2f} {wrong.mean():5.2f} {np.exp(wrong).mean():5.2f}")
+
+
+def _curve(rows: Rows, ring: int) -> Rows:
+    shares: list[Rows] = []
+    for kind in (1.0, 0.0):
+        likeness = rows[rows[:, 0] == kind][:, 1 + ring]
+        counts = np.histogram(likeness[~np.isnan(likeness)], EDGES)[0] + 0.5
+        shares.append(counts / counts.sum())
+    return np.log(shares[0] / shares[1])
+
+
+def _said(rows: Rows) -> Iterator[float]:
+    for row in rows:
+        for ring, likeness in enumerate(row[1:]):
+            if not math.isnan(likeness):
+                yield float(nats(likeness, ring))
+
+
+# ---------------------------------------------------------------- kidnaps
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What became of one kidnap; seconds since it, inf for never."""
+
+    right_s: float  # it believes the right place, and goes on to for half a second
+    wrong_s: float  # how long it believed a wrong known place before, at the longest
+    merged_s: float
+    merged_off_m: float  # how far from the truth that was
+
+
+def _kidnapped(job: Job) -> Found:
+    session = _explored(job)
+    map_ = session.brain.experience_map
+    known, joined = len(map_), map_.islands.joined
+    _carry(session)
+    right_s = merged_s = merged_off_m = math.inf
+    right = wrong = longest = 0
+    for tick in range(1, 1201):
+        session.tick()
+        off_m, off_rad = session.evaluation.belief_off(session.simulator.truth, map_)
+        if merged_s == math.inf and map_.islands.joined > joined:
+            merged_s, merged_off_m = tick / 10, off_m
+        believes = map_.active < known
+        is_right = believes and off_m <= NEAR_RIGHT_M and off_rad <= NEAR_RIGHT_RAD
+        right, wrong = (right + 1, 0) if is_right else (0, wrong + 1 if believes else 0)
+        if right_s == math.inf:
+            longest = max(longest, wrong)
+            right_s = (tick - STAYS + 1) / 10 if right == STAYS else right_s
+    return Found(right_s, longest / 10, merged_s, merged_off_m)
+
+
+def _carry(session: Session) -> None:
+    truth = session.simulator.truth
+    while True:
+        x, y, heading = session.simulator.random_free_pose()
+        if math.hypot(x - truth.x, y - truth.y) >= 3.0:
+            session.kidnap(x, y, heading)
+            return
+
+
+def _draw(session: Session, path: Path) -> None:
+    """The log odds of each hypothesis from the kidnap on, until the maps are merged; that which is right is drawn bold."""
+    from matplotlib.figure import Figure
+
+    map_, frame = session.brain.experience_map, session.evaluation.map_in_office(session.brain.experience_map)
+    _carry(session)
+    times, odds, right = list[float](), list[float](), list[bool]()
+    began, merge = session.time_s, map_.evidence.params.merge
+    while session.time_s < began + 60 and (session.time_s == began or map_.carried):
+        session.tick()
+        truth = frame.inverse().compose(Pose2(*astuple(session.simulator.truth)[:3]))
+        for row in map_.evidence.hypotheses:
+            times.append(session.time_s - began)
+            odds.append(float(row[ODDS]))
+            turn = abs(math.remainder(float(row[2]) - truth.heading_rad, math.tau))
+            near = math.hypot(float(row[0]) - truth.x, float(row[1]) - truth.y) <= NEAR_RIGHT_M
+            right.append(near and turn <= NEAR_RIGHT_RAD)
+    figure = Figure((7.2, 3.0), layout="constrained")
+    axes = figure.add_subplot()
+    for kind, colour, size, label in ((False, "#999999", 5, "wrong places"), (True, "#0E7FB8", 14, "the right place")):
+        some = [(t, o) for t, o, is_right in zip(times, odds, right, strict=True) if is_right == kind]
+        axes.scatter(*zip(*some, strict=True), s=size, color=colour, label=label, linewidths=0)
+    axes.axhline(0.0, color="#555555", lw=0.8)
+    axes.axhline(merge, color="#D98300", lw=0.8, ls="--", label="1000 : 1")
+    axes.set(xlabel="seconds since the robot was carried", ylabel="log odds against a new place")
+    axes.legend(frameon=False, loc="upper left", fontsize=8)
+    figure.savefig(path, metadata={"Date": None})
+    print(path)
+
+
+def _print_kidnaps(found: Sequence[tuple[Job, Found]]) -> None:
+    print("world       n   right: median  90 %   never   wrong first > 0.5 s  > 3 s   merged: median  wrongly")
+    for world in dict.fromkeys(job[0] for job, _ in found):
+        some = [each for job, each in found if job[0] == world]
+        for_half_a_second, for_three = (sum(each.wrong_s > s for each in some) for s in (0.5, 3.0))
+        right, merged = (sorted(values) for values in zip(*((f.right_s, f.merged_s) for f in some), strict=True))
+        print(
+            f"{world:10s} {len(some):3d} {right[len(some) // 2]:10.1f} s {right[int(0.9 * (len(some) - 1))]:5.1f} s"
+            f" {sum(math.isinf(s) for s in right):5d} {for_half_a_second:15d} {for_three:10d}"
+            f" {merged[len(some) // 2]:14.1f} s {sum(1.0 < f.merged_off_m < math.inf for f in some):6d}",
+            flush=True,
+        )
+
+
+def _explored(job: Job) -> Session:
+    world, seed, minutes = job
+    session = Session(load_world(world), seed, Config().with_values(OFF))
+    for _ in range(round(minutes * 600)):
+        session.tick()
+    return session
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
