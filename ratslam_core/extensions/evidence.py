@@ -77,7 +77,7 @@ class Map(Protocol):
 @kind("belief/1")
 @dataclass(frozen=True, slots=True)
 class Belief:
-    """The hypothesis that is likelier than all others together."""
+    """The hypothesis that is likelier than all others of its submap together."""
 
     pose: Pose2  # the robot in the map
     log_odds: float  # against all others together
@@ -136,12 +136,14 @@ class Evidence:
         submap: where the robot is mapping, which is no hypothesis.
         """
         known = np.where(map_.island_of[: self.known] != submap, map_.views[: self.known], -1)
-        among = np.flatnonzero(known >= 0)
+        among = np.flatnonzero(map_.views >= 0)
         if len(among) < LEAST_VIEWS:
             return
         among = among[:: -(-len(among) // MOST_VIEWS)]
-        apart, shifts = views.apart_at(known[among], np.zeros(len(among), np.int64), 2)
+        apart, shifts = views.apart_at(map_.views[among], np.zeros(len(among), np.int64), 2)
         usual = max(float(np.partition(apart, len(apart) // 10)[len(apart) // 10]), 1e-9)
+        elsewhere = (among < self.known) & (map_.island_of[among] != submap)
+        among, apart, shifts = among[elsewhere], apart[elsewhere], shifts[elsewhere]
         units, self._units = self._units, 0.0
         there = _Expected(map_, views, known, self.hypotheses)
         _weigh(self.hypotheses, there.ring, there.apart / usual, units, self.params.leak)
@@ -160,7 +162,8 @@ class Evidence:
             return
         best = int(np.argmax(rows[:, ODDS]))
         row = rows[best : best + 1]
-        odds = float(row[0, ODDS] - np.logaddexp.reduce(np.append(np.delete(rows[:, ODDS], best), 0.0)))
+        rivals = (rows[:, SUBMAP] == row[0, SUBMAP]) & (np.arange(len(rows)) != best)  # one place may lie on two submaps
+        odds = float(row[0, ODDS] - np.logaddexp.reduce(np.append(rows[rivals, ODDS], 0.0)))
         if odds <= self.params.believe or row[0, UNITS] < self.params.least_units:
             return
         there = _Expected(map_, views, known, row)

@@ -286,10 +286,12 @@ def test_a_submap_is_not_merged_where_a_witness_does_not_confirm_it() -> None:
     robot.drive(400)
     robot.carry(Pose2(2.0, 0.1, 0.0))
     robot.confirmed = None
-    robot.drive(120)
-    assert robot.map.evidence.belief is not None
-    assert robot.map.evidence.belief.log_odds > robot.map.evidence.params.merge
-    assert robot.map.islands.joined == 0
+    sure = 0
+    while sure < 5:
+        robot.drive(1)
+        belief = robot.map.evidence.belief
+        sure += belief is not None and belief.log_odds > robot.map.evidence.params.merge
+        assert robot.map.islands.joined == 0
     robot.confirmed = Pose2(0.0, 0.0, 0.0)
     robot.drive(1)
     assert robot.map.islands.joined == 1
