@@ -162,7 +162,9 @@ class Evidence:
             return
         best = int(np.argmax(rows[:, ODDS]))
         row = rows[best : best + 1]
-        rivals = (rows[:, SUBMAP] == row[0, SUBMAP]) & (np.arange(len(rows)) != best)  # one place may lie on two submaps
+        rivals = (rows[:, SUBMAP] == row[0, SUBMAP]) & (
+            np.arange(len(rows)) != best
+        )  # one place may lie on two submaps
         odds = float(row[0, ODDS] - np.logaddexp.reduce(np.append(rows[rivals, ODDS], 0.0)))
         if odds <= self.params.believe or row[0, UNITS] < self.params.least_units:
             return
