@@ -24,7 +24,7 @@ class Uncertainty:
         self._ticks += 1
         self._lost += session.brain.lost
         sigma_m: float = getattr(session.brain.experience_map.pose_filter, "sigma_m", math.inf)
-        if not math.isfinite(sigma_m) or session.brain.lost or session.tick_count % EVERY:
+        if not math.isfinite(sigma_m) or session.brain.carried or session.tick_count % EVERY:
             return
         self._sigma_m.append(sigma_m)
         self._off_m.append(session.evaluation.belief_off(session.simulator.truth, session.brain.experience_map)[0])

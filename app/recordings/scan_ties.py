@@ -51,10 +51,10 @@ class ScanTies:
         self._now = None if ranges_m is None else points_of(ranges_m, self._angles, self._limit_m)
 
     def made(self, map_: ExperienceMap) -> None:
-        """The active experience was just made, where this scan was taken: tie it to those whose scans agree with it."""
+        """An experience was just made, where this scan was taken: tie it to those whose scans agree with it."""
         if self._now is None:
             return
-        new = map_.active
+        new = map_.here
         self._scans[new] = self._now.copy()  # a state holds each array once
         tied = 0
         for old in self._near(map_, new):
@@ -72,13 +72,13 @@ class ScanTies:
         """
         if not self._rules.confirmed or self._now is None or experience not in self._scans:
             return look, math.inf
-        believed = map_.pose(experience).inverse().compose(map_.robot)
+        believed = map_.pose(experience).inverse().compose(map_.robot_here)
         return self._laid(map_, experience, believed, LEAST_OFF_M) or self._laid(map_, experience, look, LEAST_OFF_M)
 
     def _tie(self, map_: ExperienceMap, old: int, found: Pose2, sigma_m: float) -> None:
-        map_.tie(old, map_.active, found, sigma_m)
+        map_.tie(old, map_.here, found, sigma_m)
         at = map_.pose(old).compose(found)
-        off = math.hypot(at.x - map_.robot.x, at.y - map_.robot.y)
+        off = math.hypot(at.x - map_.robot_here.x, at.y - map_.robot_here.y)
         map_.pose_filter.sigma_m = min(map_.pose_filter.sigma_m, off + sigma_m)  # until the map has followed
 
     def _laid(self, map_: ExperienceMap, old: int, told: Pose2, off_m: float) -> tuple[Pose2, float] | None:
@@ -104,10 +104,10 @@ class ScanTies:
     def _agreed(self, map_: ExperienceMap, now: Points, old: int, found: Pose2) -> bool:
         """Whether that is about where the robot believes to be, or else the scans made next to the old one say the same."""
         there = map_.pose(old).compose(found)
-        if alike(there, map_.robot, NEAR_TIMES):
+        if alike(there, map_.robot_here, NEAR_TIMES):
             return True
         for other in (old - 1, old + 1, old - 2, old + 2):
-            if other in self._scans and other != map_.active:
+            if other in self._scans and other != map_.here:
                 told = map_.pose(other).inverse().compose(there)
                 also = Walls(self._scans[other]).match(now, told, FITS)
                 if also is not None and alike(also.pose, told, 2.0):

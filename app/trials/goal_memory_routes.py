@@ -37,7 +37,7 @@ class GoalMemoryRoutes:
     def note(self) -> None:
         """The same that the brain's own memory is given in `RatSlam.step`."""
         brain, odometry = self._session.brain, self._session.odometry
-        leap = (self._session.estimate.relocalised or brain.lost) and not brain.params.goal_memory.over_jumps
+        leap = (self._session.estimate.relocalised or brain.carried) and not brain.params.goal_memory.over_jumps
         moves = not odometry.still
         self._under_way_s += odometry.dt * moves
         for memory in self._memories:

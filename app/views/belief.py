@@ -19,9 +19,9 @@ MOST_LOG_ODDS = 14.0  # a million to one is enough
 def belief_of(session: Session) -> Belief:
     brain = session.brain
     map_ = brain.experience_map
-    other, places = _other(map_), possible_places(map_)
+    other, places = other_place(map_), possible_places(map_)
     return Belief(
-        off_m=map_.pose_filter.sigma_m,
+        off_m=math.inf if map_.carried else map_.pose_filter.sigma_m,
         other=None if other is None else Pose(other.x, other.y, other.heading_rad),
         sights=map_.gate.sights,
         needed=map_.gate.needed,
@@ -45,7 +45,7 @@ def possible_places(map_: ExperienceMap) -> NDArray[np.float64]:
     return likely[likely[:, ODDS] > likely[:1, ODDS].max(initial=-math.inf) - POSSIBLE][:, :3].copy()
 
 
-def _other(map_: ExperienceMap) -> Pose2 | None:
+def other_place(map_: ExperienceMap) -> Pose2 | None:
     """Where the robot may be instead: the likeliest place that it does not believe, or where looks that it holds back put it."""
     if not map_.carried:
         return map_.gate.hypothesis(map_.robot)

@@ -10,6 +10,7 @@ from app.companion import Companion
 from app.config import Config
 from app.session import Session
 from app.views.arrays import frozen
+from app.views.belief import other_place
 from app.views.beside_history import BesideHistory
 from app.views.goal_view import goal_view
 from app.views.history import History
@@ -49,7 +50,7 @@ class BesideDrawn:
             self._of = companion
             self._map = MapLayers(lambda: map_, lambda: companion.evaluation, lambda: goals_of(session, companion))
         layer, times = self._map.layers()
-        other = map_.gate.hypothesis(map_.robot)
+        other = other_place(map_)
         series = self._history.series
         return BesideView(
             first=_figures(companion.first, session, session.brain, session, series.error_map_m),

@@ -29,7 +29,7 @@ class EventWatch:
     def __init__(self, session: Session, log: EventLog) -> None:
         self._session, self._log = session, log
         self.reasons, self.closures = Reasons(session, log), Closures(session, log)
-        self._active = session.brain.experience_map.active
+        self._here = session.brain.experience_map.here
         self._new = 0  # experiences since the robot was last at one that it made long before
         self.last_snap: Snap | None = None
         self.lost = False
@@ -74,8 +74,8 @@ class EventWatch:
 
     def _watch_closures(self) -> None:
         """Marks that the robot comes back from new ground to an experience that it made long before."""
-        session, map_, before = self._session, self._session.brain.experience_map, self._active
-        self._active = now = map_.active
+        session, map_, before = self._session, self._session.brain.experience_map, self._here
+        self._here = now = map_.here
         self._new += session.estimate.created
         if session.estimate.created or now == before:
             return

@@ -60,7 +60,7 @@ class TickRecorder:
     def __init__(self, session: Session, before: dict[str, Any]) -> None:
         """before: the parts `pose_cells`, `map`, `times` and `estimate` of the snapshot before the tick."""
         self._session, self._before = session, before
-        self._active = session.brain.experience_map.active
+        self._here = session.brain.experience_map.here
         self._known = len(session.brain.experience_map)
         self._cells: dict[str, Activity] = {"view match": self._activity()}
         self._iterations = 1
@@ -169,13 +169,13 @@ class TickRecorder:
     def _choice(self) -> str:
         map_, estimate = self._session.brain.experience_map, self._session.estimate
         if estimate.created:
-            return (
-                f"Nothing known fits packet and view: experience #{map_.active} is made, linked from #{self._active}."
-            )
-        energy = map_.energy(map_.active, estimate.packet, estimate.recognition.view)
-        if map_.active == self._active:
-            return f"Experience #{map_.active} still fits, with energy {energy:.2f}: it stays active."
-        return f"Experience #{map_.active} fits best, with energy {energy:.2f}: a link from #{self._active} to it is learnt."
+            return f"Nothing known fits packet and view: experience #{map_.here} is made, linked from #{self._here}."
+        energy = map_.energy(map_.here, estimate.packet, estimate.recognition.view)
+        if map_.here == self._here:
+            return f"Experience #{map_.here} still fits, with energy {energy:.2f}: it stays active."
+        return (
+            f"Experience #{map_.here} fits best, with energy {energy:.2f}: a link from #{self._here} to it is learnt."
+        )
 
     def _correction(self) -> str:
         map_ = self._session.brain.experience_map

@@ -159,7 +159,7 @@ class ExperienceMap(Looks):
         if self.params.islands:
             island, robot = self.islands.current, self.robot_here
             sure |= self.carried and self.evidence.sure
-            self.islands.begin(len(self))
+            self.islands.begin()
             self.evidence.begin(robot, island, len(self), sure=sure)
         self.carried = True
 

@@ -16,7 +16,7 @@ from ratslam_core.experience_map.temporal_map import TemporalMap
 from ratslam_core.extensions.evidence import Belief, Evidence
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.gate import Gate
-from ratslam_core.extensions.islands import Islands, move
+from ratslam_core.extensions.islands import Islands
 from ratslam_core.extensions.pose_filter import pose_estimate
 from ratslam_core.extensions.torn import open_way_m, soften
 from ratslam_core.params import EvidenceParams, ExperienceMapParams, MemoryParams, PoseFilterParams
@@ -181,10 +181,7 @@ class Looks(PoseGraph):
         if not self._proved(claimed, needed, seen, by):
             return False
         self.corrected += 1
-        if self.carried and experience < self.islands.landed:
-            self.transitions.forget_across(self.islands.landed)
-            move(np.arange(self.islands.landed, len(self)), self.poses, robot, claimed)
-        elif not self.carried:
+        if not self.carried:
             off = math.hypot(claimed.x - robot.x, claimed.y - robot.y)
             soften(self.transitions, experience, self.gate.known, off, self.params.odometry_sigma)
         return True

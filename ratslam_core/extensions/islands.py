@@ -24,12 +24,11 @@ class Islands:
         self.current = 0
         self.begun = 0  # how many were begun after the first
         self.joined = 0  # how many of them were joined with another
-        self.landed = 0  # the number of the first experience on the latest
 
-    def begin(self, experiences: int) -> None:
-        """The robot was carried away: what it makes from now on lies on a new island. experiences: how many there are."""
+    def begin(self) -> None:
+        """The robot was carried away: what it makes from now on lies on a new island."""
         self.begun += 1
-        self.current, self.landed = self.begun, experiences
+        self.current = self.begun
 
     def join(
         self, other: int, islands: NDArray[np.int32], poses: NDArray[np.float64], robot: Pose2, claimed: Pose2

@@ -56,7 +56,6 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
         whole(name, getattr(gate, name))
     whole("the latest island", map_.islands.begun)
     whole("the island", map_.islands.current, 0, map_.islands.begun)
-    whole("the first experience of the latest island", map_.islands.landed, 0, n)
     whole("joined islands", map_.islands.joined, 0, map_.islands.begun)
     _evidence(map_.evidence, n, map_.islands.begun)
     pose("the robot at the latest sight", gate._robot)

@@ -150,15 +150,6 @@ class Transitions:
             self.free.append(row)
         self.dropped.append((i, j))
 
-    def forget_across(self, first: int) -> None:
-        """Looks that tied experiences from `first` on to older ones were wrong: they no longer count, as ways or in the map."""
-        ends = self.ends[: self.count]
-        across = (ends[:, 0] < first) != (ends[:, 1] < first)
-        for row in np.flatnonzero(across & ~self.chain[: self.count]):
-            if self.travelled[row]:
-                self._drop(int(row))
-            self.weight[row] = self.believed[row] = 0.0
-
     def link(self, row: int) -> Link:
         """One row, as plain values."""
         i, j = self.ends[row]

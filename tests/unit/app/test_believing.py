@@ -1,0 +1,47 @@
+"""A robot that was carried acts where it believes itself to be, and what it learns meanwhile belongs to where it maps."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from app.session import Session, is_lost
+from app.views.belief import belief_of, possible_places
+from app.views.history import History
+from sim2d import load_world
+
+pytestmark = pytest.mark.slow
+
+
+def test_who_believes_is_not_lost_and_what_is_made_is_of_the_submap() -> None:
+    session = Session(load_world("office"), 6)
+    for _ in range(1800):
+        session.tick()
+    map_, known = session.brain.experience_map, len(session.brain.experience_map)
+    history, births = History(session), session.evaluation.births(known)
+    session.kidnap()
+    believed = made = 0
+    while session.time_s < 400 and not (believed and not map_.carried):
+        session.tick()
+        history.watch()
+        if not map_.carried:
+            continue
+        told = belief_of(session)
+        assert math.isinf(told.off_m)
+        assert told.places == len(possible_places(map_))
+        assert is_lost(session) == (map_.belief is None) == (told.odds is None)
+        if map_.belief is not None:
+            believed += 1
+            made += session.estimate.created
+            assert map_.active < known <= map_.here
+            assert session.estimate.experience == map_.active
+            assert told.odds is not None
+            assert told.odds > 1
+        if session.estimate.created:
+            assert session.evaluation.births(len(map_))[map_.here, 3] == session.time_s
+    assert min(believed, made) > 5
+    assert np.array_equal(session.evaluation.births(known), births, equal_nan=True)
+    assert not is_lost(session)
+    assert [event.kind for event in history.log.events].count("lost") == 1  # however often the belief changes
