@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.local_view.matcher import SIZE, Features, Matcher, overlap
+from ratslam_core.local_view.matcher import SIZE, Features, Matcher, shift_all, sum_apart
 
 FARTHEST = 1e5  # no two views are that far apart
 
@@ -110,14 +110,8 @@ def _nearest(
     total: NDArray[np.int16],
     kept: NDArray[np.uint32],
 ) -> tuple[int, float, int]:
-    first = columns - 1 - most
-    widths = np.empty(2 * most + 1)
-    for row in range(first, columns + most):
-        here, there, width = overlap(row - columns + 1, columns, rows)
-        widths[row - first] = width
-        for k in range(width):
-            shifted[row, there + k] = new[here + k]
-    tried, size = slice(first, columns + most), columns * rows
+    tried, widths = shift_all(new, most, columns, rows, shifted)
+    size = columns * rows
     views, masked, heard = shifted[tried], masks[tried], new[size:]
     _sum_echoes(echoes_of, heard, len(known), total)
     kept[0] = guess
@@ -184,20 +178,11 @@ def _search(
             continue
         for s in range(len(shifted)):
             most = np.int32((least - echo) * widths[s]) + 1  # a sum above this is farther off, whatever is rounded
-            total = _sum(row, shifted[s], masks[s], 0, half)
+            total = sum_apart(row, shifted[s], masks[s], 0, half)
             if total > most:
                 continue
-            total = np.add(total, _sum(row, shifted[s], masks[s], half, size))
+            total = np.add(total, sum_apart(row, shifted[s], masks[s], half, size))
             mean = total / widths[s] + echo
             if mean < least or (mean == least and s < by):
                 best, least, by = int(i), mean, s
     return best, least, by
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _sum(stored: Features, new: Features, mask: Features, first: int, end: int) -> np.int32:
-    total = np.int32(0)
-    for k in range(first, end):
-        apart = np.subtract(np.int32(stored[k] & mask[k]), np.int32(new[k]))
-        total = np.add(total, np.abs(apart))
-    return total

@@ -45,6 +45,21 @@ class Matcher:
             return -1, math.inf, 0
         return _nearest(known, new, most, self.columns, self.rows, self._shifted, self._masks, self._least, self._at)
 
+    def apart_at(
+        self,
+        known: NDArray[np.uint8],
+        new: Features,
+        views: NDArray[np.int64],
+        shifts: NDArray[np.int64],
+        slack: int,
+        most: int,
+        echo_weight: float,
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """How far each of these views is from the new one at shifts within `slack` of the one given, and at which of them."""
+        return _apart_at_any_size(
+            known, new, views, shifts, slack, most, self.columns, self.rows, echo_weight, self._shifted, self._masks
+        )
+
     def replaced(self, view: int, new: Features) -> None:
         """A stored view is another now."""
 
@@ -96,7 +111,7 @@ def least_difference(new: Features, stored: Features, most: int, columns: int, r
 
 
 @njit(cache=True, nogil=True)
-def apart_at(
+def _apart_at_any_size(
     known: NDArray[np.uint8],
     new: Features,
     views: NDArray[np.int64],
@@ -105,25 +120,77 @@ def apart_at(
     most: int,
     columns: int,
     rows: int,
-    echoes: int,
     echo_weight: float,
+    shifted: NDArray[np.uint8],
+    masks: NDArray[np.uint8],
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """For each of these views its least `difference` at shifts within `slack` of the one given, and that shift."""
-    n, size = len(views), columns * rows
-    least, by = np.full(n, np.inf), np.zeros(n, np.int64)
-    for k in range(n):
+    size = columns * rows
+    tried, widths = shift_all(new, most, columns, rows, shifted)
+    views_of, masked = shifted[tried], masks[tried]
+    if size == SIZE:
+        return _apart_at(known, new, views, shifts, slack, most, SIZE, echo_weight, views_of, masked, widths)
+    return _apart_at(known, new, views, shifts, slack, most, size, echo_weight, views_of, masked, widths)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _apart_at(
+    known: NDArray[np.uint8],
+    new: Features,
+    views: NDArray[np.int64],
+    shifts: NDArray[np.int64],
+    slack: int,
+    most: int,
+    size: int,
+    echo_weight: float,
+    shifted: NDArray[np.uint8],
+    masks: NDArray[np.uint8],
+    widths: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    echoes = len(new) - size
+    least, by = np.full(len(views), np.inf), np.zeros(len(views), np.int64)
+    for k in range(len(views)):
         stored = known[views[k]]
-        heard = 0
-        for e in range(size, size + echoes):
-            if new[e] > 0 and stored[e] > 0:
-                heard += abs(np.int64(new[e]) - np.int64(stored[e]))
         for shift in range(max(shifts[k] - slack, -most), min(shifts[k] + slack, most) + 1):
-            apart = difference(new, stored, shift, columns, rows)
+            apart = sum_apart(stored, shifted[shift + most], masks[shift + most], 0, size) / widths[shift + most]
             if apart < least[k]:
                 least[k], by[k] = apart, shift
+        heard = 0
+        for e in range(size, len(new)):
+            if new[e] > 0 and stored[e] > 0:
+                heard += abs(np.int64(new[e]) - np.int64(stored[e]))
         if echoes > 0:
             least[k] += echo_weight * heard / echoes
     return least, by
+
+
+@njit(cache=True, nogil=True, inline="always")
+def sum_apart(stored: Features, new: Features, mask: Features, first: int, end: int) -> np.int32:
+    """The sum of absolute differences of these bytes, of the stored view where the mask has 255.
+
+    LLVM turns int32 arithmetic (np.add, np.subtract keep the type) over a fixed number of bytes into one instruction
+    for 16 differences. Hence every shift covers all bytes, masked where nothing overlaps.
+    """
+    total = np.int32(0)
+    for k in range(first, end):
+        apart = np.subtract(np.int32(stored[k] & mask[k]), np.int32(new[k]))
+        total = np.add(total, np.abs(apart))
+    return total
+
+
+@njit(cache=True, nogil=True)
+def shift_all(
+    new: Features, most: int, columns: int, rows: int, shifted: NDArray[np.uint8]
+) -> tuple[slice, NDArray[np.float64]]:
+    """Write the new view, shift by shift, into its rows; which rows these are, and how many bytes overlap in each."""
+    first = columns - 1 - most
+    widths = np.empty(2 * most + 1)
+    for row in range(first, columns + most):
+        here, there, width = overlap(row - columns + 1, columns, rows)
+        widths[row - first] = width
+        for k in range(width):
+            shifted[row, there + k] = new[here + k]
+    return slice(first, columns + most), widths
 
 
 @njit(cache=True, nogil=True)
@@ -148,19 +215,14 @@ def _nearest(
     least: NDArray[np.int32],
     at: NDArray[np.int64],
 ) -> tuple[int, float, int]:
-    first = columns - 1 - most
-    for row in range(first, columns + most):
-        here, there, width = overlap(row - columns + 1, columns, rows)
-        for k in range(width):
-            shifted[row, there + k] = new[here + k]
-    tried = slice(first, columns + most)
+    tried, widths = shift_all(new, most, columns, rows, shifted)
     if known.shape[1] == SIZE:  # five times as quick with the size as a constant
         _least_sums(known, shifted[tried], masks[tried], SIZE, least, at)
     else:
         _least_sums(known, shifted[tried], masks[tried], known.shape[1], least, at)
     best, smallest, by = -1, np.inf, 0
     for row in range(2 * most + 1):
-        mean = least[row] / overlap(row - most, columns, rows)[2]
+        mean = least[row] / widths[row]
         if mean < smallest:
             best, smallest, by = at[row], mean, row - most
     return best, smallest, by
@@ -175,11 +237,7 @@ def _least_sums(
     least: NDArray[np.int32],
     at: NDArray[np.int64],
 ) -> None:
-    """For each shift, the least sum of absolute differences and the first view that has it.
-
-    LLVM turns int32 arithmetic (np.add, np.subtract keep the type) over a fixed number of bytes into one instruction
-    for 16 differences. Hence every shift covers all bytes, masked where nothing overlaps.
-    """
+    """For each shift, the least sum of absolute differences and the first view that has it."""
     least[:] = 1 << 30
     at[:] = -1
     for first in range(0, len(known), BLOCK):
@@ -188,10 +246,7 @@ def _least_sums(
             new, mask = shifted[s], masks[s]
             best, which = least[s], at[s]
             for i in range(len(block)):
-                total = np.int32(0)
-                for k in range(size):
-                    apart = np.subtract(np.int32(block[i, k] & mask[k]), np.int32(new[k]))
-                    total = np.add(total, np.abs(apart))
+                total = sum_apart(block[i], new, mask, 0, size)
                 if total < best:
                     best, which = total, first + i
             least[s], at[s] = best, which

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.local_view.echo_matcher import EchoMatcher, heard_apart
 from ratslam_core.local_view.front_ends import FrontEnd, named_front_end
-from ratslam_core.local_view.matcher import Features, Matcher, apart_at, least_difference, sub_column, turned_apart
+from ratslam_core.local_view.matcher import Features, Matcher, least_difference, sub_column, turned_apart
 from ratslam_core.params import LocalViewParams
 from ratslam_core.parts import Room
 from ratslam_core.types import Recognition, nothing_seen
@@ -85,18 +85,7 @@ class LocalView:
         end = self.front_end
         most, slack = (min(MOST_SHIFT, end.columns - 1), slack) if end.shifts else (0, 0)
         shifts = np.clip(shifts, -most, most)
-        return apart_at(
-            self.templates,
-            self.features,
-            views,
-            shifts,
-            slack,
-            most,
-            end.columns,
-            end.rows,
-            end.echoes,
-            end.echo_weight,
-        )
+        return self._matcher.apart_at(self.templates, self.features, views, shifts, slack, most, end.echo_weight)
 
     @property
     def column_rad(self) -> float:
