@@ -16,6 +16,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import cv2
@@ -26,13 +27,13 @@ from scipy.sparse.csgraph import dijkstra
 
 from ratslam_core import (
     ExperienceMap,
+    ExperienceMapParams,
     LocalView,
     LocalViewParams,
     Odometry,
     Packet,
     PoseCellParams,
     PoseCells,
-    PoseFilterParams,
     RatSlam,
     Recognition,
     ViewLinks,
@@ -220,10 +221,8 @@ def _close(made: ExperienceMap, rng: np.random.Generator, odometry: Odometry) ->
 def _long_map(experiences: int, links: int) -> ExperienceMap:
     """A map of so many experiences from a random walk, with closures between random pairs."""
     rng = np.random.default_rng(3)
-    believing = PoseFilterParams(
-        gate=False
-    )  # or looks at places far away would be held back, and closures be new places
-    made = ExperienceMap((36, 64, 64), 0.25, filter_params=believing)
+    believing = ExperienceMapParams(islands=False)  # or closures of places far away would be new places
+    made = ExperienceMap((36, 64, 64), 0.25, believing)
     odometry = Odometry(0.3, 0.05, 0.1)
     for k in range(experiences):
         made.step(
@@ -233,7 +232,7 @@ def _long_map(experiences: int, links: int) -> ExperienceMap:
         )
     while made.link_count < links:
         _close(made, rng, odometry)
-    made.params = type(made.params)(solve_every=0)
+    made.params = replace(made.params, solve_every=0)
     return made
 
 

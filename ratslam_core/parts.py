@@ -77,10 +77,6 @@ class LocalViewPart(Protocol):
         """How unlike a known view is to what was seen last, in the unit of `Recognition.difference`."""
         ...
 
-    def unlike_all(self, views: NDArray[np.int64], times: float, /) -> bool:
-        """Whether each of these known views differs from what was seen last by so many times the threshold."""
-        ...
-
     def strength(self, seen: Recognition, /) -> float:
         """How sure a recognition is, 0 to 1."""
         ...

@@ -23,9 +23,6 @@ from ratslam_core.local_view.front_ends import named_front_end
 LEAST_SCALE, MOST_SCALE = 0.02, 50.0
 UNRELATED, UNRELATED_SCANS = 0.0025, 0.002  # share of unrelated views that may be taken for one another
 LOOK_SIGMA_M = 0.35  # of a look that is only just believed, in the office
-JOIN_VIEWS = (
-    4  # that must agree after a gap: in an office of ours half of the rooms may be twins, elsewhere they are rare
-)
 LASER_SHIFT = 5  # columns of 3 degrees: a laser sees so well that a turn need not spoil a view
 LASER_GATE_RAD = (
     0.8  # scans laid on scans keep the heading: a look that turns the robot farther at once is a look-alike
@@ -105,11 +102,7 @@ def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]
         values["local_view.field_of_view"] = _span(recording.about.beam_angles_rad)
         values["pose_filter.gate_rad"] = LASER_GATE_RAD
     # Pictures of real cameras jump when one is dropped, so a jump is no kidnap: only a gap in the recording is.
-    values |= {
-        "local_view.composite_surprise": 255.0,
-        "local_view.range_surprise": 0.0,
-        "experience_map.join_views": JOIN_VIEWS,
-    }
+    values |= {"local_view.composite_surprise": 255.0, "local_view.range_surprise": 0.0}
     if len(seen.unlike) == 0:
         return values
     share = UNRELATED if "camera" in recording.about.has else UNRELATED_SCANS

@@ -10,6 +10,7 @@ import gc
 import os
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -50,7 +51,6 @@ from ratslam_core import (
     Packet,
     Pose2,
     PoseCells,
-    PoseFilterParams,
     Recognition,
     ViewLinks,
     find_places,
@@ -129,8 +129,8 @@ def loops() -> None:
     config = Config()
     cells = config.pose_cells
     shape = cells.n_theta, cells.n_y, cells.n_x
-    believes = PoseFilterParams(gate=False)  # else it would hold back that it is now here, now there
-    made = ExperienceMap(shape, cells.cell_m, config.experience_map, believes, ground=FamiliarGround(config.memory))
+    believes = replace(config.experience_map, islands=False)  # else it would doubt that it is now here, now there
+    made = ExperienceMap(shape, cells.cell_m, believes, ground=FamiliarGround(config.memory))
     for k in range(600):
         view, known = k // 10 % 20, k >= 200
         packet = Packet(view % 5 * 4.0, view // 5 * 4.0, 0.0, 1.0)
@@ -145,6 +145,7 @@ def loops() -> None:
     rng, seen_by = np.random.default_rng(1), LocalView(config.local_view)
     for _ in range(20):
         seen_by.observe(rng.integers(0, 256, (48, 64), np.uint8), None, RANGES)
+    made.params = config.experience_map
     made.declare_kidnapped()
     for _ in range(3):
         made.evidence.move(Odometry(0.3, 0.1, 0.1))

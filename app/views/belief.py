@@ -1,4 +1,4 @@
-"""How sure the robot is of its place, what it doubts, and what it let go."""
+"""How sure the robot is of its place, where else it may be, and what it let go."""
 
 from __future__ import annotations
 
@@ -8,23 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.session import Session
-from ratslam_core import ExperienceMap, Pose2
+from ratslam_core import ExperienceMap
 from ratslam_core.extensions.evidence import ODDS
-from web.messages import Belief, Pose
+from web.messages import Belief, Hypothesis
 
 POSSIBLE = 3.0  # nats: a place that is twenty times less likely than the likeliest is not counted
 MOST_LOG_ODDS = 14.0  # a million to one is enough
+MOST_OTHERS, LEAST_SHARE = 4, 0.02  # that are shown beside the place where it believes itself to be
 
 
 def belief_of(session: Session) -> Belief:
     brain = session.brain
     map_ = brain.experience_map
-    other, places = other_place(map_), possible_places(map_)
     return Belief(
         off_m=math.inf if map_.carried else map_.pose_filter.sigma_m,
-        other=None if other is None else Pose(other.x, other.y, other.heading_rad),
-        sights=map_.gate.sights,
-        needed=map_.gate.needed,
+        others=other_places(map_),
         corrected=map_.corrected,
         apart=int(np.count_nonzero(map_.island_of != map_.islands.current)),
         joined=map_.islands.joined,
@@ -32,7 +30,7 @@ def belief_of(session: Session) -> Belief:
         links_spared=map_.ground.links_spared,
         forgotten=brain.view_links.forgotten,
         odds=None if map_.belief is None else math.exp(min(map_.belief.log_odds, MOST_LOG_ODDS)),
-        places=len(places),
+        places=len(possible_places(map_)),
     )
 
 
@@ -45,10 +43,15 @@ def possible_places(map_: ExperienceMap) -> NDArray[np.float64]:
     return likely[likely[:, ODDS] > likely[:1, ODDS].max(initial=-math.inf) - POSSIBLE][:, :3].copy()
 
 
-def other_place(map_: ExperienceMap) -> Pose2 | None:
-    """Where the robot may be instead: the likeliest place that it does not believe, or where looks that it holds back put it."""
-    if not map_.carried:
-        return map_.gate.hypothesis(map_.robot)
-    here = map_.robot
-    away = [Pose2(*row) for row in possible_places(map_).tolist()]
-    return next((pose for pose in away if math.hypot(pose.x - here.x, pose.y - here.y) > 1e-6), None)
+def other_places(map_: ExperienceMap) -> tuple[Hypothesis, ...]:
+    """Where a robot that was carried, or is in doubt, may be instead of where it believes itself to be, the likeliest first."""
+    rows, beside = map_.evidence.weighed(map_.robot_here)
+    if not len(rows) or not (map_.carried or map_.evidence.in_doubt):
+        return ()
+    shares = np.exp(rows[:, ODDS] - np.logaddexp.reduce(np.append(rows[:, ODDS], beside)))
+    here, found = map_.robot, list[Hypothesis]()
+    for k in np.argsort(-shares, kind="stable").tolist():
+        x, y, heading = rows[k, :3].tolist()
+        if shares[k] >= LEAST_SHARE and math.hypot(x - here.x, y - here.y) > 1e-6:
+            found.append(Hypothesis(x, y, heading, float(shares[k])))
+    return tuple(found[:MOST_OTHERS])

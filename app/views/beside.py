@@ -10,7 +10,7 @@ from app.companion import Companion
 from app.config import Config
 from app.session import Session
 from app.views.arrays import frozen
-from app.views.belief import other_place
+from app.views.belief import other_places
 from app.views.beside_history import BesideHistory
 from app.views.goal_view import goal_view
 from app.views.history import History
@@ -50,7 +50,6 @@ class BesideDrawn:
             self._of = companion
             self._map = MapLayers(lambda: map_, lambda: companion.evaluation, lambda: goals_of(session, companion))
         layer, times = self._map.layers()
-        other = other_place(map_)
         series = self._history.series
         return BesideView(
             first=_figures(companion.first, session, session.brain, session, series.error_map_m),
@@ -63,7 +62,7 @@ class BesideDrawn:
             map=layer,
             times=times,
             estimate=Pose(map_.robot.x, map_.robot.y, map_.robot.heading_rad),
-            other=None if other is None else Pose(other.x, other.y, other.heading_rad),
+            others=other_places(map_),
             goal=self._goal.part(session.tick_count),
             map_turn_rad=history.map_turn_rad,
         )

@@ -24,7 +24,7 @@ from ratslam_core.pose_graph.transitions import require_behaviour
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite
 
 
-@kind("experience map/4")
+@kind("experience map/5")
 class ExperienceMap(Looks):
     """Experiences and links. `step` finds or makes the active experience and learns the transition to it."""
 
@@ -70,7 +70,7 @@ class ExperienceMap(Looks):
             return True
         for _ in range(beats):
             self._move(odometry)
-        by = Senses(beats, views, witness)
+        by = Senses(views, witness)
         if self.evidence.known and views is not None and seen.view >= 0:
             self.evidence.observe(self, views, self.islands.current)
         if seen.recruited:
@@ -119,7 +119,7 @@ class ExperienceMap(Looks):
         """Take new live parameters while running."""
         self.evidence.params = evidence
         self.params, self.optimiser.params = params, solver
-        self.pose_filter.params = self.gate.params = filter_params
+        self.pose_filter.params = filter_params
 
     def tried(self, i: int, j: int, reached: bool) -> bool:
         """Count one trial of the links between two experiences, in both directions. True when a link was deleted for it.
@@ -155,7 +155,6 @@ class ExperienceMap(Looks):
         self.pose_filter.forget(self.params.carried_sigma)
         self._edges.forget()
         self.ground.forget()
-        self.gate.dismiss()
         if self.params.islands:
             island, robot = self.islands.current, self.robot_here
             sure |= self.carried and self.evidence.sure
@@ -195,7 +194,6 @@ class ExperienceMap(Looks):
 
     def _create(self, packet: Packet, view: int, pose: Pose2) -> None:
         self.here = self._experiences.add(packet, view, pose, self.islands.current)
-        self._experiences.doubtful[self.here] = self.gate.sights > 0
         self.transitions.graph.add_node()
         landed = self._kidnapped and self.params.islands  # on an island of its own the robot knows where it is
         self.pose_filter.make(sure=landed)

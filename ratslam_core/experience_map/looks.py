@@ -1,7 +1,7 @@
 """Looks: which experience the robot sees, where that puts it, and whether it can be. ACRA 2006 section 3.1.
 
 A look is a state of the pose cells and a scene. The papers take the experience with the most energy. What is ours
-asks, too, whether the robot can be there (`extensions/gate.py`, `extensions/islands.py`).
+asks, too, whether the robot can be there; if not, evidence has to say so (`extensions/evidence.py`).
 """
 
 from __future__ import annotations
@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core.experience_map.temporal_map import TemporalMap
-from ratslam_core.extensions.evidence import Belief, Evidence
+from ratslam_core.extensions.evidence import PRIOR, Belief, Evidence
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
-from ratslam_core.extensions.gate import Gate
 from ratslam_core.extensions.islands import Islands
 from ratslam_core.extensions.pose_filter import pose_estimate
 from ratslam_core.extensions.torn import open_way_m, soften
@@ -29,7 +28,6 @@ from ratslam_core.types import IDENTITY, Packet, Pose2, Recognition, wrap_angle
 class Senses(NamedTuple):
     """What can be asked of a sight, beside which view it is."""
 
-    beats: int = 1  # for how many sights it counts, since it lasts so long
     views: LocalViewPart | None = None  # which made it out
     witness: Witness | None = None  # a look that it does not confirm is none
 
@@ -52,10 +50,9 @@ class Looks(PoseGraph):
         self.evidence = Evidence(evidence or EvidenceParams())
         self.pose_filter = pose_estimate(filter_params or PoseFilterParams())
         self._temporal_map = TemporalMap(self)
-        self.gate = Gate(filter_params or PoseFilterParams())
         self.islands = Islands()
         self.carried = False  # it knows that it was carried away and has not found itself again
-        self.corrected = 0  # how often looks that were held back proved the robot wrong
+        self.corrected = 0  # how often evidence proved that it was carried unnoticed, or its wheels slipped
 
     @property
     def active(self) -> int:
@@ -87,8 +84,8 @@ class Looks(PoseGraph):
 
     @property
     def belief(self) -> Belief | None:
-        """Where a robot that was carried believes itself to be on the map, apart from which it still maps; None for nowhere."""
-        return self.evidence.belief if self.carried else None
+        """Where on the map the robot believes itself to be, if not where it maps; None if there, or nowhere."""
+        return self.evidence.belief if self.carried or self.evidence.in_doubt else None
 
     @property
     def temporal_map(self) -> TemporalMap:
@@ -100,62 +97,73 @@ class Looks(PoseGraph):
         """Whether correction with the sweep "all at once" has thrown the map apart: `relaxation.sweep_all_at_once`."""
         return self.params.sweep == "all at once" and has_diverged(self.poses, self.moves)
 
+    def log_prior(self, experience: int, pose: Pose2) -> float:
+        """Log odds of a place, before anything speaks for it: how far odometry may have led astray since the robot was there."""
+        if not self.evidence.in_doubt or self.island_of[experience] != self.islands.current:
+            return PRIOR
+        drift = self.params.odometry_drift * open_way_m(self.transitions, experience, len(self))
+        sigma = max(math.hypot(self.pose_filter.sigma_m, drift), 1e-9)
+        return -min(0.5 * (self._off(pose) / sigma) ** 2, self.evidence.params.unnoticed)
+
+    def _off(self, pose: Pose2) -> float:
+        return math.hypot(pose.x - self.robot_here.x, pose.y - self.robot_here.y)
+
     def _seen_experience(self, packet: Packet, seen: Recognition, by: Senses) -> tuple[int, Recognition]:
         """The experience that the robot sees, the most energetic of those that it can see, -1 for none; and as what.
 
-        When what was held back has won, it is one beyond reach; where that lies on another submap, the two were merged.
+        [ours] One where it cannot be puts it in doubt. When evidence has won, it is one beyond reach, perhaps on another
+        submap, and the two were merged.
         """
-        reach = math.inf if self.carried and not self.params.islands else self.gate.reach_m(self.pose_filter.sigma_m)
+        if not self.params.islands:
+            return self._most_energetic(packet, seen.view, math.inf), seen
+        if self.evidence.known and (merged := self._merged(by)) is not None:
+            return merged
+        if self.evidence.idle:
+            self._end_of_doubt()
+        reach = self._reach_m
         best = self._most_energetic(packet, seen.view, reach)
-        if seen.view < 0 or not self.params.match_view:
+        if seen.view < 0 or not self.params.match_view or math.isinf(reach):
             return best, seen
-        if self.evidence.known:
-            if (merged := self._merged(by)) is not None:
-                return merged
-            if len(self._of_view(seen.view, own=False)):
-                return best, seen  # it is weighed as evidence for another submap, and not as a look at this one
-        if math.isinf(reach):
+        turns = best >= 0 and self._turns(best, packet, seen)
+        if not turns and (best >= 0 or self._may_be_seen_from(seen.view, reach)):
             return best, seen
-        if best >= 0 and not self.carried and self._turns(best, packet, seen):
-            return (best if self._jumps(best, packet, seen, by) else -1), seen
-        if (best >= 0 and not self._experiences.doubtful[best]) or self._sees_where_it_is(seen.view, reach):
-            self.gate.doubt(by.beats)
-            return best, seen
-        far = self._most_energetic(packet, seen.view, reach, beyond=True)
-        return (far if far >= 0 and self._jumps(far, packet, seen, by) else best), seen
+        if not self.carried:
+            self.evidence.doubt(len(self))
+        return -1, seen
+
+    @property
+    def _reach_m(self) -> float:
+        p = self.pose_filter.params
+        return max(p.snap_m, p.gate_sigma * self.pose_filter.sigma_m)
 
     def _turns(self, experience: int, packet: Packet, seen: Recognition) -> bool:
         """[ours] Whether a look would turn the robot farther than its heading can be off, wherever it puts it.
 
-        test_gate.py::test_a_look_that_turns_the_robot_is_held_back.
+        test_evidence.py::test_a_look_that_turns_the_robot_is_held_back.
         """
-        most = self.gate.params.gate_rad
-        if most >= math.pi:
+        most = self.pose_filter.params.gate_rad
+        if most >= math.pi or self.carried:
             return False
         claimed = self.pose(experience).compose(self._look(experience, packet, seen))
         return abs(wrap_angle(claimed.heading_rad - self.robot_here.heading_rad)) > most
 
-    def _sees_where_it_is(self, view: int, reach_m: float) -> bool:
-        """Whether an experience of this view that was not made in doubt lies within reach, wherever the packet is."""
-        own = self._of_view(view, own=True)
-        own = own[~self._experiences.doubtful[own]]
-        return bool(len(own)) and self._away(own, self.robot_here).min() <= reach_m
-
-    def _of_view(self, view: int, *, own: bool) -> NDArray[np.int64]:
+    def _may_be_seen_from(self, view: int, reach_m: float) -> bool:
+        """Whether an experience of this view lies within reach, wherever the packet is; or there is none at all."""
         found = self._experiences.of_view(view)
-        return found[(self.island_of[found] == self.islands.current) == own]
+        own = found[self.island_of[found] == self.islands.current]
+        return not len(own) or bool(self._away(own, self.robot_here).min() <= reach_m)
 
     def _away(self, which: NDArray[np.int64], pose: Pose2) -> NDArray[np.float64]:
         return np.hypot(self.poses[which, 0] - pose.x, self.poses[which, 1] - pose.y)
 
-    def _most_energetic(self, packet: Packet, view: int, reach_m: float, *, beyond: bool = False) -> int:
+    def _most_energetic(self, packet: Packet, view: int, reach_m: float) -> int:
         return self._experiences.most_energetic(
-            packet, view, self.params, self.robot_here, reach_m, self.islands.current, beyond
+            packet, view, self.params, self.robot_here, reach_m, self.islands.current
         )
 
     def _merged(self, by: Senses) -> tuple[int, Recognition] | None:
         """The experience that the robot is at, and as what it sees it, if the evidence for that place is so strong that the
-        submap is merged there; it then is. None if not.
+        loop is closed or the submap is merged there; it then is. None if not.
         """
         belief = self.evidence.belief
         if belief is None or belief.log_odds < self.evidence.params.merge or by.views is None:
@@ -163,66 +171,19 @@ class Looks(PoseGraph):
         look = self.pose(belief.experience).inverse().compose(belief.pose)
         if by.witness is not None and by.witness.confirms(self, belief.experience, look) is None:
             return None
-        view = int(self.views[belief.experience])
-        other = int(self.island_of[belief.experience])
-        self.islands.join(other, self.island_of, self.poses, self.robot_here, belief.pose)
-        self.evidence.end(len(self) if np.any(self.island_of != self.islands.current) else 0)
+        view, other = int(self.views[belief.experience]), int(self.island_of[belief.experience])
+        if other != self.islands.current:
+            self.islands.join(other, self.island_of, self.poses, self.robot_here, belief.pose)
+        elif self.log_prior(belief.experience, belief.pose) <= -self.evidence.params.unnoticed:
+            self.corrected += 1
+            off, sigma = self._off(belief.pose), self.params.odometry_sigma
+            soften(self.transitions, belief.experience, self.evidence.known, off, sigma)
+        self._end_of_doubt()
         self.carried = False
         return belief.experience, Recognition(view, False, view, by.views.difference_to(view), belief.facing_rad)
 
-    def _jumps(self, experience: int, packet: Packet, seen: Recognition, by: Senses) -> bool:
-        """Whether a look at the robot's own island is believed although it is beyond reach."""
-        robot, claimed = self.robot_here, self._claimed(experience, packet, seen, by.witness)
-        if claimed is None:
-            return False
-        if not self.carried and self._drifted_to(claimed, experience, by.beats):
-            return self._proved(claimed, self.params.join_sights, seen, by)
-        needed = self.params.join_sights if self.carried else self.gate.params.gate_sights
-        if not self._proved(claimed, needed, seen, by):
-            return False
-        self.corrected += 1
-        if not self.carried:
-            off = math.hypot(claimed.x - robot.x, claimed.y - robot.y)
-            soften(self.transitions, experience, self.gate.known, off, self.params.odometry_sigma)
-        return True
-
-    def _drifted_to(self, claimed: Pose2, experience: int, beats: int) -> bool:
-        """Whether odometry may have led so far astray since it was last at this experience.
-
-        Looks at what the robot has just made say nothing of that. test_gate.py::test_a_long_loop_closes_soon.
-        """
-        drift, off = self.gate.params.gate_drift, self._off(claimed)
-        if drift == 0.0 or self.gate.sights < self.params.join_sights - beats:
-            return False  # it would change nothing yet
-        return off <= drift * open_way_m(self.transitions, experience, len(self))
-
-    def _off(self, claimed: Pose2) -> float:
-        return math.hypot(claimed.x - self.robot_here.x, claimed.y - self.robot_here.y)
-
-    def _proved(self, claimed: Pose2, needed: int, seen: Recognition, by: Senses) -> bool:
-        return self.gate.believes(
-            self.robot_here, claimed, needed, len(self), view=seen.view, views=self.params.join_views, beats=by.beats,
-            surprised=self._misses_what_it_expects(by.views),
-        )  # fmt: skip
-
-    def _misses_what_it_expects(self, views: LocalViewPart | None) -> bool:
-        """[ours] Whether a known view is seen, but the place where the robot believes itself to be is known and looks different.
-
-        test_gate.py::test_who_misses_what_it_expects_gives_way_sooner.
-        """
-        if views is None or not self.gate.sights or views.recognition.view < 0 or views.recognition.recruited:
-            return False
-        expected = self.views[self.ground.near]
-        if np.any(expected == views.recognition.view):
-            return False
-        return views.unlike_all(expected, self.gate.params.gate_unlike)
-
-    def _claimed(
-        self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None = None
-    ) -> Pose2 | None:
-        """Where a look puts the robot; None if the witness does not confirm it."""
-        look = self._measured(experience, packet, seen, witness)
-        return None if look is None else self.pose(experience).compose(look[0])
+    def _end_of_doubt(self) -> None:
+        self.evidence.end(len(self) if np.any(self.island_of != self.islands.current) else 0)
 
     def _measured(
         self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None

@@ -1,4 +1,4 @@
-"""[ours] One law of evidence: where a robot that was carried away is, and how sure that is.
+"""[ours] One law of evidence: where a robot is that may be elsewhere than it believes, and how sure that is.
 
 Hypotheses of where the robot is move by its odometry, as packets do, and each observation weighs them. How like the
 views near a hypothesis are to what is seen, in units of how like views are anyway, tells how many times likelier this
@@ -6,6 +6,11 @@ observation is there than at a wrong place that looked right a metre before: `RI
 `python -m benchmarks.evidence`. Neighbouring observations repeat each other, so a metre or a radian of way counts as one
 unit of evidence; and since wrong places can stay alike for longer, a unit takes a share of what was gathered away.
 Beside all hypotheses stands that of a new place, for and against which nothing speaks.
+
+A robot that noticed that it was carried may be anywhere. One that sees something where it cannot be is in doubt: *here*,
+where odometry has led it, is a rival, too, weighed by what is seen there; what lies farther off than odometry can have
+drifted begins with odds against it, at most those of having been carried unnoticed; and since an exact copy of a place
+may exist, looks say no more than `most`. So in a twin odometry decides, where looks cannot.
 
 The robot *believes* a hypothesis that is likelier than all others together. There it acts; nothing is learnt from it, so
 that it may be wrong at no cost. Where the odds are 1000 to 1, the submap on which it was is *merged*. test_evidence.py.
@@ -36,10 +41,15 @@ SUGGESTED = 4  # best views of all that say where the robot may be
 LIKE = 0.8  # a less like view suggests nothing
 PRIOR = -4.0  # log odds of a place that a view suggests, against a new place
 FORGOTTEN = PRIOR - 4.0  # log odds below which a hypothesis is given up
+DOUBTED = 15.0  # and, while in doubt, how far they may lie below the likeliest's
+QUIET = 5.0  # units of way after which a doubt is over for which nothing has spoken
+HERE_M, HERE_RAD = 1.0, 0.6  # a hypothesis so near to where a robot in doubt is mapping, is that it is there
+BELIEVE_IN_DOUBT = 3.0  # nats: who was hardly carried must not wander off in thought for a look-alike
 SAME_M, SAME_RAD = 0.6, 0.3  # hypotheses this near are one
 PULLS_M, PULLS_RAD = 0.7, 0.35  # a view this near to a hypothesis says more exactly where it is
 PULL = 0.3  # the share of that way which it goes for a unit of evidence
 LEAST_PULL = 0.15
+LEAST_UNITS = 0.1  # of way after which it pays to look again, for a robot in doubt; one that is lost looks all the time
 AGAINST, FOR = -2.0, 7.0  # nats that one unit of evidence can say at most
 # The likeness: the least difference to a view near the hypothesis, over the tenth of all differences that is least.
 LIKENESS: Rows = np.array([0.2, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95, 1.05, 1.2])
@@ -52,7 +62,7 @@ NATS: Rows = np.array(
         [3.2, 3.2, 2.9, 2.1, 1.1, 0.2, -0.4, -0.9, -1.2, -1.4],
     ]
 )
-X, Y, HEADING, ODDS, UNITS, SUBMAP = range(6)  # of a row
+X, Y, HEADING, ODDS, UNITS, SUBMAP, CEILING = range(7)  # of a row
 
 
 class Views(Protocol):
@@ -72,6 +82,9 @@ class Map(Protocol):
     def views(self) -> Whole: ...
     @property
     def island_of(self) -> NDArray[np.int32]: ...
+    @property
+    def robot_here(self) -> Pose2: ...
+    def log_prior(self, experience: int, pose: Pose2, /) -> float: ...
 
 
 @kind("belief/1")
@@ -85,7 +98,7 @@ class Belief:
     facing_rad: float  # of the robot, relative to that at which this view was taken
 
 
-@kind("evidence/1")
+@kind("evidence/2")
 class Evidence:
     """The hypotheses, and what speaks for each."""
 
@@ -93,21 +106,33 @@ class Evidence:
         self.params = params
         self.belief: Belief | None = None
         self.sure = True  # that the robot was carried
+        self.in_doubt = (
+            False  # it was not, as far as it knows: `here` is a rival, and its own submap is among the others
+        )
+        self.here = 0.0  # log odds that the robot is where odometry has led it, while in doubt
         self.known = 0  # experiences among which it is; 0: there is nothing to find out
-        self._rows = np.zeros((MOST, 6))
+        self._rows = np.zeros((MOST, 7))
         self._count = 0
         self._units = 0.0  # of way since the last observation
+        self._quiet = 0.0  # units of way since something was last seen where the robot cannot be
 
     def begin(self, robot: Pose2, submap: int, known: int, *, sure: bool) -> None:
         """The robot was carried away from this submap, or perhaps not, if not sure. robot: where odometry would have it."""
         self.end(known)
         self.sure, self._units = sure, 1.0  # the first observation counts whole
-        self._rows[0] = robot.x, robot.y, robot.heading_rad, PRIOR if sure else 0.0, 1.0, submap
+        self._rows[0] = robot.x, robot.y, robot.heading_rad, PRIOR if sure else 0.0, 1.0, submap, math.inf
         self._count = 1
+
+    def doubt(self, known: int) -> None:
+        """Something is seen where the robot cannot be. known: how many experiences there are, from before the doubt."""
+        if not self.in_doubt:
+            self.end(known)
+            self.in_doubt, self.here, self._units = True, 0.0, 1.0
+        self._quiet = 0.0
 
     def end(self, known: int = 0) -> None:
         """The robot is on the map again. known: how many experiences there are, if some still lie on other submaps."""
-        self.belief, self.known, self._count = None, known, 0
+        self.belief, self.known, self._count, self.in_doubt = None, known, 0, False
 
     @property
     def hypotheses(self) -> Rows:
@@ -124,7 +149,8 @@ class Evidence:
         rows[:, X] += way * np.cos(middle)
         rows[:, Y] += way * np.sin(middle)
         rows[:, HEADING] += turn
-        self._units = min(1.0, self._units + abs(way) / self.params.unit_m + abs(turn) / self.params.unit_rad)
+        units = abs(way) / self.params.unit_m + abs(turn) / self.params.unit_rad
+        self._units, self._quiet = min(1.0, self._units + units), self._quiet + units
         if self.belief is not None:
             moved = self.belief.pose.compose(Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn))
             facing = wrap_angle(self.belief.facing_rad + turn)
@@ -133,46 +159,91 @@ class Evidence:
     def observe(self, map_: Map, views: Views, submap: int) -> None:
         """What the local view sees speaks for the hypotheses where it is expected, and against the others.
 
-        submap: where the robot is mapping, which is no hypothesis.
+        submap: where the robot is mapping, which is no hypothesis unless it is in doubt.
         """
-        known = np.where(map_.island_of[: self.known] != submap, map_.views[: self.known], -1)
         among = np.flatnonzero(map_.views >= 0)
-        if len(among) < LEAST_VIEWS:
+        if len(among) < LEAST_VIEWS or (self.in_doubt and self._units < LEAST_UNITS):
             return
         among = among[:: -(-len(among) // MOST_VIEWS)]
         apart, shifts = views.apart_at(map_.views[among], np.zeros(len(among), np.int64), 2)
         usual = max(float(np.partition(apart, len(apart) // 10)[len(apart) // 10]), 1e-9)
-        elsewhere = (among < self.known) & (map_.island_of[among] != submap)
-        among, apart, shifts = among[elsewhere], apart[elsewhere], shifts[elsewhere]
+        possible = np.arange(len(map_.views)) < self.known
+        if not self.in_doubt:
+            possible &= map_.island_of != submap
+        known = np.where(possible, map_.views, -1)[: self.known]
         units, self._units = self._units, 0.0
-        there = _Expected(map_, views, known, self.hypotheses)
-        _weigh(self.hypotheses, there.ring, there.apart / usual, units, self.params.leak)
+        self._weigh(map_, views, known, usual, units, submap)
+        like = possible[among] & (apart <= LIKE * usual)
+        among, apart, shifts = among[like], apart[like], shifts[like]
         best = np.argsort(apart, kind="stable")[:SUGGESTED]
-        best = best[apart[best] <= LIKE * usual]
-        places = map_.poses[among[best]].copy()
-        places[:, 2] += shifts[best] * views.column_rad
-        submaps = map_.island_of[among[best]].astype(np.float64)
-        self._count = _suggest(self._rows, self._count, places, submaps, apart[best] / usual, max(units, LEAST_PULL))
-        self._count = _merge(self._rows, self._count)
+        facing: Rows = shifts[best] * np.float64(views.column_rad)
+        self._suggest(map_, among[best], facing, apart[best] / usual, max(units, LEAST_PULL))
+        least = max(self.here, *self.hypotheses[:, ODDS], 0.0) - DOUBTED if self.in_doubt else FORGOTTEN
+        self._count = _merge(self._rows, self._count, least)
         self._believe(map_, views, known)
 
+    def _weigh(self, map_: Map, views: Views, known: Whole, usual: float, units: float, submap: int) -> None:
+        there = _Expected(map_, views, known, self.hypotheses)
+        _weigh(self.hypotheses, there.ring, there.apart / usual, units, self.params.leak)
+        if self.in_doubt:
+            here = _row(map_.robot_here, self.here, submap)
+            there = _Expected(map_, views, known, here)
+            there.ring[there.ring > 0] = -1  # who explores is beside known ground all the time, perhaps behind its wall
+            _weigh(here, there.ring, there.apart / usual, units, self.params.leak)
+            self.here = float(here[0, ODDS])
+
+    def _suggest(self, map_: Map, experiences: Whole, facing: Rows, likeness: Rows, units: float) -> None:
+        """The best views say more exactly where old hypotheses are, or begin new ones."""
+        places = map_.poses[experiences].copy()
+        places[:, 2] += facing
+        submaps = map_.island_of[experiences].astype(np.float64)
+        known = _pull(self.hypotheses, places, submaps, units)
+        for k in np.flatnonzero(~known):
+            prior = map_.log_prior(int(experiences[k]), Pose2(*places[k].tolist()))
+            odds = prior + nats(likeness[k], 0)
+            self._count = _begin(self._rows, self._count, places[k], odds, submaps[k], prior + self.params.most)
+
+    def weighed(self, robot: Pose2) -> tuple[Rows, list[float]]:
+        """The hypotheses of another place than where the robot maps, (n, 7), and the log odds of all that stands beside them."""
+        rows = self.hypotheses
+        if not self.in_doubt:
+            return rows, [0.0]
+        here = self._here(robot)
+        return rows[~here], [self.here, *rows[here, ODDS], -self.params.unnoticed]
+
     def _believe(self, map_: Map, views: Views, known: Whole) -> None:
-        self.belief, rows = None, self.hypotheses
+        self.belief = None
+        rows, beside = self.weighed(map_.robot_here)
         if not len(rows):
             return
         best = int(np.argmax(rows[:, ODDS]))
         row = rows[best : best + 1]
-        rivals = (rows[:, SUBMAP] == row[0, SUBMAP]) & (
-            np.arange(len(rows)) != best
-        )  # one place may lie on two submaps
-        odds = float(row[0, ODDS] - np.logaddexp.reduce(np.append(rows[rivals, ODDS], 0.0)))
-        if odds <= self.params.believe or row[0, UNITS] < self.params.least_units:
+        # One place may lie on two submaps.
+        rivals = (rows[:, SUBMAP] == row[0, SUBMAP]) & (np.arange(len(rows)) != best)
+        odds = float(row[0, ODDS] - np.logaddexp.reduce(np.append(rows[rivals, ODDS], beside)))
+        least = BELIEVE_IN_DOUBT if self.in_doubt else self.params.believe
+        if odds <= least or row[0, UNITS] < self.params.least_units:
             return
         there = _Expected(map_, views, known, row)
         if there.ring[0] >= 0:
             x, y, heading = row[0, :3].tolist()
             pose = Pose2(x, y, wrap_angle(heading))
             self.belief = Belief(pose, odds, int(there.experience[0]), float(there.facing[0]))
+
+    def _here(self, robot: Pose2) -> NDArray[np.bool_]:
+        """Which hypotheses are where a robot in doubt is mapping, give or take how well it is known."""
+        rows = self.hypotheses
+        turn = np.abs(np.remainder(rows[:, HEADING] - robot.heading_rad + math.pi, 2 * math.pi) - math.pi)
+        return (np.hypot(rows[:, X] - robot.x, rows[:, Y] - robot.y) < HERE_M) & (turn < HERE_RAD)
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing has spoken for another place for so long that the doubt is over."""
+        return self.in_doubt and self._quiet > QUIET
+
+
+def _row(pose: Pose2, odds: float, submap: int) -> Rows:
+    return np.array([[pose.x, pose.y, pose.heading_rad, odds, 1.0, submap, math.inf]], np.float64)
 
 
 class _Expected:
@@ -183,14 +254,19 @@ class _Expected:
         self.ring, pairs = _near(rows, map_.poses, map_.island_of, known, column)
         owner, which, shift = pairs.T
         apart, by = views.apart_at(known[which], shift, 2)
-        self.apart, self.experience, self.facing = (
-            np.full(len(rows), np.inf),
-            np.full(len(rows), -1),
-            np.zeros(len(rows)),
-        )
-        for k in np.lexsort((apart, owner))[::-1]:  # the last that is written to a hypothesis is the most like
-            h = owner[k]
-            self.apart[h], self.experience[h], self.facing[h] = apart[k], which[k], by[k] * column
+        self.apart, self.experience, by = _least(len(rows), owner, which, apart, by)
+        self.facing = by * column
+
+
+@njit(cache=True, nogil=True)
+def _least(rows: int, owner: Whole, which: Whole, apart: Rows, by: Whole) -> tuple[Rows, Whole, Whole]:
+    """For each hypothesis how unlike the most alike of its views is, which experience has it, and at which shift."""
+    least, experience, shift = np.full(rows, np.inf), np.full(rows, -1), np.zeros(rows, np.int64)
+    for k in range(len(owner)):
+        h = owner[k]
+        if apart[k] < least[h]:
+            least[h], experience[h], shift[h] = apart[k], which[k], by[k]
+    return least, experience, shift
 
 
 @njit(cache=True, nogil=True)
@@ -226,38 +302,42 @@ def _weigh(rows: Rows, ring: Whole, likeness: Rows, units: float, leak: float) -
     for h in range(len(rows)):
         rows[h, ODDS] -= leak * units * max(rows[h, ODDS], 0.0)
         if ring[h] >= 0:
-            rows[h, ODDS] += units * nats(likeness[h], ring[h])
+            rows[h, ODDS] = min(rows[h, ODDS] + units * nats(likeness[h], ring[h]), rows[h, CEILING])
             rows[h, UNITS] += units
 
 
 @njit(cache=True, nogil=True)
-def _suggest(rows: Rows, count: int, places: Rows, submaps: Rows, likeness: Rows, units: float) -> int:
-    """The best views begin new hypotheses, or say more exactly where old ones are. Returns how many there are."""
+def _pull(rows: Rows, places: Rows, submaps: Rows, units: float) -> NDArray[np.bool_]:
+    """Suggested places say more exactly where the hypotheses near them are. Returns near which of them there is one."""
+    known = np.zeros(len(places), np.bool_)
     for k in range(len(places)):
-        known = False
-        for h in range(count):
+        for h in range(len(rows)):
             dx, dy, turn = _between(rows[h], places[k])
             if rows[h, SUBMAP] == submaps[k] and math.hypot(dx, dy) < PULLS_M and abs(turn) < PULLS_RAD:
-                if not known:
+                if not known[k]:
                     rows[h, X] += PULL * units * dx
                     rows[h, Y] += PULL * units * dy
                     rows[h, HEADING] += 2 * PULL * units * turn
-                known = True
-        odds = PRIOR + nats(likeness[k], 0)
-        at = count if count < len(rows) else int(np.argmin(rows[:, ODDS]))
-        if not known and (at == count or rows[at, ODDS] < odds):
-            rows[at, :3], rows[at, ODDS], rows[at, UNITS], rows[at, SUBMAP] = places[k], odds, 1.0, submaps[k]
-            count = max(count, at + 1)
+                known[k] = True
+    return known
+
+
+def _begin(rows: Rows, count: int, place: Rows, odds: float, submap: float, ceiling: float) -> int:
+    """A new hypothesis, in the place of the least likely if there is no room, unless it is less likely. Returns how many."""
+    at = count if count < len(rows) else int(np.argmin(rows[:, ODDS]))
+    if at == count or rows[at, ODDS] < odds:
+        rows[at] = *place, odds, 1.0, submap, ceiling
+        count = max(count, at + 1)
     return count
 
 
 @njit(cache=True, nogil=True)
-def _merge(rows: Rows, count: int) -> int:
+def _merge(rows: Rows, count: int, least: float) -> int:
     """Of hypotheses that have met the likeliest stays; one that is far too unlikely goes. Returns how many are left."""
     rows[:count] = rows[:count][np.argsort(-rows[:count, ODDS], kind="mergesort")]
     left = 0
     for h in range(count):
-        alone = rows[h, ODDS] >= FORGOTTEN
+        alone = rows[h, ODDS] >= least
         for other in range(left):
             dx, dy, turn = _between(rows[h], rows[other])
             if rows[h, SUBMAP] == rows[other, SUBMAP] and math.hypot(dx, dy) < SAME_M and abs(turn) < SAME_RAD:

@@ -16,6 +16,7 @@ from ratslam_core.beats import weight
 from ratslam_core.extensions.scan_change import ScanChange
 from ratslam_core.params import KidnapParams, LocalViewParams
 
+FOUND_AGAIN = 8  # sights of known places, one a beat, that must agree before the robot is no longer lost
 MOST_USUAL = 2.0  # a larger change counts as this, since it may be infinite
 
 
@@ -63,7 +64,7 @@ class KidnapDetector:
     def settle(self, agrees: bool, known: int, beats: int = 1) -> bool:
         """So many more beats; whether the robot has found itself in them.
 
-        It is no longer lost once `found_again` sights of experiences from before the kidnap, taking into account the
+        It is no longer lost once FOUND_AGAIN sights of experiences from before the kidnap, taking into account the
         odometry between them, agree on where it is. New experiences in between count neither way: perhaps only a wall
         was drawn. It is no longer lost either after `settled` beats (two minutes) without a contradiction: it is
         elsewhere and knows its way there.
@@ -83,7 +84,7 @@ class KidnapDetector:
             self._agreed = self._settled = 0
         self._agreed += 0 <= known < self._known_before
         self._settled += 1
-        self.kidnapped = self._agreed < self.params.found_again and self._settled < self.params.settled
+        self.kidnapped = self._agreed < FOUND_AGAIN and self._settled < self.params.settled
 
 
 @kind("never kidnapped/1")

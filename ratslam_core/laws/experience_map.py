@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from ratslam_core.experience_map.experience_map import ExperienceMap, _Arrival
+from ratslam_core.extensions.evidence import CEILING, SUBMAP, Belief, Evidence
 from ratslam_core.extensions.evidence import MOST as MOST_HYPOTHESES
-from ratslam_core.extensions.evidence import SUBMAP, Belief, Evidence
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import MOST_NEAR, FamiliarGround
 from ratslam_core.extensions.odometry_edges import OdometryEdges
@@ -51,25 +51,24 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
         _solver(map_.optimiser)
     if map_._arrival is not None:
         _arrival(map_._arrival, map_.transitions.count)
-    gate = map_.gate
-    for name in ("sights", "needed", "known"):
-        whole(name, getattr(gate, name))
     whole("the latest island", map_.islands.begun)
     whole("the island", map_.islands.current, 0, map_.islands.begun)
     whole("joined islands", map_.islands.joined, 0, map_.islands.begun)
     _evidence(map_.evidence, n, map_.islands.begun)
-    pose("the robot at the latest sight", gate._robot)
-    pose("where it was put", gate._other)
 
 
 def _evidence(evidence: Evidence, n: int, submaps: int) -> None:
     whole("experiences among which the evidence is", evidence.known, 0, n)
     whole("hypotheses", evidence._count, 0, MOST_HYPOTHESES)
-    rows = array("hypotheses", evidence._rows, np.float64, (MOST_HYPOTHESES, 6))
-    within("a hypothesis", rows, -FAR_M, FAR_M)
+    rows = array("hypotheses", evidence._rows, np.float64, (MOST_HYPOTHESES, 7))
+    within("a hypothesis", rows[:, :CEILING], -FAR_M, FAR_M)
+    true(not np.isnan(rows[:, CEILING]).any(), "a hypothesis must have a ceiling")
     within("a hypothesis' submap", rows[: evidence._count, SUBMAP], 0, submaps)
     number("the way since the last observation", evidence._units, 0.0, 1.0)
-    true(isinstance(evidence.sure, bool), "the robot was surely carried, or not")
+    number("the way since a doubt", evidence._quiet, 0.0, LONGEST)
+    number("log odds of here", evidence.here, -FAR_M, FAR_M)
+    for name in ("sure", "in_doubt"):
+        true(isinstance(getattr(evidence, name), bool), f"{name} must be true or false")
     if evidence.belief is not None:
         true(isinstance(evidence.belief, Belief), "what is believed must be a belief")
         whole("the experience that is believed", evidence.belief.experience, 0, n - 1)

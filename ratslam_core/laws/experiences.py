@@ -25,7 +25,6 @@ def experiences(known: Experiences, views: int) -> None:
     array("states", known.at, np.float64, (room, 3))
     array("the experiences' views", known.view, np.int64, (room,))
     n = whole("the number of experiences", known.count, 0, room)
-    array("doubtful", known.doubtful, np.bool_, (room,))
     within("an island", array("islands", known.island, np.int32, (room,))[:n], 0, MOST)
     within("a place in the map", known.pose[:n, :2], -FAR_M, FAR_M)
     within("a heading in the map", known.pose[:n, 2], -TURN, TURN)

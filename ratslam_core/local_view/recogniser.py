@@ -92,14 +92,6 @@ class LocalView:
         """The heading that a shift by a column stands for, 0 where none is told."""
         return self.params.field_of_view / self.front_end.columns if self.front_end.shifts else 0.0
 
-    def unlike_all(self, views: NDArray[np.int64], times: float) -> bool:
-        """[ours] Whether what was seen last differs from each of these known views by more than so many times the threshold.
-
-        test_gate.py::test_who_misses_what_it_expects_gives_way_sooner.
-        """
-        limit = times * self.front_end.threshold(self.params)
-        return len(views) > 0 and all(self.difference_to(int(v)) > limit for v in views if v >= 0)
-
     def strength(self, seen: Recognition) -> float:
         """How sure a recognition is: 1 for a new or an equal view, 0 for one that is only just recognised."""
         vague, limit = self.front_end.vague, self.front_end.threshold(self.params)

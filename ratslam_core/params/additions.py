@@ -132,34 +132,10 @@ ADDITIONS = (
         {"pose_filter.enabled": False},
     ),
     Addition(
-        "gate",
-        "a look that would move the robot farther than it can be off is held back until many agree",
-        "look-alikes weld places together that are metres apart",
-        {"pose_filter.gate": False},
-    ),
-    Addition(
-        "long loops",
-        "a look that is held back needs eight sights only, where the way that no loop has closed is long enough for the drift",
-        "otherwise a loop of a whole floor would close a minute after the robot has come round",
-        {"pose_filter.gate_drift": 0.0},
-    ),
-    Addition(
-        "surprise",
-        "a look that is held back counts eighteen times where the robot knows the place it believes in and that looks different",
-        "who was carried unnoticed would take minutes to believe what it sees; in a twin, the place looks alike",
-        {"pose_filter.gate_surprise": 1},
-    ),
-    Addition(
         "law of evidence",
-        "a robot that was carried away maps a submap, acts where it believes itself to be, and merges at odds of 1000 to 1",
-        "a single look that is believed while lost ties places together that are far apart",
+        "what is seen where the robot cannot be is weighed; a robot that was carried maps a submap, merged at odds of 1000 to 1",
+        "look-alikes that are believed at once tie places together that are far apart",
         {"experience_map.islands": False},
-    ),
-    Addition(
-        "different views",
-        "eight different views must agree before what was held back is believed",
-        "one view, seen for a second, joins rooms that look alike",
-        {"experience_map.join_views": 1},
     ),
     Addition(
         "kidnap detector",

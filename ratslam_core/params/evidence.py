@@ -8,7 +8,7 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of evidence/1")
+@kind("parameters of evidence/2")
 @dataclass(frozen=True, slots=True)
 class EvidenceParams:
     """How much evidence a place needs before the robot believes it, and before its maps are merged."""
@@ -41,6 +41,23 @@ class EvidenceParams:
         low=0.0,
         high=100.0,
         meaning="of evidence that a hypothesis needs to be believed",
+        source="ours",
+    )
+
+    unnoticed: float = param(
+        11.0,
+        unit="nats",
+        low=0.0,
+        high=100.0,
+        meaning="log odds against having been carried unnoticed",
+        source="ours",
+    )
+    most: float = param(
+        14.0,
+        unit="nats",
+        low=0.0,
+        high=100.0,
+        meaning="what looks can say at most for a place, since an exact copy of it may exist",
         source="ours",
     )
 

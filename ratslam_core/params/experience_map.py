@@ -8,7 +8,7 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of experience map/1")
+@kind("parameters of experience map/2")
 @dataclass(frozen=True, slots=True)
 class ExperienceMapParams:
     """Experiences, their links and the correction of the map (B 4, D 3)."""
@@ -90,22 +90,6 @@ class ExperienceMapParams:
     islands: bool = param(
         True,
         meaning="a robot that was carried maps a submap, merged where evidence is strong; off = it believes each look",
-        source="ours",
-    )
-    join_sights: int = param(
-        8,
-        unit="sights",
-        low=1,
-        high=10_000,
-        meaning="sights, one a beat, that must agree where odometry has drifted far enough to explain them",
-        source="ours",
-    )
-    join_views: int = param(
-        8,
-        unit="views",
-        low=1,
-        high=1000,
-        meaning="so many different views must be among them, since who stands still sees one thing all the time",
         source="ours",
     )
     zone_offset: bool = param(

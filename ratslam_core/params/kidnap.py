@@ -8,7 +8,7 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of kidnap/2")
+@kind("parameters of kidnap/3")
 @dataclass(frozen=True, slots=True)
 class KidnapParams:
     """When a jump of image and sonars counts as a kidnap. The papers' robots did not notice that they were carried."""
@@ -55,14 +55,6 @@ class KidnapParams:
         low=0.01,
         high=3.0,
         meaning="a larger change of one sonar, as the logarithm of the ratio of its ranges, counts as this",
-        source="ours",
-    )
-    found_again: int = param(
-        8,
-        unit="sights",
-        low=1,
-        high=1000,
-        meaning="sights of known places, one a beat, that must agree before the robot is no longer lost",
         source="ours",
     )
     settled: int = param(

@@ -18,7 +18,7 @@ from ratslam_core.types import Packet, Pose2
 BUCKET = 4  # cells and layers along a side
 
 
-@kind("experiences/2")
+@kind("experiences/3")
 class Experiences:
     """States, scenes and map poses, row by row. Arrays have room to spare; `count` rows are used."""
 
@@ -30,7 +30,6 @@ class Experiences:
         self.at = np.zeros((1024, 3))  # x', y', theta' in cells and layers
         self.view = np.zeros(1024, np.int64)
         self.island = np.zeros(1024, np.int32)  # the map that it is part of: extensions/islands.py
-        self.doubtful = np.zeros(1024, np.bool_)  # made while looks spoke for another place: extensions/gate.py
         self._newest_of_view: dict[int, int] = {}
         self._before_of_view = np.full(1024, -1, np.int64)  # the experience before it of the same view, -1 for none
         self._newest_in = np.full([-(-n // BUCKET) for n in shape], -1, np.int64)
@@ -39,7 +38,7 @@ class Experiences:
     def add(self, packet: Packet, view: int, pose: Pose2, island: int = 0) -> int:
         """One more experience; returns its number."""
         if self.count == len(self.pose):
-            for name in ("pose", "at", "view", "island", "doubtful", "_before_of_view", "_before_in"):
+            for name in ("pose", "at", "view", "island", "_before_of_view", "_before_in"):
                 array = getattr(self, name)
                 setattr(self, name, np.concatenate([array, np.zeros_like(array)]))
         i = self.count
@@ -109,12 +108,11 @@ class Experiences:
         robot: Pose2,
         reach_m: float = math.inf,
         island: int = 0,
-        beyond: bool = False,
     ) -> int:
         """The experience with the most energy above the threshold, the oldest of equals; -1 for none.
 
         Where views tell experiences apart (`match_view`), only those count that are within `reach_m` of the robot in the
-        map, or with `beyond` farther away, and lie on this island.
+        map and lie on this island.
 
         [ours] When there is nothing to see, only the pose cells tell places apart, and they may use the same cells for
         places far apart. The experience must then be near the robot in the map, too.
@@ -127,7 +125,7 @@ class Experiences:
             near = min(p.blind_m, reach_m) if view < 0 else reach_m
             return _best_in_chain(
                 newest, self._before_of_view, self.at, *state, old, -1, p.threshold, self.pose, robot.x, robot.y, near,
-                self.island, island, beyond,
+                self.island, island,
             )[0]  # fmt: skip
         if old:
             return _best_of_all(self.at[: self.count], *state, p.threshold)
@@ -198,12 +196,11 @@ def _best_in_chain(
     near: float,
     islands: NDArray[np.int32],
     island: int,
-    beyond: bool,
 ) -> tuple[int, float]:
     i = newest
     while i >= 0:
         counts = island < 0 or islands[i] == island
-        if counts and (near == np.inf or (math.hypot(pose[i, 0] - near_x, pose[i, 1] - near_y) > near) == beyond):
+        if counts and (near == np.inf or math.hypot(pose[i, 0] - near_x, pose[i, 1] - near_y) <= near):
             energy = _energy(x, y, theta, at, i, n_theta, n_y, n_x, zone_xy, zone_theta, old)
             if energy > most or (energy == most and i < best):
                 best, most = i, energy
@@ -242,7 +239,7 @@ def _best_in_buckets(
                 head = newest[bucket]
                 best, most = _best_in_chain(
                     head, before, at, x, y, theta, n_theta, n_y, n_x, zone_xy, zone_theta, False, best, most,
-                    pose, 0.0, 0.0, np.inf, islands, -1, False,
+                    pose, 0.0, 0.0, np.inf, islands, -1,
                 )  # fmt: skip
     return best
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from web.messages.brain import Goal, MapLayer, Pose, PoseCellLayer, TimesLayer
+from web.messages.brain import Goal, Hypothesis, MapLayer, Pose, PoseCellLayer, TimesLayer
 
 Kind = Literal["packet", "view", "experience", "link"]
 
@@ -59,6 +59,6 @@ class BesideView:
     map: MapLayer
     times: TimesLayer
     estimate: Pose
-    other: Pose | None  # where it would be by the looks that it holds back
+    others: tuple[Hypothesis, ...]  # where it may be instead, the likeliest first
     goal: Goal | None  # where the first is sent to: the same place, and the way to it, in this map
     map_turn_rad: float

@@ -147,16 +147,24 @@ class GoalMemoryLayer:
 
 
 @dataclass(frozen=True, slots=True)
+class Hypothesis:
+    """A place where the robot may be instead of where it believes itself to be. Map frame."""
+
+    x: float
+    y: float
+    heading_rad: float
+    share: float  # how likely it is, 0 to 1
+
+
+@dataclass(frozen=True, slots=True)
 class Belief:
     """How sure the robot is of its place, and what it doubts. Map frame."""
 
     off_m: float  # how far off it may be; inf: it does not know
-    other: Pose | None  # where it would be by the looks that it holds back
-    sights: int  # that agree on it
-    needed: int  # how many must agree before it believes them
-    corrected: int  # how often they proved it wrong
-    apart: int  # experiences on islands other than the robot's
-    joined: int  # islands that were joined
+    others: tuple[Hypothesis, ...]  # the likeliest first
+    corrected: int  # how often evidence proved that it had been carried unnoticed
+    apart: int  # experiences on submaps other than the robot's
+    joined: int  # submaps that were merged
     spared: int  # sights on familiar ground that became no experience
     links_spared: int  # links between places that had enough of them
     forgotten: int  # links of views to pose cells

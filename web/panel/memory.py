@@ -47,15 +47,15 @@ def _counts(snapshot: Snapshot) -> dict[str, Any]:
 
 
 def _belief(snapshot: Snapshot) -> dict[str, Any]:
-    """What the robot thinks of its place: how far off it may be, and which looks it does not believe."""
+    """What the robot thinks of its place: how far off it may be, and where else it may be."""
     belief, title = snapshot.belief, "How sure it is of its place"
     if belief is None:
         return table(title, [], "it has no experience map")
     known = math.isfinite(belief.off_m)
     rows = [
         ("may be off by", number(belief.off_m, "m", 2) if known else "it does not know"),
-        ("looks held back", _held_back(belief, snapshot)),
-        ("proved wrong by them", often(belief.corrected) if belief.corrected else "never"),
+        ("may be elsewhere", _elsewhere(belief, snapshot)),
+        ("found out that it was carried unnoticed", often(belief.corrected) if belief.corrected else "never"),
     ]
     if belief.odds is not None:
         rows.append(("odds of this place", odds_words(belief.odds)))
@@ -67,11 +67,12 @@ def _belief(snapshot: Snapshot) -> dict[str, Any]:
     return table(title, rows)
 
 
-def _held_back(belief: Belief, snapshot: Snapshot) -> str:
-    if belief.other is None:
-        return "none"
-    away = math.hypot(belief.other.x - snapshot.estimate.x, belief.other.y - snapshot.estimate.y)
-    return f"{belief.sights} of {belief.needed} sights for a place {away:.1f} m away"
+def _elsewhere(belief: Belief, snapshot: Snapshot) -> str:
+    if not belief.others:
+        return "nowhere"
+    likeliest = belief.others[0]
+    away = math.hypot(likeliest.x - snapshot.estimate.x, likeliest.y - snapshot.estimate.y)
+    return f"{away:.1f} m away, likely by {100 * likeliest.share:.0f} %"
 
 
 def _packets(layer: PoseCellLayer) -> dict[str, Any]:

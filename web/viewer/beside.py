@@ -50,7 +50,7 @@ class Beside:
         offer["map"].offer(now_s, view.map, view.map_turn_rad)
         offer["times"].offer(now_s, view.times)
         offer["estimate"].offer(now_s, view.estimate)
-        offer["other"].offer(now_s, view.other)
+        offer["others"].offer(now_s, view.others)
         offer["goal"].offer(now_s, view.goal)
 
     def hurry(self) -> None:
@@ -96,7 +96,7 @@ class Beside:
                 "map": Throttle(2, self._draw_map),
                 "times": Throttle(2, plate.set_times),
                 "estimate": Throttle(10, plate.set_robot),
-                "other": Throttle(5, plate.set_other),
+                "others": Throttle(5, plate.set_others),
                 "goal": Throttle(2, plate.set_goal),
             }
         for layer in self._layers.values():
@@ -109,7 +109,7 @@ class Beside:
     def _draw_map(self, layer: MapLayer, turn_rad: float) -> None:
         assert self.map is not None
         if self.map.set_map(layer, turn_rad):
-            for name in ("times", "estimate", "other", "goal"):
+            for name in ("times", "estimate", "others", "goal"):
                 self._layers[name].forget()
 
     def _name(self, names: tuple[str, str] | None) -> None:

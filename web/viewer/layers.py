@@ -17,7 +17,7 @@ from web.viewer.pointer import Pointer
 from web.viewer.replay import Replay
 from web.viewer.scenery import Scenery
 
-ON_MAP = "times", "estimate", "other", "goal", "tags", "places", "closures"  # layers that move with it
+ON_MAP = "times", "estimate", "others", "goal", "tags", "places", "closures"  # layers that move with it
 
 
 class Layers:
@@ -51,7 +51,7 @@ class Layers:
             "map": Throttle(2, self._draw_map),
             "times": Throttle(3, map_plate.set_times),
             "estimate": Throttle(15, map_plate.set_robot),
-            "other": Throttle(6, map_plate.set_other),
+            "others": Throttle(6, map_plate.set_others),
             "goal": Throttle(3, map_plate.set_goal),
             "tags": Throttle(2, map_plate.set_tags),
             "names": Throttle(2, office.set_places),
@@ -117,7 +117,7 @@ class Layers:
         offer["map"].offer(now_s, snapshot.map, snapshot.map_turn_rad, snapshot.run)
         offer["times"].offer(now_s, snapshot.times)
         offer["estimate"].offer(now_s, snapshot.estimate)
-        offer["other"].offer(now_s, snapshot.belief.other if snapshot.belief else None)
+        offer["others"].offer(now_s, snapshot.belief.others if snapshot.belief else ())
         offer["goal"].offer(now_s, snapshot.goal)
         offer["tags"].offer(now_s, snapshot.tags)
         offer["places"].offer(now_s, snapshot.places)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from copy import deepcopy
 
 import numpy as np
 import pytest
@@ -102,22 +103,27 @@ def test_a_slow_part_is_built_when_time_has_come_and_something_has_changed(monke
     assert part.part(4) is built[2]
 
 
-def test_a_hypothesis_of_the_robot_is_shown_where_it_is(session: Session) -> None:
-    belief = build(session).belief
-    assert belief is not None
+def test_the_hypotheses_of_the_robot_are_shown_where_they_are(session: Session) -> None:
     map_ = session.brain.experience_map
-    assert belief.off_m == map_.pose_filter.sigma_m
-    assert (belief.other is None) == (map_.gate.sights == 0)
-    before, robot = map_.gate.sights, map_.robot
-    map_.gate.believes(robot, robot, 9, len(map_))
+    evidence, here = map_.evidence, map_.robot_here
     told = build(session).belief
     assert told is not None
-    assert (told.sights, told.needed) == (max(before - 1, 1), 9)
-    if before == 0:
-        other = told.other
-        assert other is not None
-        assert (other.x, other.y, other.heading_rad) == pytest.approx((robot.x, robot.y, robot.heading_rad))
-    map_.gate.doubt()
+    assert told.off_m == map_.pose_filter.sigma_m
+    kept = deepcopy(evidence.__dict__)
+    evidence.end()
+    evidence.doubt(len(map_))
+    for away, odds in ((3.0, 1.0), (5.0, 2.0), (0.1, 0.5)):  # the last is where it is
+        evidence._rows[evidence._count, :4] = here.x + away, here.y, here.heading_rad, odds
+        evidence._count += 1
+    told = build(session).belief
+    assert told is not None
+    total = sum(math.exp(odds) for odds in (1.0, 2.0, 0.5, 0.0, -evidence.params.unnoticed))
+    found = [(other.x - here.x, other.heading_rad, other.share) for other in told.others]
+    assert found == [
+        pytest.approx((5.0, here.heading_rad, math.exp(2.0) / total)),
+        pytest.approx((3.0, here.heading_rad, math.exp(1.0) / total)),
+    ]
+    evidence.__dict__.update(kept)
 
 
 def test_what_stands_still_is_shown_as_it_is(monkeypatch) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -43,7 +44,8 @@ class Robot:
         start: Pose2 | None = None,
         filter_params: PoseFilterParams | None = None,
     ) -> None:
-        self.map = ExperienceMap(SHAPE, CELL_M, params, filter_params or PoseFilterParams(gate=False))
+        believing = replace(params or ExperienceMapParams(), islands=False)
+        self.map = ExperienceMap(SHAPE, CELL_M, believing, filter_params)
         self.pose = start or Pose2(0.0, 0.0, 0.0)
         self.behaviour = 0
 

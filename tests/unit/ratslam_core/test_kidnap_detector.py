@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ratslam_core import KidnapParams, LocalViewParams, Odometry, RatSlam
-from ratslam_core.extensions.kidnap_detector import KidnapDetector
+from ratslam_core.extensions.kidnap_detector import FOUND_AGAIN, KidnapDetector
 from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, Circle, start
 
 
@@ -162,10 +162,10 @@ def test_a_change_is_a_jump_only_above_its_limits() -> None:
             assert detector.observe(image, np.full(4, 0.5 * math.exp(change))) is noticed
 
 
-@pytest.mark.parametrize(("known", "steps"), [(-1, 5), (0, 3), (6, 3), (7, 5)])
+@pytest.mark.parametrize(("known", "steps"), [(-1, 12), (0, FOUND_AGAIN), (6, FOUND_AGAIN), (7, 12)])
 def test_it_is_found_again_just_when_it_was_seen_often_enough(known: int, steps: int) -> None:
-    """After three sights of experiences from before the kidnap, of which there were seven, or five steps."""
-    detector = KidnapDetector(KidnapParams(found_again=3, settled=5), LocalViewParams())
+    """After enough sights of experiences from before the kidnap, of which there were seven, or twelve steps."""
+    detector = KidnapDetector(KidnapParams(settled=12), LocalViewParams())
     detector.declare(7)
     for _ in range(steps):
         assert detector.kidnapped

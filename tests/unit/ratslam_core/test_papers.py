@@ -106,12 +106,8 @@ def test_in_2004_the_packet_is_where_the_robot_is() -> None:
 
 OFF = {name: value for addition in ADDITIONS for name, value in addition.off.items()}
 ELSEWHERE = {
-    "pose_filter.gate": "test_gate.py: look-alikes far from the robot, of which this run has none",
-    "pose_filter.gate_drift": "test_gate.py: a loop that is too long for its drift, of which this run has none",
     "local_view.min_pattern": "test_image_and_sonars.py: here a bare wall makes an experience with a view or without one",
     "solver.closures": "test_graduated_trust.py: many false closures, of which this run has none",
-    "experience_map.join_views": "test_gate.py: looks that are held back, of which this run has none",
-    "pose_filter.gate_surprise": "test_gate.py: a robot that misses what it expects, which this one never does",
     "kidnap.usual_times": "test_kidnap_detector.py: images that always jump, which these do not",
 }
 

@@ -81,6 +81,6 @@ def two_brains(tick: int = 430, of: int = 300) -> Snapshot:
     first = BrainFigures("with vision", 200, 150, 160, 1, 0.2, 0.1, False)
     second = BrainFigures("without vision", 0, 150, 149, 0, 2.0, 2.1, False)
     beside = BesideView(
-        first, second, 0.0, 0.9, (), (), other.pose_cells, other.map, other.times, other.estimate, None, other.goal, 0.3
+        first, second, 0.0, 0.9, (), (), other.pose_cells, other.map, other.times, other.estimate, (), other.goal, 0.3
     )
     return judged(tick, beside=beside)

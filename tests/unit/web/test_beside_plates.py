@@ -29,7 +29,7 @@ def two(tick: int = 430, of: int = 300) -> Snapshot:
     view = BesideView(
         first, replace(first, name="8 x 8 cells", off_m=None, error_map_m=math.inf), 0.0, 0.9,
         (Difference("view", 12, 1.2, "view #3 is seen as no view"),), CHANGED, other.pose_cells, other.map, other.times,
-        other.estimate, None, other.goal, 0.3,
+        other.estimate, (), other.goal, 0.3,
     )  # fmt: skip
     return replace(one, beside=view)
 

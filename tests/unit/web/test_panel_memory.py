@@ -9,7 +9,7 @@ import pytest
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.panel_page import Page, words_of
-from web.messages import Belief, Event, Goal, Pose, Snap, SnapCause, Snapshot
+from web.messages import Belief, Event, Goal, Hypothesis, Snap, SnapCause, Snapshot
 from web.panel.panel import Panel
 from web.switches import Switches
 
@@ -74,22 +74,24 @@ def test_the_attractor_is_checked(page: Page, total: float, least: float, verdic
     assert verdict in memory(page, replace(snapshot, pose_cells=replace(snapshot.pose_cells, total=total, least=least)))
 
 
-def test_the_memory_tells_how_sure_the_robot_is_and_what_it_holds_back(page: Page) -> None:
+def test_the_memory_tells_how_sure_the_robot_is_and_where_else_it_may_be(page: Page) -> None:
     snapshot = fake_snapshot(430)
     x, y = snapshot.estimate.x, snapshot.estimate.y
-    sure = Belief(0.083, None, 0, 300, 0, 0, 0, 12_345, 0, 0)
+    sure = Belief(0.083, (), 0, 0, 0, 12_345, 0, 0)
     words = memory(page, replace(snapshot, belief=sure))
     for told in (
         "'may be off by', '0.08 m'",
-        "'looks held back', 'none'",
-        "'proved wrong by them', 'never'",
+        "'may be elsewhere', 'nowhere'",
+        "'found out that it was carried unnoticed', 'never'",
         "12\\xa0345",
     ):
         assert told in words
     assert "islands" not in words
-    doubting = replace(sure, off_m=np.inf, other=Pose(x + 3.0, y + 4.0, 0.0), sights=34, corrected=1, apart=7, joined=2)
+    doubting = replace(
+        sure, off_m=np.inf, others=(Hypothesis(x + 3.0, y + 4.0, 0.0, 0.12),), corrected=1, apart=7, joined=2
+    )
     words = memory(page, replace(snapshot, belief=doubting))
-    for told in ("it does not know", "34 of 300 sights for a place 5.0 m away", "'once'", "'submaps merged', '2'"):
+    for told in ("it does not know", "5.0 m away, likely by 12 %", "'once'", "'submaps merged', '2'"):
         assert told in words
     assert "'experiences on other submaps', '7'" in words
     assert "it has no experience map" in memory(page, replace(snapshot, belief=None))

@@ -11,7 +11,7 @@ import pytest
 
 from tests.fake_snapshots import fake_reports, fake_snapshot
 from tests.unit.web.bench import Bench
-from web.messages import Belief, MapLayer, OccupancyPicture, Pose, TaggedPlace, TimesLayer
+from web.messages import Belief, Hypothesis, MapLayer, OccupancyPicture, Pose, TaggedPlace, TimesLayer
 from web.viewer.fits.map_fit import DEPTH, WIDTH
 from web.viewer.plates.map_plate import seconds_words
 
@@ -242,20 +242,22 @@ def test_what_is_inspected_is_marked(bench: Bench, kind: str) -> None:
     bench.switch("goal_memory", True)
 
 
-def test_what_the_robot_holds_back_is_a_pale_arrow_at_that_place(bench: Bench) -> None:
+def test_where_the_robot_may_be_instead_are_pale_arrows_with_how_likely_that_is(bench: Bench) -> None:
     snapshot = fake_snapshot(450)
     bench.show(snapshot, 5)
     bench.settle()
-    assert not bench.visible("/map/other")
+    assert not bench.visible("/map/other_0")
     here = snapshot.estimate
-    doubt = Belief(0.1, Pose(here.x, here.y, here.heading_rad), 5, 300, 0, 0, 0, 0, 0, 0)
+    other = Hypothesis(here.x, here.y, here.heading_rad, 0.3)
+    doubt = Belief(0.1, (other, replace(other, x=here.x + 1.0, share=0.1)), 0, 0, 0, 0, 0, 0)
     bench.show(replace(snapshot, belief=doubt), 5)
     bench.settle()
-    assert bench.visible("/map/other")
-    assert bench.node("/map/other")["position"][:2] == bench.node("/map/arrow")["position"][:2]
-    bench.show(replace(snapshot, belief=replace(doubt, other=None)), 5)
+    assert [bench.visible(f"/map/other_{k}") for k in range(3)] == [True, True, False]
+    assert [bench.visible(f"/map/other_{k}_label") for k in range(3)] == [True, True, False]
+    assert bench.node("/map/other_0")["position"][:2] == bench.node("/map/arrow")["position"][:2]
+    bench.show(replace(snapshot, belief=replace(doubt, others=())), 5)
     bench.settle()
-    assert not bench.visible("/map/other")
+    assert not bench.visible("/map/other_0")
 
 
 def test_without_a_map_the_robot_stays_on_the_plate_wherever_its_packet_is(bench: Bench) -> None:

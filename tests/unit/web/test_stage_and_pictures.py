@@ -13,7 +13,7 @@ from tests.fake_snapshots import fake_reports
 from tests.unit.web.bench import Bench
 from tests.unit.web.crowded import crowded, judged, taught, two_brains
 from tests.unit.web.office_moments import living, tried
-from web.messages import Belief, Pose, Snapshot, TaggedPlace
+from web.messages import Belief, Hypothesis, Snapshot, TaggedPlace
 from web.switches import NAMES, Name
 from web.viewer.vector import PlateName, vector_picture
 
@@ -86,8 +86,8 @@ MOMENTS: dict[str, tuple[Snapshot, set[PlateName]]] = {
     "no trail": (replace(PLAIN, trail=PLAIN.trail[:0]), {"office"}),
     "lamps, doors, boxes, people": (replace(PLAIN, living=living()), {"office"}),
     "a tag": (replace(PLAIN, tags=(TaggedPlace("tea", 1, 0.0, 0.0),)), {"map"}),
-    "a look held back": (
-        replace(PLAIN, belief=Belief(0.2, Pose(1.0, 1.0, 0.0), 2, 5, 0, 0, 0, 0, 0, 0)), {"map"}
+    "in doubt": (
+        replace(PLAIN, belief=Belief(0.2, (Hypothesis(1.0, 1.0, 0.0, 0.3),), 0, 0, 0, 0, 0, 0)), {"map"}
     ),
     "a lesson's marks": (replace(PLAIN, lesson=taught().lesson), {"office", "pose", "map"}),
 }  # fmt: skip

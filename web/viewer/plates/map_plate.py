@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from web.messages import (
     Closure,
     Goal,
+    Hypothesis,
     KnownPlace,
     MapLayer,
     OccupancyPicture,
@@ -24,6 +25,7 @@ from web.messages.told import goal_told, seconds_words
 from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.marks.closures import ClosureMarks
 from web.viewer.marks.goal_flag import GoalFlag
+from web.viewer.marks.hypotheses import Hypotheses
 from web.viewer.marks.inspected import MapMark
 from web.viewer.marks.links import Links
 from web.viewer.marks.nodes import Nodes
@@ -39,7 +41,7 @@ from web.viewer.primitives.palette import Palette
 
 ORIGIN = (5.85, -2.2, 0.0)
 SHEET = (11.0, 10.0, -0.5, 0.45)
-NODE_Z, LINK_Z, OTHER_Z, ARROW_Z = 0.05, 0.03, 0.19, 0.22
+NODE_Z, LINK_Z, ARROW_Z = 0.05, 0.03, 0.22
 ARROW = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)])
 ROBOT_SIZE = (0.9, 0.7)  # as it is seen, whatever its heading
 BAR = (2.7, 0.26)
@@ -77,9 +79,7 @@ class MapPlate(Plate):
         self._arrow = scene.add_frame(f"{self.root}/arrow", show_axes=False, visible=False)
         add_mesh(scene, f"{self.root}/arrow/casing", _arrow(1.22, 0.0), palette.lit(palette.casing))
         add_mesh(scene, f"{self.root}/arrow/body", _arrow(1.0, 0.02), palette.lit(palette.robot))
-        self._other = scene.add_frame(f"{self.root}/other", show_axes=False, visible=False)
-        add_mesh(scene, f"{self.root}/other/body", _arrow(1.1, 0.0), palette.lit(palette.casing))
-        add_mesh(scene, f"{self.root}/other/ring", meshes.ring(0.42, 0.06, 0.02), palette.lit(palette.robot))
+        self._others = Hypotheses(scene, palette, f"{self.root}/other", self.labels)
         self._route = Route(scene, palette, f"{self.root}/route", self.labels)
         self._flag = GoalFlag(scene, palette, f"{self.root}/flag", self.labels)
         self._tags = TagMarks(scene, palette, f"{self.root}/tags", self.labels)
@@ -168,12 +168,11 @@ class MapPlate(Plate):
         x, y, z = self._arrow.position.tolist()
         self.labels.fix(self, [((x, y, z), *ROBOT_SIZE)], ROBOT)
 
-    def set_other(self, other: Pose | None) -> None:
-        """Shows, as a pale arrow in a ring, where the robot would be by the looks that it does not believe yet."""
-        if other is None:
-            self._other.visible = False
-        else:
-            self._put(self._other, other, OTHER_Z)
+    def set_others(self, others: tuple[Hypothesis, ...]) -> None:
+        """Shows where the robot may be instead of where it believes itself to be."""
+        places = self.fit.to_plate(np.array([(other.x, other.y) for other in others]).reshape(-1, 2))
+        headings = [other.heading_rad + self.fit.turn_rad for other in others]
+        self._others.show(places, headings, [other.share for other in others])
 
     def _put(self, frame: viser.FrameHandle, pose: Pose, z: float) -> None:
         x, y = self.fit.to_plate(np.array([[pose.x, pose.y]]))[0]

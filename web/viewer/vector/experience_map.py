@@ -8,10 +8,12 @@ from collections.abc import Sized
 import numpy as np
 from numpy.typing import NDArray
 
+from web.messages import Pose
 from web.messages.told import seconds_words
 from web.viewer.fits.judged import wheels_alone, wheels_path
 from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.fits.poses import on_plate
+from web.viewer.marks.hypotheses import share_words
 from web.viewer.marks.place_names import MOST
 from web.viewer.marks.route import pill_stops
 from web.viewer.plates.map_plate import NO_MAP, grid_step_m, promise, round_up
@@ -67,7 +69,7 @@ def draw_map(subject: Subject) -> str:
         judged.draw_ghost(sheet, palette, on_plate(there, fit), off_m, ROBOT)
     legend += judged.ghost_entry(ghost, palette)
     legend += judged.draw_error(sheet, subject, fit)
-    legend += _draw_other(sheet, subject, fit)
+    legend += _draw_others(sheet, subject, fit)
     sheet.arrow(robot.x, robot.y, robot.heading_rad, palette.robot, ROBOT)
     sheet.scale_bar(palette.ramp[:: max(1, len(palette.ramp) // SHADES)], "0 s", seconds_words(longest))
     sheet.foot(subject.moment, f"{_count(places, 'experience')}, {_count(layer.links, 'link')}")
@@ -103,16 +105,16 @@ def _draw_names(sheet: Sheet, subject: Subject, fit: MapFit) -> None:
     draw_pins(sheet, subject, "map", fit)
 
 
-def _draw_other(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
-    """A pale arrow in a ring."""
+def _draw_others(sheet: Sheet, subject: Subject, fit: MapFit) -> list[Entry]:
+    """Pale arrows in rings, each with how likely it is."""
     palette = subject.palette
-    if subject.other is None:
-        return []
-    other = on_plate(subject.other, fit)
-    sheet.arrow(other.x, other.y, other.heading_rad, palette.casing, 0.9 * ROBOT, edge=palette.robot)
-    sheet.dot((other.x, other.y), 1.5 * ROBOT, None, palette.robot)
-    sheet.avoid((other.x, other.y), 1.5 * ROBOT)
-    return [("ring", palette.robot, "where it would be by looks that it does not believe yet")]
+    for hypothesis in subject.others:
+        other = on_plate(Pose(hypothesis.x, hypothesis.y, hypothesis.heading_rad), fit)
+        sheet.arrow(other.x, other.y, other.heading_rad, palette.casing, 0.9 * ROBOT, edge=palette.robot)
+        sheet.dot((other.x, other.y), 1.5 * ROBOT, None, palette.robot)
+        sheet.avoid((other.x, other.y), 1.5 * ROBOT)
+        sheet.label((other.x, other.y), share_words(hypothesis.share), palette.text, size=14, up=24)
+    return [("ring", palette.robot, "where it may be instead, and how likely")] if subject.others else []
 
 
 def _draw_grid(sheet: Sheet, low: NDArray[np.float64], high: NDArray[np.float64], scale: float) -> None:

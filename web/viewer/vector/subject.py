@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
-from web.messages import BesideView, Pose, Snapshot
+from web.messages import BesideView, Hypothesis, Snapshot
 from web.switches import Name
 from web.viewer.fits.judged import Judged, judged
 from web.viewer.fits.overlaid import Overlaid, overlaid
@@ -20,7 +20,7 @@ class Subject:
     judged: Judged
     overlaid: Overlaid
     brain: tuple[str, Rgb] | None  # one of two; None: there is one only
-    other: Pose | None  # where the robot would be by the looks that this brain holds back
+    others: tuple[Hypothesis, ...]  # where the robot may be instead of where this brain believes it to be
 
     def sheet(self, title: str, words: str, box: tuple[float, float, float, float]) -> Sheet:
         """Of two brains, the name takes the title's place, as on the stage."""
@@ -40,9 +40,9 @@ class Subject:
 
 def first_of(snapshot: Snapshot, palette: Palette, on: Collection[Name]) -> Subject:
     """on: the switches that are on."""
-    beside, other = snapshot.beside, snapshot.belief.other if snapshot.belief else None
+    beside, others = snapshot.beside, snapshot.belief.others if snapshot.belief else ()
     brain = None if beside is None else (beside.first.name, BRAINS[palette.dark][0])
-    return Subject(snapshot, palette, judged(snapshot, on), overlaid(snapshot, on), brain, other)
+    return Subject(snapshot, palette, judged(snapshot, on), overlaid(snapshot, on), brain, others)
 
 
 def second_of(snapshot: Snapshot, palette: Palette) -> Subject:
@@ -52,7 +52,7 @@ def second_of(snapshot: Snapshot, palette: Palette) -> Subject:
         raise ValueError("there is one brain only; compare_brains begins a second one")
     brain = beside.second.name, BRAINS[palette.dark][1]
     theirs = snapshot_of_second(snapshot, beside)
-    return Subject(theirs, palette, judged(theirs, ()), overlaid(theirs, ()), brain, beside.other)
+    return Subject(theirs, palette, judged(theirs, ()), overlaid(theirs, ()), brain, beside.others)
 
 
 def snapshot_of_second(snapshot: Snapshot, beside: BesideView) -> Snapshot:
