@@ -150,6 +150,7 @@ def loops() -> None:
     for _ in range(3):
         made.evidence.move(Odometry(0.3, 0.1, 0.1))
         made.evidence.observe(made, seen_by, made.islands.current)
+    ratslam_core.extensions.evidence.nats(0.5, 0)
     local = LocalMovement(ANGLES, config.pilot.echo_s)
     RouteFollower(0, Bars()).step(made, local, 0.1, config.pilot)
     find_places(made)

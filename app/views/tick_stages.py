@@ -13,7 +13,7 @@ import numpy as np
 
 from app.session import Session
 from app.views.arrays import frozen
-from app.views.attractor_stages import Activity, excited, inhibited, normalised
+from app.views.attractor_stages import Activity, excited, inhibited
 from app.views.map_layers import map_layer
 from app.views.pose_cell_layer import STRONGEST
 from ratslam_core import Odometry
@@ -63,7 +63,6 @@ class TickRecorder:
         self._here = session.brain.experience_map.here
         self._known = len(session.brain.experience_map)
         self._cells: dict[str, Activity] = {"view match": self._activity()}
-        self._iterations = 1
         self._between = session.brain.beats.due(session.dt_ahead) == 0
         self._poses = np.zeros((0, 3))
         self._map: dict[str, Any] = {}
@@ -73,8 +72,6 @@ class TickRecorder:
         """The engine has finished this stage, one of `ratslam_core.slam.STAGES`."""
         if part in ("path integration", "injection", "attractor"):
             self._cells[part] = self._activity()
-            if part == "injection":
-                self._iterations = self._session.brain.pose_cells.iterations_due
         elif part == "experience":
             map_ = self._session.brain.experience_map
             self._poses, self._residual = map_.poses.copy(), map_.residual
@@ -91,10 +88,7 @@ class TickRecorder:
             words = f"{self._image()} It is not looked at: views, packets and map wait for the next tenth of a second."
             return Walk((Still(TickStage("image", TITLES["image"], words), {}),))
         moved, injected = self._cells["path integration"], self._cells["injection"]
-        start = injected
-        for _ in range(self._iterations - 1):
-            start = normalised(inhibited(excited(start, params), params))
-        near = excited(start, params)
+        near = excited(injected, params)
         left = inhibited(near, params)
         chosen = {"times": after["times"], **self._map}
 
@@ -109,7 +103,7 @@ class TickRecorder:
             ("view match", self._view_match(), before),
             ("path integration", self._path_integration(), cells(moved)),
             ("injection", self._injection(moved, injected), cells(injected)),
-            ("excitation", _grown(start, near), cells(near)),
+            ("excitation", _grown(injected, near), cells(near)),
             ("inhibition", _shrunk(near, left, params.inhibit), cells(left)),
             ("normalisation", self._normalisation(left), before | {"pose_cells": after["pose_cells"]}),
             ("experience", self._choice(), chosen | {"pose_cells": after["pose_cells"]}),

@@ -43,7 +43,7 @@ class ExactSolver:
         before = graph.poses.copy()
         given_up = self._given_up(graph)
         learnt, work = self._settle(graph, None)
-        if graph.params.robust and self.params.closures == "graduated" and self._contradicted(graph, given_up):
+        if graph.params.robust and self._contradicted(graph, given_up):
             graph.poses[:] = before  # many false closures would have led it far astray, and the bias, too
             self._learn(graph, -learnt)
             share, trying = kept(*_given(graph), self._odometry(graph), graph.params.odometry_sigma, self.params)
@@ -65,8 +65,7 @@ class ExactSolver:
     def _given_up(self, graph: PoseGraph) -> NDArray[np.bool_]:
         """The closures in which the last trial ended without belief, and that were not measured since."""
         t = graph.transitions
-        graduated = graph.params.robust and self.params.closures == "graduated"
-        unbelieved: NDArray[np.bool_] = (t.believed[: t.count] == 0.0) & ~self._odometry(graph) & graduated
+        unbelieved: NDArray[np.bool_] = (t.believed[: t.count] == 0.0) & ~self._odometry(graph) & graph.params.robust
         return unbelieved
 
     def _odometry(self, graph: PoseGraph) -> NDArray[np.bool_]:

@@ -5,8 +5,7 @@ all of them count. Then, round by round, those that the map contradicts count le
 wholly or not at all (truncated least squares). So many false closures are found out together; and since each solution
 asks all of them anew, one that was believed for a while is let go when others contradict it, and one that was given up
 counts again when they agree. Yang, Antonante, Tzoumas and Carlone, RA-L 2020, eqs. 12-14.
-test_graduated_trust.py::test_false_closures_are_found_out. `solver.closures` "reweighted" is the plain twin: it asks
-only how well the map fits a row as it is (`robust_weights.trust`).
+test_graduated_trust.py::test_false_closures_are_found_out. With `experience_map.robust` off nothing is given up.
 """
 
 from __future__ import annotations

@@ -11,7 +11,6 @@ from ratslam_core.laws.measures import array, number, true, whole, within
 from ratslam_core.pose_cells import activity_kernels as kernels
 from ratslam_core.pose_cells import packet_kernels
 from ratslam_core.pose_cells.network import PoseCells
-from ratslam_core.types import require_finite
 
 MOST_ACTIVITY = 1e6  # packets injected by hand add to the sum of 1 until the next step
 
@@ -71,7 +70,6 @@ def _packets(cells: PoseCells) -> None:
     found = whole("the number of packets", cells._found, 1, min(k, moves, cells._n))
     within("owner", cells._owner[: cells._n], 0, found - 1)
     within("ids", ids[:found], 1, np.iinfo(np.int32).max)
-    number("way", require_finite("way", cells._way))
     rows = cells._rows[:found]
     for axis in range(3):
         within("a packet's place", rows[:, axis], 0.0, cells.shape[2 - axis])

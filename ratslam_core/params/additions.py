@@ -37,12 +37,6 @@ ADDITIONS = (
         {"pose_cells.divide_spread": False, "pose_cells.arc": False},
     ),
     Addition(
-        "iterations per cell",
-        "one attractor iteration for each cell driven",
-        "the layers of a packet drift apart when it is driven fast",
-        {"pose_cells.iterations": 1},
-    ),
-    Addition(
         "capped injection",
         "all links of a view together inject at most a fixed amount",
         "one look-alike must not move a packet; several views that agree must",
@@ -90,16 +84,10 @@ ADDITIONS = (
         {"experience_map.anchor_sigma": 0.0, "experience_map.odometry_drift": 0.0},
     ),
     Addition(
-        "robust weights",
-        "links that the map contradicts weigh less in its exact correction",
-        "one wrong closure must not bend the whole map",
+        "robust closures",
+        "links that the map contradicts weigh less in its exact correction; closures that no map brings together are given up",
+        "wrong closures must not bend the whole map",
         {"experience_map.robust": False},
-    ),
-    Addition(
-        "graduated closures",
-        "closures that no map can bring together with the others are given up, by graduated non-convexity",
-        "reweighting asks only how well the map fits a closure as it is, so that many false ones bend it for good",
-        {"solver.closures": "reweighted"},
     ),
     Addition(
         "odometry edges",
@@ -115,15 +103,9 @@ ADDITIONS = (
     ),
     Addition(
         "yaw bias",
-        "the bias of the yaw rate is learnt from what the map cannot explain",
+        "the bias of the yaw rate is learnt from what the map cannot explain, held against how large it may be",
         "it is the largest error of odometry, and closed loops reveal it",
         {"experience_map.calibrate": False},
-    ),
-    Addition(
-        "doubt of the bias",
-        "the bias that is learnt is held against how large it may be",
-        "one short loop shows any bias: an error of a look, over few seconds of turning",
-        {"solver.bias_sigma": 10.0},
     ),
     Addition(
         "pose filter",
@@ -142,12 +124,6 @@ ADDITIONS = (
         "a jump of image and sonars that driving cannot explain counts as a kidnap",
         "otherwise the way the robot was carried becomes a link and bends the map",
         {"kidnap.enabled": False},
-    ),
-    Addition(
-        "usual change of the image",
-        "an image must change by twice as much as is usual before it counts as a jump",
-        "where images change as much all the time, each false alarm would begin an island",
-        {"kidnap.usual_times": 0.0},
     ),
     Addition(
         "pace floor",

@@ -8,28 +8,13 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of kidnap/3")
+@kind("parameters of kidnap/4")
 @dataclass(frozen=True, slots=True)
 class KidnapParams:
     """When a jump of image and sonars counts as a kidnap. The papers' robots did not notice that they were carried."""
 
     enabled: bool = param(
         True, meaning="notice a kidnap; off = a jump of the image is only another view", source="ours", live=False
-    )
-    usual_times: float = param(
-        2.0,
-        low=0.0,
-        high=100.0,
-        meaning="the image must change by this many times its usual change; 0 = what is usual does not matter",
-        source="ours",
-    )
-    usual_rate: float = param(
-        0.02,
-        unit="1/beat",
-        low=0.0,
-        high=1.0,
-        meaning="weight of the newest change in the mean that counts as usual",
-        source="ours",
     )
     time_power: float = param(
         0.3,

@@ -10,7 +10,7 @@ from ratslam_core.params.parameter import check_ranges, param
 MOST_CELLS = 2**26  # of the pose cells, four bytes each: a brain has to fit into memory, and into its file
 
 
-@kind("parameters of pose cells/2")
+@kind("parameters of pose cells/3")
 @dataclass(frozen=True, slots=True)
 class PoseCellParams:
     """The continuous attractor network (A section 4)."""
@@ -80,13 +80,6 @@ class PoseCellParams:
     arc: bool = param(
         True,
         meaning="a packet moves along the heading in the middle of the movement; off = at its beginning",
-        source="ours",
-    )
-    iterations: int = param(
-        4,
-        low=1,
-        high=16,
-        meaning="most attractor iterations in a beat, one for each cell driven; 1 = always one",
         source="ours",
     )
     move_first: bool = param(

@@ -8,7 +8,7 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of solver/1")
+@kind("parameters of solver/2")
 @dataclass(frozen=True, slots=True)
 class SolverParams:
     """The fixed point of the sweeps, computed directly. When, and what it learns, is set by `experience_map`."""
@@ -67,12 +67,6 @@ class SolverParams:
         1.0, unit="σ", low=0.1, high=100.0, meaning="disagreement from which on a look pulls no harder", source="ours"
     )
 
-    closures: str = param(
-        "graduated",
-        choices=("graduated", "reweighted"),
-        meaning="closures that contradict the others are given up (graduated non-convexity), or weigh less the farther off",
-        source="ours",
-    )
     closure_sigma: float = param(
         0.15, unit="m", low=0.0, high=5.0, meaning="least error that a closure is taken to have", source="ours"
     )

@@ -46,7 +46,7 @@ class PoseCells:
         self._patch = np.zeros((kernels.PATCH, kernels.PATCH), np.float32)
         turns = np.arange(p.n_theta) * 2 * math.pi / p.n_theta
         self._headings = np.column_stack([np.cos(turns), np.sin(turns)])
-        self._n, self._found, self._way = 0, 0, 0.0
+        self._n, self._found = 0, 0
         self._weights()
         self.place(p.n_x // 2, p.n_y // 2, 0)
 
@@ -110,7 +110,7 @@ class PoseCells:
                 raise ValueError(f"{name} must be a cell from 0 to {self.shape[size] - 1}, got {value!r}")
         flat = (int(theta) * self.shape[1] + int(y)) * self.shape[2] + int(x)
         self._put(np.array([[x, y, theta, flat]], np.int32), np.ones(1, np.float32))
-        self._found, self._way = 0, 0.0
+        self._found = 0
         self._find()
 
     def settle(self) -> None:
@@ -143,12 +143,11 @@ class PoseCells:
         [ours] Each packet's movement is divided by the mean of exp(i theta) over its headings, because their spread
         would shorten it (`divide_spread`). What the attractor pulled the packet back in the last step is added
         (`carry`). The heading is that in the middle of the movement, so that where it ends does not depend on the tick
-        rate (`arc`). test_path_integration.py::test_gain_is_one_at_any_speed, ::test_an_arc_ends_where_it_should,
-        test_papers.py::test_a_run_is_that_of_the_literal_twin.
+        rate (`arc`). test_path_integration.py::{test_gain_is_one_up_to_a_cell_and_a_half_a_step,
+        test_an_arc_ends_where_it_should}, test_papers.py::test_a_run_is_that_of_the_literal_twin.
         """
         along = require_finite("distance_m", distance_m) / self.params.cell_m
         require_finite("turn_rad", turn_rad)
-        self._way += abs(along)
         p = self.params
         packet_kernels.advance(
             self._rows, self._found, self.shape, along, turn_rad,
@@ -162,23 +161,8 @@ class PoseCells:
         self._owner, self._spare_owner = self._spare_owner, self._owner
         self._swap(m)
 
-    @property
-    def iterations_due(self) -> int:
-        """How many iterations the next `attract` makes, for the distance driven since the last one."""
-        return min(max(1, math.ceil(self._way - 1e-6)), self.params.iterations)
-
     def attract(self) -> Packet:
-        """Excite, inhibit, normalise. ACRA 2004 eqs. 10-12. Returns the winner.
-
-        [ours] If the robot has driven farther than one cell since the last call, there is an iteration for each cell
-        (at most `iterations`): driving makes the layers of a packet drift apart, and the attractor holds them together.
-        """
-        due, self._way = self.iterations_due, 0.0
-        for _ in range(due):
-            self._iterate()
-        return self.winner
-
-    def _iterate(self) -> None:
+        """Excite, inhibit, normalise. ACRA 2004 eqs. 10-12. Returns the winner."""
         p, n = self.params, self._n
         inhibit = np.float32(p.inhibit)
         kept = self._cells[:n].copy(), self._values[:n].copy()
@@ -197,6 +181,7 @@ class PoseCells:
             raise ValueError(
                 f"inhibit = {p.inhibit} is above the activity of every cell; take less (nothing was changed)"
             )
+        return self.winner
 
     def set_params(self, params: PoseCellParams) -> None:
         """Take new live parameters; the size cannot change."""

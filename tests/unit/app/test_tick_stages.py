@@ -56,9 +56,7 @@ def test_the_stages_lead_where_the_engine_went(local_inhibit: float, size: tuple
         pose_cells.inject(
             rng.choice(len(pose_cells.slot), 40, replace=False).astype(np.int32), np.full(40, 0.004, np.float32)
         )
-        now = activity_of(pose_cells)
-        for _ in range(pose_cells.iterations_due):
-            now = normalised(inhibited(excited(now, params), params))
+        now = normalised(inhibited(excited(activity_of(pose_cells), params), params))
         pose_cells.attract()
         engine = activity_of(pose_cells)
         mine, its = np.zeros(len(pose_cells.slot)), np.zeros(len(pose_cells.slot))

@@ -107,8 +107,6 @@ def test_in_2004_the_packet_is_where_the_robot_is() -> None:
 OFF = {name: value for addition in ADDITIONS for name, value in addition.off.items()}
 ELSEWHERE = {
     "local_view.min_pattern": "test_image_and_sonars.py: here a bare wall makes an experience with a view or without one",
-    "solver.closures": "test_graduated_trust.py: many false closures, of which this run has none",
-    "kidnap.usual_times": "test_kidnap_detector.py: images that always jump, which these do not",
 }
 
 

@@ -157,16 +157,6 @@ def test_a_cluster_as_large_as_the_window_has_room(excite: int, inhibit: int, mo
     assert np.abs(pose_cells.activity - literal.inhibit(left, 0.0)).max() < 2e-6
 
 
-def test_there_is_an_iteration_for_each_cell_driven() -> None:
-    pose_cells = PoseCells(PoseCellParams(iterations=4))
-    assert pose_cells.iterations_due == 1
-    for driven, due in [(0.5, 1), (0.5, 1), (0.01, 2), (-0.99, 2), (1.0, 3), (1.0, 4), (7.0, 4)]:
-        pose_cells.integrate(driven * pose_cells.params.cell_m, 0.0)
-        assert pose_cells.iterations_due == due
-    pose_cells.attract()
-    assert pose_cells.iterations_due == 1
-
-
 def test_distances_are_around_the_torus() -> None:
     pose_cells = PoseCells(PoseCellParams(n_x=30, n_y=20))
     assert pose_cells.cells_apart(29, 1, 2, 17) == 5.0
