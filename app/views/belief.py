@@ -14,7 +14,8 @@ from web.messages import Belief, Hypothesis
 
 POSSIBLE = 3.0  # nats: a place that is twenty times less likely than the likeliest is not counted
 MOST_LOG_ODDS = 14.0  # a million to one is enough
-MOST_OTHERS, LEAST_SHARE = 4, 0.02  # that are shown beside the place where it believes itself to be
+MOST_OTHERS = 4  # places that are shown beside that where it believes itself to be
+LEAST_SHARE = 0.02  # how likely a place must be before one is shown that a robot in doubt may be at
 
 
 def belief_of(session: Session) -> Belief:
@@ -50,8 +51,9 @@ def other_places(map_: ExperienceMap) -> tuple[Hypothesis, ...]:
         return ()
     shares = np.exp(rows[:, ODDS] - np.logaddexp.reduce(np.append(rows[:, ODDS], beside)))
     here, found = map_.robot, list[Hypothesis]()
+    least = shares.max() * math.exp(-POSSIBLE) if map_.carried else LEAST_SHARE
     for k in np.argsort(-shares, kind="stable").tolist():
         x, y, heading = rows[k, :3].tolist()
-        if shares[k] >= LEAST_SHARE and math.hypot(x - here.x, y - here.y) > 1e-6:
+        if shares[k] >= least and math.hypot(x - here.x, y - here.y) > 1e-6:
             found.append(Hypothesis(x, y, heading, float(shares[k])))
     return tuple(found[:MOST_OTHERS])

@@ -124,5 +124,10 @@ def odds_words(odds: float) -> str:
     return f"{odds:.0f}:1" if odds < 1000 else "over 1000:1"
 
 
+def share_words(share: float) -> str:
+    """12 %, or less than one."""
+    return f"{100 * share:.0f} %" if share >= 0.01 else "< 1 %"
+
+
 def seconds_words(seconds: float) -> str:
     return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"

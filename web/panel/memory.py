@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from web.messages import Belief, Goal, PoseCellLayer, Snap, Snapshot
-from web.messages.told import goal_told, odds_words
+from web.messages.told import goal_told, odds_words, share_words
 from web.panel.part import Content
 from web.panel.words import clock, counted, number, often, percent, table, thousands
 
@@ -72,7 +72,7 @@ def _elsewhere(belief: Belief, snapshot: Snapshot) -> str:
         return "nowhere"
     likeliest = belief.others[0]
     away = math.hypot(likeliest.x - snapshot.estimate.x, likeliest.y - snapshot.estimate.y)
-    return f"{away:.1f} m away, likely by {100 * likeliest.share:.0f} %"
+    return f"{away:.1f} m away, likely by {share_words(likeliest.share)}"
 
 
 def _packets(layer: PoseCellLayer) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from web.messages.told import share_words
 from web.viewer.primitives import meshes
 from web.viewer.primitives.label_room import GHOST, LabelRoom
 from web.viewer.primitives.labels import Pill, add_mesh
@@ -44,7 +45,3 @@ class Hypotheses:
             (x, y), half = places[k].tolist(), headings[k] / 2
             frame.position, frame.wxyz = (x, y, Z), (math.cos(half), 0.0, 0.0, math.sin(half))
             label.show(share_words(shares[k]), self._palette.sheet, (x, y - BELOW, LABEL_Z))
-
-
-def share_words(share: float) -> str:
-    return f"{100 * share:.0f} %"

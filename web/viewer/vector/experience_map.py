@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from web.messages import Pose
-from web.messages.told import seconds_words
+from web.messages.told import seconds_words, share_words
 from web.viewer.fits.judged import wheels_alone, wheels_path
 from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
 from web.viewer.fits.poses import on_plate
-from web.viewer.marks.hypotheses import share_words
 from web.viewer.marks.place_names import MOST
 from web.viewer.marks.route import pill_stops
 from web.viewer.plates.map_plate import NO_MAP, grid_step_m, promise, round_up
