@@ -30,10 +30,11 @@ PAIRS = 4000
 
 
 class Moment(NamedTuple):
-    """What was sensed, and where."""
+    """What was sensed, where, and the usual change of the image by then."""
 
     features: NDArray[np.uint8]
     ranges_m: NDArray[np.float64]
+    usual: float
     place: tuple[float, float, float]
 
 
@@ -60,8 +61,12 @@ def drive(session: Session, minutes: float) -> Iterator[Moment]:
     for _ in range(round(minutes * 60 / session.frame.dt)):
         session.tick()
         truth = session.simulator.truth
+        detector = session.brain.kidnap_detector
+        assert isinstance(detector, KidnapDetector)
         features = session.brain.local_view.features.copy()
-        yield Moment(features, session.frame.ranges_m.astype(np.float64), (truth.x, truth.y, truth.heading_rad))
+        yield Moment(
+            features, session.frame.ranges_m.astype(np.float64), detector._usual, (truth.x, truth.y, truth.heading_rad)
+        )
 
 
 def kidnaps(moments: list[Moment], seed: int) -> Iterator[tuple[Moment, Moment]]:
@@ -78,6 +83,7 @@ def noticed(session: Session, before: Moment, after: Moment) -> bool:
     view._last = before.features
     detector = KidnapDetector(params.kidnap, params.local_view)
     detector.observe(0.0, before.ranges_m)
+    detector._usual = before.usual
     return detector.observe(view._jump(after.features, 0.0), after.ranges_m)
 
 

@@ -12,9 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
+from ratslam_core.beats import weight
 from ratslam_core.extensions.scan_change import ScanChange
 from ratslam_core.params import KidnapParams, LocalViewParams
 
+USUAL_TIMES, USUAL_RATE = 2.0, 0.02  # a jump is more than twice the usual change, a mean over some fifty beats
+MOST_USUAL = 2.0  # a larger change counts as this, since it may be infinite
 FOUND_AGAIN = 8  # sights of known places, one a beat, that must agree before the robot is no longer lost
 
 
@@ -25,6 +28,7 @@ class KidnapDetector:
     def __init__(self, params: KidnapParams, view_params: LocalViewParams) -> None:
         self.params, self.view_params = params, view_params
         self.kidnapped = False
+        self._usual = 1.0  # mean change of the image; to begin with, nothing is known of it
         self.sure = True  # whether the image alone told of the last jump, and driving cannot explain it
         self._scans = ScanChange()
         self._known_before = 0  # how many experiences there were when it happened
@@ -34,7 +38,8 @@ class KidnapDetector:
         """Whether image and sonars say that the robot was carried away since the step before.
 
         image_change: above 1 driving cannot explain it (`LocalView.image_change`); ranges_m: (n_sonars,), m. Sonars
-        alone do not tell: when a robot turns between two walls, all of them jump.
+        alone do not tell: when a robot turns between two walls, all of them jump. Nor does an image, where images change
+        as much all the time. test_kidnap_detector.py::test_where_images_always_jump_a_jump_tells_nothing.
 
         beats: since the step before; in more time driving explains more (`time_power`).
         test_kidnap_detector.py::test_in_more_time_driving_explains_more.
@@ -44,7 +49,9 @@ class KidnapDetector:
         image_change /= explained
         heard = self.view_params.range_surprise * self._scans.observe(ranges_m, p) / explained
         self.sure = image_change > 1
-        return image_change > 0 and image_change + heard > 1
+        jumped = image_change + heard > max(1.0, USUAL_TIMES * self._usual)
+        self._usual += weight(USUAL_RATE, beats) * (min(image_change, MOST_USUAL) - self._usual)
+        return jumped
 
     def declare(self, experiences: int) -> None:
         """The robot was carried; `experiences` is how many there are at this moment."""

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ratslam_core.extensions.kidnap_detector import KidnapDetector
+from ratslam_core.extensions.kidnap_detector import MOST_USUAL, KidnapDetector
 from ratslam_core.laws import memories
 from ratslam_core.laws.beats import beats
 from ratslam_core.laws.experience_map import LONGEST, experience_map
@@ -118,6 +118,7 @@ def _kidnap_detector(detector: KidnapDetector, experiences: int, sonars: int) ->
     whole("known before", detector._known_before, 0, experiences)
     whole("agreed", detector._agreed)
     whole("settled", detector._settled)
+    number("the usual change", detector._usual, 0.0, MOST_USUAL)
     last = detector._scans._last
     if last is not None:
         true(sonars > 0, "a brain without sonars has no last scan")

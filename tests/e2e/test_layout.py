@@ -288,10 +288,12 @@ def writing_what_happens_when(program: Program, page: Page) -> Iterator[None]:
 
 @contextlib.contextmanager
 def lesson(program: Program, page: Page) -> Iterator[None]:
-    program.command("begin_lesson", name="snap")  # without vision, and with a loop to be played again
+    program.command("begin_lesson", name="dark")  # with a loop to be played again
     expect(page.locator("#lesson")).to_have_attribute("data-state", "predict")
+    program.command("set_parameter", name="local_view.enabled", value=False)
     expect(page.locator("#replay")).not_to_have_attribute("hidden", "")
     yield
+    program.command("set_parameter", name="local_view.enabled", value=True)
     program.command("end_lesson")
     expect(page.locator("#lesson")).to_be_hidden()
 

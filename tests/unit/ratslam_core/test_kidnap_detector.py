@@ -96,12 +96,32 @@ def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: 
     circle.angle += 2.6
     params = brain.params.local_view
     changed = replace(params, composite_surprise=params.composite_surprise * _unlikeness(circle) / alike)
-    brain.set_params(replace(brain.params, local_view=changed, kidnap=KidnapParams()))
+    brain.set_params(replace(brain.params, local_view=changed))
+    brain.kidnap_detector._usual = 0.0  # type: ignore[union-attr]
     brain.step(circle.image, still, ranges_m=np.array([1.0, 1.0, 1.0, *[others_m] * 5]))
     assert brain.local_view.image_change == pytest.approx(alike)
     assert brain.lost is noticed
     if noticed:
         assert brain.experience_map.evidence.sure is (alike > 1)
+
+
+def used_to_little(params: KidnapParams, views: LocalViewParams) -> KidnapDetector:
+    """A detector that has seen images change by little for a while."""
+    detector = KidnapDetector(params, views)
+    detector._usual = 0.0
+    return detector
+
+
+def test_where_images_always_jump_a_jump_tells_nothing() -> None:
+    """All change must be twice as much as is usual of the image. What is usual is learnt, and forgotten."""
+    detector = KidnapDetector(KidnapParams(), LocalViewParams())
+    for _ in range(300):
+        assert not detector.observe(1.2, None)
+    assert not detector.observe(1.9, None)
+    assert detector.observe(3.0, None)
+    for _ in range(200):
+        detector.observe(0.2, None)
+    assert detector.observe(1.2, None)
 
 
 def _unlikeness(circle: Circle) -> float:
@@ -142,7 +162,7 @@ def test_a_change_is_a_jump_only_above_its_limits() -> None:
         (1.0, None, False), (1.001, None, True), (0.749, 0.25, False), (0.751, 0.25, True), (0.499, 2.0, False),
         (0.501, 2.0, True),
     ):  # fmt: skip
-        detector = KidnapDetector(params, views)
+        detector = used_to_little(params, views)
         if change is None:
             assert detector.observe(image, None) is noticed
         else:
@@ -166,5 +186,5 @@ def test_in_more_time_driving_explains_more() -> None:
     params = KidnapParams(time_power=0.3)
     for beats, limit in ((1, 1.0), (2, 2**0.3), (10, 10**0.3)):
         for change, noticed in ((0.999 * limit, False), (1.001 * limit, True)):
-            detector = KidnapDetector(params, LocalViewParams())
+            detector = used_to_little(params, LocalViewParams())
             assert detector.observe(change, None, beats) is noticed
