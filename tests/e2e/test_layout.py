@@ -288,7 +288,7 @@ def writing_what_happens_when(program: Program, page: Page) -> Iterator[None]:
 
 @contextlib.contextmanager
 def lesson(program: Program, page: Page) -> Iterator[None]:
-    program.command("begin_lesson", name="dark")  # with a loop to be played again
+    program.command("begin_lesson", name="kidnapped")  # with a loop to be played again
     program.wait(lambda told: told["lesson"] is not None and told["lesson"]["state"] == "predict")
     expect(page.locator("#lesson")).to_have_attribute("data-state", "predict")
     program.command("set_parameter", name="local_view.enabled", value=False)
