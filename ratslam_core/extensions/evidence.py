@@ -106,9 +106,7 @@ class Evidence:
         self.params = params
         self.belief: Belief | None = None
         self.sure = True  # that the robot was carried
-        self.in_doubt = (
-            False  # it was not, as far as it knows: `here` is a rival, and its own submap is among the others
-        )
+        self.in_doubt = False  # it knows of no kidnap, but saw something where it cannot be
         self.here = 0.0  # log odds that the robot is where odometry has led it, while in doubt
         self.known = 0  # experiences among which it is; 0: there is nothing to find out
         self._rows = np.zeros((MOST, 7))
@@ -136,7 +134,7 @@ class Evidence:
 
     @property
     def hypotheses(self) -> Rows:
-        """x, y (m), heading (rad) in the map, log odds against a new place, units of evidence, submap; shape (n, 6). A view."""
+        """x, y (m), heading (rad) in the map, log odds against a new place, units of evidence, submap, most log odds; (n, 7)."""
         return self._rows[: self._count]
 
     def move(self, odometry: Odometry) -> None:
@@ -231,7 +229,7 @@ class Evidence:
             self.belief = Belief(pose, odds, int(there.experience[0]), float(there.facing[0]))
 
     def _here(self, robot: Pose2) -> NDArray[np.bool_]:
-        """Which hypotheses are where a robot in doubt is mapping, give or take how well it is known."""
+        """Which hypotheses are where a robot in doubt is mapping, since a map is a little off."""
         rows = self.hypotheses
         turn = np.abs(np.remainder(rows[:, HEADING] - robot.heading_rad + math.pi, 2 * math.pi) - math.pi)
         return (np.hypot(rows[:, X] - robot.x, rows[:, Y] - robot.y) < HERE_M) & (turn < HERE_RAD)

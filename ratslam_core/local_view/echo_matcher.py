@@ -85,16 +85,6 @@ class EchoMatcher(Matcher):
 
 
 @njit(cache=True, nogil=True)
-def heard_apart(new: Features, stored: Features, first: int) -> float:
-    """Mean absolute difference of the echoes, which begin at byte `first`; one that is unknown (0) counts as equal."""
-    total = 0
-    for k in range(first, len(new)):
-        if new[k] > 0 and stored[k] > 0:
-            total += abs(np.int64(new[k]) - np.int64(stored[k]))
-    return total / (len(new) - first)
-
-
-@njit(cache=True, nogil=True)
 def _nearest(
     known: NDArray[np.uint8],
     new: Features,

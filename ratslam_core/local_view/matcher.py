@@ -147,7 +147,6 @@ def _apart_at(
     masks: NDArray[np.uint8],
     widths: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    echoes = len(new) - size
     least, by = np.full(len(views), np.inf), np.zeros(len(views), np.int64)
     for k in range(len(views)):
         stored = known[views[k]]
@@ -155,12 +154,8 @@ def _apart_at(
             apart = sum_apart(stored, shifted[shift + most], masks[shift + most], 0, size) / widths[shift + most]
             if apart < least[k]:
                 least[k], by[k] = apart, shift
-        heard = 0
-        for e in range(size, len(new)):
-            if new[e] > 0 and stored[e] > 0:
-                heard += abs(np.int64(new[e]) - np.int64(stored[e]))
-        if echoes > 0:
-            least[k] += echo_weight * heard / echoes
+        if len(new) > size:
+            least[k] += echo_weight * heard_apart(new, stored, size)
     return least, by
 
 
@@ -191,6 +186,16 @@ def shift_all(
         for k in range(width):
             shifted[row, there + k] = new[here + k]
     return slice(first, columns + most), widths
+
+
+@njit(cache=True, nogil=True, inline="always")
+def heard_apart(new: Features, stored: Features, first: int) -> float:
+    """Mean absolute difference of the echoes, which begin at byte `first`; one that is unknown (0) counts as equal."""
+    total = 0
+    for k in range(first, len(new)):
+        if new[k] > 0 and stored[k] > 0:
+            total += abs(np.int64(new[k]) - np.int64(stored[k]))
+    return total / (len(new) - first)
 
 
 @njit(cache=True, nogil=True)

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.local_view.echo_matcher import EchoMatcher, heard_apart
+from ratslam_core.local_view.echo_matcher import EchoMatcher
 from ratslam_core.local_view.front_ends import FrontEnd, named_front_end
-from ratslam_core.local_view.matcher import Features, Matcher, least_difference, sub_column, turned_apart
+from ratslam_core.local_view.matcher import Features, Matcher, heard_apart, least_difference, sub_column, turned_apart
 from ratslam_core.params import LocalViewParams
 from ratslam_core.parts import Room
 from ratslam_core.types import Recognition, nothing_seen

@@ -18,7 +18,6 @@ from web.viewer.primitives.palette import Palette, mix
 MOST = 4
 Z, BELOW, LABEL_Z, LABEL = 0.19, 0.75, 0.5, 0.36
 RING, RING_WIDTH = 0.42, 0.06
-ARROW = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)])
 
 
 class Hypotheses:
@@ -26,8 +25,7 @@ class Hypotheses:
         self._palette = palette
         self.frames = [scene.add_frame(f"{name}_{k}", show_axes=False, visible=False) for k in range(MOST)]
         for k in range(MOST):
-            body = meshes.flat_polygon(1.1 * ARROW, 0.0)
-            add_mesh(scene, f"{name}_{k}/body", body, palette.lit(palette.casing))
+            add_mesh(scene, f"{name}_{k}/body", meshes.heading_arrow(1.1, 0.0), palette.lit(palette.casing))
             ring = meshes.ring(RING, RING_WIDTH, 0.02)
             add_mesh(scene, f"{name}_{k}/ring", ring, palette.lit(palette.robot))
         fill = mix(palette.robot, palette.floor, 0.1)

@@ -42,7 +42,6 @@ from web.viewer.primitives.palette import Palette
 ORIGIN = (5.85, -2.2, 0.0)
 SHEET = (11.0, 10.0, -0.5, 0.45)
 NODE_Z, LINK_Z, ARROW_Z = 0.05, 0.03, 0.22
-ARROW = np.array([(0.5, 0.0), (-0.4, 0.3), (-0.2, 0.0), (-0.4, -0.3)])
 ROBOT_SIZE = (0.9, 0.7)  # as it is seen, whatever its heading
 BAR = (2.7, 0.26)
 BAR_X = 3.65
@@ -77,8 +76,8 @@ class MapPlate(Plate):
         self._links = Links(scene, f"{self.root}/links", palette.drawn(palette.link))
         self._nodes = Nodes(scene, f"{self.root}/nodes", 0.075)
         self._arrow = scene.add_frame(f"{self.root}/arrow", show_axes=False, visible=False)
-        add_mesh(scene, f"{self.root}/arrow/casing", _arrow(1.22, 0.0), palette.lit(palette.casing))
-        add_mesh(scene, f"{self.root}/arrow/body", _arrow(1.0, 0.02), palette.lit(palette.robot))
+        add_mesh(scene, f"{self.root}/arrow/casing", meshes.heading_arrow(1.22, 0.0), palette.lit(palette.casing))
+        add_mesh(scene, f"{self.root}/arrow/body", meshes.heading_arrow(1.0, 0.02), palette.lit(palette.robot))
         self._others = Hypotheses(scene, palette, f"{self.root}/other", self.labels)
         self._route = Route(scene, palette, f"{self.root}/route", self.labels)
         self._flag = GoalFlag(scene, palette, f"{self.root}/flag", self.labels)
@@ -251,11 +250,6 @@ def promise(goal: Goal) -> str:
     """When it will be there, or how it stands with it."""
     told = goal_told(goal)
     return told.seconds or {"no way yet": "? s", "goal": "? s", "no way": "no way known"}.get(told.short, told.short)
-
-
-def _arrow(size: float, z: float) -> meshes.Mesh:
-    vertices, faces = meshes.flat_fan((-0.2 * size, 0.0), ARROW[[3, 0, 1]] * size, z)
-    return vertices, faces
 
 
 def round_up(seconds: float) -> float:

@@ -175,6 +175,11 @@ def flat_fan(centre: tuple[float, float], rim: Points, z: float) -> Mesh:
     return lifted(np.vstack([rim, [centre]]), z).astype(np.float32), faces
 
 
+def heading_arrow(size: float, z: float) -> Mesh:
+    """A flat arrow that points along x, with a notch behind."""
+    return flat_fan((-0.2 * size, 0.0), size * np.array([(-0.4, -0.3), (0.5, 0.0), (-0.4, 0.3)]), z)
+
+
 def closed_line(outline: Points, z: float) -> NDArray[np.float32]:
     """(n, 2, 3) segments around an outline."""
     points = lifted(outline, z)
