@@ -79,9 +79,9 @@ def kidnaps(moments: list[Moment], seed: int) -> Iterator[tuple[Moment, Moment]]
 
 
 def noticed(session: Session, before: Moment, after: Moment) -> bool:
-    view, params = session.brain.local_view, session.config
+    view = session.brain.local_view
     view._last = before.features
-    detector = KidnapDetector(params.kidnap, params.local_view)
+    detector = KidnapDetector(session.config.kidnap)
     detector.observe(0.0, before.ranges_m)
     detector._usual = before.usual
     return detector.observe(view._jump(after.features, 0.0), after.ranges_m)

@@ -38,7 +38,7 @@ from ratslam_core import (
     Recognition,
     ViewLinks,
 )
-from ratslam_core.experience_map.looks import Senses
+from ratslam_core.experience_map.experience_map import Senses
 from ratslam_core.pose_cells.attractor_kernels import gaussian
 
 Row = dict[str, Any]
@@ -91,7 +91,7 @@ def _memory() -> Iterator[Row]:
     bytes_a_cell = _settled(n, packets=1).memory_bytes / (n * n * 36)
     size = f"{n} x {n} x 36: {bytes_a_cell:.2f} B a cell"
     yield _row("memory, pose cells", size, None, "-", None, "6 B a cell", bytes_a_cell <= 6)
-    view = LocalView(LocalViewParams(composite_threshold=0.0, composite_surprise=255.0))
+    view = LocalView(LocalViewParams(match_threshold=0.0, surprise=100.0))
     rng, most = np.random.default_rng(6), 0.0
     for count in range(1, 50_001):  # with as little room to spare as a growing memory has, and as much
         view._recruit(rng.integers(0, 256, view.features.size, dtype=np.uint8), faded=-1)
@@ -129,7 +129,7 @@ def _ten_packets(cells: PoseCells) -> float:
 
 def _dense(n: int, repetitions: int) -> float:
     activity = np.random.default_rng(0).random((36, n, n), dtype=np.float32)
-    weights = gaussian(0.5, 2)
+    weights = gaussian(0.5)
 
     def convolve() -> None:
         out = activity
@@ -146,7 +146,7 @@ def _views(views: int) -> Iterator[Row]:
     flat = np.ascontiguousarray(image.T).reshape(1, -1)
     bare = _median(lambda: cv2.batchDistance(flat, known, cv2.CV_32S, normType=cv2.NORM_L1, K=1), 40)
     for shift, most in ((0, 1.5), (2, 5.0)):
-        view = LocalView(LocalViewParams(front_end="template", shift=shift, match_threshold=255.0, surprise=255.0))
+        view = LocalView(LocalViewParams(front_end="template", shift=shift, match_threshold=100.0, surprise=100.0))
         view._templates, view._count = known.copy(), len(known)
         ms = _median(lambda v=view: v.observe(image), 40)
         name = f"view match 12 x 8, shifts +-{shift}"

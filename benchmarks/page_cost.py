@@ -17,7 +17,6 @@ import contextlib
 import time
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 from urllib.error import HTTPError
 
@@ -117,8 +116,7 @@ def traffic(world: str, seconds: float, after_s: float, experiences: int, *, two
 
 def _growing() -> Config:
     """Known ground goes on to get experiences, so that there are many soon."""
-    config = Config()
-    return replace(config, memory=replace(config.memory, familiar=False))
+    return Config().with_value("experience_map.familiar_ground", False)
 
 
 def _farthest(engine: EngineThread) -> SetGoal:
@@ -186,7 +184,7 @@ def _parts_of(message: Any) -> Counter[str]:
 def frames(world: str, seconds: float, after_s: float, picture: str | None, experiences: int) -> bool:
     """Frames per second, the processor time and draw calls of one frame, and the page's own script, while the robot explores.
     Whether the script keeps to its bar in every tab."""
-    more = ("--set", "memory.familiar=false") if experiences else ()
+    more = ("--set", "experience_map.familiar_ground=false") if experiences else ()
     program = Program("--port", "0", "--seed", "5", "--speed", "0", "--world", world, *more)
     met = True
     try:

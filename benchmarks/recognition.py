@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from app.config import Config
 from app.session import Session
 from ratslam_core import LocalViewParams
-from ratslam_core.local_view.front_ends import named_front_end
+from ratslam_core.local_view.front_ends import FRONT_ENDS
 from ratslam_core.local_view.recogniser import matcher_of
 from sim2d import World
 from sim2d.importers import open_world
@@ -46,10 +46,11 @@ TEMPLATE, HEARD = LocalViewParams(front_end="template"), LocalViewParams(front_e
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """One way to recognise: a front end, whether it hears the sonars, and which views it leaves out."""
+    """One way to recognise: a front end, whether it hears the sonars, and whether it doubts what tells little."""
 
     params: LocalViewParams
     deaf: bool = False
+    doubts: bool = True
 
 
 ROWS = {
@@ -59,7 +60,7 @@ ROWS = {
     "hue and saturation": Way(replace(TEMPLATE, front_end="hue and saturation")),
     "image and sonars, no shifts": Way(replace(HEARD, shift=0)),
     "image and sonars, sonars off": Way(HEARD, deaf=True),
-    "image and sonars, no doubt": Way(replace(HEARD, plain_doubt=0.0, silent_doubt=0.0)),
+    "image and sonars, no doubt": Way(HEARD, doubts=False),
     "image and sonars": Way(HEARD),
 }
 
@@ -101,7 +102,7 @@ def driven(world: World, seed: int, minutes: float) -> Frames:
 
 def sights(frames: Frames, way: Way) -> Sights:
     """The nearest of the frames that are `OLDER_S` older, as the engine finds it."""
-    end, params = named_front_end(way.params), way.params
+    end, params = FRONT_ENDS[way.params.front_end](), way.params
     matcher = matcher_of(end)
     heard = [None if way.deaf else ranges for ranges in frames.ranges_m]
     known = np.array([end.look(image, None, ranges) for image, ranges in zip(frames.images, heard, strict=True)])
@@ -109,8 +110,9 @@ def sights(frames: Frames, way: Way) -> Sights:
     best, levels = np.full(len(known), -1), np.full(len(known), np.inf)
     for k in range(gap + 1, len(known)):
         view, apart, _ = matcher.nearest(known[: k - gap], known[k], params.shift if end.shifts else 0)
-        best[k], levels[k] = view, max(apart * end.scale + end.doubt(known[k], params), end.vague)
-    return Sights(best, levels, np.array([not end.bland(features, params) for features in known]))
+        doubt = end.doubt(known[k]) if way.doubts else 0.0
+        best[k], levels[k] = view, max(apart * end.scale + doubt, end.vague)
+    return Sights(best, levels, np.array([not end.bland(features) for features in known]))
 
 
 def off(poses: NDArray[np.float64], others: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -12,12 +12,9 @@ from .params import (
     GoalMemoryParams,
     KidnapParams,
     LocalViewParams,
-    MemoryParams,
     OccupancyParams,
     PoseCellParams,
-    PoseFilterParams,
     RatSlamParams,
-    SolverParams,
 )
 from .pose_cells.network import PoseCells
 from .pose_graph.transitions import Link
@@ -37,7 +34,6 @@ __all__ = [
     "LocalView",
     "LocalViewParams",
     "MapGrid",
-    "MemoryParams",
     "MetricPicture",
     "MultipleRepresentation",
     "OccupancyGrid",
@@ -48,12 +44,10 @@ __all__ = [
     "Pose2",
     "PoseCellParams",
     "PoseCells",
-    "PoseFilterParams",
     "RatSlam",
     "RatSlamParams",
     "Recognition",
     "Route",
-    "SolverParams",
     "TemporalMap",
     "ViewLinks",
     "find_places",

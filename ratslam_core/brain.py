@@ -55,7 +55,7 @@ class Brain:
         map_ = self._map(optimiser) if experience_map is None else experience_map
         self.experience_map = cast(ExperienceMap, map_)
         detector = KidnapDetector if p.kidnap.enabled else NeverKidnapped
-        self.kidnap_detector = detector(p.kidnap, p.local_view) if kidnap_detector is None else kidnap_detector
+        self.kidnap_detector = detector(p.kidnap) if kidnap_detector is None else kidnap_detector
         self.association = VisualAssociation(p.local_view)
         self.localisation = Localisation(self.pose_cells, self.association, p.pose_cells)
         shape, cell_m = self.pose_cells.shape, p.pose_cells.cell_m
@@ -63,20 +63,20 @@ class Brain:
         self.occupancy: OccupancyGrid | None = None
         self.map_grid: MapGrid | None = None
         if len(sonar_angles_rad) > 0:
-            self.occupancy = OccupancyGrid(p.occupancy, shape, cell_m, sonar_angles_rad)
-            self.map_grid = MapGrid(p.occupancy, sonar_angles_rad)
-        self.memories = Memories(self.goal_memory, self.occupancy, self.map_grid)
+            self.occupancy = OccupancyGrid(shape, cell_m, sonar_angles_rad)
+            self.map_grid = MapGrid(sonar_angles_rad)
+        self.memories = Memories(self.goal_memory, self.occupancy, self.map_grid, p.occupancy)
         self.beats = Beats()
         self.relocalisations: int = 0  # how often the winning packet has jumped
 
     def _map(self, optimiser: Optimiser | None) -> ExperienceMap:
-        p = self.params
-        kind = ExperienceMap if p.experience_map.enabled else CellsOnly
-        ground = FamiliarGround if p.memory.familiar and p.experience_map.enabled else NewGround
+        p = self.params.experience_map
+        kind = ExperienceMap if p.enabled else CellsOnly
+        ground = FamiliarGround if p.familiar_ground and p.enabled else NewGround
         if optimiser is None:
-            optimiser = ExactSolver(p.solver) if p.solver.enabled else Relaxation(p.solver)
-        shape, cell_m = self.pose_cells.shape, p.pose_cells.cell_m
-        return kind(shape, cell_m, p.experience_map, p.pose_filter, optimiser, ground(p.memory), p.evidence)
+            optimiser = ExactSolver() if p.exact_solver else Relaxation()
+        shape, cell_m = self.pose_cells.shape, self.params.pose_cells.cell_m
+        return kind(shape, cell_m, p, optimiser, ground(), self.params.evidence)
 
     @property
     def view_links(self) -> ViewLinks:
@@ -125,8 +125,7 @@ class Brain:
         self.localisation.params = params.pose_cells
         self.local_view.params = params.local_view
         self.association.set_params(params.local_view)
-        self.experience_map.set_params(params.experience_map, params.pose_filter, params.solver, params.evidence)
-        self.experience_map.ground.params = params.memory
-        self.kidnap_detector.params, self.kidnap_detector.view_params = params.kidnap, params.local_view
+        self.experience_map.set_params(params.experience_map, params.evidence)
+        self.kidnap_detector.params = params.kidnap
         self.memories.set_params(params.goal_memory, params.occupancy)
         self.params = params

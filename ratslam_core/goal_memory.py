@@ -28,6 +28,10 @@ from ratslam_core.types import Packet, require_finite
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
+ARRIVED = 1.0  # cells from the goal within which the robot has arrived, III.B
+REACH = 3  # cells around the packet in which the way is searched, III.B
+WIDER = 3  # the largest multiple of that which is searched when there is no way nearer
+CENTRE = 3  # cells to either side of the strongest among which the packet's centre is computed
 ROOM = 4096  # links there is room for at first; doubles when half full
 MOST_CELLS = 2**20  # in the plane, so that keys stay below 2^40 and their hash below 2^63
 
@@ -99,8 +103,8 @@ class GoalMemory:
         T: from `times_to`. None within one cell of the goal, and when no way is known from here.
 
         [ours] Only those cells in reach count that are linked to the packet's own cell. To these the robot has driven,
-        while another near cell may lie behind a wall. Links may be longer than `reach`, so when no cell in reach is
-        lower, up to `wider` times the reach is tried. The next cell of the quickest way is linked and lower, so there
+        while another near cell may lie behind a wall. Links may be longer than REACH, so when no cell in reach is
+        lower, up to WIDER times the reach is tried. The next cell of the quickest way is linked and lower, so there
         are no local minima, except at places that only a jump of the packet leads away from: then there is no direction
         to drive. test_goal_memory.py::test_it_does_not_point_through_a_wall, ::test_there_are_no_local_minima.
         """
@@ -109,10 +113,10 @@ class GoalMemory:
             raise ValueError(f"T must have shape {(n_y, n_x)}, as times_to gives it, got {T.shape}")
         x, y = require_finite("packet.x", packet.x), require_finite("packet.y", packet.y)
         goal = int(np.argmin(T))
-        if self._apart(x, y, goal % n_x, goal // n_x) <= self.params.arrived:
+        if self._apart(x, y, goal % n_x, goal // n_x) <= ARRIVED:
             return None
-        for wider in range(1, self.params.wider + 1):
-            best = goal_links.lowest(T, round(x) % n_x, round(y) % n_y, wider * self.params.reach, self._keys)
+        for wider in range(1, WIDER + 1):
+            best = goal_links.lowest(T, round(x) % n_x, round(y) % n_y, wider * REACH, self._keys)
             if best >= 0:
                 return math.atan2(offset(best // n_x, y, n_y), offset(best % n_x, x, n_x))
         return None
@@ -165,9 +169,7 @@ class GoalMemory:
             raise ValueError(f"cells must lie in 0..{n_x - 1}, 0..{n_y - 1}, got {cells[wrong, :2].tolist()}")
         if flats.size == 0:
             raise ValueError(f"activity must be positive somewhere, got {activity!r}")
-        return _Iteration(
-            flats, values, *goal_links.centre(flats, values, self.shape, self.params.centre), time_s, time_s
-        )
+        return _Iteration(flats, values, *goal_links.centre(flats, values, self.shape, CENTRE), time_s, time_s)
 
     def _apart(self, x1: float, y1: float, x2: float, y2: float) -> float:
         """Cells between two places, the shorter way round."""

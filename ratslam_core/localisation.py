@@ -12,6 +12,8 @@ from ratslam_core.parts import PoseCellsPart
 from ratslam_core.types import Odometry, Packet, Recognition
 from ratslam_core.visual_association import VisualAssociation
 
+SNAP_CELLS = 3.0  # a longer jump of the winning packet is a relocalisation
+
 
 @kind("localisation/1")
 class Localisation:
@@ -62,7 +64,7 @@ class Localisation:
         """One step of the attractor. Returns the winner, and whether it has jumped from where it was."""
         expected, packet = self.pose_cells.winner, self.pose_cells.attract()
         jump = self.pose_cells.cells_apart(expected.x, expected.y, packet.x, packet.y)
-        return packet, jump > self.params.snap_cells
+        return packet, jump > SNAP_CELLS
 
 
 def again(seen: Recognition) -> Recognition:

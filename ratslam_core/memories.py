@@ -15,12 +15,19 @@ from ratslam_core.parts import PoseCellsPart
 from ratslam_core.types import Packet
 
 
-@kind("memories/1")
+@kind("memories/2")
 class Memories:
     """Gives the memories what each of them learns from."""
 
-    def __init__(self, goal_memory: GoalMemory, occupancy: OccupancyGrid | None, map_grid: MapGrid | None) -> None:
-        self.goal_memory, self.occupancy, self.map_grid = goal_memory, occupancy, map_grid
+    def __init__(
+        self,
+        goal_memory: GoalMemory,
+        occupancy: OccupancyGrid | None,
+        map_grid: MapGrid | None,
+        params: OccupancyParams,
+    ) -> None:
+        """params: whether the pictures are drawn."""
+        self.goal_memory, self.occupancy, self.map_grid, self.params = goal_memory, occupancy, map_grid, params
         self._under_way_s = 0.0
 
     def require_sonars(self, ranges_m: NDArray[np.floating] | None) -> NDArray[np.float64] | None:
@@ -32,10 +39,7 @@ class Memories:
         return self.occupancy.require(ranges_m)
 
     def set_params(self, goal_memory: GoalMemoryParams, occupancy: OccupancyParams) -> None:
-        self.goal_memory.params = goal_memory
-        for grid in (self.occupancy, self.map_grid):
-            if grid is not None:
-                grid.params = occupancy
+        self.goal_memory.params, self.params = goal_memory, occupancy
 
     def learn(
         self,
@@ -51,7 +55,7 @@ class Memories:
         leapt: the way here was not driven.
         """
         self._learn_way(tick, pose_cells, leapt)
-        if scan is None or self.occupancy is None or self.map_grid is None or not self.occupancy.params.enabled:
+        if scan is None or self.occupancy is None or self.map_grid is None or not self.params.enabled:
             return
         for _ in range(tick.beats):
             self.occupancy.update(packet, scan)

@@ -15,19 +15,24 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.params import OccupancyParams
 from ratslam_core.types import Packet, Pose2, require_finite, wrap_angle
 
+HALF_BEAM_RAD = math.radians(15) / 2  # of a sonar; Moravec and Elfes
+DEPTH_M = 0.1  # how far off an echo may be; Moravec and Elfes
+FARTHEST_M = 5.0  # a range of this or more means no echo
+FREE, OCCUPIED = 0.4, 0.6  # how certain one echo makes it that the floor before it is free, that something stands there
+BOUND = 5.0  # log odds stay within +- this, so that the picture can change
+SAME_M, SAME_RAD = 0.1, math.radians(10)  # a scan no farther from the newest of its experience replaces it
+KEPT = 6  # scans of each experience; a new one replaces the oldest
 MOST_CELLS = 1024  # along one side of a metric picture; a larger map is drawn with larger cells
 
 
-@kind("occupancy grid/1")
+@kind("occupancy grid/2")
 class OccupancyGrid:
     """The picture in the frame of the pose cells: it wraps as they do and jumps when they relocalise."""
 
     def __init__(
         self,
-        params: OccupancyParams | None,
         shape: tuple[int, int, int],
         cell_m: float,
         sonar_angles_rad: Sequence[float] | NDArray[np.float64],
@@ -35,14 +40,13 @@ class OccupancyGrid:
         """shape: (n_theta, n_y, n_x) of the pose cells; sonar_angles_rad: from straight ahead, left is positive."""
         if len(shape) != 3 or min(shape) < 1:
             raise ValueError(f"shape must be (n_theta, n_y, n_x), each at least 1 cell, got {shape!r}")
-        self.params = params or OccupancyParams()
         self.cell_m = _positive("cell_m", cell_m)
         self._angles = _angles(sonar_angles_rad)
         self._log_odds = np.zeros(shape[1:], np.float32)
 
     @property
     def log_odds(self) -> NDArray[np.float32]:
-        """log p / (1 - p), shape (n_y, n_x), within +-bound; 0 where nothing is known. A view."""
+        """log p / (1 - p), shape (n_y, n_x), within +-BOUND; 0 where nothing is known. A view."""
         return self._log_odds
 
     @property
@@ -55,11 +59,11 @@ class OccupancyGrid:
         return _ranges(ranges_m, self._angles)
 
     def update(self, packet: Packet, ranges_m: NDArray[np.floating]) -> None:
-        """One scan, shape (n_sonars,), m from the robot's middle, taken at the packet's place. No echo: farthest_m or more."""
+        """One scan, shape (n_sonars,), m from the robot's middle, taken at the packet's place. No echo: FARTHEST_M or more."""
         ranges = _ranges(ranges_m, self._angles)
         x, y = require_finite("packet.x", packet.x), require_finite("packet.y", packet.y)
         heading = require_finite("packet.heading_rad", packet.heading_rad)
-        _scan(self._log_odds, x, y, heading, self._angles, ranges, *_model(self.params, self.cell_m))
+        _scan(self._log_odds, x, y, heading, self._angles, ranges, self.cell_m)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,23 +75,21 @@ class MetricPicture:
     cell_m: float
 
 
-@kind("map grid/1")
+@kind("map grid/2")
 class MapGrid:
     """[ours] The picture that bends with the experience map. Each scan is kept in the frame of the experience that was
     active, and drawn where that experience is now. test_occupancy_grid.py::test_the_picture_bends_with_the_map.
     """
 
-    def __init__(self, params: OccupancyParams | None, sonar_angles_rad: Sequence[float] | NDArray[np.float64]) -> None:
-        self.params = params or OccupancyParams()
+    def __init__(self, sonar_angles_rad: Sequence[float] | NDArray[np.float64]) -> None:
         self._angles = _angles(sonar_angles_rad)
-        self._kept = self.params.scans
-        self._scans = np.zeros((256, self._kept, 3 + self._angles.size), np.float32)  # x, y, heading, ranges
+        self._scans = np.zeros((256, KEPT, 3 + self._angles.size), np.float32)  # x, y, heading, ranges
         self._count = np.zeros(256, np.int64)  # scans ever kept of each experience; the newest is at (count - 1) % kept
         self._known = 0  # 1 + the last experience with a scan
 
     def __len__(self) -> int:
         """How many scans are kept."""
-        return int(np.minimum(self._count, self._kept).sum())
+        return int(np.minimum(self._count, KEPT).sum())
 
     @property
     def memory_bytes(self) -> int:
@@ -104,10 +106,10 @@ class MapGrid:
             self._scans = np.concatenate([self._scans, np.zeros_like(self._scans)])
             self._count = np.concatenate([self._count, np.zeros_like(self._count)])
         count = int(self._count[experience])
-        newest = self._scans[experience, (count - 1) % self._kept]
-        moved = math.hypot(x - newest[0], y - newest[1]) > self.params.same_place_m
-        if count == 0 or moved or abs(wrap_angle(heading - newest[2])) > self.params.same_facing:
-            newest = self._scans[experience, count % self._kept]
+        newest = self._scans[experience, (count - 1) % KEPT]
+        moved = math.hypot(x - newest[0], y - newest[1]) > SAME_M
+        if count == 0 or moved or abs(wrap_angle(heading - newest[2])) > SAME_RAD:
+            newest = self._scans[experience, count % KEPT]
             self._count[experience] += 1
         newest[:3] = x, y, heading
         newest[3:] = ranges
@@ -123,15 +125,15 @@ class MapGrid:
         if not np.isfinite(poses[: self._known]).all():
             raise ValueError("poses must be finite numbers; at least one is not")
         cell_m = _positive("cell_m", cell_m)
-        count = np.minimum(self._count[: self._known], self._kept)
-        scans = self._scans[: self._known][np.arange(self._kept) < count[:, None]]
+        count = np.minimum(self._count[: self._known], KEPT)
+        scans = self._scans[: self._known][np.arange(KEPT) < count[:, None]]
         at = np.repeat(np.asarray(poses[: self._known], np.float64), count, axis=0)
         if len(at) == 0:
             return MetricPicture(np.full((1, 1), 0.5, np.float32), (0.0, 0.0), cell_m)
         c, s = np.cos(at[:, 2]), np.sin(at[:, 2])
         x, y = at[:, 0] + c * scans[:, 0] - s * scans[:, 1], at[:, 1] + s * scans[:, 0] + c * scans[:, 1]
         ranges = scans[:, 3:].astype(np.float64)
-        reach = min(float(ranges.max()), self.params.farthest_m) + self.params.depth_m
+        reach = min(float(ranges.max()), FARTHEST_M) + DEPTH_M
         size = max(float(np.ptp(x)), float(np.ptp(y))) + 2 * reach
         while size / cell_m + 5 > MOST_CELLS:
             cell_m *= 2
@@ -139,12 +141,8 @@ class MapGrid:
         right, high = (math.ceil((float(v.max()) + reach) / cell_m) + 1 for v in (x, y))
         log_odds = np.zeros((high - low + 1, right - left + 1), np.float32)
         x, y = x / cell_m - left, y / cell_m - low
-        _scans(log_odds, x, y, at[:, 2] + scans[:, 2], self._angles, ranges, *_model(self.params, cell_m))
+        _scans(log_odds, x, y, at[:, 2] + scans[:, 2], self._angles, ranges, cell_m)
         return MetricPicture(_probability(log_odds), (left * cell_m, low * cell_m), cell_m)
-
-
-def _model(p: OccupancyParams, cell_m: float) -> tuple[float, ...]:
-    return cell_m, p.farthest_m, p.beam_rad / 2, p.depth_m, p.free, p.occupied, p.bound
 
 
 def _probability(log_odds: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -190,18 +188,9 @@ def _scans(
     angles: NDArray[np.float64],
     ranges: NDArray[np.float64],
     cell_m: float,
-    farthest: float,
-    half_beam: float,
-    depth: float,
-    free: float,
-    occupied: float,
-    bound: float,
 ) -> None:
     for k in range(len(x)):
-        _scan(
-            log_odds, x[k], y[k], heading[k], angles, ranges[k],
-            cell_m, farthest, half_beam, depth, free, occupied, bound,
-        )  # fmt: skip
+        _scan(log_odds, x[k], y[k], heading[k], angles, ranges[k], cell_m)
 
 
 @njit(cache=True, nogil=True)
@@ -213,17 +202,11 @@ def _scan(
     angles: NDArray[np.float64],
     ranges: NDArray[np.float64],
     cell_m: float,
-    farthest: float,
-    half_beam: float,
-    depth: float,
-    free: float,
-    occupied: float,
-    bound: float,
 ) -> None:
     """l <- clip(l + log p / (1 - p)) for one beam after the other, on a grid that wraps. x, y in cells, the rest SI.
 
-    p = (1 - free E) / 2 before the echo at R, E = (1 - (d / (R - eps))^2) (1 - (theta / w)^2)
-    p = (1 + occupied O) / 2 around it,       O = (1 - ((d - R) / eps)^2) (1 - (theta / w)^2)
+    p = (1 - FREE E) / 2 before the echo at R, E = (1 - (d / (R - eps))^2) (1 - (theta / w)^2)
+    p = (1 + OCCUPIED O) / 2 around it,       O = (1 - ((d - R) / eps)^2) (1 - (theta / w)^2)
     d, theta: distance and angle of a cell's middle from the sonar's axis. After Moravec and Elfes 1985.
 
     [ours] eps and w, half the beam's width, are widened by half a cell as seen from the robot. Near the robot, where
@@ -232,11 +215,11 @@ def _scan(
     """
     n_y, n_x = log_odds.shape
     half = 0.5 * cell_m
-    sine = np.sin(half_beam)
-    eps = depth + half
+    sine = np.sin(HALF_BEAM_RAD)
+    eps = DEPTH_M + half
     for k in range(angles.size):
-        echo = ranges[k] < farthest
-        R = min(ranges[k], farthest)
+        echo = ranges[k] < FARTHEST_M
+        R = min(ranges[k], FARTHEST_M)
         near = max(R - eps, 0.0)  # the floor before it is free
         far = R + eps if echo else near
         c, s = np.cos(heading + angles[k]), np.sin(heading + angles[k])
@@ -257,15 +240,15 @@ def _scan(
                 across = c * dy - s * dx
                 if d >= far or abs(across) > d * sine + half:  # the second test spares most cells the angle below
                     continue
-                w = half_beam + (np.arcsin(half / d) if d > half else 0.5 * np.pi)
+                w = HALF_BEAM_RAD + (np.arcsin(half / d) if d > half else 0.5 * np.pi)
                 off = np.arctan2(across, c * dx + s * dy) / w if d > 0.0 else 0.0
                 if abs(off) >= 1.0:
                     continue
                 sure = 1.0 - off * off
                 if d < near:
-                    sure *= -free * (1.0 - (d / near) ** 2)
+                    sure *= -FREE * (1.0 - (d / near) ** 2)
                 else:
-                    sure *= occupied * (1.0 - ((d - R) / eps) ** 2)
+                    sure *= OCCUPIED * (1.0 - ((d - R) / eps) ** 2)
                 row, column = at_y % n_y, at_x % n_x
                 odds = log_odds[row, column] + np.log((1.0 + sure) / (1.0 - sure))
-                log_odds[row, column] = min(max(odds, -bound), bound)
+                log_odds[row, column] = min(max(odds, -BOUND), BOUND)

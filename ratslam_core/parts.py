@@ -126,7 +126,7 @@ class ExperienceMapPart(Protocol):
     carried: bool  # it knows that it was carried away, and has not been put onto the map again
     agrees: bool  # whether the last look agreed with where the robot believed itself to be
     yaw_bias: float  # rad/s, learnt: odometry turns too far by so much
-    ground: Any  # a `FamiliarGround`, or `NewGround(MemoryParams())`, with which every sight is learnt
+    ground: Any  # a `FamiliarGround`, or `NewGround()`, with which every sight is learnt
 
     def __len__(self) -> int: ...
     @property
@@ -166,13 +166,11 @@ class ExperienceMapPart(Protocol):
         """Once in each beat."""
         ...
 
-    def set_params(self, params: Any, filter_params: Any, solver_params: Any, evidence: Any, /) -> None: ...
+    def set_params(self, params: Any, evidence: Any, /) -> None: ...
 
 
 class Optimiser(Protocol):
     """Moves experiences until links and map agree, a step at a time."""
-
-    params: Any
 
     def correct(self, graph: PoseGraph, /) -> None:
         """Change `graph.poses` (n, 3) in place; the first experience stays where it is. `graph.links` and `graph.moves`
@@ -186,7 +184,6 @@ class KidnapDetectorPart(Protocol):
     kidnapped: bool
     sure: bool  # whether the last jump can be nothing else
     params: Any
-    view_params: Any
 
     def observe(self, image_change: float, ranges_m: NDArray[np.float64] | None, beats: int = 1, /) -> bool: ...
     def declare(self, experiences: int, /) -> None: ...

@@ -15,12 +15,9 @@ from ratslam_core.params import (
     GoalMemoryParams,
     KidnapParams,
     LocalViewParams,
-    MemoryParams,
     OccupancyParams,
     PoseCellParams,
-    PoseFilterParams,
     RatSlamParams,
-    SolverParams,
 )
 from ratslam_core.params.local_view import COLUMNS
 from sim2d import OfficeParams, SimParams
@@ -29,7 +26,7 @@ Value = float | int | bool | str
 MOST_NAMED, MOST_SAID = 12, 80  # names in a sentence, and characters of one that somebody gave
 
 
-@kind("config/1")
+@kind("config/2")
 @dataclass(frozen=True, slots=True)
 class Config:
     """Everything that can be set."""
@@ -40,9 +37,6 @@ class Config:
     goal_memory: GoalMemoryParams = GoalMemoryParams()
     occupancy: OccupancyParams = OccupancyParams()
     kidnap: KidnapParams = KidnapParams()
-    pose_filter: PoseFilterParams = PoseFilterParams()
-    solver: SolverParams = SolverParams()
-    memory: MemoryParams = MemoryParams()
     evidence: EvidenceParams = EvidenceParams()
     robot: SimParams = SimParams()
     office: OfficeParams = OfficeParams()

@@ -18,7 +18,7 @@ from app.recordings.recording import Recording
 from app.recordings.scan_odometry import is_laser
 from app.recordings.scan_rules import ScanRules
 from app.recordings.survey import Survey, survey
-from ratslam_core.local_view.front_ends import named_front_end
+from ratslam_core.local_view.front_ends import FRONT_ENDS
 
 LEAST_SCALE, MOST_SCALE = 0.02, 50.0
 UNRELATED, UNRELATED_SCANS = 0.0025, 0.002  # share of unrelated views that may be taken for one another
@@ -37,7 +37,7 @@ def rules(recording: Recording, scans: ScanRules | None = None) -> tuple[Config,
     laser = base.local_view.front_end == "laser"
     if laser:
         base = base.with_values({"local_view.shift": LASER_SHIFT, "occupancy.enabled": False})
-    end, told = named_front_end(base.local_view), base.local_view
+    end, told = FRONT_ENDS[base.local_view.front_end](), base.local_view
     turned_rad = told.shift * told.field_of_view / end.columns
     shift_at = _laser_shift if laser else partial(columns_of, turned_rad, end.columns)
     seen = survey(recording, end, shift_at)
@@ -47,7 +47,11 @@ def rules(recording: Recording, scans: ScanRules | None = None) -> tuple[Config,
     if not recording.about.has & {"speed", "throttle"}:
         levels_per_m, scale = scale, 1.0
     scale = min(max(scale, LEAST_SCALE), MOST_SCALE)
-    values: dict[str, Value] = {**_lengths(base, scale), **_views(recording, seen, scale), "memory.familiar": False}
+    values: dict[str, Value] = {
+        **_lengths(base, scale),
+        **_views(recording, seen, scale),
+        "experience_map.familiar_ground": False,
+    }
     motion = Motion(recording.about, seen.dt, seen.field_of_view, levels_per_m, scans=scans or ScanRules())
     return base.with_values(values), motion
 
@@ -96,18 +100,17 @@ def _views(recording: Recording, seen: Survey, scale: float) -> dict[str, Value]
     values: dict[str, Value] = {
         "local_view.field_of_view": seen.field_of_view,
         "local_view.shift": seen.shift,
-        "local_view.deaf_doubt": 0.0,
     }
     if "camera" not in recording.about.has and is_laser(recording.about):
         values["local_view.field_of_view"] = _span(recording.about.beam_angles_rad)
-        values["pose_filter.gate_rad"] = LASER_GATE_RAD
+        values["evidence.gate_rad"] = LASER_GATE_RAD
     # Pictures of real cameras jump when one is dropped, so a jump is no kidnap: only a gap in the recording is.
-    values |= {"local_view.composite_surprise": 255.0, "local_view.range_surprise": 0.0}
+    values |= {"local_view.surprise": 100.0, "kidnap.range_surprise": 0.0}
     if len(seen.unlike) == 0:
         return values
     share = UNRELATED if "camera" in recording.about.has else UNRELATED_SCANS
-    threshold = float(np.quantile(seen.unlike, share))
-    values["local_view.composite_threshold"] = threshold
+    threshold, own = float(np.quantile(seen.unlike, share)), FRONT_ENDS[_front_end(recording)].threshold
+    values["local_view.match_threshold"] = threshold / own
     # Where most views are the same, as of a camera that stood still, the threshold is 0.
     values["experience_map.anchor_sigma"] = min(LOOK_SIGMA_M * scale / threshold, 1.0) if threshold > 0 else 1.0
     return values

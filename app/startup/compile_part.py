@@ -93,7 +93,7 @@ def cells() -> None:
     for k in range(60):
         seen = local_view.observe(images[k // 5 % 4], None, RANGES, 0.02)
         local_view.difference_to(0)
-        jump.observe(RANGES + k % 2, config.kidnap)
+        jump.observe(RANGES + k % 2)
         pose_cells.integrate(0.03, 0.02)
         links.learn(seen.view, *pose_cells.active, pose_cells.slot, config.local_view.learning_rate)
         where, strength = links.recall(seen.view)
@@ -112,8 +112,8 @@ def maps() -> None:
     cells = config.pose_cells
     shape = (cells.n_theta, cells.n_y, cells.n_x)
     goals = GoalMemory(config.goal_memory, shape, cells.cell_m)
-    grid = OccupancyGrid(config.occupancy, shape, cells.cell_m, ANGLES)
-    pictures = MapGrid(config.occupancy, ANGLES)
+    grid = OccupancyGrid(shape, cells.cell_m, ANGLES)
+    pictures = MapGrid(ANGLES)
     for k in range(10):
         grid.update(Packet(k % 5 * 4.0, 4.0, 0.0, 1.0), RANGES)
         pictures.add(k, Pose2(0.0, 0.0, 0.0), RANGES)
@@ -130,7 +130,7 @@ def loops() -> None:
     cells = config.pose_cells
     shape = cells.n_theta, cells.n_y, cells.n_x
     believes = replace(config.experience_map, islands=False)  # else it would doubt that it is now here, now there
-    made = ExperienceMap(shape, cells.cell_m, believes, ground=FamiliarGround(config.memory))
+    made = ExperienceMap(shape, cells.cell_m, believes, ground=FamiliarGround())
     for k in range(600):
         view, known = k // 10 % 20, k >= 200
         packet = Packet(view % 5 * 4.0, view // 5 * 4.0, 0.0, 1.0)

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ratslam_core import SolverParams
+from ratslam_core.pose_graph.pose_graph import TURN_CELLS
 
 SIGMA_M = 0.024  # the noise of the Manhattan world as its residuals have it
-SIGMA_RAD = SolverParams().rad_per_m * SIGMA_M  # as the map understands it: a row has one weight for both
+SIGMA_RAD = TURN_CELLS / 0.25 * SIGMA_M  # as the map understands it: a row has one weight for both
 LEAST_M = 2.0  # a closure between places nearer than this would not be false
 
 Rows = NDArray[np.float64]

@@ -69,4 +69,4 @@ def _map(graph: Graph, params: ExperienceMapParams) -> ExperienceMap:
 
 def _weight(map_: ExperienceMap, sigma_m: float) -> float:
     """The weight of a row with this standard deviation, as the map counts it; next to nothing if nothing is known."""
-    return 1e-12 if math.isinf(sigma_m) else (map_.params.odometry_sigma / sigma_m) ** 2
+    return 1e-12 if math.isinf(sigma_m) else (map_.step_sigma_m / sigma_m) ** 2

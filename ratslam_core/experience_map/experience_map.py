@@ -2,46 +2,77 @@
 
 An experience stands for a state of the pose cells (x', y', theta') and a scene V, and has a pose of its own in the map. A
 link is a transition that the robot made: distance, bearing and change of facing by odometry, and the time it took.
+
+Each step chooses the experience that the robot sees, enters it or makes a new one, and learns the transition. The papers
+take the experience with the most energy. What is ours asks, too, whether the robot can be there; if not, evidence has to
+say so (`extensions/evidence.py`).
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.experience_map.looks import Looks, Senses
+from ratslam_core.experience_map.temporal_map import TemporalMap
+from ratslam_core.extensions.evidence import PRIOR, Belief, Evidence
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
+from ratslam_core.extensions.islands import Islands
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges
-from ratslam_core.params import EvidenceParams, ExperienceMapParams, PoseFilterParams, SolverParams
+from ratslam_core.extensions.pose_filter import SNAP, LatestLook, PoseEstimate, PoseFilter
+from ratslam_core.extensions.torn import open_way_m, soften
+from ratslam_core.params import EvidenceParams, ExperienceMapParams
 from ratslam_core.parts import LocalViewPart, Optimiser, Witness
+from ratslam_core.pose_graph.pose_graph import PoseGraph
 from ratslam_core.pose_graph.preintegrated import PreintegratedOdometry, moved_by
+from ratslam_core.pose_graph.relaxation import has_diverged
 from ratslam_core.pose_graph.transitions import require_behaviour
-from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite
+from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite, wrap_angle
+
+CARRIED = 400.0  # cells: how far off the robot may be after it was carried
+REACH_SIGMA = 5.0  # a look may move the robot by so many times its uncertainty
+BLIND = 4.0  # cells: when there is nothing to see, only experiences this near in the map can become active,
+BLIND_SIGMA = 2.0  # cells: and the robot may be so far off them
 
 
-@kind("experience map/5")
-class ExperienceMap(Looks):
-    """Experiences and links. `step` finds or makes the active experience and learns the transition to it."""
+class Senses(NamedTuple):
+    """What can be asked of a sight, beside which view it is."""
+
+    views: LocalViewPart | None = None  # which made it out
+    witness: Witness | None = None  # a look that it does not confirm is none
+
+
+@kind("experience map/7")
+class ExperienceMap(PoseGraph):
+    """Experiences, links and a robot among them. `step` finds or makes the active experience and learns the transition to it."""
 
     def __init__(
         self,
         shape: tuple[int, int, int],
         cell_m: float,
         params: ExperienceMapParams | None = None,
-        filter_params: PoseFilterParams | None = None,
         optimiser: Optimiser | None = None,
         ground: FamiliarGround | NewGround | None = None,
         evidence: EvidenceParams | None = None,
     ) -> None:
         """shape: layers, cells along y' and x' of the pose cells; cell_m: side of one cell."""
-        super().__init__(shape, cell_m, params, filter_params, ground, evidence)
-        self.optimiser: Optimiser = optimiser or ExactSolver(SolverParams())
+        super().__init__(shape, cell_m, params)
+        self.optimiser: Optimiser = optimiser or ExactSolver()
+        self.ground = ground or NewGround()
         self.transitions.reuses = isinstance(self.ground, FamiliarGround)
+        self.evidence = Evidence(evidence or EvidenceParams(), cell_m)
+        self.pose_filter: PoseEstimate = PoseFilter(cell_m) if self.params.pose_filter else LatestLook()
+        self.islands = Islands()
+        self._temporal_map = TemporalMap(self)
+        self._edges = OdometryEdges() if self.params.odometry_edges else NoOdometryEdges()
+        self.here = -1  # the experience at which the map is being learnt
+        self.carried = False  # it knows that it was carried away and has not found itself again
+        self.corrected = 0  # how often evidence proved that it was carried unnoticed, or its wheels slipped
         self.agrees = True  # whether the last look agreed with where the robot believed itself to be
         self._offset = IDENTITY  # the robot in the frame of the active experience, at the best look so far
         self._sigma = 0.0  # how far off that may be, m
@@ -49,7 +80,6 @@ class ExperienceMap(Looks):
         self._kidnapped = False  # since the active experience was entered: the way from there is no transition
         self._leg = PreintegratedOdometry()  # since the last link was learnt
         self._arrival: _Arrival | None = None
-        self._edges = OdometryEdges() if self.params.odometry_edges else NoOdometryEdges()
 
     def step(
         self, packet: Packet, seen: Recognition, odometry: Odometry, behaviour: int = 0, *,
@@ -109,17 +139,9 @@ class ExperienceMap(Looks):
             self.steps += 1
             self.optimiser.correct(self)
 
-    def set_params(
-        self,
-        params: ExperienceMapParams,
-        filter_params: PoseFilterParams,
-        solver: SolverParams,
-        evidence: EvidenceParams,
-    ) -> None:
+    def set_params(self, params: ExperienceMapParams, evidence: EvidenceParams) -> None:
         """Take new live parameters while running."""
-        self.evidence.params = evidence
-        self.params, self.optimiser.params = params, solver
-        self.pose_filter.params = filter_params
+        self.params, self.evidence.params = params, evidence
 
     def tried(self, i: int, j: int, reached: bool) -> bool:
         """Count one trial of the links between two experiences, in both directions. True when a link was deleted for it.
@@ -151,8 +173,8 @@ class ExperienceMap(Looks):
         sure: it cannot have been otherwise; if not, it is as likely where odometry leads as at a new place.
         test_experience_map_transitions.py::test_a_kidnap_makes_no_way.
         """
-        self._kidnapped, self._sigma = True, self.params.carried_sigma
-        self.pose_filter.forget(self.params.carried_sigma)
+        self._kidnapped, self._sigma = True, CARRIED * self.cell_m
+        self.pose_filter.forget(CARRIED * self.cell_m)
         self._edges.forget()
         self.ground.forget()
         if self.params.islands:
@@ -170,7 +192,50 @@ class ExperienceMap(Looks):
         """The view is no more: its experiences stay in the map as places where there is nothing to see."""
         self._experiences.forget_view(view)
 
-    # ------------------------------------------------------------ inside
+    # ------------------------------------------------------------ where the robot is
+
+    @property
+    def active(self) -> int:
+        """The experience at which the robot believes itself to be."""
+        belief = self.belief
+        return self.here if belief is None else belief.experience
+
+    @property
+    def local_pose(self) -> Pose2:
+        """Where the robot believes itself to be, in the frame of the active experience."""
+        belief = self.belief
+        return self.pose_filter.local if belief is None else self.pose(belief.experience).inverse().compose(belief.pose)
+
+    @property
+    def robot(self) -> Pose2:
+        """Where the robot believes itself to be, in the map."""
+        belief = self.belief
+        return self.robot_here if belief is None else belief.pose
+
+    @property
+    def robot_here(self) -> Pose2:
+        """Where the robot is on its submap."""
+        return self.pose(self.here).compose(self.pose_filter.local)
+
+    @property
+    def lost(self) -> bool:
+        """Whether the robot knows that it was carried away, and believes no place."""
+        return self.carried and self.evidence.belief is None
+
+    @property
+    def belief(self) -> Belief | None:
+        """Where on the map the robot believes itself to be, if not where it maps; None if there, or nowhere."""
+        return self.evidence.belief if self.carried or self.evidence.in_doubt else None
+
+    @property
+    def temporal_map(self) -> TemporalMap:
+        """Times and routes over the current links; the same object for as long as the map lives."""
+        return self._temporal_map
+
+    @property
+    def diverged(self) -> bool:
+        """Whether correction with the sweep "all at once" has thrown the map apart: `relaxation.sweep_all_at_once`."""
+        return self.params.sweep == "all at once" and has_diverged(self.poses, self.moves)
 
     def _move(self, odometry: Odometry) -> None:
         moved, way_m = moved_by(odometry), abs(odometry.speed * odometry.dt)
@@ -182,8 +247,125 @@ class ExperienceMap(Looks):
         self._driving_s += odometry.dt * (odometry.speed != 0)
         self.pose_filter.move(moved, self.params.odometry_drift * way_m)
 
-    def _departure(self) -> _Departure:
-        return _Departure(self.here, self._offset.compose(self._travel), self._sigma, self._kidnapped)
+    # ------------------------------------------------------------ choosing
+
+    def log_prior(self, experience: int, pose: Pose2) -> float:
+        """Log odds of a place, before anything speaks for it: how far odometry may have led astray since the robot was there."""
+        if not self.evidence.in_doubt or self.island_of[experience] != self.islands.current:
+            return PRIOR
+        drift = self.params.odometry_drift * open_way_m(self.transitions, experience, len(self))
+        sigma = max(math.hypot(self.pose_filter.sigma_m, drift), 1e-9)
+        return -min(0.5 * (self._off(pose) / sigma) ** 2, self.evidence.params.unnoticed)
+
+    def _off(self, pose: Pose2) -> float:
+        return math.hypot(pose.x - self.robot_here.x, pose.y - self.robot_here.y)
+
+    def _seen_experience(self, packet: Packet, seen: Recognition, by: Senses) -> tuple[int, Recognition]:
+        """The experience that the robot sees, the most energetic of those that it can see, -1 for none; and as what.
+
+        [ours] One where it cannot be puts it in doubt. When evidence has won, it is one beyond reach, perhaps on another
+        submap, and the two were merged.
+        """
+        if not self.params.islands:
+            return self._most_energetic(packet, seen.view, math.inf), seen
+        if self.evidence.known and (merged := self._merged(by)) is not None:
+            return merged
+        if self.evidence.idle:
+            self._end_of_doubt()
+        reach = self._reach_m
+        best = self._most_energetic(packet, seen.view, reach)
+        if seen.view < 0 or not self.params.match_view or math.isinf(reach):
+            return best, seen
+        turns = best >= 0 and self._turns(best, packet, seen)
+        if not turns and (best >= 0 or self._may_be_seen_from(seen.view, reach)):
+            return best, seen
+        if not self.carried:
+            self.evidence.doubt(len(self))
+        return -1, seen
+
+    @property
+    def _reach_m(self) -> float:
+        """A look may move the robot by so much."""
+        return max(SNAP * self.cell_m, REACH_SIGMA * self.pose_filter.sigma_m)
+
+    def _turns(self, experience: int, packet: Packet, seen: Recognition) -> bool:
+        """[ours] Whether a look would turn the robot farther than its heading can be off, wherever it puts it.
+
+        test_evidence.py::test_a_look_that_turns_the_robot_is_held_back.
+        """
+        most = self.evidence.params.gate_rad
+        if most >= math.pi or self.carried:
+            return False
+        claimed = self.pose(experience).compose(self._look(experience, packet, seen))
+        return abs(wrap_angle(claimed.heading_rad - self.robot_here.heading_rad)) > most
+
+    def _may_be_seen_from(self, view: int, reach_m: float) -> bool:
+        """Whether an experience of this view lies within reach, wherever the packet is; or there is none at all."""
+        found = self._experiences.of_view(view)
+        own = found[self.island_of[found] == self.islands.current]
+        return not len(own) or bool(self._away(own, self.robot_here).min() <= reach_m)
+
+    def _away(self, which: NDArray[np.int64], pose: Pose2) -> NDArray[np.float64]:
+        return np.hypot(self.poses[which, 0] - pose.x, self.poses[which, 1] - pose.y)
+
+    def _most_energetic(self, packet: Packet, view: int, reach_m: float) -> int:
+        return self._experiences.most_energetic(
+            packet, view, self.params, self.robot_here, BLIND * self.cell_m, reach_m, self.islands.current
+        )
+
+    def _merged(self, by: Senses) -> tuple[int, Recognition] | None:
+        """The experience that the robot is at, and as what it sees it, if the evidence for that place is so strong that the
+        loop is closed or the submap is merged there; it then is. None if not.
+        """
+        belief = self.evidence.belief
+        if belief is None or belief.log_odds < self.evidence.params.merge or by.views is None:
+            return None
+        look = self.pose(belief.experience).inverse().compose(belief.pose)
+        if by.witness is not None and by.witness.confirms(self, belief.experience, look) is None:
+            return None
+        view, other = int(self.views[belief.experience]), int(self.island_of[belief.experience])
+        if other != self.islands.current:
+            self.islands.join(other, self.island_of, self.poses, self.robot_here, belief.pose)
+        elif self.log_prior(belief.experience, belief.pose) <= -self.evidence.params.unnoticed:
+            self.corrected += 1
+            off, sigma = self._off(belief.pose), self.step_sigma_m
+            soften(self.transitions, belief.experience, self.evidence.known, off, sigma)
+        self._end_of_doubt()
+        self.carried = False
+        return belief.experience, Recognition(view, False, view, by.views.difference_to(view), belief.facing_rad)
+
+    def _end_of_doubt(self) -> None:
+        self.evidence.end(len(self) if np.any(self.island_of != self.islands.current) else 0)
+
+    def _measured(
+        self, experience: int, packet: Packet, seen: Recognition, witness: Witness | None
+    ) -> tuple[Pose2, float] | None:
+        """[ours] The look, and how far off it may be (m); as a witness measures it, None if it does not confirm it.
+
+        test_scan_ties.py::test_the_map_asks_the_witness.
+        """
+        look, sigma = self._look(experience, packet, seen), self._deviation(seen)
+        confirmed = (look, math.inf) if witness is None else witness.confirms(self, experience, look)
+        return (look, sigma) if confirmed is not None and math.isinf(confirmed[1]) else confirmed
+
+    def _look(self, experience: int, packet: Packet, seen: Recognition) -> Pose2:
+        """The look: the robot's pose in the frame of an experience, whose zone it may enter beside the centre."""
+        if not self.params.zone_offset:
+            return IDENTITY
+        if self.energy(experience, packet, seen.view) <= self.params.threshold:  # recognised by its view alone
+            return Pose2(0.0, 0.0, seen.facing_rad or 0.0)
+        dx, dy, dtheta = self._experiences.cells_from(experience, packet)
+        facing = self.cell_states[experience, 2] * 2 * math.pi / self.shape[0]
+        c, s = math.cos(facing), math.sin(facing)
+        dx, dy = dx * self.cell_m, dy * self.cell_m
+        turn = seen.facing_rad if seen.view >= 0 else None
+        if turn is None:  # only the pose cells tell the heading
+            turn = dtheta * 2 * math.pi / self.shape[0]
+        return Pose2(c * dx + s * dy, -s * dx + c * dy, wrap_angle(turn))
+
+    def _deviation(self, seen: Recognition) -> float:
+        """How far (m) the robot may be from where the view was taken: the more the view differs, the farther."""
+        return self.params.anchor_sigma * seen.difference if seen.view >= 0 else BLIND_SIGMA * self.cell_m
 
     def _look_by_view(self, experience: int, seen: Recognition) -> Pose2:
         """[ours] The look without the pose cells: the robot is where the view was taken. See `FamiliarGround.of_view`."""
@@ -191,6 +373,11 @@ class ExperienceMap(Looks):
         if turn is None:
             turn = self.pose(experience).inverse().compose(self.robot_here).heading_rad
         return Pose2(0.0, 0.0, turn)
+
+    # ------------------------------------------------------------ entering and learning
+
+    def _departure(self) -> _Departure:
+        return _Departure(self.here, self._offset.compose(self._travel), self._sigma, self._kidnapped)
 
     def _create(self, packet: Packet, view: int, pose: Pose2) -> None:
         self.here = self._experiences.add(packet, view, pose, self.islands.current)
@@ -270,7 +457,7 @@ class ExperienceMap(Looks):
 
         With anchor_sigma and odometry_drift 0 every transition has the same weight, as in the papers.
         """
-        least = self.params.odometry_sigma**2
+        least = self.step_sigma_m**2
         return least / (least + sigma**2)
 
     def _measure(self, arrival: _Arrival) -> None:

@@ -10,7 +10,7 @@ Beside all hypotheses stands that of a new place, for and against which nothing 
 A robot that noticed that it was carried may be anywhere. One that sees something where it cannot be is in doubt: *here*,
 where odometry has led it, is a rival, too, weighed by what is seen there; what lies farther off than odometry can have
 drifted begins with odds against it, at most those of having been carried unnoticed; and since an exact copy of a place
-may exist, looks say no more than `most`. So in a twin odometry decides, where looks cannot.
+may exist, looks say no more than MOST_SAID. So in a twin odometry decides, where looks cannot.
 
 The robot *believes* a hypothesis that is likelier than all others together. There it acts; nothing is learnt from it, so
 that it may be wrong at no cost. Where the odds are 1000 to 1, the submap on which it was is *merged*. test_evidence.py.
@@ -34,6 +34,10 @@ Rows = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 MOST = 32  # hypotheses
+UNIT, UNIT_RAD = 4.0, 1.0  # cells; so long a way, or so wide a turn, is one unit of evidence
+LEAK = 0.2  # share of the evidence for a hypothesis that a unit takes away
+LEAST_SEEN = 1.5  # units that a hypothesis needs to be believed
+MOST_SAID = 14.0  # nats that looks can say for a place, since an exact copy of it may exist
 LEAST_VIEWS = 10  # of fewer views nobody can say how like views are anyway
 MOST_VIEWS = 2048  # that are compared with an observation; of more, every second, third ... one
 MOST_PAIRS = 4096  # of a hypothesis and a view near it
@@ -43,18 +47,18 @@ PRIOR = -4.0  # log odds of a place that a view suggests, against a new place
 FORGOTTEN = PRIOR - 4.0  # log odds below which a hypothesis is given up
 DOUBTED = 15.0  # and, while in doubt, how far they may lie below the likeliest's
 QUIET = 5.0  # units of way after which a doubt is over for which nothing has spoken
-HERE_M, HERE_RAD = 1.0, 0.6  # a hypothesis so near to where a robot in doubt is mapping, is that it is there
+HERE, HERE_RAD = 4.0, 0.6  # cells; a hypothesis so near to where a robot in doubt is mapping, is that it is there
 BELIEVE_IN_DOUBT = 3.0  # nats: who was hardly carried must not wander off in thought for a look-alike
-SAME_M, SAME_RAD = 0.6, 0.3  # hypotheses this near are one
-PULLS_M, PULLS_RAD = 0.7, 0.35  # a view this near to a hypothesis says more exactly where it is
+SAME, SAME_RAD = 2.4, 0.3  # cells; hypotheses this near are one
+PULLS, PULLS_RAD = 2.8, 0.35  # cells; a view this near to a hypothesis says more exactly where it is
 PULL = 0.3  # the share of that way which it goes for a unit of evidence
 LEAST_PULL = 0.15
 LEAST_UNITS = 0.1  # of way after which it pays to look again, for a robot in doubt; one that is lost looks all the time
 AGAINST, FOR = -2.0, 7.0  # nats that one unit of evidence can say at most
 # The likeness: the least difference to a view near the hypothesis, over the tenth of all differences that is least.
 LIKENESS: Rows = np.array([0.2, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95, 1.05, 1.2])
-# What that says, in nats, by how near views there are: within so many metres and radians. The nearest that there are count.
-RINGS: Rows = np.array([(0.5, 0.3), (0.5, 0.52), (1.0, 0.3)])
+# What that says, in nats, by how near views there are: within so many cells and radians. The nearest that there are count.
+RINGS: Rows = np.array([(2.0, 0.3), (2.0, 0.52), (4.0, 0.3)])
 NATS: Rows = np.array(
     [
         [5.8, 4.2, 2.7, 1.3, -0.4, -1.7, -2.5, -2.9, -3.1, -3.1],
@@ -75,6 +79,8 @@ class Views(Protocol):
 
 class Map(Protocol):
     """What has to be known of the experience map."""
+
+    cell_m: float
 
     @property
     def poses(self) -> Rows: ...
@@ -98,12 +104,13 @@ class Belief:
     facing_rad: float  # of the robot, relative to that at which this view was taken
 
 
-@kind("evidence/2")
+@kind("evidence/3")
 class Evidence:
     """The hypotheses, and what speaks for each."""
 
-    def __init__(self, params: EvidenceParams) -> None:
-        self.params = params
+    def __init__(self, params: EvidenceParams, cell_m: float) -> None:
+        """cell_m: side of a cell of the pose cells."""
+        self.params, self.cell_m = params, cell_m
         self.belief: Belief | None = None
         self.sure = True  # that the robot was carried
         self.in_doubt = False  # it knows of no kidnap, but saw something where it cannot be
@@ -147,7 +154,7 @@ class Evidence:
         rows[:, X] += way * np.cos(middle)
         rows[:, Y] += way * np.sin(middle)
         rows[:, HEADING] += turn
-        units = abs(way) / self.params.unit_m + abs(turn) / self.params.unit_rad
+        units = abs(way) / (UNIT * self.cell_m) + abs(turn) / UNIT_RAD
         self._units, self._quiet = min(1.0, self._units + units), self._quiet + units
         if self.belief is not None:
             moved = self.belief.pose.compose(Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn))
@@ -177,17 +184,17 @@ class Evidence:
         facing: Rows = shifts[best] * np.float64(views.column_rad)
         self._suggest(map_, among[best], facing, apart[best] / usual, max(units, LEAST_PULL))
         least = max(self.here, *self.hypotheses[:, ODDS], 0.0) - DOUBTED if self.in_doubt else FORGOTTEN
-        self._count = _merge(self._rows, self._count, least)
+        self._count = _merge(self._rows, self._count, least, self.cell_m)
         self._believe(map_, views, known)
 
     def _weigh(self, map_: Map, views: Views, known: Whole, usual: float, units: float, submap: int) -> None:
         there = _Expected(map_, views, known, self.hypotheses)
-        _weigh(self.hypotheses, there.ring, there.apart / usual, units, self.params.leak)
+        _weigh(self.hypotheses, there.ring, there.apart / usual, units)
         if self.in_doubt:
             here = _row(map_.robot_here, self.here, submap)
             there = _Expected(map_, views, known, here)
             there.ring[there.ring > 0] = -1  # who explores is beside known ground all the time, perhaps behind its wall
-            _weigh(here, there.ring, there.apart / usual, units, self.params.leak)
+            _weigh(here, there.ring, there.apart / usual, units)
             self.here = float(here[0, ODDS])
 
     def _suggest(self, map_: Map, experiences: Whole, facing: Rows, likeness: Rows, units: float) -> None:
@@ -195,11 +202,11 @@ class Evidence:
         places = map_.poses[experiences].copy()
         places[:, 2] += facing
         submaps = map_.island_of[experiences].astype(np.float64)
-        known = _pull(self.hypotheses, places, submaps, units)
+        known = _pull(self.hypotheses, places, submaps, units, self.cell_m)
         for k in np.flatnonzero(~known):
             prior = map_.log_prior(int(experiences[k]), Pose2(*places[k].tolist()))
             odds = prior + nats(likeness[k], 0)
-            self._count = _begin(self._rows, self._count, places[k], odds, submaps[k], prior + self.params.most)
+            self._count = _begin(self._rows, self._count, places[k], odds, submaps[k], prior + MOST_SAID)
 
     def weighed(self, robot: Pose2) -> tuple[Rows, list[float]]:
         """The hypotheses of another place than where the robot maps, (n, 7), and the log odds of all that stands beside them."""
@@ -220,7 +227,7 @@ class Evidence:
         rivals = (rows[:, SUBMAP] == row[0, SUBMAP]) & (np.arange(len(rows)) != best)
         odds = float(row[0, ODDS] - np.logaddexp.reduce(np.append(rows[rivals, ODDS], beside)))
         least = BELIEVE_IN_DOUBT if self.in_doubt else self.params.believe
-        if odds <= least or row[0, UNITS] < self.params.least_units:
+        if odds <= least or row[0, UNITS] < LEAST_SEEN:
             return
         there = _Expected(map_, views, known, row)
         if there.ring[0] >= 0:
@@ -232,7 +239,7 @@ class Evidence:
         """Which hypotheses are where a robot in doubt is mapping, since a map is a little off."""
         rows = self.hypotheses
         turn = np.abs(np.remainder(rows[:, HEADING] - robot.heading_rad + math.pi, 2 * math.pi) - math.pi)
-        return (np.hypot(rows[:, X] - robot.x, rows[:, Y] - robot.y) < HERE_M) & (turn < HERE_RAD)
+        return (np.hypot(rows[:, X] - robot.x, rows[:, Y] - robot.y) < HERE * self.cell_m) & (turn < HERE_RAD)
 
     @property
     def idle(self) -> bool:
@@ -249,7 +256,7 @@ class _Expected:
 
     def __init__(self, map_: Map, views: Views, known: Whole, rows: Rows) -> None:
         column = views.column_rad
-        self.ring, pairs = _near(rows, map_.poses, map_.island_of, known, column)
+        self.ring, pairs = _near(rows, map_.poses, map_.island_of, known, column, map_.cell_m)
         owner, which, shift = pairs.T
         apart, by = views.apart_at(known[which], shift, 2)
         self.apart, self.experience, by = _least(len(rows), owner, which, apart, by)
@@ -268,7 +275,9 @@ def _least(rows: int, owner: Whole, which: Whole, apart: Rows, by: Whole) -> tup
 
 
 @njit(cache=True, nogil=True)
-def _near(rows: Rows, poses: Rows, submaps: NDArray[np.int32], known: Whole, column_rad: float) -> tuple[Whole, Whole]:
+def _near(
+    rows: Rows, poses: Rows, submaps: NDArray[np.int32], known: Whole, column_rad: float, cell_m: float
+) -> tuple[Whole, Whole]:
     """The ring of each hypothesis, -1 where it has no views; and (hypothesis, experience, shift in columns) of those there."""
     ring = np.full(len(rows), -1, np.int64)
     pairs = np.empty((MOST_PAIRS, 3), np.int64)
@@ -277,7 +286,7 @@ def _near(rows: Rows, poses: Rows, submaps: NDArray[np.int32], known: Whole, col
         for r in range(len(RINGS)):
             for i in range(len(known)):
                 dx, dy = poses[i, 0] - rows[h, X], poses[i, 1] - rows[h, Y]
-                if known[i] < 0 or dx * dx + dy * dy > RINGS[r, 0] ** 2 or submaps[i] != rows[h, SUBMAP]:
+                if known[i] < 0 or dx * dx + dy * dy > (RINGS[r, 0] * cell_m) ** 2 or submaps[i] != rows[h, SUBMAP]:
                     continue
                 turn = (rows[h, HEADING] - poses[i, 2] + math.pi) % (2 * math.pi) - math.pi
                 if abs(turn) <= RINGS[r, 1] and found < MOST_PAIRS:
@@ -296,22 +305,22 @@ def nats(likeness: float, ring: int) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _weigh(rows: Rows, ring: Whole, likeness: Rows, units: float, leak: float) -> None:
+def _weigh(rows: Rows, ring: Whole, likeness: Rows, units: float) -> None:
     for h in range(len(rows)):
-        rows[h, ODDS] -= leak * units * max(rows[h, ODDS], 0.0)
+        rows[h, ODDS] -= LEAK * units * max(rows[h, ODDS], 0.0)
         if ring[h] >= 0:
             rows[h, ODDS] = min(rows[h, ODDS] + units * nats(likeness[h], ring[h]), rows[h, CEILING])
             rows[h, UNITS] += units
 
 
 @njit(cache=True, nogil=True)
-def _pull(rows: Rows, places: Rows, submaps: Rows, units: float) -> NDArray[np.bool_]:
+def _pull(rows: Rows, places: Rows, submaps: Rows, units: float, cell_m: float) -> NDArray[np.bool_]:
     """Suggested places say more exactly where the hypotheses near them are. Returns near which of them there is one."""
     known = np.zeros(len(places), np.bool_)
     for k in range(len(places)):
         for h in range(len(rows)):
             dx, dy, turn = _between(rows[h], places[k])
-            if rows[h, SUBMAP] == submaps[k] and math.hypot(dx, dy) < PULLS_M and abs(turn) < PULLS_RAD:
+            if rows[h, SUBMAP] == submaps[k] and math.hypot(dx, dy) < PULLS * cell_m and abs(turn) < PULLS_RAD:
                 if not known[k]:
                     rows[h, X] += PULL * units * dx
                     rows[h, Y] += PULL * units * dy
@@ -330,7 +339,7 @@ def _begin(rows: Rows, count: int, place: Rows, odds: float, submap: float, ceil
 
 
 @njit(cache=True, nogil=True)
-def _merge(rows: Rows, count: int, least: float) -> int:
+def _merge(rows: Rows, count: int, least: float, cell_m: float) -> int:
     """Of hypotheses that have met the likeliest stays; one that is far too unlikely goes. Returns how many are left."""
     rows[:count] = rows[:count][np.argsort(-rows[:count, ODDS], kind="mergesort")]
     left = 0
@@ -338,7 +347,7 @@ def _merge(rows: Rows, count: int, least: float) -> int:
         alone = rows[h, ODDS] >= least
         for other in range(left):
             dx, dy, turn = _between(rows[h], rows[other])
-            if rows[h, SUBMAP] == rows[other, SUBMAP] and math.hypot(dx, dy) < SAME_M and abs(turn) < SAME_RAD:
+            if rows[h, SUBMAP] == rows[other, SUBMAP] and math.hypot(dx, dy) < SAME * cell_m and abs(turn) < SAME_RAD:
                 alone = False
         if alone:
             rows[left] = rows[h]

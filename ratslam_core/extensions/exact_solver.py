@@ -14,19 +14,20 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.extensions import robust_weights
-from ratslam_core.extensions.graduated_trust import contradiction, kept
-from ratslam_core.params import SolverParams
+from ratslam_core.extensions.graduated_trust import BAR, contradiction, kept
 from ratslam_core.pose_graph import relaxation
-from ratslam_core.pose_graph.pose_graph import PoseGraph
+from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS, PoseGraph
+
+WORK_A_STEP = 1e5  # of exact corrections, on average over the beats; so much takes about half a millisecond
+TRIAL = 36.0  # sigma squared; all closures are put on trial when the map leaves one of them farther off
 
 
-@kind("exact solver/1")
+@kind("exact solver/2")
 class ExactSolver:
     """Sweeps in every step, and the exact solution in some."""
 
-    def __init__(self, params: SolverParams) -> None:
-        self.params = params
-        self._sweeps = relaxation.Relaxation(params)
+    def __init__(self) -> None:
+        self._sweeps = relaxation.Relaxation()
         self._solved_at = self._closures_at_solve = 0
         self._rest_after_solve = 0.0
 
@@ -46,10 +47,10 @@ class ExactSolver:
         if graph.params.robust and self._contradicted(graph, given_up):
             graph.poses[:] = before  # many false closures would have led it far astray, and the bias, too
             self._learn(graph, -learnt)
-            share, trying = kept(*_given(graph), self._odometry(graph), graph.params.odometry_sigma, self.params)
+            share, trying = kept(*_given(graph), self._odometry(graph), graph.cell_m)
             work += trying + self._settle(graph, share)[1]
         self._solved_at, self._closures_at_solve = graph.steps, graph.closures
-        self._rest_after_solve = work / self.params.work_a_step
+        self._rest_after_solve = work / WORK_A_STEP
 
     def _contradicted(self, graph: PoseGraph, given_up: NDArray[np.bool_]) -> bool:
         """Whether all closures are put on trial: one that was believed is left far off, or one that was given up agrees.
@@ -58,8 +59,8 @@ class ExactSolver:
         """
         t = graph.transitions
         looks = np.flatnonzero(~self._odometry(graph) & (t.weight[: t.count] > 0.0))
-        off, old = contradiction(*_given(graph), looks, graph.params.odometry_sigma, self.params), given_up[looks]
-        far = off > self.params.closure_trial / self.params.closure_bar
+        off, old = contradiction(*_given(graph), looks, graph.cell_m), given_up[looks]
+        far = off > TRIAL / BAR
         return bool(np.any(far & ~old) or np.any((off < 1.0) & old))
 
     def _given_up(self, graph: PoseGraph) -> NDArray[np.bool_]:
@@ -83,13 +84,11 @@ class ExactSolver:
             if self._given_up(graph).any():  # the verdict of the last trial stands
                 share = np.divide(t.believed[: t.count], weights, out=np.zeros(t.count), where=weights > 0.0)
             else:
-                share = robust_weights.trust(
-                    poses, ends, moves, weights, self._odometry(graph), p.odometry_sigma, self.params
-                )
+                share = robust_weights.trust(poses, ends, moves, weights, self._odometry(graph), graph.cell_m)
         t.believed[: t.count] = weights if share is None else weights * share
-        doubt = (p.odometry_sigma * self.params.rad_per_m / self.params.bias_sigma) ** 2  # in the unit of the weights
+        doubt = (STEP_SIGMA * TURN_CELLS / p.bias_sigma) ** 2  # in the unit of the weights
         believed, known = t.believed[: t.count], graph.yaw_bias
-        more, work = relaxation.solve(poses, ends, moves, believed, turning, self.params, known, doubt)
+        more, work = relaxation.solve(poses, ends, moves, believed, turning, known, doubt)
         if turning is not None:
             self._learn(graph, more)
         return more, work

@@ -3,7 +3,7 @@
 The papers' robot recruits a view for each sight that is unlike all others, and an experience for each view at a new
 state of the pose cells, so its memory grows for as long as it drives, even in an office that never changes. Here each
 experience knows which share of the latest sights near it were recognised. Where the shares of the experiences near the
-robot add up to `enough`, one more would tell it nothing, and what it sees is let go: it goes on by odometry until it
+robot add up to ENOUGH, one more would tell it nothing, and what it sees is let go: it goes on by odometry until it
 recognises something again, never for long. Where a place changes, nothing is recognised any more, the shares fall, and
 the new appearance is learnt. A robot that is not sure of its place learns as in the papers.
 test_familiar_ground.py. `NewGround` is the plain twin: every place is new for ever.
@@ -22,10 +22,18 @@ from disk import kind
 from ratslam_core.beats import weight
 from ratslam_core.extensions.islands import Islands
 from ratslam_core.extensions.pose_filter import PoseEstimate
-from ratslam_core.params import MemoryParams
 from ratslam_core.pose_graph.transitions import Transitions
 from ratslam_core.types import Odometry, Pose2, Recognition
 
+ENOUGH = 0.5  # a place is familiar when the shares of recognised sights of the experiences there add up to this
+SIGHTS = 20  # over which that share is averaged
+NEAR, NEAR_RAD = (
+    1.6,
+    math.radians(17),
+)  # cells; experiences this near, whose headings differ by no more, are of one place
+SURE = 1.2  # cells: only a robot whose place is known to this precision calls it familiar
+VIEWS = 5  # a place of so many gets another only in the room of that which was longest not recognised
+LINKS = 4  # two experiences that both have so many get none between them
 MOST_NEAR = 256  # experiences near the robot that are looked at
 
 
@@ -33,6 +41,7 @@ class Map(Protocol):
     """What has to be known of an experience map."""
 
     here: int
+    cell_m: float
     agrees: bool  # whether the last look agreed with where the robot believed itself to be
     islands: Islands
     pose_filter: PoseEstimate
@@ -48,12 +57,11 @@ class Map(Protocol):
     def robot_here(self) -> Pose2: ...
 
 
-@kind("familiar ground/1")
+@kind("familiar ground/2")
 class FamiliarGround:
     """`familiar` says whether the robot is at a place that is known well enough."""
 
-    def __init__(self, params: MemoryParams) -> None:
-        self.params = params
+    def __init__(self) -> None:
         self.familiar = False
         self.spared = 0  # sights so far that would have become experiences
         self.adopted = 0  # sights so far that were taken for an experience since it is near in the map
@@ -115,7 +123,7 @@ class FamiliarGround:
         Only links that were driven and that the map bears out count. A new experience has none, and is always tied.
         test_familiar_ground.py::test_no_place_gets_links_without_end.
         """
-        tied = min(_ties(t, i), _ties(t, j)) >= self.params.links
+        tied = min(_ties(t, i), _ties(t, j)) >= LINKS
         self.links_spared += tied
         return tied
 
@@ -132,7 +140,7 @@ class FamiliarGround:
         self.views_faded += seen.recruited and seen.view == self.faded
         if not odometry.still and (seen.view >= 0 or seen.familiar):
             hit = map_.agrees and not (created or self._let_go)
-            _count(self._share, self._unseen, self.near, float(hit), weight(1 / self.params.sights, beats), beats)
+            _count(self._share, self._unseen, self.near, float(hit), weight(1 / SIGHTS, beats), beats)
             if hit:
                 self._unseen[map_.here] = 0
         if created:
@@ -141,16 +149,16 @@ class FamiliarGround:
         self._look(map_, lost)
 
     def _look(self, map_: Map, lost: bool) -> None:
-        p, robot = self.params, map_.robot_here
+        robot, cell_m = map_.robot_here, map_.cell_m
         self.forget()
-        if lost or map_.pose_filter.sigma_m > p.sure_m:
+        if lost or map_.pose_filter.sigma_m > SURE * cell_m:
             return
         self._found, total = _near(
             map_.poses, map_.views, map_.island_of, map_.islands.current, self._share, robot.x, robot.y, robot.heading_rad,
-            p.near_m, p.near_rad, self._near,
+            NEAR * cell_m, NEAR_RAD, self._near,
         )  # fmt: skip
-        self.familiar = total * self._found >= p.enough
-        if self._found >= p.views and not self.familiar:
+        self.familiar = total * self._found >= ENOUGH
+        if self._found >= VIEWS and not self.familiar:
             self.faded = self._oldest(map_)
 
     def _oldest(self, map_: Map) -> int:
@@ -159,7 +167,7 @@ class FamiliarGround:
         return int(map_.views[others[np.argmax(self._unseen[others])]]) if len(others) else -1
 
 
-@kind("new ground/1")
+@kind("new ground/2")
 class NewGround:
     """As in the papers: every sight that is unlike all others is kept."""
 
@@ -168,9 +176,6 @@ class NewGround:
     familiar = False
     faded = -1
     spared = adopted = links_spared = views_faded = 0
-
-    def __init__(self, params: MemoryParams) -> None:
-        self.params = params
 
     @property
     def let_go(self) -> dict[str, int]:

@@ -13,10 +13,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ratslam_core.params import SolverParams
 from ratslam_core.pose_graph import relaxation
-from ratslam_core.pose_graph.pose_graph import disagreement
+from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS, disagreement
 
+SIGMA = 0.6  # cells: least error that a closure is taken to have
+BAR = 9.0  # sigma squared; a closure that is farther off is given up
+GROWTH = 1.4  # how much more strictly each round judges than the one before
 MOST_ROUNDS = 100
 DECIDED = 0.01  # a share this near to 0 or 1 no longer changes
 
@@ -27,25 +29,24 @@ def kept(
     moves: NDArray[np.float64],
     weights: NDArray[np.float64],
     sure: NDArray[np.bool_],
-    sigma: float,
-    p: SolverParams,
+    cell_m: float,
 ) -> tuple[NDArray[np.float64], float]:
     """How far each row is kept, 0 to 1, and the work. `poses` are changed in place, and fit the rows that are kept.
 
-    weights: sigma^2 / variance; sure: rows that are never doubted.
+    weights: STEP_SIGMA^2 / variance; cell_m: side of a cell of the pose cells; sure: rows that are never doubted.
     """
     rows = np.flatnonzero(~sure & (weights > 0.0))
     share = np.ones(len(weights))
-    work = relaxation.solve(poses, ends, moves, weights, None, p).work
-    chi = contradiction(poses, ends, moves, weights, rows, sigma, p)
+    work = relaxation.solve(poses, ends, moves, weights, None).work
+    chi = contradiction(poses, ends, moves, weights, rows, cell_m)
     mu = 1.0 / max(2.0 * chi.max(initial=0.0) - 1.0, 1e-9)
     for _ in range(MOST_ROUNDS):
         share[rows] = np.clip(np.sqrt(mu * (mu + 1.0) / np.maximum(chi, 1e-12)) - mu, 0.0, 1.0)
-        work += relaxation.solve(poses, ends, moves, weights * share, None, p).work
-        chi = contradiction(poses, ends, moves, weights, rows, sigma, p)
+        work += relaxation.solve(poses, ends, moves, weights * share, None).work
+        chi = contradiction(poses, ends, moves, weights, rows, cell_m)
         if not ((share[rows] > DECIDED) & (share[rows] < 1.0 - DECIDED)).any():
             break
-        mu *= p.closure_growth
+        mu *= GROWTH
     return share, work
 
 
@@ -55,10 +56,9 @@ def contradiction(
     moves: NDArray[np.float64],
     weights: NDArray[np.float64],
     rows: NDArray[np.intp],
-    sigma: float,
-    p: SolverParams,
+    cell_m: float,
 ) -> NDArray[np.float64]:
     """How far the map contradicts each of these rows, as a share of the bar: a row above 1 is one to give up."""
     ex, ey, turn = disagreement(poses, ends[rows], moves[rows]).T
-    variance = sigma**2 / weights[rows] + p.closure_sigma**2
-    return (ex**2 + ey**2 + (turn / p.rad_per_m) ** 2) / variance / p.closure_bar
+    variance = (STEP_SIGMA * cell_m) ** 2 / weights[rows] + (SIGMA * cell_m) ** 2
+    return (ex**2 + ey**2 + (turn * cell_m / TURN_CELLS) ** 2) / variance / BAR

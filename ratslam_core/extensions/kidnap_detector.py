@@ -14,19 +14,21 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.beats import weight
 from ratslam_core.extensions.scan_change import ScanChange
-from ratslam_core.params import KidnapParams, LocalViewParams
+from ratslam_core.params import KidnapParams
 
 USUAL_TIMES, USUAL_RATE = 2.0, 0.02  # a jump is more than twice the usual change, a mean over some fifty beats
 MOST_USUAL = 2.0  # a larger change counts as this, since it may be infinite
+TIME_POWER = 0.3  # of the beats between two images; so many times as much can driving explain
+SETTLED = 1200  # beats without a contradiction, two minutes, after which the robot is no longer lost, either
 FOUND_AGAIN = 8  # sights of known places, one a beat, that must agree before the robot is no longer lost
 
 
-@kind("kidnap detector/3")
+@kind("kidnap detector/4")
 class KidnapDetector:
     """`kidnapped` is true from the jump until known places agree."""
 
-    def __init__(self, params: KidnapParams, view_params: LocalViewParams) -> None:
-        self.params, self.view_params = params, view_params
+    def __init__(self, params: KidnapParams) -> None:
+        self.params = params
         self.kidnapped = False
         self._usual = 1.0  # mean change of the image; to begin with, nothing is known of it
         self.sure = True  # whether the image alone told of the last jump, and driving cannot explain it
@@ -41,13 +43,12 @@ class KidnapDetector:
         alone do not tell: when a robot turns between two walls, all of them jump. Nor does an image, where images change
         as much all the time. test_kidnap_detector.py::test_where_images_always_jump_a_jump_tells_nothing.
 
-        beats: since the step before; in more time driving explains more (`time_power`).
+        beats: since the step before; in more time driving explains more (TIME_POWER).
         test_kidnap_detector.py::test_in_more_time_driving_explains_more.
         """
-        p = self.params
-        explained = float(beats**p.time_power)
+        explained = float(beats**TIME_POWER)
         image_change /= explained
-        heard = self.view_params.range_surprise * self._scans.observe(ranges_m, p) / explained
+        heard = self.params.range_surprise * self._scans.observe(ranges_m) / explained
         self.sure = image_change > 1
         jumped = image_change + heard > max(1.0, USUAL_TIMES * self._usual)
         self._usual += weight(USUAL_RATE, beats) * (min(image_change, MOST_USUAL) - self._usual)
@@ -67,7 +68,7 @@ class KidnapDetector:
 
         It is no longer lost once FOUND_AGAIN sights of experiences from before the kidnap, taking into account the
         odometry between them, agree on where it is. New experiences in between count neither way: perhaps only a wall
-        was drawn. It is no longer lost either after `settled` beats (two minutes) without a contradiction: it is
+        was drawn. It is no longer lost either after SETTLED beats without a contradiction: it is
         elsewhere and knows its way there.
 
         agrees: whether the look agrees with where the robot believed itself to be; known: the experience that was
@@ -85,18 +86,18 @@ class KidnapDetector:
             self._agreed = self._settled = 0
         self._agreed += 0 <= known < self._known_before
         self._settled += 1
-        self.kidnapped = self._agreed < FOUND_AGAIN and self._settled < self.params.settled
+        self.kidnapped = self._agreed < FOUND_AGAIN and self._settled < SETTLED
 
 
-@kind("never kidnapped/1")
+@kind("never kidnapped/2")
 class NeverKidnapped:
     """As in the papers: kidnaps are not noticed."""
 
     kidnapped = False
     sure = True
 
-    def __init__(self, params: KidnapParams, view_params: LocalViewParams) -> None:
-        self.params, self.view_params = params, view_params
+    def __init__(self, params: KidnapParams) -> None:
+        self.params = params
 
     def observe(self, _image_change: float, _ranges_m: NDArray[np.float64] | None, _beats: int = 1) -> bool:
         return False

@@ -11,14 +11,15 @@ import math
 from typing import Protocol
 
 from disk import kind
-from ratslam_core.params import PoseFilterParams
 from ratslam_core.types import IDENTITY, Pose2, wrap_angle
+
+SNAP, SNAP_RAD = 4.0, 0.8  # cells; a look farther off, or turned by more, is believed at once
+LEAST_SIGMA = 0.24  # cells: the error of the estimate is never taken as smaller, so that it can follow the map
 
 
 class PoseEstimate(Protocol):
     """A pose in the frame of the active experience."""
 
-    params: PoseFilterParams
     local: Pose2
     sigma_m: float  # how far off it may be
 
@@ -39,12 +40,13 @@ class PoseEstimate(Protocol):
         ...
 
 
-@kind("pose filter/3")
+@kind("pose filter/4")
 class PoseFilter:
     """The pose and how far off it may be (m)."""
 
-    def __init__(self, params: PoseFilterParams) -> None:
-        self.params = params
+    def __init__(self, cell_m: float) -> None:
+        """cell_m: side of a cell of the pose cells."""
+        self._snap_m, self._least_sigma_m = SNAP * cell_m, LEAST_SIGMA * cell_m
         self.local = IDENTITY
         self.sigma_m = 0.0
 
@@ -63,10 +65,10 @@ class PoseFilter:
     def see(self, look: Pose2, sigma_m: float) -> bool:
         dx, dy = look.x - self.local.x, look.y - self.local.y
         turn = wrap_angle(look.heading_rad - self.local.heading_rad)
-        if math.hypot(dx, dy) > self.params.snap_m or abs(turn) > self.params.snap_rad:
+        if math.hypot(dx, dy) > self._snap_m or abs(turn) > SNAP_RAD:
             self.local, self.sigma_m = look, sigma_m
             return False
-        own = max(self.sigma_m, self.params.least_sigma_m)
+        own = max(self.sigma_m, self._least_sigma_m)
         gain = own**2 / (own**2 + sigma_m**2)
         heading = wrap_angle(self.local.heading_rad + gain * turn)
         self.local = Pose2(self.local.x + gain * dx, self.local.y + gain * dy, heading)
@@ -74,14 +76,13 @@ class PoseFilter:
         return True
 
 
-@kind("latest look/2")
+@kind("latest look/3")
 class LatestLook:
     """As in the papers: the robot is where the last look put it, moved on by the odometry since."""
 
     sigma_m = math.inf  # it does not know
 
-    def __init__(self, params: PoseFilterParams) -> None:
-        self.params = params
+    def __init__(self) -> None:
         self.local = IDENTITY
 
     def forget(self, _sigma_m: float) -> None:
@@ -96,8 +97,3 @@ class LatestLook:
     def see(self, look: Pose2, _sigma_m: float) -> bool:
         self.local = look
         return True
-
-
-def pose_estimate(params: PoseFilterParams) -> PoseEstimate:
-    """The estimate that the parameters choose."""
-    return PoseFilter(params) if params.enabled else LatestLook(params)

@@ -15,7 +15,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.params import KidnapParams
+
+NEAR_M, REACH_M = 0.2, 4.0  # shorter and longer ranges count as these, since distant echoes come and go
+MOST = 0.35  # a larger change of one sonar, as the logarithm of the ratio of its ranges, counts as this
 
 
 @kind("scan change/3")
@@ -25,21 +27,21 @@ class ScanChange:
     def __init__(self) -> None:
         self._last: NDArray[np.float64] | None = None
 
-    def observe(self, ranges_m: NDArray[np.float64] | None, p: KidnapParams) -> float:
-        """By how much the sonars differ from the scan before: the mean of |ln(now / before)|, each at most `sonar_most`.
+    def observe(self, ranges_m: NDArray[np.float64] | None) -> float:
+        """By how much the sonars differ from the scan before: the mean of |ln(now / before)|, each at most MOST.
 
         0 when there is nothing to compare with. ranges_m: (n,) metres, none negative; None forgets the scan before.
         """
         last, self._last = self._last, None if ranges_m is None else ranges_m.copy()
         if last is None or ranges_m is None:
             return 0.0
-        return _change(last, ranges_m, p.sonar_near_m, p.sonar_reach_m, p.sonar_most)
+        return _change(last, ranges_m)
 
 
 @njit(cache=True, nogil=True)
-def _change(before: NDArray[np.float64], now: NDArray[np.float64], near: float, reach: float, most: float) -> float:
+def _change(before: NDArray[np.float64], now: NDArray[np.float64]) -> float:
     total = 0.0
     for k in range(len(now)):
-        ratio = min(max(now[k], near), reach) / min(max(before[k], near), reach)
-        total += min(abs(math.log(ratio)), most)
+        ratio = min(max(now[k], NEAR_M), REACH_M) / min(max(before[k], NEAR_M), REACH_M)
+        total += min(abs(math.log(ratio)), MOST)
     return total / len(now)

@@ -3,8 +3,8 @@
 The robot was carried and did not notice, or its wheels slipped. It cannot have happened between places that a closure
 ties together past the gap; so it was in the last stretch of the backbone that no closure bridges. There, the rows of
 odometry are taken as uncertain by as much as they proved wrong together, and the closures that follow put both sides
-where they belong. test_torn.py::test_an_unnoticed_kidnap_is_found_in_the_backbone. With `pose_filter.gate` off nothing
-is proved wrong.
+where they belong. test_torn.py::test_an_unnoticed_kidnap_is_found_in_the_backbone. With `experience_map.islands` off
+nothing is proved wrong.
 """
 
 from __future__ import annotations

@@ -86,11 +86,10 @@ def _agree(brain: RatSlam, handed: dict[str, Any]) -> None:
     p = brain.params
     parts: list[tuple[Any, object]] = [
         (brain.view_links, p.local_view), (brain.association, p.local_view), (brain.goal_memory, p.goal_memory),
-        (brain.localisation, p.pose_cells),
+        (brain.localisation, p.pose_cells), (brain.memories, p.occupancy),
     ]  # fmt: skip
     of_ours = (("pose_cells", p.pose_cells), ("local_view", p.local_view), ("experience_map", p.experience_map))
     parts += [(getattr(brain, name), own) for name, own in of_ours if name not in handed]
-    parts += [(grid, p.occupancy) for grid in (brain.occupancy, brain.map_grid) if grid is not None]
     for part, own in parts:
         true(part.params == own, f"the parameters of {type(part).__name__} must be the brain's")
     shape, cell_m = (p.pose_cells.n_theta, p.pose_cells.n_y, p.pose_cells.n_x), p.pose_cells.cell_m

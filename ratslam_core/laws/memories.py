@@ -12,11 +12,10 @@ import numpy as np
 from ratslam_core.goal_links import FREE, misplaced
 from ratslam_core.goal_memory import GoalMemory, _Iteration
 from ratslam_core.laws.measures import FAR_M, array, number, true, whole, within
-from ratslam_core.occupancy_grid import MapGrid, OccupancyGrid
+from ratslam_core.occupancy_grid import BOUND, KEPT, MapGrid, OccupancyGrid
 
 MOST_LIT = 16_384  # cells of the plane above a share of the strongest: many packets, each as wide as its window
 MOST_SONARS = 1024
-MOST_ODDS = 20.0  # as far as the parameter `bound` goes
 
 
 def goal_memory(memory: GoalMemory, now_s: float) -> None:
@@ -55,18 +54,17 @@ def occupancy(grid: OccupancyGrid, shape: tuple[int, int, int]) -> int:
     angles = array("sonar angles", grid._angles, np.float64, (None,))
     true(angles.size <= MOST_SONARS, f"there are {angles.size} sonars; at most {MOST_SONARS}")
     within("a sonar's angle", angles, -100.0, 100.0)
-    within("log odds", array("log odds", grid._log_odds, np.float32, shape[1:]), -MOST_ODDS, MOST_ODDS)
+    within("log odds", array("log odds", grid._log_odds, np.float32, shape[1:]), -BOUND, BOUND)
     return angles.size
 
 
 def map_grid(grid: MapGrid, experiences: int, sonars: int) -> None:
     within("a sonar's angle", array("sonar angles", grid._angles, np.float64, (sonars,)), -100.0, 100.0)
-    kept = whole("scans kept", grid._kept, 1, 100)
     count = array("counts of scans", grid._count, np.int64, (None,))
-    scans = array("scans", grid._scans, np.float32, (len(count), kept, 3 + sonars))
+    scans = array("scans", grid._scans, np.float32, (len(count), KEPT, 3 + sonars))
     known = whole("experiences with scans", grid._known, 0, min(len(count), experiences))
     within("a count of scans", count, 0, 2**53)
     true(not count[known:].any(), f"only the first {known} experiences may have scans")
-    real = scans[:known][np.arange(kept) < count[:known, None]]
+    real = scans[:known][np.arange(KEPT) < count[:known, None]]
     within("where a scan was made", real[:, :3], -FAR_M, FAR_M)
     within("a range", real[:, 3:], 0.0, math.inf)

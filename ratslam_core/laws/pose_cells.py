@@ -38,7 +38,7 @@ def _buffers(cells: PoseCells) -> None:
 
 def _derived(cells: PoseCells, fresh: PoseCells) -> None:
     """Arrays that follow from the parameters, and scratch arrays between two steps."""
-    for name in ("_patch", "_headings", "_excite", "_inhibit"):
+    for name in ("_patch", "_headings", "_excite"):
         wanted = getattr(fresh, name)
         found = array(name[1:], getattr(cells, name), wanted.dtype, wanted.shape)
         true(np.array_equal(found, wanted), f"{name[1:]} must be as in a network that was just made")

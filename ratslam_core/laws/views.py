@@ -10,9 +10,6 @@ from numpy.typing import NDArray
 
 from ratslam_core.laws.measures import apart, array, number, true, whole, within
 from ratslam_core.local_view.echo_matcher import EchoMatcher
-from ratslam_core.local_view.front_ends.complex_cells import ComplexCells
-from ratslam_core.local_view.front_ends.hue_saturation import HueSaturation
-from ratslam_core.local_view.front_ends.image_and_sonars import ImageAndSonars
 from ratslam_core.local_view.matcher import Matcher
 from ratslam_core.local_view.recogniser import LocalView, matcher_of
 from ratslam_core.local_view.view_links import ViewLinks
@@ -31,10 +28,6 @@ def local_view(view: LocalView) -> None:
         array("the last features", view._last, np.uint8, (size,))
     number("surprise", view.image_change, 0.0)
     whole("false positives", view.false_positives)
-    if isinstance(view.front_end, ComplexCells | HueSaturation | ImageAndSonars):
-        fresh, front_end = type(view.front_end)(view.params), view.front_end
-        same = all(np.array_equal(value, vars(fresh)[name]) for name, value in vars(front_end).items())
-        true(same, "the front end must be that of the parameters")
     _recognition(view.recognition, count)
     for matcher in (view._matcher,):
         _matcher(matcher, matcher_of(view.front_end))

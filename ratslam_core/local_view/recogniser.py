@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.local_view.echo_matcher import EchoMatcher
-from ratslam_core.local_view.front_ends import FrontEnd, named_front_end
+from ratslam_core.local_view.front_ends import FRONT_ENDS, FrontEnd
 from ratslam_core.local_view.matcher import Features, Matcher, heard_apart, least_difference, sub_column, turned_apart
 from ratslam_core.params import LocalViewParams
 from ratslam_core.parts import Room
 from ratslam_core.types import Recognition, nothing_seen
 
 NOTHING = -1
+TURN_SLACK = 0.3  # share of the turn by which the wheels may be wrong about it in a beat
 MOST_SHIFT = 6  # columns; beyond, too little is left to compare
 
 
@@ -38,7 +39,7 @@ class LocalView:
         """front_end: used instead of the one that the parameters choose."""
         self.params = params or LocalViewParams()
         self.rng = rng or np.random.default_rng(0)  # draws false positives and nothing else
-        self.front_end: FrontEnd = front_end or named_front_end(self.params)
+        self.front_end: FrontEnd = front_end or FRONT_ENDS[self.params.front_end]()
         end = self.front_end
         size = end.columns * end.rows + end.echoes
         self.features = np.zeros(size, np.uint8)  # of what is seen now
@@ -92,9 +93,14 @@ class LocalView:
         """The heading that a shift by a column stands for, 0 where none is told."""
         return self.params.field_of_view / self.front_end.columns if self.front_end.shifts else 0.0
 
+    @property
+    def threshold(self) -> float:
+        """The difference, in levels, up to which a view is recognised."""
+        return max(self.front_end.threshold * self.params.match_threshold, self.front_end.vague)
+
     def strength(self, seen: Recognition) -> float:
         """How sure a recognition is: 1 for a new or an equal view, 0 for one that is only just recognised."""
-        vague, limit = self.front_end.vague, self.front_end.threshold(self.params)
+        vague, limit = self.front_end.vague, self.threshold
         if seen.recruited or limit <= vague:
             return 1.0
         return min(1.0, 1 - (seen.difference - vague) / (limit - vague))
@@ -124,9 +130,9 @@ class LocalView:
         most = self.params.shift if self.front_end.shifts else 0
         best, apart, shift = self._matcher.nearest(self.templates, features, most)
         apart = self._levels(apart, features)
-        if not self.params.enabled or self.front_end.bland(features, self.params):
+        if not self.params.enabled or (self.params.bland and self.front_end.bland(features)):
             self.recognition = Recognition(NOTHING, False, best, apart)
-        elif apart <= self.front_end.threshold(self.params):
+        elif apart <= self.threshold:
             self.recognition = self._recognised(best, apart, shift)
         elif room is not None and room.familiar:
             self.recognition = Recognition(NOTHING, False, best, apart, familiar=True)
@@ -159,11 +165,11 @@ class LocalView:
         Wheels are wrong by a share of the turn, and when they slip, nothing turns: such turns explain it as well.
         test_recogniser.py::test_a_turn_that_the_wheels_tell_of_is_no_jump.
         """
-        limit = self.front_end.surprise(self.params)
-        if self._last is None or not self.params.enabled or math.isinf(limit):
+        limit = self.front_end.surprise * self.params.surprise
+        if self._last is None or not self.params.enabled or math.isinf(self.front_end.surprise):
             return 0.0
         end = self.front_end
-        told, slack = turned_rad * end.columns / self.params.field_of_view, self.params.turn_slack
+        told, slack = turned_rad * end.columns / self.params.field_of_view, TURN_SLACK
         if end.shifts and abs(told) > end.columns - 1:
             return 0.0  # nothing of what it saw can still be seen
         shifts = {0.0, told * (1 - slack), told, told * (1 + slack)} if end.shifts else {0.0}
@@ -182,7 +188,7 @@ class LocalView:
     def _levels(self, apart: float, new: Features) -> float:
         """A mean difference in bytes from the new view in levels."""
         end = self.front_end
-        return max(apart * end.scale + end.doubt(new, self.params), end.vague)
+        return max(apart * end.scale + end.doubt(new), end.vague)
 
     def _heard_apart(self, new: Features, stored: Features) -> float:
         end = self.front_end

@@ -15,6 +15,8 @@ from disk import kind
 from ratslam_core.params import LocalViewParams
 from ratslam_core.pose_cells.activity_kernels import FLAT
 
+LOST = 0.5  # what all links of a view inject together while the robot knows that it is lost
+
 
 @kind("view links/2")
 class ViewLinks:
@@ -102,14 +104,14 @@ class ViewLinks:
         """What the active view injects: min(beta, s_max) per link. ACRA 2004 eq. 4.
 
         [ours] Scaled down so that all links together inject at most `injection`: one look-alike must not move a packet,
-        but several views that agree must. A lost robot's view injects `lost_injection` in sum.
+        but several views that agree must. A lost robot's view injects LOST in sum.
         test_view_links.py::test_injection_is_capped_in_sum.
         """
         cells, strength = self.of(view)
         values = np.minimum(strength, np.float32(self.params.saturation))
         total = float(values.sum(dtype=np.float64))
         if lost and total > 0:
-            values *= np.float32(self.params.lost_injection / total)
+            values *= np.float32(LOST / total)
         elif self.params.capped and total > self.params.injection:
             values *= np.float32(self.params.injection / total)
         return cells, values

@@ -13,12 +13,9 @@ from ratslam_core.params.experience_map import ExperienceMapParams
 from ratslam_core.params.goal_memory import GoalMemoryParams
 from ratslam_core.params.kidnap import KidnapParams
 from ratslam_core.params.local_view import LocalViewParams
-from ratslam_core.params.memory import MemoryParams
 from ratslam_core.params.occupancy import OccupancyParams
 from ratslam_core.params.parameter import check_ranges, param
 from ratslam_core.params.pose_cells import PoseCellParams
-from ratslam_core.params.pose_filter import PoseFilterParams
-from ratslam_core.params.solver import SolverParams
 
 __all__ = [
     "EvidenceParams",
@@ -26,18 +23,15 @@ __all__ = [
     "GoalMemoryParams",
     "KidnapParams",
     "LocalViewParams",
-    "MemoryParams",
     "OccupancyParams",
     "PoseCellParams",
-    "PoseFilterParams",
     "RatSlamParams",
-    "SolverParams",
     "check_ranges",
     "param",
 ]
 
 
-@kind("parameters/1")
+@kind("parameters/2")
 @dataclass(frozen=True, slots=True)
 class RatSlamParams:
     """All of the engine."""
@@ -48,7 +42,4 @@ class RatSlamParams:
     goal_memory: GoalMemoryParams = GoalMemoryParams()
     occupancy: OccupancyParams = OccupancyParams()
     kidnap: KidnapParams = KidnapParams()
-    pose_filter: PoseFilterParams = PoseFilterParams()
-    solver: SolverParams = SolverParams()
-    memory: MemoryParams = MemoryParams()
     evidence: EvidenceParams = EvidenceParams()

@@ -34,7 +34,7 @@ ADDITIONS = (
         "undoing the spread of headings",
         "a packet's movement is divided by the mean of exp(iθ) over its headings, and follows the arc driven",
         "spread headings shorten the movement, and where it ends must not depend on the tick rate",
-        {"pose_cells.divide_spread": False, "pose_cells.arc": False},
+        {"pose_cells.divide_spread": False},
     ),
     Addition(
         "capped injection",
@@ -58,12 +58,7 @@ ADDITIONS = (
         "gate for bland views",
         "an image that shows nothing activates no view",
         "walls at arm's length look alike everywhere",
-        {
-            "local_view.min_contrast": 0.0,
-            "local_view.min_edges": 0.0,
-            "local_view.min_colour": 0.0,
-            "local_view.min_pattern": 0.0,
-        },
+        {"local_view.bland": False},
     ),
     Addition(
         "heading from the shift",
@@ -99,7 +94,7 @@ ADDITIONS = (
         "exact solver",
         "the fixed point of the sweeps is computed directly from time to time; sweeps go by experience",
         "sweeps alone lag behind a growing map",
-        {"solver.enabled": False, "experience_map.solve_every": 0, "experience_map.sweep": "by link"},
+        {"experience_map.exact_solver": False, "experience_map.solve_every": 0, "experience_map.sweep": "by link"},
     ),
     Addition(
         "yaw bias",
@@ -111,7 +106,7 @@ ADDITIONS = (
         "pose filter",
         "a look is weighed against odometry",
         "if each look were taken as it is, the estimate would swerve",
-        {"pose_filter.enabled": False},
+        {"experience_map.pose_filter": False},
     ),
     Addition(
         "law of evidence",
@@ -141,7 +136,7 @@ ADDITIONS = (
         "familiar ground",
         "where enough of the sights are recognised, no more views, experiences and links are learnt",
         "otherwise the memory grows for as long as the robot drives, in a place that never changes",
-        {"memory.familiar": False},
+        {"experience_map.familiar_ground": False},
     ),
     Addition(
         "bounded links of a view",

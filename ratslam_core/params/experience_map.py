@@ -8,7 +8,7 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of experience map/2")
+@kind("parameters of experience map/3")
 @dataclass(frozen=True, slots=True)
 class ExperienceMapParams:
     """Experiences, their links and the correction of the map (B 4, D 3)."""
@@ -57,9 +57,6 @@ class ExperienceMapParams:
         meaning="error of a match per level of its difference; worse matches weigh less in map correction, 0 = all alike",
         source="ours",
     )
-    odometry_sigma: float = param(
-        0.01, unit="m", low=1e-4, high=1.0, meaning="odometry error of a transition of one step", source="ours"
-    )
     odometry_drift: float = param(
         0.05,
         unit="m/m",
@@ -67,25 +64,6 @@ class ExperienceMapParams:
         high=1.0,
         meaning="growth of the odometry error with the distance driven",
         source="ours",
-    )
-    blind_m: float = param(
-        1.0,
-        unit="m",
-        low=0.0,
-        high=100.0,
-        meaning="when there is nothing to see, only experiences this near in the map can become active",
-        source="ours",
-    )
-    blind_sigma: float = param(
-        0.5,
-        unit="m",
-        low=0.0,
-        high=10.0,
-        meaning="how far off the robot may be when an experience becomes active with nothing to see",
-        source="ours",
-    )
-    carried_sigma: float = param(
-        100.0, unit="m", low=1.0, high=1e4, meaning="how far off the robot may be after it was carried", source="ours"
     )
     islands: bool = param(
         True,
@@ -151,6 +129,9 @@ class ExperienceMapParams:
         source="ours; B 4.3",
     )
     sweeps: int = param(1, unit="1/beat", low=0, high=100, meaning="correction sweeps in each beat", source="B 4.3")
+    exact_solver: bool = param(
+        True, meaning="exact corrections beside the sweeps; off = sweeps alone", source="ours", live=False
+    )
     solve_every: int = param(
         50,
         unit="beats",
@@ -159,7 +140,26 @@ class ExperienceMapParams:
         meaning="least time between exact corrections, in tenths of a second, made while loops close; 0 = never",
         source="ours",
     )
-
+    bias_sigma: float = param(
+        0.01,
+        unit="rad/s",
+        low=1e-4,
+        high=10.0,
+        meaning="how large a bias of the yaw rate may well be; what a few short loops seem to show beyond it is not believed",
+        source="ours",
+    )
+    pose_filter: bool = param(
+        True,
+        meaning="weigh a look against odometry; off = the latest look is the robot's place",
+        source="ours",
+        live=False,
+    )
+    familiar_ground: bool = param(
+        True,
+        meaning="ground that is recognised often gets no more views and experiences; off = every new sight is kept",
+        source="ours",
+        live=False,
+    )
     shortcut_m: float = param(
         0.0,
         unit="m",

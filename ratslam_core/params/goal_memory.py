@@ -8,7 +8,7 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of goal memory/2")
+@kind("parameters of goal memory/3")
 @dataclass(frozen=True, slots=True)
 class GoalMemoryParams:
     """Times between places, learnt on the pose cells (C III)."""
@@ -57,37 +57,6 @@ class GoalMemoryParams:
         False,
         meaning="cells are linked across a jump of the packet, too; off = not, since the robot did not drive there",
         source="C; off is ours",
-    )
-    arrived: float = param(
-        1.0,
-        unit="cells",
-        low=0.1,
-        high=10.0,
-        meaning="distance from the goal within which the robot has arrived",
-        source="C III.B",
-    )
-    wider: int = param(
-        3,
-        low=1,
-        high=10,
-        meaning="largest multiple of `reach` that is searched when there is no way nearer",
-        source="ours",
-    )
-    centre: int = param(
-        3,
-        unit="cells",
-        low=1,
-        high=10,
-        meaning="half-width around the strongest cell within which the packet's centre is computed",
-        source="ours",
-    )
-    reach: int = param(
-        3,
-        unit="cells",
-        low=1,
-        high=10,
-        meaning="radius around the packet in which the way is searched",
-        source="C III.B; ours",
     )
 
     def __post_init__(self) -> None:

@@ -10,7 +10,7 @@ from ratslam_core.params.parameter import check_ranges, param
 MOST_CELLS = 2**26  # of the pose cells, four bytes each: a brain has to fit into memory, and into its file
 
 
-@kind("parameters of pose cells/3")
+@kind("parameters of pose cells/4")
 @dataclass(frozen=True, slots=True)
 class PoseCellParams:
     """The continuous attractor network (A section 4)."""
@@ -43,9 +43,6 @@ class PoseCellParams:
         meaning="width of the excitation Gaussian",
         source="A eq. 10; value ours",
     )
-    excite_radius: int = param(
-        2, unit="cells", low=1, high=9, meaning="reach of the excitation", source="A eq. 10; value ours"
-    )
     inhibit: float = param(
         3e-4,
         symbol="φ",
@@ -54,32 +51,10 @@ class PoseCellParams:
         meaning="global inhibition taken from every cell",
         source="A eq. 11; value ours",
     )
-    local_inhibit: float = param(
-        0.0, low=0.0, high=1.0, meaning="strength of local inhibition, 0 = off", source="later RatSLAM"
-    )
-    local_inhibit_sigma: float = param(
-        2.0, unit="cells", low=0.5, high=5.0, meaning="width of the local inhibition", source="later RatSLAM"
-    )
-    local_inhibit_radius: int = param(
-        2, unit="cells", low=1, high=9, meaning="reach of the local inhibition", source="later RatSLAM"
-    )
-    window: int = param(
-        6, unit="cells", low=2, high=12, meaning="half-width of the window that holds one packet", source="ours"
-    )
     carry: bool = param(True, meaning="give back the motion that the attractor swallows", source="ours")
     divide_spread: bool = param(
-        True, meaning="keep the spread of a packet's headings from shortening its movement", source="ours"
-    )
-    least_agreement: float = param(
-        0.25,
-        low=0.01,
-        high=1.0,
-        meaning="lower limit of the agreement of headings (1 = all the same) that a packet's movement is divided by",
-        source="ours",
-    )
-    arc: bool = param(
         True,
-        meaning="a packet moves along the heading in the middle of the movement; off = at its beginning",
+        meaning="a packet moves along the arc driven, whatever the spread of its headings; off = each layer straight on",
         source="ours",
     )
     move_first: bool = param(
@@ -96,14 +71,6 @@ class PoseCellParams:
         high=0.2,
         meaning="added to the yaw rate for the pose cells alone while the wheels turn: 0.0262 = 1.5 deg/s; 0 = as it is",
         source="B 5.2",
-    )
-    snap_cells: float = param(
-        3.0,
-        unit="cells",
-        low=1.0,
-        high=100.0,
-        meaning="a longer jump of the winning packet is a relocalisation",
-        source="ours",
     )
 
     def __post_init__(self) -> None:

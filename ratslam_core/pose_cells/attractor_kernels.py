@@ -5,6 +5,8 @@ Sets of active cells are those of `activity_kernels`.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -25,8 +27,9 @@ from ratslam_core.pose_cells.activity_kernels import (
 )
 
 
-def gaussian(sigma: float, radius: int) -> NDArray[np.float32]:
-    """A normalised Gaussian over 2 radius + 1 cells."""
+def gaussian(sigma: float, radius: int = 0) -> NDArray[np.float32]:
+    """A normalised Gaussian over so many cells to either side; three sigma, and two at least, if none is given."""
+    radius = radius or max(2, math.ceil(3 * sigma))
     at = np.arange(-radius, radius + 1)
     weights = np.exp(-0.5 * (at / sigma) ** 2)
     return (weights / weights.sum()).astype(np.float32)
@@ -178,17 +181,6 @@ def _apart(
         if touching:
             return False
     return True
-
-
-@njit(cache=True, nogil=True)
-def subtract(
-    values: Values, slot: Slot, other_cells: Cells, other_values: Values, m: int, gain: float | np.float32
-) -> None:
-    """P <- P - gain Q where P is active. `slot` indexes P."""
-    for i in range(m):
-        at = slot[other_cells[i, FLAT]]
-        if at > 0:
-            values[at - 1] -= gain * other_values[i]
 
 
 @njit(cache=True, nogil=True)

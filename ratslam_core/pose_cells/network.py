@@ -24,10 +24,11 @@ from ratslam_core.types import Packet, require_finite, wrap_angle
 
 MAX_PACKETS = 8  # reported; all are tracked
 Cell = TypeVar("Cell", np.int32, np.float32, np.int8)
+WINDOW = 6  # cells: half-width of the window that holds one packet
 ROOM = 4096  # active cells there is room for at first; grows when needed
 
 
-@kind("pose cells/1")
+@kind("pose cells/2")
 class PoseCells:
     """The network. `step` is one path integration and attractor iteration; RatSlam calls the stages one by one."""
 
@@ -141,17 +142,17 @@ class PoseCells:
         """Shift the activity as the wheels say, each layer along its own heading. ACRA 2004 eqs. 5-9.
 
         [ours] Each packet's movement is divided by the mean of exp(i theta) over its headings, because their spread
-        would shorten it (`divide_spread`). What the attractor pulled the packet back in the last step is added
-        (`carry`). The heading is that in the middle of the movement, so that where it ends does not depend on the tick
-        rate (`arc`). test_path_integration.py::{test_gain_is_one_up_to_a_cell_and_a_half_a_step,
-        test_an_arc_ends_where_it_should}, test_papers.py::test_a_run_is_that_of_the_literal_twin.
+        would shorten it, and the heading is that in the middle of the movement, so that where it ends does not depend on
+        the tick rate (`divide_spread`). What the attractor pulled the packet back in the last step is added (`carry`).
+        test_path_integration.py::{test_gain_is_one_up_to_a_cell_and_a_half_a_step, test_an_arc_ends_where_it_should},
+        test_papers.py::test_a_run_is_that_of_the_literal_twin.
         """
         along = require_finite("distance_m", distance_m) / self.params.cell_m
         require_finite("turn_rad", turn_rad)
         p = self.params
         packet_kernels.advance(
             self._rows, self._found, self.shape, along, turn_rad,
-            p.arc, p.divide_spread, p.least_agreement, self._moves, self._yaws,
+            p.divide_spread, self._moves, self._yaws,
         )  # fmt: skip
         self._make_room(self._n * 8)
         m = kernels.shift(
@@ -167,11 +168,8 @@ class PoseCells:
         inhibit = np.float32(p.inhibit)
         kept = self._cells[:n].copy(), self._values[:n].copy()
         if p.carry:
-            window = 2 * p.window
-            packet_kernels.weigh(self._cells, self._values, n, self.shape, window, self._rows, self._found, 1.0)
-        self._convolve(self._excite, np.float32(0) if p.local_inhibit else inhibit)
-        if p.local_inhibit:
-            self._inhibit_locally()
+            packet_kernels.weigh(self._cells, self._values, n, self.shape, 2 * WINDOW, self._rows, self._found, 1.0)
+        self._excite_all(inhibit)
         self._n = attractor.inhibit_and_normalise(self._cells, self._values, self._n, self._slot, inhibit)
         gone = self._n == 0
         if gone:
@@ -199,27 +197,19 @@ class PoseCells:
     # ------------------------------------------------------------ inside
 
     def _weights(self) -> None:
-        self._excite = attractor.gaussian(self.params.excite_sigma, self.params.excite_radius)
-        self._inhibit = attractor.gaussian(self.params.local_inhibit_sigma, self.params.local_inhibit_radius)
-        side = 2 * self.params.window + 2 * max(self.params.excite_radius, self.params.local_inhibit_radius) + 1
+        self._excite = attractor.gaussian(self.params.excite_sigma)
+        side = 2 * WINDOW + self._excite.size
         self._box_a, self._box_b = np.zeros(side**3, np.float32), np.zeros(side**3, np.float32)
 
-    def _convolve(self, weights: NDArray[np.float32], floor: np.float32) -> None:
+    def _excite_all(self, floor: np.float32) -> None:
         m = -1
         while m < 0:
             m, room = attractor.excite(
                 self._cells, self._values, self._n, self._owner, self._peaks, self._bounds, self._spare_cells,
-                self._spare_values, self._slot, self.shape, self.params.window, weights, floor, self._box_a, self._box_b,
+                self._spare_values, self._slot, self.shape, WINDOW, self._excite, floor, self._box_a, self._box_b,
             )  # fmt: skip
             self._make_room(room)
         self._swap(m)
-
-    def _inhibit_locally(self) -> None:
-        excited = self._cells[: self._n].copy(), self._values[: self._n].copy()
-        self._convolve(self._inhibit, np.float32(0))
-        wide = self._cells[: self._n].copy(), self._values[: self._n].copy()
-        self._put(*excited)
-        attractor.subtract(self._values, self._slot, *wide, len(wide[1]), np.float32(self.params.local_inhibit))
 
     def _put(self, cells: NDArray[np.int32], values: NDArray[np.float32]) -> None:
         """Make these the active cells."""
@@ -254,7 +244,7 @@ class PoseCells:
         found = -1
         while found < 0:
             clusters, found = packet_kernels.find(
-                self._cells, self._values, self._n, self._slot, self.shape, self.params.window, self._owner, self._peaks,
+                self._cells, self._values, self._n, self._slot, self.shape, WINDOW, self._owner, self._peaks,
                 self._bounds, self._headings, self._rows, self._ids, self._found, self._spare_rows, self._spare_ids, moved,
             )  # fmt: skip
             if clusters > len(self._spare_rows):

@@ -13,6 +13,7 @@ from ratslam_core.pose_cells.activity_kernels import THETA, Cells, Shape, Slot, 
 
 MASS, COS, SIN, CARRY = 3, 4, 5, 6  # columns after x, y, theta; CARRY is three columns
 ROW = 9
+LEAST_AGREEMENT = 0.25  # of headings, 1 = all the same
 
 
 @njit(cache=True, nogil=True)
@@ -186,31 +187,29 @@ def advance(
     shape: Shape,
     distance: float,
     turn: float,
-    arc: bool,
-    divide: bool,
-    least_agreement: float,
+    exact: bool,
     moves: NDArray[np.float64],
     yaws: NDArray[np.float64],
 ) -> None:
     """Move the rows of packets on, and write what `shift` needs to moves and yaws. distance: cells; turn: rad.
 
-    arc: the robot drives an arc, whose chord points along the heading in its middle; else straight on, as in the
-    papers. divide: the layers of a packet have different headings, which multiplies its movement by the mean of exp(i
-    theta). The movement is divided by that complex number, whose modulus counts as at least `least_agreement`.
+    exact: the robot drives an arc, whose chord points along the heading in its middle; and the layers of a packet have
+    different headings, which multiplies its movement by the mean of exp(i theta), so that it is divided by that complex
+    number, whose modulus counts as at least LEAST_AGREEMENT. Else straight on, as in the papers.
     """
     unit = 2.0 * np.pi / shape[0]
-    bend = turn / 2 if arc else 0.0
+    bend = turn / 2 if exact else 0.0
     chord = distance * np.sin(bend) / bend if bend != 0.0 else distance
     for p in range(n):
         row = rows[p]
         heading = unit * (row[THETA] + row[CARRY + 2]) + bend
         to_x, to_y = chord * np.cos(heading), chord * np.sin(heading)
-        if divide:
-            agreement = max(row[COS] ** 2 + row[SIN] ** 2, least_agreement**2)
+        if exact:
+            agreement = max(row[COS] ** 2 + row[SIN] ** 2, LEAST_AGREEMENT**2)
             moves[p, 0] = (to_x * row[COS] + to_y * row[SIN]) / agreement
             moves[p, 1] = (to_y * row[COS] - to_x * row[SIN]) / agreement
         else:
-            moves[p, 0], moves[p, 1] = chord * np.cos(bend), chord * np.sin(bend)
+            moves[p, 0], moves[p, 1] = distance, 0.0
             to_x = moves[p, 0] * row[COS] - moves[p, 1] * row[SIN]
             to_y = moves[p, 0] * row[SIN] + moves[p, 1] * row[COS]
         moves[p, 2], moves[p, 3] = row[CARRY], row[CARRY + 1]

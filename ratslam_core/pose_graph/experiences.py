@@ -106,6 +106,7 @@ class Experiences:
         view: int,
         p: ExperienceMapParams,
         robot: Pose2,
+        blind_m: float,
         reach_m: float = math.inf,
         island: int = 0,
     ) -> int:
@@ -115,14 +116,14 @@ class Experiences:
         map and lie on this island.
 
         [ours] When there is nothing to see, only the pose cells tell places apart, and they may use the same cells for
-        places far apart. The experience must then be near the robot in the map, too.
+        places far apart. The experience must then be within `blind_m` of the robot in the map, too.
         test_experience_map.py::test_seeing_nothing_closes_no_loop.
         """
         old = p.energy == "2005"
         state = (*self._state(packet), *self.shape, p.zone_xy, p.zone_theta)
         if p.match_view:
             newest = self._newest_of_view.get(view, -1)
-            near = min(p.blind_m, reach_m) if view < 0 else reach_m
+            near = min(blind_m, reach_m) if view < 0 else reach_m
             return _best_in_chain(
                 newest, self._before_of_view, self.at, *state, old, -1, p.threshold, self.pose, robot.x, robot.y, near,
                 self.island, island,

@@ -16,6 +16,9 @@ from ratslam_core.pose_graph.experiences import Experiences
 from ratslam_core.pose_graph.transitions import Link, Transitions
 from ratslam_core.types import Packet, Pose2, pose_of
 
+STEP_SIGMA = 0.04  # cells: error of odometry over one step, the least that a link is taken to have
+TURN_CELLS = 0.175  # rad a cell: an error in heading that counts as much as an error of a cell
+
 
 class PoseGraph:
     """Experiences with their poses, links with their times."""
@@ -33,6 +36,11 @@ class PoseGraph:
 
     def __len__(self) -> int:
         return self._experiences.count
+
+    @property
+    def step_sigma_m(self) -> float:
+        """Error of odometry over one step, m."""
+        return STEP_SIGMA * self.cell_m
 
     # ------------------------------------------------------------ experiences
 

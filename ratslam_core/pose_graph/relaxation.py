@@ -10,21 +10,21 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.params import SolverParams
 from ratslam_core.pose_graph.adjacency import Adjacency
 from ratslam_core.pose_graph.pose_graph import PoseGraph, disagreement, wrapped
 from ratslam_core.solvers.laplacian import eliminate
 
 DIVERGED = 10.0  # times the length of all links together: where no map that fits them puts an experience
+LARGEST = 4000  # experiences in a densely linked core; a map with more is left to the sweeps: 4,000 take 2 s and 250 MB
+WORK_AN_EXPERIENCE = 90.0  # that each adds to an exact correction
+ENTANGLED_WORK = 1e9  # that an attempt at too large a map counts as, so that the next one comes late
+ROUNDS = 2  # how often headings are solved, so that their wrapping settles
 LEAST_STRENGTH = 1e-9  # below it, only rounding tells a bias from a bend in the way
 
 
-@kind("relaxation/1")
+@kind("relaxation/2")
 class Relaxation:
     """The papers' way: a fixed number of sweeps in every step."""
-
-    def __init__(self, params: SolverParams) -> None:
-        self.params = params
 
     def correct(self, graph: PoseGraph) -> None:
         """One step of map correction. test_relaxation_sweep.py::test_a_sweep_never_raises_the_residual."""
@@ -214,30 +214,32 @@ def solve(
     moves: NDArray[np.float64],
     weights: NDArray[np.float64],
     turning_s: NDArray[np.float64] | None = None,
-    params: SolverParams | None = None,
     known: float = 0.0,
     doubt: float = 0.0,
+    *,
+    rounds: int = ROUNDS,
+    largest: int = LARGEST,
 ) -> Solution:
     """The fixed point of the sweeps, in place: headings, then positions, each a sparse Laplacian with the first node fixed.
 
     known: the bias (rad/s) that the moves are already without; doubt: how strongly it is expected to be 0 in all, as a
     weight times s^2. One short loop tells little of the bias, many long ones much. A map that is too entangled is left
     to the sweeps. Every experience must be connected to the first by links. Headings are a linear problem once their
-    residuals are wrapped; `params.rounds` solutions let the wrapping settle.
+    residuals are wrapped; `rounds` solutions let the wrapping settle.
     """
-    p, n = params or SolverParams(), len(poses)
+    n = len(poses)
     if n < 2 or len(links) == 0:
         return Solution(0.0, 0.0)
     i, j = links[:, 0], links[:, 1]
-    net = eliminate(n, links, weights, p.largest)
+    net = eliminate(n, links, weights, largest)
     if net is None:
-        return Solution(0.0, p.entangled_work)
+        return Solution(0.0, ENTANGLED_WORK)
     seconds = np.zeros(len(links)) if turning_s is None else turning_s
     drift = net.solve(_asked(n, links, weights * seconds))  # how a bias of 1 rad/s would bend the headings
     unexplained = seconds - drift[j] + drift[i]
     strength = float(np.sum(weights * seconds * unexplained))
     bias = 0.0
-    for _ in range(p.rounds):
+    for _ in range(rounds):
         error: NDArray[np.float64] = poses[i, 2] + moves[:, 2] - bias * seconds - poses[j, 2]
         error -= 2 * math.pi * np.round(error / (2 * math.pi))
         shown = float(np.sum(weights * unexplained * error)) - doubt * (known + bias)
@@ -248,7 +250,7 @@ def solve(
     off = weights[:, None] * disagreement(poses, links, moves)[:, :2]
     across, up = np.ascontiguousarray(off.T)
     poses[:, :2] += net.solve(np.stack([_asked(n, links, across), _asked(n, links, up)], axis=1))
-    return Solution(bias, net.work + p.work_an_experience * n)
+    return Solution(bias, net.work + WORK_AN_EXPERIENCE * n)
 
 
 @njit(cache=True, nogil=True)

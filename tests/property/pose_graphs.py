@@ -9,7 +9,6 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from ratslam_core import SolverParams
 from ratslam_core.pose_graph.adjacency import Adjacency
 from ratslam_core.pose_graph.relaxation import solve, sweep
 
@@ -41,7 +40,7 @@ class Graph:
 
     def solved(self, rounds: int = 2) -> np.ndarray:
         poses = self.poses.copy()
-        solve(poses, self.links, self.moves, self.weights, params=SolverParams(rounds=rounds))
+        solve(poses, self.links, self.moves, self.weights, rounds=rounds)
         return poses
 
     def turned_energy(self, poses: np.ndarray) -> float:

@@ -199,16 +199,6 @@ def test_inhibition_takes_a_cell_that_has_just_as_much(levels: list[int], phi: i
     assert cells.dense().ravel() == pytest.approx(expected, abs=1e-6)
 
 
-@EXAMPLES
-@given(seeds, st.floats(0.1, 2))
-def test_subtraction_touches_only_what_is_active(seed: int, gain: float) -> None:
-    rng = np.random.default_rng(seed)
-    mine, other = (active(scattered(rng, (8, 9, 10), 1, 20, 1), rng.uniform(0, 1, 27)[:1], (8, 9, 10)) for _ in "ab")
-    expected = np.where(mine.dense() > 0, mine.dense() - np.float32(gain) * other.dense(), 0)
-    attractor.subtract(mine.values, mine.slot, other.cells, other.values, other.n, np.float32(gain))
-    assert mine.dense() == pytest.approx(expected, abs=1e-6)
-
-
 @pytest.mark.parametrize(("between", "packets"), [(0.4, 1), (0.3, 2)])
 def test_a_neighbour_that_is_just_as_strong_makes_no_flank(between: float, packets: int) -> None:
     """The cell between two peaks belongs to the first one's cluster, which the second joins if that cell is stronger."""

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ratslam_core import SolverParams
-from ratslam_core.pose_graph.relaxation import solve
+from ratslam_core.pose_graph.relaxation import WORK_AN_EXPERIENCE, solve
 from ratslam_core.solvers.laplacian import eliminate
 
 from .pose_graphs import EXAMPLES, Graph, disturb, graphs, true_moves, turned, wrap
@@ -66,7 +65,7 @@ def test_a_short_loop_tells_little_of_the_bias(error: float, known: float, secon
     """There and back: the bias that minimises the loop's square error, and its own square times the doubt."""
     links, moves = np.array([[0, 1], [1, 0]]), np.array([[1.0, 0.0, error], [-1.0, 0.0, 0.0]])
     turning_s, weights = np.array([seconds, 0.0]), np.ones(2)
-    found = solve(np.zeros((2, 3)), links, moves, weights, turning_s, SolverParams(rounds=9), known, doubt).bias
+    found = solve(np.zeros((2, 3)), links, moves, weights, turning_s, known, doubt, rounds=9).bias
     # A loop of two links of weight 1 is as stiff as one of a half.
     expected = (seconds * error / 2 - doubt * known) / (seconds**2 / 2 + doubt)
     assert found == pytest.approx(expected, abs=1e-9)
@@ -99,14 +98,10 @@ def test_a_map_without_links_is_left_alone() -> None:
 
 
 @EXAMPLES
-@given(graphs(), st.floats(0.0, 1000.0))
-def test_each_experience_costs_something(graph: Graph, of_each: float) -> None:
-    def work(of_each: float) -> float:
-        params = SolverParams(work_an_experience=of_each)
-        return solve(graph.poses.copy(), graph.links, graph.moves, graph.weights, params=params).work
-
-    assert work(0.0) == graph_work(graph)
-    assert work(of_each) == pytest.approx(work(0.0) + of_each * len(graph.poses))
+@given(graphs())
+def test_each_experience_costs_something(graph: Graph) -> None:
+    work = solve(graph.poses.copy(), graph.links, graph.moves, graph.weights).work
+    assert work == pytest.approx(graph_work(graph) + WORK_AN_EXPERIENCE * len(graph.poses))
 
 
 def graph_work(graph: Graph) -> int:

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ratslam_core import SolverParams
 from ratslam_core.extensions import robust_weights
 from ratslam_core.pose_graph import relaxation
+from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS
 from ratslam_core.pose_graph.relaxation import solve
 from tests.unit.ratslam_core import literal
 
@@ -34,7 +34,7 @@ def carried_chain(looks: int) -> tuple[np.ndarray, np.ndarray]:
     poses[:, 0] = 0.05 * np.arange(40)
     trust = np.ones(len(links))
     for _ in range(60):
-        trust = robust_weights.trust(poses, links, moves, weights, is_chain, 0.01, SolverParams())
+        trust = robust_weights.trust(poses, links, moves, weights, is_chain, 0.25)
         solve(poses, links, moves, weights * trust)
     return poses[:, 0] - true_x, trust
 
@@ -64,28 +64,25 @@ def test_trust_falls_with_contradiction(near: float, far: float, turn: float, ch
     links, weights = np.array([[0, 1]]), np.array([0.5])
     poses = np.zeros((2, 3))
     trusts = [
-        robust_weights.trust(
-            poses, links, np.array([[d, 0.0, turn]]), weights, np.array([chain]), 0.01, SolverParams()
-        )[0]
+        robust_weights.trust(poses, links, np.array([[d, 0.0, turn]]), weights, np.array([chain]), 0.25)[0]
         for d in (near, far)
     ]
     assert 0 < trusts[1] <= trusts[0] <= 1
 
 
 @EXAMPLES
-@given(st.floats(0.01, 8.0), st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(0.1, 1.0))
-def test_how_far_a_link_gives(times: float, bearing: float, share: float, weight: float) -> None:
+@given(st.floats(0.01, 8.0), st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(0.1, 1.0), st.floats(0.05, 2.0))
+def test_how_far_a_link_gives(times: float, bearing: float, share: float, weight: float, cell_m: float) -> None:
     """A link that is off by `times` what its kind bears: a look then pulls as if it were off by just that much, and
     odometry is halved where it gives. Angles count as distances, and a weight of a quarter halves the error."""
-    p, sigma = SolverParams(), 0.01
     links, poses = np.array([[0, 1]]), np.zeros((2, 3))
     for chain, gives, expected in (
-        (False, p.look_gives, 1 / max(times, 1.0)),
-        (True, p.odometry_gives, 1 / (1 + times**2)),
+        (False, robust_weights.LOOK_GIVES, 1 / max(times, 1.0)),
+        (True, robust_weights.ODOMETRY_GIVES, 1 / (1 + times**2)),
     ):
-        off = times * gives * sigma / np.sqrt(weight)
-        metres, turn = off * np.cos(share), p.rad_per_m * off * np.sin(share)
+        cells = times * gives * STEP_SIGMA / np.sqrt(weight)
+        metres, turn = cells * cell_m * np.cos(share), TURN_CELLS * cells * np.sin(share)
         assert abs(turn) < np.pi
         move = np.array([[metres * np.cos(bearing), metres * np.sin(bearing), turn]])
-        found = robust_weights.trust(poses, links, move, np.array([weight]), np.array([chain]), sigma, p)
+        found = robust_weights.trust(poses, links, move, np.array([weight]), np.array([chain]), cell_m)
         assert found[0] == pytest.approx(expected, rel=1e-9)

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ratslam_core.local_view.matcher import Features
-from ratslam_core.params import LocalViewParams
 
 
 class FrontEnd(Protocol):
@@ -21,6 +20,8 @@ class FrontEnd(Protocol):
     rows: int  # bytes of each column
     shifts: bool  # features are columns of the image: turning the robot shifts them, and the shift tells its heading
     scale: float  # levels for a mean difference of one byte; in levels all front ends are about equally strict
+    threshold: float  # the difference in levels up to which a view is recognised
+    surprise: float  # between two successive images, above which driving cannot explain it; inf = cannot be told
     vague: float  # least difference in levels, since even an equal view leaves the place uncertain
     echoes: int = 0  # bytes behind the columns that do not shift, for what is heard; 0 = unknown
     echo_weight: float = 0.0  # of their mean difference against that of the columns
@@ -35,21 +36,13 @@ class FrontEnd(Protocol):
         """The features of what is sensed now; ValueError says what is wrong with it."""
         ...
 
-    def bland(self, features: Features, params: LocalViewParams, /) -> bool:
+    def bland(self, features: Features, /) -> bool:
         """Whether they show nothing that could be recognised."""
         ...
 
-    def doubt(self, _features: Features, _params: LocalViewParams, /) -> float:
+    def doubt(self, _features: Features, /) -> float:
         """Levels that are added to every difference, since the features tell little."""
         return 0.0
-
-    def threshold(self, params: LocalViewParams, /) -> float:
-        """The difference up to which a view is recognised."""
-        ...
-
-    def surprise(self, params: LocalViewParams, /) -> float:
-        """The difference between two successive images above which driving cannot explain it; inf = cannot be told."""
-        ...
 
     def picture(self, features: Features, /) -> NDArray[np.uint8]:
         """The features as a picture for people: (h, w) grey or (h, w, 3) RGB."""

@@ -10,22 +10,21 @@ from disk import kind
 from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.front_ends.image import checked
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
-from ratslam_core.params import LocalViewParams
 
 HUES, SATURATIONS = COLUMNS, ROWS  # bins
+FULL_SATURATION = 0.5  # from which on a pixel falls into the last bin
+CERTAIN_SATURATION = 0.1  # from which on the hue of a pixel is trusted
+FULL_BIN = 1 / 6  # share of the image that fills a bin
+LEAST_COLOUR = 0.6  # share of the image; one with less shows nothing
 WIDTH, HEIGHT = 32, 24  # pixels; fewer than the camera's, which averages out its noise
 
 
-@kind("hue and saturation/1")
+@kind("hue and saturation/2")
 class HueSaturation(FrontEnd):
     """A histogram of the whole image. Neither brightness nor where in the image a colour is makes a difference."""
 
     columns, rows = COLUMNS, ROWS
-    shifts, scale, vague = False, 2.5, 0.0
-
-    def __init__(self, params: LocalViewParams) -> None:
-        self._full_bin = params.full_bin
-        self._full, self._certain = params.full_saturation, params.certain_saturation
+    shifts, scale, threshold, surprise, vague = False, 2.5, 5.0, 20.0, 0.0
 
     def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
         rgb = checked(image)
@@ -33,18 +32,12 @@ class HueSaturation(FrontEnd):
             raise ValueError(f"image must be in colour, shape (h, w, 3), for hue and saturation, got {rgb.shape}")
         small = cv2.resize(rgb.astype(np.float32) / 255, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
         hsv = np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2HSV), np.float32)
-        shares = histogram(hsv[..., 0].ravel(), hsv[..., 1].ravel(), self._full, self._certain)
-        return np.minimum(np.rint(255 / self._full_bin * shares), 255).astype(np.uint8).ravel()
+        shares = histogram(hsv[..., 0].ravel(), hsv[..., 1].ravel(), FULL_SATURATION, CERTAIN_SATURATION)
+        return np.minimum(np.rint(255 / FULL_BIN * shares), 255).astype(np.uint8).ravel()
 
-    def bland(self, features: Features, params: LocalViewParams) -> bool:
+    def bland(self, features: Features) -> bool:
         """An image that is grey all over."""
-        return self._full_bin / 255 * float(features.reshape(HUES, SATURATIONS)[:, 1:].sum()) < params.min_colour
-
-    def threshold(self, params: LocalViewParams) -> float:
-        return params.colour_threshold
-
-    def surprise(self, params: LocalViewParams) -> float:
-        return params.colour_surprise
+        return FULL_BIN / 255 * float(features.reshape(HUES, SATURATIONS)[:, 1:].sum()) < LEAST_COLOUR
 
     def picture(self, features: Features) -> NDArray[np.uint8]:
         """Hue to the right, saturation downwards; each bin in its colour, the brighter the larger its share."""

@@ -17,14 +17,24 @@ from disk import kind
 from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.front_ends.template import grey_template
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, SIZE, Features
-from ratslam_core.params import LocalViewParams
 
 ECHOES = 8
 GAIN = 90.0  # bytes for a brightness that is e times as large
 MIDDLE = 128.0  # the byte of a column whose mean is this grey
+DARK = 40.0  # grey levels added before the logarithm is taken, so that noise in the dark is not amplified
+EVEN = 0.8  # share of the mean of an image's column that is taken for light
+ECHO_WEIGHT = 0.12  # of the echoes' mean difference against that of the picture
+LEAST_M, MOST_M = 0.2, 4.0  # nearer echoes count as the first, farther ones as none
+FULL_PATTERN = 12.0  # levels that an image must change along its rows to be trusted altogether
+LEAST_PATTERN = 2.0  # levels; an image that changes less shows nothing
+PLAIN_DOUBT = 6.0  # levels added for an image that does not change along its rows at all,
+SILENT_DOUBT = 1.0  # when nothing is within reach of the sonars,
+DEAF_DOUBT = 3.0  # and for a robot without sonars, which the picture alone must tell apart
+
+LEVELS = (GAIN * np.log(np.arange(256) + DARK)).astype(np.float32)  # of each grey level
 
 
-@kind("image and sonars/1")
+@kind("image and sonars/2")
 class ImageAndSonars(FrontEnd):
     """Logarithms of grey levels, less most of their column's mean; behind them logarithms of ranges.
 
@@ -33,13 +43,8 @@ class ImageAndSonars(FrontEnd):
     """
 
     columns, rows = COLUMNS, ROWS
-    shifts, scale, vague = True, 1.0, 0.0
-    echoes = ECHOES
-
-    def __init__(self, params: LocalViewParams) -> None:
-        self.echo_weight = params.echo_weight
-        self._least_m, self._most_m, self._even = params.echo_least_m, params.echo_most_m, params.even_light
-        self._levels = (GAIN * np.log(np.arange(256) + params.dark)).astype(np.float32)
+    shifts, scale, threshold, surprise, vague = True, 1.0, 7.0, 9.5, 0.0
+    echoes, echo_weight = ECHOES, ECHO_WEIGHT
 
     def look(
         self,
@@ -48,28 +53,21 @@ class ImageAndSonars(FrontEnd):
         ranges_m: NDArray[np.floating] | None = None,
     ) -> Features:
         features = np.zeros(SIZE + ECHOES, np.uint8)
-        _picture_bytes(grey_template(image), self._levels, self._even, features)
+        _picture_bytes(grey_template(image), LEVELS, EVEN, features)
         if ranges_m is not None:
-            _echo_bytes(np.asarray(ranges_m, np.float64), self._least_m, self._most_m, features)
+            _echo_bytes(np.asarray(ranges_m, np.float64), LEAST_M, MOST_M, features)
         return features
 
-    def bland(self, features: Features, params: LocalViewParams) -> bool:
+    def bland(self, features: Features) -> bool:
         """A wall at arm's length, or an empty hall, looks the same to either side."""
-        return along_rows(features) < params.min_pattern
+        return along_rows(features) < LEAST_PATTERN
 
-    def doubt(self, features: Features, params: LocalViewParams) -> float:
+    def doubt(self, features: Features) -> float:
         """[ours] The less the rows differ from left to right, and the fewer echoes there are, the less a match means.
 
         Floors and ceilings alone look alike everywhere. test_image_and_sonars.py::test_what_tells_little_is_doubted.
         """
-        p = params
-        return _doubt(features, p.full_pattern, p.plain_doubt, p.silent_doubt, p.deaf_doubt)
-
-    def threshold(self, params: LocalViewParams) -> float:
-        return params.composite_threshold
-
-    def surprise(self, params: LocalViewParams) -> float:
-        return params.composite_surprise
+        return _doubt(features)
 
     def picture(self, features: Features) -> NDArray[np.uint8]:
         """The levels; below them a strip with the echoes from left to right, the nearer the brighter."""
@@ -125,10 +123,10 @@ def along_rows(features: Features) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _doubt(features: Features, full: float, plain_doubt: float, silent_doubt: float, deaf_doubt: float) -> float:
+def _doubt(features: Features) -> float:
     silent = deaf = 0
     for code in features[SIZE:]:
         silent += code == 255
         deaf += code == 0
-    plain = max(0.0, 1.0 - along_rows(features) / full)
-    return plain_doubt * plain + silent_doubt * (silent / ECHOES) + deaf_doubt * (deaf / ECHOES)
+    plain = max(0.0, 1.0 - along_rows(features) / FULL_PATTERN)
+    return PLAIN_DOUBT * plain + SILENT_DOUBT * (silent / ECHOES) + DEAF_DOUBT * (deaf / ECHOES)

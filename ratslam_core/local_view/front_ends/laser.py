@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.matcher import Features
-from ratslam_core.params import LocalViewParams
 
 LASER_COLUMNS = 60
 LEAST_M, MOST_M = 0.3, 20.0  # nearer and farther ranges count as these; a range twice as long is 42 bytes more
@@ -25,7 +24,7 @@ class Laser(FrontEnd):
     """Logarithms of ranges, since what is far away changes less with a step."""
 
     columns, rows = LASER_COLUMNS, 1
-    shifts, scale, vague = True, 1.0, 0.0
+    shifts, scale, threshold, surprise, vague = True, 1.0, 7.0, 9.5, 0.0
 
     def look(
         self, _image: object = None, _scene: int | None = None, ranges_m: NDArray[np.floating] | None = None
@@ -39,15 +38,9 @@ class Laser(FrontEnd):
         columns = np.add.reduceat(share, bounds) / np.maximum(width, 1)
         return np.rint(255 * columns[::-1]).astype(np.uint8)
 
-    def bland(self, features: Features, _params: LocalViewParams) -> bool:
+    def bland(self, features: Features) -> bool:
         """A hall without walls within reach."""
         return float((features < 255).mean()) < BLAND
-
-    def threshold(self, params: LocalViewParams) -> float:
-        return params.composite_threshold
-
-    def surprise(self, params: LocalViewParams) -> float:
-        return params.composite_surprise
 
     def picture(self, features: Features) -> NDArray[np.uint8]:
         """The nearer, the brighter, from left to right."""

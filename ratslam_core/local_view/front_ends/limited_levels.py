@@ -12,43 +12,30 @@ from numpy.typing import NDArray
 
 from disk import kind
 from ratslam_core.local_view.front_ends.front_end import FrontEnd
-from ratslam_core.local_view.front_ends.image_and_sonars import along_rows
+from ratslam_core.local_view.front_ends.image_and_sonars import EVEN, LEAST_PATTERN, LEVELS, MIDDLE, along_rows
 from ratslam_core.local_view.front_ends.template import grey_template
 from ratslam_core.local_view.matcher import Features
-from ratslam_core.params import LocalViewParams
 from ratslam_core.params.local_view import COLUMNS, ROWS
 
-GAIN = 90.0  # bytes for a brightness that is e times as large
 MOST = 40.0  # levels: a pixel that is half as bright again as its column, and more
-MIDDLE = 128.0  # the byte of a pixel as bright as this grey where its column is, too
 
 
-@kind("limited levels/1")
+@kind("limited levels/2")
 class LimitedLevels(FrontEnd):
     """Logarithms of grey levels, less most of their column's mean, limited."""
 
     columns, rows = COLUMNS, ROWS
-    shifts, scale, vague = True, 1.0, 0.0
-
-    def __init__(self, params: LocalViewParams) -> None:
-        self._even = params.even_light
-        self._levels = (GAIN * np.log(np.arange(256) + params.dark)).astype(np.float32)
+    shifts, scale, threshold, surprise, vague = True, 1.0, 7.0, 9.5, 0.0
 
     def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
-        levels = self._levels[grey_template(image)]
-        column, middle = levels.mean(axis=0), self._levels[int(MIDDLE)]
-        off = levels - self._even * column - (1 - self._even) * middle
+        levels = LEVELS[grey_template(image)]
+        column, middle = levels.mean(axis=0), LEVELS[int(MIDDLE)]
+        off = levels - EVEN * column - (1 - EVEN) * middle
         return np.rint(MIDDLE + np.clip(off, -MOST, MOST)).astype(np.uint8).T.ravel()
 
-    def bland(self, features: Features, params: LocalViewParams) -> bool:
+    def bland(self, features: Features) -> bool:
         """A wall at arm's length looks the same to either side."""
-        return along_rows(features) < params.min_pattern
-
-    def threshold(self, params: LocalViewParams) -> float:
-        return params.composite_threshold
-
-    def surprise(self, params: LocalViewParams) -> float:
-        return params.composite_surprise
+        return along_rows(features) < LEAST_PATTERN
 
     def picture(self, features: Features) -> NDArray[np.uint8]:
         return features.reshape(COLUMNS, ROWS).T

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 import numbers
 
 import cv2
@@ -14,7 +15,6 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, SIZE, Features
-from ratslam_core.params import LocalViewParams
 
 LARGEST = 2**63 - 1
 NUMBER = slice(0, 8)  # where the number is kept in the features
@@ -26,6 +26,7 @@ class SceneNumbers(FrontEnd):
 
     columns, rows = COLUMNS, ROWS
     shifts, scale, vague = False, 1000.0, 5.0  # other numbers are 10 levels away or more; a scene is no point
+    threshold, surprise = vague, math.inf  # a number is either known or not, and does not tell how far apart scenes are
 
     def look(self, _image: NDArray[np.uint8] | None, scene: int | None = None, _ranges_m: object = None) -> Features:
         if not isinstance(scene, numbers.Integral) or isinstance(scene, bool) or not 0 <= scene <= LARGEST:
@@ -34,16 +35,8 @@ class SceneNumbers(FrontEnd):
         features[NUMBER] = np.frombuffer(int(scene).to_bytes(8, "little"), np.uint8)
         return features
 
-    def bland(self, _features: Features, _params: LocalViewParams) -> bool:
+    def bland(self, _features: Features) -> bool:
         return False
-
-    def threshold(self, _params: LocalViewParams) -> float:
-        """A number is either known or not."""
-        return self.vague
-
-    def surprise(self, _params: LocalViewParams) -> float:
-        """Numbers do not tell how far apart scenes are."""
-        return float("inf")
 
     def picture(self, features: Features) -> NDArray[np.uint8]:
         """The number in digits."""

@@ -10,28 +10,23 @@ from disk import kind
 from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.front_ends.image import grey
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
-from ratslam_core.params import LocalViewParams
+
+LEAST_CONTRAST = 12.0  # grey levels; an image with less shows nothing
 
 
-@kind("template/1")
+@kind("template/2")
 class Template(FrontEnd):
     """Every change counts, the light included, so several views may stand for one place."""
 
     columns, rows = COLUMNS, ROWS
-    shifts, scale, vague = True, 1.0, 0.0
+    shifts, scale, threshold, surprise, vague = True, 1.0, 6.0, 20.0, 0.0
 
     def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
         return np.ascontiguousarray(grey_template(image).T).ravel()
 
-    def bland(self, features: Features, params: LocalViewParams) -> bool:
+    def bland(self, features: Features) -> bool:
         """A wall at arm's length has no contrast."""
-        return float(cv2.meanStdDev(self.picture(features))[1][0, 0]) < params.min_contrast
-
-    def threshold(self, params: LocalViewParams) -> float:
-        return params.match_threshold
-
-    def surprise(self, params: LocalViewParams) -> float:
-        return params.surprise
+        return float(cv2.meanStdDev(self.picture(features))[1][0, 0]) < LEAST_CONTRAST
 
     def picture(self, features: Features) -> NDArray[np.uint8]:
         return features.reshape(COLUMNS, ROWS).T

@@ -113,14 +113,14 @@ def test_an_addition_begins_by_its_name_and_the_page_is_told_which_are_off() -> 
     view = shown(engine)
     assert (view.first.name, view.second.name) == ("ours", "without exact solver")
     assert {(changed.name, changed.first, changed.second) for changed in view.changed} == {
-        ("solver.enabled", True, False),
+        ("experience_map.exact_solver", True, False),
         ("experience_map.solve_every", 50, 0),
         ("experience_map.sweep", "by experience", "by link"),
     }
     tell(engine, type="compare_brains", pair="law of evidence", since="now")
     assert (shown(engine).second.name, shown(engine).since_s) == ("without law of evidence", 2.0)
     tell(engine, type="set_parameter", name="pose_cells.carry", value=False)
-    tell(engine, type="set_parameter", name="memory.familiar", value=False)
+    tell(engine, type="set_parameter", name="experience_map.familiar_ground", value=False)
     off = ("carry", "familiar ground")
     assert engine.snapshot().additions_off == m.AdditionsOff(off, off)
     tell(engine, type="compare_brains", pair="familiar ground")
@@ -185,7 +185,7 @@ def test_from_now_on_and_again_from_the_beginning_after_a_restart() -> None:
         ({"pair": "cells-64"}, "the first brain is that already: nothing would differ; what would: papers, vision"),
         ({"pair": "nobody"}, "there is no pair 'nobody'; expected one of: papers, vision"),
         ({"pair": "exact"}, "no-map; or an addition: order of the stages, carry, "),
-        ({"pair": "exact solver", "since": "now"}, "solver.enabled cannot change while a brain runs"),
+        ({"pair": "exact solver", "since": "now"}, "experience_map.exact_solver cannot change while a brain runs"),
         ({"values": {"pose_cells.n_x": 64}}, "nothing would differ"),
         ({"values": {"pilot.seek": False}}, "pilot.seek cannot differ"),
         ({"pair": "cells", "since": "now"}, "pose_cells.n_x, pose_cells.n_y cannot change while a brain runs"),

@@ -110,10 +110,10 @@ def test_exploring_until_recovered_ends_then() -> None:
 
 def test_parameters_and_doors_change_on_the_way() -> None:
     door = LIVING.doors[0].name
-    change = Set(do="set", values={"pose_cells.snap_cells": 7.0})
+    change = Set(do="set", values={"local_view.match_threshold": 7.0})
     course = taken(change, Door(do="door", name=door, open=True), world=LIVING)
-    assert course.session.config.pose_cells.snap_cells == 7.0
-    assert words(course)[:2] == ["pose_cells.snap_cells = 7.0", f"{door} opens"]
+    assert course.session.config.local_view.match_threshold == 7.0
+    assert words(course)[:2] == ["local_view.match_threshold = 7.0", f"{door} opens"]
 
 
 # ------------------------------------------------------------ goals

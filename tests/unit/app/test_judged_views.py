@@ -4,7 +4,6 @@ the ellipse of doubt is the filter's or the packet's."""
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -112,13 +111,12 @@ def test_doubt_is_the_filters_sigma_and_by_the_papers_rules_the_packets_spread()
     sigma = session.brain.experience_map.pose_filter.sigma_m
     assert seen is not None
     assert (seen.along_m, seen.across_m, seen.by) == (sigma, sigma, "filter")
-    config = Config()
-    plain = replace(config, pose_filter=replace(config.pose_filter, enabled=False))
+    plain = Config().with_value("experience_map.pose_filter", False)
     session = a_session(TICKS, config=plain)
     seen = spread_of(session)
     assert seen is not None
     assert seen.by == "packet"
-    assert 0 < seen.across_m <= seen.along_m < 6 * config.pose_cells.cell_m
+    assert 0 < seen.across_m <= seen.along_m < 6 * plain.pose_cells.cell_m
 
 
 def test_the_packets_ellipse_is_that_of_its_activity() -> None:

@@ -27,7 +27,7 @@ def played(session: Session, ticks: int) -> Iterator[Session]:
 @pytest.mark.slow
 @pytest.mark.parametrize("world", ["office", "living"])
 def test_it_comes_out_the_same(world: str, tmp_path: Path) -> None:
-    config = Config().with_values({"local_view.composite_threshold": 8.0, "robot.odometry_noise": 0.1})
+    config = Config().with_values({"local_view.match_threshold": 1.2, "robot.odometry_noise": 0.1})
     session = Session(load_world(world), 11, config)
     with (tmp_path / "run.mcap").open("wb") as file:
         write_mcap(played(session, 300), file)

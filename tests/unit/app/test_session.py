@@ -80,7 +80,7 @@ def test_each_front_end_maps_the_office(front_end: str) -> None:
     assert senses.front_end == front_end
     assert senses.best is not None
     assert senses.seen.shape[2:] == senses.best.shape[2:] == ((3,) if front_end == "hue and saturation" else ())
-    assert senses.threshold == session.brain.local_view.front_end.threshold(session.config.local_view)
+    assert senses.threshold == session.brain.local_view.threshold
     if front_end == "scene numbers":
         assert senses.seen_words == f"scene {session.frame.scene}"
 

@@ -44,11 +44,10 @@ def activity_of(pose_cells: PoseCells) -> Activity:
     return Activity(cells[order, 3].astype(np.int64), values[order].astype(np.float64))
 
 
-@pytest.mark.parametrize("local_inhibit", [0.0, 0.3])
 @pytest.mark.parametrize("size", [(8, 8, 36), (64, 64, 36)])
 @pytest.mark.parametrize("way", [0.0, 0.9, 3.1])
-def test_the_stages_lead_where_the_engine_went(local_inhibit: float, size: tuple[int, int, int], way: float) -> None:
-    params = PoseCellParams(n_x=size[0], n_y=size[1], n_theta=size[2], local_inhibit=local_inhibit)
+def test_the_stages_lead_where_the_engine_went(size: tuple[int, int, int], way: float) -> None:
+    params = PoseCellParams(n_x=size[0], n_y=size[1], n_theta=size[2])
     pose_cells = PoseCells(params)
     rng = np.random.default_rng(4)
     for _ in range(6):

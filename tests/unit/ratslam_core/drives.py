@@ -18,7 +18,6 @@ from ratslam_core import (
     Packet,
     Pose2,
     PoseCellParams,
-    PoseFilterParams,
     RatSlam,
     RatSlamParams,
     Recognition,
@@ -42,10 +41,9 @@ class Robot:
         self,
         params: ExperienceMapParams | None = None,
         start: Pose2 | None = None,
-        filter_params: PoseFilterParams | None = None,
     ) -> None:
         believing = replace(params or ExperienceMapParams(), islands=False)
-        self.map = ExperienceMap(SHAPE, CELL_M, believing, filter_params)
+        self.map = ExperienceMap(SHAPE, CELL_M, believing)
         self.pose = start or Pose2(0.0, 0.0, 0.0)
         self.behaviour = 0
 

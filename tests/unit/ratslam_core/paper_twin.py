@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from ratslam_core import RatSlamParams
 
 Array = NDArray[np.float64]
+THRESHOLD = 6.0  # grey levels
+WINDOW = 6  # cells
 
 
 @dataclass
@@ -65,7 +67,7 @@ class PaperTwin:
 
     def _recognise(self, image: Array) -> int:
         apart = [self._difference(image, known) for known in self.views]
-        if apart and min(apart) <= self.p.local_view.match_threshold:
+        if apart and min(apart) <= THRESHOLD * self.p.local_view.match_threshold:
             return int(np.argmin(apart))
         self.views.append(image)
         self.beta.append(np.zeros_like(self.P))
@@ -100,7 +102,8 @@ class PaperTwin:
     def _attracted(self) -> Array:
         """A10: excitation by a Gaussian; A11: global inhibition; A12: normalisation."""
         c = self.p.pose_cells
-        reach = np.arange(-c.excite_radius, c.excite_radius + 1)
+        most = max(2, math.ceil(3 * c.excite_sigma))
+        reach = np.arange(-most, most + 1)
         weights = np.exp(-0.5 * (reach / c.excite_sigma) ** 2)
         weights /= weights.sum()
         P = self.P
@@ -112,7 +115,7 @@ class PaperTwin:
     def winner(self) -> tuple[float, float, float, float]:
         """x', y', theta' and mass of the heaviest packet, read off its centre.
 
-        Repeatedly, the strongest free cell and all free cells within `window` of it form a packet. If that cell has a
+        Repeatedly, the strongest free cell and all free cells within WINDOW of it form a packet. If that cell has a
         stronger neighbour in another packet, it is a flank of that packet.
         """
         size, owner, peaks = np.array(self.P.shape), np.full(self.P.shape, -1), []
@@ -122,9 +125,7 @@ class PaperTwin:
             if owner[cell] < 0:
                 gaps = (np.array(cells) - np.array(cell) + size // 2) % size - size // 2
                 for other, gap in zip(cells, gaps, strict=True):
-                    if owner[other] < 0 and np.all(
-                        np.abs(gap) <= np.minimum(self.p.pose_cells.window, (size - 1) // 2)
-                    ):
+                    if owner[other] < 0 and np.all(np.abs(gap) <= np.minimum(WINDOW, (size - 1) // 2)):
                         owner[other] = len(peaks)
                 peaks.append(cell)
         root = list(range(len(peaks)))

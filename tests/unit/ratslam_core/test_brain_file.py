@@ -159,7 +159,7 @@ MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "exper
         (write("goal_memory._used", 4096), "the number of links must be a whole number from 0 to 2048"),
         (reshape("map_grid._scans", lambda a: a[:, :2]), "scans must have shape"),
         (put("map_grid._count", 255, 1), "may have scans"),
-        (put("occupancy._log_odds", (0, 0), np.inf), "log odds must be from -20 to 20"),
+        (put("occupancy._log_odds", (0, 0), np.inf), "log odds must be from -5 to 5"),
         (reshape("kidnap_detector._scans._last", lambda _: np.ones(900)), "the last scan must have shape"),
         (write("association._learnt_s", {"list": []}), "each of .* views must have a time, got 0"),
         (write("association.learning_rate", {"float": "nan"}), "learning_rate must be a number, got nan"),

@@ -7,10 +7,17 @@ import math
 import numpy as np
 import pytest
 
-from ratslam_core import LocalViewParams
-from ratslam_core.local_view.front_ends.complex_cells import REACH, ComplexCells, gabor_pair
+from ratslam_core.local_view.front_ends.complex_cells import (
+    AROUND,
+    DARK,
+    GAIN,
+    LEAST_EDGES,
+    REACH,
+    ComplexCells,
+    gabor_pair,
+)
 
-from .scenes import Image, P
+from .scenes import Image
 
 
 def grating(across_deg: float, phase: float, wavelength: float = 6.0) -> Image:
@@ -26,7 +33,7 @@ def test_complex_cells_are_the_energy_of_quadrature_pairs_by_loops() -> None:
     image = np.random.default_rng(1).integers(0, 256, (36, 48)).astype(np.uint8)
     grey = image.astype(np.float64)
     mirrored = np.pad(grey, REACH, mode="symmetric")
-    half = P.edge_neighbourhood // 2
+    half = AROUND // 2
     expected = np.zeros((12, 2, 4))
     for k in range(4):
         even, odd = (f.astype(np.float64) for f in gabor_pair(math.pi * k / 4))
@@ -34,16 +41,16 @@ def test_complex_cells_are_the_energy_of_quadrature_pairs_by_loops() -> None:
             for x in range(48):
                 patch = mirrored[y : y + 2 * REACH + 1, x : x + 2 * REACH + 1]
                 inner = patch[REACH - half : REACH + half + 1, REACH - half : REACH + half + 1]
-                energy = math.hypot((patch * even).sum(), (patch * odd).sum()) / (inner.mean() + P.edge_dark)
+                energy = math.hypot((patch * even).sum(), (patch * odd).sum()) / (inner.mean() + DARK)
                 expected[x // 4, y // 18, k] += energy / (4 * 18)
-    got = ComplexCells(P).look(image).astype(float)
-    assert np.abs(got - np.clip(P.edge_gain * expected.ravel(), 0, 255)).max() <= 0.51
+    got = ComplexCells().look(image).astype(float)
+    assert np.abs(got - np.clip(GAIN * expected.ravel(), 0, 255)).max() <= 0.51
 
 
 @pytest.mark.parametrize("k", range(4))
 def test_each_complex_cell_has_its_orientation_and_no_phase(k: int) -> None:
     wavelength = 6.0
-    seen = np.array([ComplexCells(P).look(grating(45 * k, p, wavelength)) for p in np.arange(0, 2 * math.pi, 0.5)])
+    seen = np.array([ComplexCells().look(grating(45 * k, p, wavelength)) for p in np.arange(0, 2 * math.pi, 0.5)])
     energy = seen.reshape(len(seen), 12, 2, 4).astype(float)[:, 2:-2]  # away from the borders
     mine = energy[..., k]
     others = np.delete(energy, k, axis=-1)
@@ -56,7 +63,7 @@ def test_gabor_pairs_are_blind_to_brightness() -> None:
         even, odd = gabor_pair(math.pi * k / 4)
         assert abs(even.sum()) < 1e-6 > abs(odd.sum())
         assert (even**2).sum() == pytest.approx((odd**2).sum(), rel=1e-5)
-    assert ComplexCells(P).look(np.full((36, 48), 200, np.uint8)).max() == 0
+    assert ComplexCells().look(np.full((36, 48), 200, np.uint8)).max() == 0
 
 
 @pytest.mark.parametrize("k", range(4))
@@ -82,7 +89,7 @@ def test_the_picture_has_a_bar_along_the_edges_of_each_place(k: int, along: tupl
     """Orientation 0 is across to the right, so its edge goes up and down. Bars end before the corners of their place."""
     features = np.zeros((12, 2, 4), np.uint8)
     features[7, 1, k] = 200
-    picture = ComplexCells(P).picture(features.ravel())
+    picture = ComplexCells().picture(features.ravel())
     assert picture.shape == (18, 108)
     place = picture[9:18, 63:72].copy()
     assert place.sum(dtype=int) == picture.sum(dtype=int)
@@ -100,15 +107,13 @@ def test_the_picture_has_a_bar_along_the_edges_of_each_place(k: int, along: tupl
 def test_the_brightest_of_several_edges_shows() -> None:
     features = np.zeros((12, 2, 4), np.uint8)
     features[0, 0] = 100, 0, 255, 0
-    place = ComplexCells(P).picture(features.ravel())[:9, :9]
+    place = ComplexCells().picture(features.ravel())[:9, :9]
     assert place[4].tolist() == [255] * 9
     assert place[[0, 1, 7, 8], 4].tolist() == [100] * 4
 
 
 def test_bland_is_less_than_the_limit_on_average() -> None:
-    end, limit = ComplexCells(P), P.min_edges
-    features = np.full(96, math.ceil(limit), np.uint8)
-    at = LocalViewParams(min_edges=float(math.ceil(limit)))
-    assert not end.bland(features, at)
+    end, features = ComplexCells(), np.full(96, LEAST_EDGES, np.uint8)
+    assert not end.bland(features)
     features[0] -= 1
-    assert end.bland(features, at)
+    assert end.bland(features)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, PoseFilterParams, Recognition
+from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition
 from ratslam_core.extensions import evidence as law
 from ratslam_core.extensions.evidence import AGAINST, FOR, LIKENESS, NATS, PRIOR, Evidence, nats
 from ratslam_core.extensions.islands import Islands, move
@@ -75,6 +75,7 @@ class Known:
 
     robot_here: Pose2 = Pose2(0.0, 0.0, 0.0)
     prior: float = PRIOR
+    cell_m: float = CELL_M
 
     def log_prior(self, _experience: int, _pose: Pose2) -> float:
         return self.prior
@@ -85,7 +86,7 @@ class Known:
 
 
 def carried(known: Known, expected: Pose2 | None = None, *, sure: bool = True) -> Evidence:
-    evidence = Evidence(EvidenceParams())
+    evidence = Evidence(EvidenceParams(), CELL_M)
     evidence.begin(expected or Pose2(50.0, 50.0, 0.0), 0, known.count, sure=sure)
     return evidence
 
@@ -182,18 +183,18 @@ def test_who_was_perhaps_not_carried_is_as_likely_where_odometry_leads_as_at_a_n
 def test_the_likeliest_of_those_that_meet_stays() -> None:
     rows = np.zeros((law.MOST, 7))
     rows[:4, :4] = [[0, 0, 0, 1.0], [0.2, 0, 0.1, 3.0], [5, 0, 0, 2.0], [9, 9, 0, law.FORGOTTEN - 1]]
-    assert law._merge(rows, 4, law.FORGOTTEN) == 2
+    assert law._merge(rows, 4, law.FORGOTTEN, CELL_M) == 2
     assert rows[:2, law.ODDS].tolist() == [3.0, 2.0]
     rows[:2, law.SUBMAP] = [0, 1]
     rows[1, :3] = rows[0, :3]
-    assert law._merge(rows, 2, law.FORGOTTEN) == 2  # on two submaps, the same numbers are two places
+    assert law._merge(rows, 2, law.FORGOTTEN, CELL_M) == 2  # on two submaps, the same numbers are two places
 
 
 def test_what_was_gathered_fades_with_the_way_and_no_doubt_does() -> None:
     rows = np.zeros((2, 7))
     rows[:, law.ODDS] = 4.0, -3.0
-    law._weigh(rows, np.full(2, -1), np.full(2, np.inf), 0.5, 0.2)
-    assert rows[:, law.ODDS].tolist() == pytest.approx([4.0 * (1 - 0.1), -3.0])
+    law._weigh(rows, np.full(2, -1), np.full(2, np.inf), 0.5)
+    assert rows[:, law.ODDS].tolist() == pytest.approx([4.0 * (1 - 0.5 * law.LEAK), -3.0])
 
 
 # ---------------------------------------------------------------- submaps
@@ -229,7 +230,7 @@ class Robot:
 
     def __init__(self) -> None:
         params = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0)
-        self.map = ExperienceMap(SHAPE, CELL_M, params, PoseFilterParams())
+        self.map = ExperienceMap(SHAPE, CELL_M, params)
         self.pose = Pose2(0.0, 0.0, 0.0)
         self.sights = Sights([])
         self.confirmed: Pose2 | None = Pose2(0.0, 0.0, 0.0)
@@ -332,7 +333,7 @@ def test_a_doubtful_jump_after_a_sure_one_makes_nothing_doubtful() -> None:
 
 def in_doubt(known: Known, prior: float) -> Evidence:
     known.prior = prior
-    evidence = Evidence(EvidenceParams())
+    evidence = Evidence(EvidenceParams(), CELL_M)
     evidence.doubt(known.count)
     return evidence
 
@@ -345,7 +346,7 @@ def test_looks_alone_never_prevail_against_odometry() -> None:
     for _ in range(60):
         drive(evidence, known, sights, 10)
         assert evidence.belief is None
-    assert evidence.hypotheses[:, law.ODDS].max() == evidence.params.most - evidence.params.unnoticed
+    assert evidence.hypotheses[:, law.ODDS].max() == law.MOST_SAID - evidence.params.unnoticed
 
 
 def test_what_is_missing_where_it_should_be_speaks_against_odometry() -> None:
@@ -462,7 +463,7 @@ def test_the_prior_is_what_odometry_can_have_drifted(off: float, drift: float) -
 @pytest.mark.parametrize(("gate_rad", "held"), [(3.2, False), (0.8, True)])
 def test_a_look_that_turns_the_robot_is_held_back(gate_rad: float, held: bool) -> None:
     """As near as it puts the robot: one whose heading is sure is not turned by a look-alike. 3.2 is the plain twin."""
-    map_ = ExperienceMap(SHAPE, CELL_M, ExperienceMapParams(sweeps=0), PoseFilterParams(gate_rad=gate_rad))
+    map_ = ExperienceMap(SHAPE, CELL_M, ExperienceMapParams(sweeps=0), evidence=EvidenceParams(gate_rad=gate_rad))
     packet = Packet(32.0, 32.0, 0.0, 1.0)
     for view in (0, 1):
         map_.step(packet, Recognition(view, True, view, 1.0, 0.0), DRIVE)

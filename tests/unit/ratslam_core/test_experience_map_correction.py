@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ratslam_core import ExperienceMapParams, Odometry, Pose2, Recognition, SolverParams
+from ratslam_core import ExperienceMapParams, Odometry, Pose2, Recognition
+from ratslam_core.extensions import exact_solver
 from ratslam_core.pose_graph import relaxation
 
 from .drives import Robot
@@ -43,8 +44,7 @@ def loop(params: ExperienceMapParams, reads: float, bias: float, laps: int, bias
     """bias_sigma: 10, as good as no doubt of the bias."""
     PLACES.clear()
     PLACES[0] = Pose2(0.0, 0.0, 0.0)
-    robot = Robot(params)
-    robot.map.optimiser.params = SolverParams(bias_sigma=bias_sigma)
+    robot = Robot(replace(params, bias_sigma=bias_sigma))
     robot.see(0, new=True)
     for _ in range(laps):
         lap(robot, reads, bias)
@@ -91,7 +91,7 @@ def test_a_correction_that_was_hard_is_followed_by_a_long_rest(
 ) -> None:
     """A loop that closes in every step. Corrections are due in every step, but rest after one in proportion to its cost."""
     robot = loop(ExperienceMapParams(solve_every=1), 1.0, 0.0, 1)
-    robot.map.optimiser.params = SolverParams(work_a_step=a_step)
+    monkeypatch.setattr(exact_solver, "WORK_A_STEP", a_step)
     solve, solved = relaxation.solve, []
     monkeypatch.setattr(relaxation, "solve", lambda *given: solved.append(solve(*given)) or solved[-1])
     for _ in range(60):

@@ -93,7 +93,7 @@ def test_repeats_of_a_transition_are_averaged(passages: list[tuple[float, float]
 
 def test_a_passage_counts_by_how_well_it_is_known() -> None:
     """The weight is 1 / (1 + variance / variance of a step), with the variances of both ends and of the way."""
-    params = ExperienceMapParams(anchor_sigma=0.05, odometry_sigma=0.01, odometry_drift=0.03, sweeps=0, solve_every=0)
+    params = ExperienceMapParams(anchor_sigma=0.05, odometry_drift=0.03, sweeps=0, solve_every=0)
     robot = Robot(replace(params, odometry_edges=False))
     robot.see(0, new=True)
     here = robot.packet()
@@ -105,7 +105,7 @@ def test_a_passage_counts_by_how_well_it_is_known() -> None:
         robot.go(way, 0.0, 1, new=number == 0, difference=difference, packet=replace(here, x=here.x + 10))
         at_end = 0.0 if number == 0 else 0.05 * difference
         variance = at_end**2 + (0.05 * before) ** 2 + (0.03 * way) ** 2
-        weight = 1e-4 / (1e-4 + variance)
+        weight = robot.map.step_sigma_m**2 / (robot.map.step_sigma_m**2 + variance)
         expected_sum, weights = expected_sum + weight * way, weights + weight
         row = robot.map.links.tolist().index([0, 1])
         assert robot.map.moves[row, 0] == pytest.approx(expected_sum / weights, rel=1e-6)

@@ -18,6 +18,8 @@ from .literal import interpret
 
 SHAPES = [(36, 64, 64), (36, 8, 8), (10, 9, 21)]
 STILL = Odometry(0.0, 0.0, 0.1)
+START = Pose2(0.0, 0.0, 0.0)
+BLIND_M = 1.0
 
 
 def literal_energy(known: Experiences, i: int, packet: Packet, view: int, p: ExperienceMapParams) -> float:
@@ -72,11 +74,11 @@ def test_the_choice_is_that_of_a_loop_over_all(shape, p: ExperienceMapParams, ma
     packet, view = Packet(now[0] % shape[2], now[1] % shape[1], now[2], 1.0), now[3]
     best, most = -1, p.threshold
     for i in range(len(made)):
-        far = math.hypot(known.pose[i, 0] - robot.x, known.pose[i, 1] - robot.y) > p.blind_m
+        far = math.hypot(known.pose[i, 0] - robot.x, known.pose[i, 1] - robot.y) > BLIND_M
         energy = known.energy(i, packet, view, p)
         if energy > most and not (p.match_view and view < 0 and far):
             best, most = i, energy
-    assert known.most_energetic(packet, view, p, robot) == best
+    assert known.most_energetic(packet, view, p, robot, BLIND_M) == best
 
 
 @pytest.mark.parametrize(
@@ -90,9 +92,9 @@ def test_the_interpreted_choice_is_the_compiled_one(choice, monkeypatch: pytest.
     for k in range(60):
         known.add(Packet(30 + k % 7, 30 + k % 5, k % 4 / 5, 1.0), k % 3 - 1, Pose2(float(k), 0.0, 0.0))
     questions = [(Packet(31 + k / 3, 30 + k / 4, k / 30, 1.0), k % 3 - 1) for k in range(20)]
-    compiled = [known.most_energetic(*question, p, Pose2(0.0, 0.0, 0.0)) for question in questions]
+    compiled = [known.most_energetic(*question, p, START, BLIND_M) for question in questions]
     interpret(experiences, monkeypatch)
-    assert [known.most_energetic(*question, p, Pose2(0.0, 0.0, 0.0)) for question in questions] == compiled
+    assert [known.most_energetic(*question, p, START, BLIND_M) for question in questions] == compiled
     assert [known.energy(3, *question, p) for question in questions] == pytest.approx(
         [literal_energy(known, 3, *question, p) for question in questions]
     )
@@ -119,7 +121,7 @@ def test_in_2005_the_right_heading_at_a_wrong_place_still_counts() -> None:
     for match_view in (True, False):
         for threshold, found in ((0.9, 0), (1.0, -1)):
             p = ExperienceMapParams(energy="2005", match_view=match_view, threshold=threshold)
-            assert known.most_energetic(elsewhere, 0, p, Pose2(0.0, 0.0, 0.0)) == found
+            assert known.most_energetic(elsewhere, 0, p, START, BLIND_M) == found
 
 
 def test_without_the_scene_the_same_cells_are_the_same_place() -> None:
@@ -137,7 +139,7 @@ def test_thousands_of_experiences_keep_their_chains() -> None:
     for match_view in (True, False):
         p = ExperienceMapParams(match_view=match_view)
         for k in (0, 1, 1023, 1024, 2999):
-            assert known.most_energetic(Packet(k % 64, k // 64, 0.0, 1.0), k % 7, p, Pose2(0.0, 0.0, 0.0)) == k
+            assert known.most_energetic(Packet(k % 64, k // 64, 0.0, 1.0), k % 7, p, START, BLIND_M) == k
 
 
 @pytest.mark.parametrize("beside", [Packet(22.0, 20.0, 0.0, 1.0), Packet(20.0, 18.0, 0.0, 1.0)])
@@ -152,9 +154,9 @@ def test_the_edge_of_a_zone_belongs_to_it(beside: Packet) -> None:
 def test_nothing_to_see_is_known_again_as_near_as_the_limit(apart_m: float, found: int) -> None:
     known, here = Experiences((36, 64, 64)), Packet(20.0, 20.0, 0.0, 1.0)
     known.add(here, -1, Pose2(3.0, 1.0, 0.0))
-    p = ExperienceMapParams(blind_m=2.0)
-    assert known.most_energetic(here, -1, p, Pose2(3.0 + apart_m, 1.0, 0.0)) == found
-    assert known.most_energetic(here, -1, p, Pose2(3.0, 1.0 - apart_m, 0.0)) == found
+    p = ExperienceMapParams()
+    assert known.most_energetic(here, -1, p, Pose2(3.0 + apart_m, 1.0, 0.0), 2.0) == found
+    assert known.most_energetic(here, -1, p, Pose2(3.0, 1.0 - apart_m, 0.0), 2.0) == found
 
 
 @pytest.mark.parametrize("energy", ["2005", "2006"])
@@ -166,7 +168,7 @@ def test_energy_has_to_be_above_the_threshold(match_view: bool, energy: str) -> 
         known.add(Packet(20.0, 20.0, 0.0, 1.0), 0, Pose2(0.0, 0.0, 0.0))
     for threshold, found in ((1.5, -1), (1.4375, 0)):
         p = ExperienceMapParams(match_view=match_view, energy=energy, threshold=threshold, zone_xy=2.0)  # type: ignore[arg-type]
-        assert known.most_energetic(beside, 0, p, Pose2(0.0, 0.0, 0.0)) == found
+        assert known.most_energetic(beside, 0, p, START, BLIND_M) == found
 
 
 @given(st.lists(st.tuples(st.booleans(), st.integers(-1, 4)), max_size=60))

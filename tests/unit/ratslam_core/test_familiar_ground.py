@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from ratslam_core import Odometry, Packet, Pose2, RatSlam, RatSlamParams, Recognition
 from ratslam_core.experience_map.experience_map import ExperienceMap
-from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
+from ratslam_core.extensions import familiar_ground
+from ratslam_core.extensions.familiar_ground import ENOUGH, LINKS, SIGHTS, FamiliarGround, NewGround
 from ratslam_core.laws import check
-from ratslam_core.params import MemoryParams
 
 from .drives import CELL_M, EXACT, SHAPE, start
 
@@ -26,9 +26,9 @@ KNOWN = Recognition(0, False, 0, 0.0, 0.0)
 class Visitor:
     """A robot that hardly moves, at a place with one experience of view 0."""
 
-    def __init__(self, params: MemoryParams | None = None, *, plain: bool = False) -> None:
-        self.ground = FamiliarGround(params or MemoryParams())
-        ground = NewGround(self.ground.params) if plain else self.ground
+    def __init__(self, *, plain: bool = False) -> None:
+        self.ground = FamiliarGround()
+        ground = NewGround() if plain else self.ground
         self.map = ExperienceMap(SHAPE, CELL_M, replace(EXACT, odometry_drift=0.03), ground=ground)
         self.views = 0
         self.look(Recognition(0, True, -1, math.inf, 0.0))
@@ -47,11 +47,11 @@ class Visitor:
 
 
 def test_a_place_becomes_familiar_when_it_is_recognised() -> None:
-    visitor = Visitor(MemoryParams(sights=10, enough=0.5))
-    needed = math.ceil(math.log(0.5) / math.log(0.9))  # the share after k sights is 1 - 0.9^k
+    visitor, kept = Visitor(), 1 - 1 / SIGHTS
+    needed = math.ceil(math.log(1 - ENOUGH) / math.log(kept))  # the share after k sights is 1 - kept^k
     for sight in range(1, needed + 3):
         visitor.look(KNOWN)
-        assert visitor.ground.share[0] == pytest.approx(1 - 0.9**sight)
+        assert visitor.ground.share[0] == pytest.approx(1 - kept**sight)
         assert visitor.ground.familiar is (sight >= needed)
 
 
@@ -74,7 +74,7 @@ def test_on_familiar_ground_an_unknown_sight_is_let_go() -> None:
 
 def test_a_place_that_changes_is_learnt_anew() -> None:
     """Nothing is recognised any more: after some time views are recruited, until they are recognised."""
-    visitor = Visitor(MemoryParams(sights=20))
+    visitor = Visitor()
     for _ in range(200):
         visitor.look(KNOWN)
     made = [visitor.unknown() for _ in range(100)]
@@ -124,12 +124,10 @@ def test_a_carried_robot_is_near_nothing() -> None:
     assert len(visitor.ground.near) == 0
 
 
-@given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=150), st.integers(1, 6))
-def test_no_place_gets_links_without_end(steps: list[tuple[int, int]], links: int) -> None:
-    """Ten experiences, and transitions between them by chance: no more than `links` a place; those that exist stay."""
-    params = MemoryParams(links=links)
-    ground = FamiliarGround(params)
-    map_ = ExperienceMap(SHAPE, CELL_M, EXACT, ground=ground)
+@given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=150))
+def test_no_place_gets_links_without_end(steps: list[tuple[int, int]]) -> None:
+    """Ten experiences, and transitions between them by chance: no more than LINKS a place; those that exist stay."""
+    map_ = ExperienceMap(SHAPE, CELL_M, EXACT, ground=FamiliarGround())
     for view in range(10):
         map_.step(Packet(32.0, 32.0, 0.0, 1.0), Recognition(view, True, -1, math.inf, 0.0), CRAWL)
     chain = map_.link_count
@@ -139,7 +137,7 @@ def test_no_place_gets_links_without_end(steps: list[tuple[int, int]], links: in
             map_.step(Packet(32.0, 32.0, 0.0, 1.0), Recognition(view, False, view, 0.0, 0.0), CRAWL)
             assert known <= {(i, j) for i, j in map_.links.tolist()}
             assert map_.active == view
-    assert map_.link_count <= chain + 10 * links
+    assert map_.link_count <= chain + 10 * LINKS
 
 
 def test_where_half_of_the_sights_are_recognised_memory_stops_growing() -> None:
@@ -163,9 +161,11 @@ def test_without_an_experience_map_every_sight_is_learnt() -> None:
     assert not brain.experience_map.ground.familiar
 
 
-def test_a_place_has_room_for_so_many_views_and_the_oldest_fades() -> None:
+def test_a_place_has_room_for_so_many_views_and_the_oldest_fades(monkeypatch: pytest.MonkeyPatch) -> None:
     """A place that looks different at every sight: of its four views the one longest not recognised makes room."""
-    visitor = Visitor(MemoryParams(views=4, sights=1000))
+    monkeypatch.setattr(familiar_ground, "VIEWS", 4)
+    monkeypatch.setattr(familiar_ground, "SIGHTS", 1000)
+    visitor = Visitor()
     for _ in range(3):
         visitor.unknown()
     visitor.look(KNOWN)

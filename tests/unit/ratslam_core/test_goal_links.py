@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ratslam_core import GoalMemory, GoalMemoryParams, Packet, goal_links, goal_memory
+from ratslam_core.goal_memory import ARRIVED, REACH, WIDER
 
 from . import literal
 from .goal_drives import CELL_M, SHAPE, SHORT_AND_SLOW, Place, drive, packet_cells
@@ -197,19 +198,19 @@ def test_a_cell_is_in_reach_up_to_the_limit(interpreted: bool, monkeypatch: pyte
 
 
 def test_it_looks_as_far_as_it_may() -> None:
-    memory = GoalMemory(GoalMemoryParams(reach=2, wider=3), SHAPE, CELL_M)
-    for away, heading in ((2, 0.0), (4, 0.0), (6, 0.0), (7, None)):
+    memory = GoalMemory(None, SHAPE, CELL_M)
+    for away, heading in ((REACH, 0.0), (2 * REACH, 0.0), (WIDER * REACH, 0.0), (WIDER * REACH + 1, None)):
         T = np.full((64, 64), np.inf)
         T[30, 10 + away] = 0.0
         assert memory.direction(T, Packet(10.0, 30.0, 0.0, 1.0)) == heading
 
 
 def test_it_has_arrived_just_at_the_limit() -> None:
-    memory = GoalMemory(GoalMemoryParams(arrived=1.5), SHAPE, CELL_M)
+    memory = GoalMemory(None, SHAPE, CELL_M)
     T = np.full((64, 64), np.inf)
     T[30, 10] = 0.0
-    assert memory.direction(T, Packet(11.5, 30.0, 0.0, 1.0)) is None
-    assert memory.direction(T, Packet(11.6, 30.0, 0.0, 1.0)) == pytest.approx(math.pi)
+    assert memory.direction(T, Packet(10.0 + ARRIVED, 30.0, 0.0, 1.0)) is None
+    assert memory.direction(T, Packet(10.1 + ARRIVED, 30.0, 0.0, 1.0)) == pytest.approx(math.pi)
 
 
 def test_the_largest_plane_and_the_smallest_are_planes() -> None:

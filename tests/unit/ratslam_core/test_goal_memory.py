@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ratslam_core import GoalMemory, GoalMemoryParams, Packet, PoseCells, goal_links
+from ratslam_core import GoalMemory, GoalMemoryParams, Packet, PoseCells, goal_links, goal_memory
+from ratslam_core.goal_memory import ARRIVED
 
 from . import literal
 from .goal_drives import CELL_M, DT, SHAPE, SHORT_AND_SLOW, Place, drive, packet_cells
@@ -120,13 +121,14 @@ def test_small_changes_of_the_parameters_keep_the_route(name: str, factor: float
     memory = two_ways(replace(params, **{name: factor * getattr(params, name)}))
     way = follow(memory, memory.times_to(40, 30), 10, 30)
     assert max(y for _, y in way) > 42
-    assert math.dist(way[-1], (40, 30)) <= memory.params.arrived
+    assert math.dist(way[-1], (40, 30)) <= ARRIVED
 
 
 @pytest.mark.parametrize("interpreted", [False, True])
 def test_it_does_not_point_through_a_wall(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Down one corridor and back up the next, 1.5 m away. The goal's corridor is in reach, but its cells are not linked."""
-    memory = GoalMemory(GoalMemoryParams(reach=4), SHAPE, CELL_M)
+    monkeypatch.setattr(goal_memory, "REACH", 4)
+    memory = GoalMemory(None, SHAPE, CELL_M)
     drive(memory, [(10, 30), (40, 30), (40, 36), (10, 36)], 0.4)
     T = memory.times_to(12, 36)
     way = follow(memory, T, 14, 31)

@@ -11,36 +11,35 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from app.evaluation.alignment import rmse
-from ratslam_core import ExperienceMap, ExperienceMapParams, Packet, Pose2, SolverParams
+from ratslam_core import ExperienceMap, ExperienceMapParams, Packet, Pose2
 from ratslam_core.extensions import exact_solver
-from ratslam_core.extensions.exact_solver import ExactSolver
-from ratslam_core.extensions.graduated_trust import contradiction, kept
+from ratslam_core.extensions.graduated_trust import BAR, SIGMA, contradiction, kept
 from ratslam_core.pose_graph import relaxation
+from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS
 
 from .graphs import Graph, city
 
-P = SolverParams()
-SIGMA = 0.01
+CELL_M = 0.25
 
 
 def solved(graph: Graph) -> NDArray[np.float64]:
     poses = graph.by_odometry()
     for _ in range(5):
-        relaxation.solve(poses, graph.ends, graph.moves, np.ones(len(graph.ends)), None, P)
+        relaxation.solve(poses, graph.ends, graph.moves, np.ones(len(graph.ends)))
     return poses
 
 
 def judged(graph: Graph) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     poses, ones = graph.by_odometry(), np.ones(len(graph.ends))
-    share, work = kept(poses, graph.ends, graph.moves, ones, graph.odometry, SIGMA, P)
+    share, work = kept(poses, graph.ends, graph.moves, ones, graph.odometry, CELL_M)
     assert work > 0
     return poses, share
 
 
 def corrected(graph: Graph, *, robust: bool = True) -> ExperienceMap:
     """A map of these rows after ten exact corrections."""
-    params = ExperienceMapParams(sweeps=0, solve_every=1, calibrate=False, odometry_sigma=SIGMA, robust=robust)
-    map_ = ExperienceMap((36, 64, 64), 0.25, params, optimiser=ExactSolver(P))
+    params = ExperienceMapParams(sweeps=0, solve_every=1, calibrate=False, robust=robust)
+    map_ = ExperienceMap((36, 64, 64), CELL_M, params)
     for k, (x, y, heading) in enumerate(graph.by_odometry()):
         map_._experiences.add(Packet(0.0, 0.0, 0.0, 1.0), k, Pose2(x, y, heading))
         map_.transitions.graph.add_node()
@@ -80,9 +79,9 @@ def test_without_robust_weights_the_map_is_bent_by_them() -> None:
 def test_the_bar_is_in_sigmas_of_closure_and_row(dx: float, dy: float, turn: float, weight: float) -> None:
     poses, ends = np.zeros((2, 3)), np.array([[0, 1]])
     moves = np.array([[dx, dy, turn]])
-    found = contradiction(poses, ends, moves, np.array([weight]), np.array([0]), SIGMA, P)
-    squares = dx**2 + dy**2 + (turn / P.rad_per_m) ** 2
-    assert found[0] == pytest.approx(squares / (SIGMA**2 / weight + P.closure_sigma**2) / P.closure_bar)
+    found = contradiction(poses, ends, moves, np.array([weight]), np.array([0]), CELL_M)
+    squares = (dx / CELL_M) ** 2 + (dy / CELL_M) ** 2 + (turn / TURN_CELLS) ** 2
+    assert found[0] == pytest.approx(squares / (STEP_SIGMA**2 / weight + SIGMA**2) / BAR)
 
 
 def test_a_false_closure_is_let_go_when_others_contradict_it() -> None:

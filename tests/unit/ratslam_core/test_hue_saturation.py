@@ -9,17 +9,22 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ratslam_core import LocalViewParams
-from ratslam_core.local_view.front_ends.hue_saturation import HueSaturation, histogram
+from ratslam_core.local_view.front_ends import hue_saturation
+from ratslam_core.local_view.front_ends.hue_saturation import (
+    CERTAIN_SATURATION,
+    FULL_SATURATION,
+    HueSaturation,
+    histogram,
+)  # fmt: skip
 
-from .scenes import P, view_of
+from .scenes import view_of
 
 
 def literal_histogram(hue: list[float], saturation: list[float]) -> NDArray[np.float64]:
     shares = np.zeros((12, 8))
     for h, s in zip(hue, saturation, strict=True):
-        level = min(s / P.full_saturation, 1.0) * 7
-        certain = min(s / P.certain_saturation, 1.0)
+        level = min(s / FULL_SATURATION, 1.0) * 7
+        certain = min(s / CERTAIN_SATURATION, 1.0)
         for row in range(8):
             by_level = max(0.0, 1 - abs(level - row))
             for column in range(12):
@@ -32,7 +37,7 @@ def test_the_histogram_is_that_of_the_loops() -> None:
     rng = np.random.default_rng(2)
     hue = np.concatenate([rng.uniform(0, 360, 200), [0, 30, 359.99, 360 - 1e-3]]).astype(np.float32)
     saturation = np.concatenate([rng.uniform(0, 1, 200), [0, 0.5, 1, 0.07]]).astype(np.float32)
-    got = histogram(hue, saturation, P.full_saturation, P.certain_saturation)
+    got = histogram(hue, saturation, FULL_SATURATION, CERTAIN_SATURATION)
     assert got == pytest.approx(literal_histogram(hue.tolist(), saturation.tolist()), abs=1e-5)
     assert got.sum() == pytest.approx(1.0, abs=1e-6)
 
@@ -42,7 +47,7 @@ def test_grey_has_no_hue() -> None:
 
     def apart(saturation: float) -> float:
         red, green = (
-            histogram(np.float32([hue]), np.float32([saturation]), P.full_saturation, P.certain_saturation)
+            histogram(np.float32([hue]), np.float32([saturation]), FULL_SATURATION, CERTAIN_SATURATION)
             for hue in (0, 120)
         )
         return float(np.abs(red - green).sum())
@@ -55,7 +60,7 @@ def test_grey_has_no_hue() -> None:
 @pytest.mark.parametrize("hue", [0.0, 0.2, 0.55, 0.99])
 def test_the_picture_shows_the_hue_where_it_is(hue: float) -> None:
     rgb = np.rint(255 * np.array(colorsys.hsv_to_rgb(hue, 0.45, 0.8))).astype(np.uint8)
-    end = HueSaturation(P)
+    end = HueSaturation()
     picture = end.picture(end.look(np.tile(rgb, (48, 64, 1)))).astype(int)
     row, column = np.unravel_index(int(picture.sum(2).argmax()), picture.shape[:2])
     assert abs(math.remainder(column - 12 * hue, 12)) <= 1
@@ -75,7 +80,7 @@ def test_a_bin_is_shown_in_its_own_colour(hue: int, saturation: int) -> None:
     features = np.zeros((12, 8), np.uint8)
     features[hue, saturation] = 80  # is shown as 200
     features[(hue + 3) % 12, 2] = 255  # is as bright as can be
-    end = HueSaturation(P)
+    end = HueSaturation()
     picture = end.picture(features.ravel())
     assert picture.shape == (8, 12, 3)
     expected = np.array(colorsys.hsv_to_rgb(hue / 12, saturation / 7, 200 / 255)) * 255
@@ -91,24 +96,27 @@ def test_a_bin_is_shown_in_its_own_colour(hue: int, saturation: int) -> None:
 def test_words_name_the_largest_bin(hue: int, saturation: int, words: str) -> None:
     features = np.ones((12, 8), np.uint8)
     features[hue, saturation] = 9
-    assert HueSaturation(P).words(features.ravel()) == words
+    assert HueSaturation().words(features.ravel()) == words
 
 
-def test_features_are_shares_of_the_full_bin() -> None:
+def test_features_are_shares_of_the_full_bin(monkeypatch: pytest.MonkeyPatch) -> None:
     """An image that is half red and half green: two bins with half of the pixels each."""
     image = np.zeros((24, 32, 3), np.uint8)
     image[:12, :, 0] = image[12:, :, 1] = 200
-    features = HueSaturation(LocalViewParams(full_bin=0.8)).look(image).reshape(12, 8)
+    monkeypatch.setattr(hue_saturation, "FULL_BIN", 0.8)
+    features = HueSaturation().look(image).reshape(12, 8)
     assert features[[0, 4], 7].tolist() == [159, 159]  # 255 x 0.5 / 0.8
     assert np.count_nonzero(features) == 2
-    assert HueSaturation(LocalViewParams(full_bin=0.4)).look(image).max() == 255
+    monkeypatch.setattr(hue_saturation, "FULL_BIN", 0.4)
+    assert HueSaturation().look(image).max() == 255
 
 
 @pytest.mark.parametrize(("level", "bland"), [(51, False), (50, True)])
-def test_bland_is_less_colour_than_the_limit(level: int, bland: bool) -> None:
+def test_bland_is_less_colour_than_the_limit(level: int, bland: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Saturation 0 is no colour, however much there is of it."""
     features = np.zeros((12, 8), np.uint8)
     features[:, 0] = 200
     features[3, 1] = level
-    params = LocalViewParams(full_bin=0.5, min_colour=0.1)
-    assert HueSaturation(params).bland(features.ravel(), params) is bland
+    monkeypatch.setattr(hue_saturation, "FULL_BIN", 0.5)
+    monkeypatch.setattr(hue_saturation, "LEAST_COLOUR", 0.1)
+    assert HueSaturation().bland(features.ravel()) is bland

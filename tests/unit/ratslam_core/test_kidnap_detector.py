@@ -8,8 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ratslam_core import KidnapParams, LocalViewParams, Odometry, RatSlam
-from ratslam_core.extensions.kidnap_detector import FOUND_AGAIN, KidnapDetector
+from ratslam_core import KidnapParams, Odometry, RatSlam
+from ratslam_core.extensions import kidnap_detector
+from ratslam_core.extensions.kidnap_detector import FOUND_AGAIN, TIME_POWER, KidnapDetector
+from ratslam_core.extensions.scan_change import MOST
 from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, Circle, start
 
 
@@ -95,7 +97,7 @@ def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: 
     brain.step(circle.image, still, ranges_m=near)
     circle.angle += 2.6
     params = brain.params.local_view
-    changed = replace(params, composite_surprise=params.composite_surprise * _unlikeness(circle) / alike)
+    changed = replace(params, surprise=params.surprise * _unlikeness(circle) / alike)
     brain.set_params(replace(brain.params, local_view=changed))
     brain.kidnap_detector._usual = 0.0  # type: ignore[union-attr]
     brain.step(circle.image, still, ranges_m=np.array([1.0, 1.0, 1.0, *[others_m] * 5]))
@@ -105,16 +107,16 @@ def test_sonars_help_to_notice_a_kidnap(alike: float, others_m: float, noticed: 
         assert brain.experience_map.evidence.sure is (alike > 1)
 
 
-def used_to_little(params: KidnapParams, views: LocalViewParams) -> KidnapDetector:
+def used_to_little(params: KidnapParams) -> KidnapDetector:
     """A detector that has seen images change by little for a while."""
-    detector = KidnapDetector(params, views)
+    detector = KidnapDetector(params)
     detector._usual = 0.0
     return detector
 
 
 def test_where_images_always_jump_a_jump_tells_nothing() -> None:
     """All change must be twice as much as is usual of the image. What is usual is learnt, and forgotten."""
-    detector = KidnapDetector(KidnapParams(), LocalViewParams())
+    detector = KidnapDetector(KidnapParams())
     for _ in range(300):
         assert not detector.observe(1.2, None)
     assert not detector.observe(1.9, None)
@@ -156,13 +158,13 @@ def test_views_that_show_nothing_neither_find_nor_lose() -> None:
 
 
 def test_a_change_is_a_jump_only_above_its_limits() -> None:
-    """Image and sonars together change by more than 1; all that sonars can add is a half."""
-    params, views = KidnapParams(sonar_most=0.5), LocalViewParams(range_surprise=1.0)
+    """Image and sonars together change by more than 1; all that sonars can add is MOST."""
+    params = KidnapParams(range_surprise=1.0)
     for image, change, noticed in (
-        (1.0, None, False), (1.001, None, True), (0.749, 0.25, False), (0.751, 0.25, True), (0.499, 2.0, False),
-        (0.501, 2.0, True),
+        (1.0, None, False), (1.001, None, True), (0.749, 0.25, False), (0.751, 0.25, True),
+        (0.999 - MOST, 2.0, False), (1.001 - MOST, 2.0, True),
     ):  # fmt: skip
-        detector = used_to_little(params, views)
+        detector = used_to_little(params)
         if change is None:
             assert detector.observe(image, None) is noticed
         else:
@@ -171,9 +173,12 @@ def test_a_change_is_a_jump_only_above_its_limits() -> None:
 
 
 @pytest.mark.parametrize(("known", "steps"), [(-1, 12), (0, FOUND_AGAIN), (6, FOUND_AGAIN), (7, 12)])
-def test_it_is_found_again_just_when_it_was_seen_often_enough(known: int, steps: int) -> None:
+def test_it_is_found_again_just_when_it_was_seen_often_enough(
+    known: int, steps: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """After enough sights of experiences from before the kidnap, of which there were seven, or twelve steps."""
-    detector = KidnapDetector(KidnapParams(settled=12), LocalViewParams())
+    monkeypatch.setattr(kidnap_detector, "SETTLED", 12)
+    detector = KidnapDetector(KidnapParams())
     detector.declare(7)
     for _ in range(steps):
         assert detector.kidnapped
@@ -183,8 +188,7 @@ def test_it_is_found_again_just_when_it_was_seen_often_enough(known: int, steps:
 
 def test_in_more_time_driving_explains_more() -> None:
     """A change that tells of a kidnap within a tenth of a second is nothing unusual after a second."""
-    params = KidnapParams(time_power=0.3)
-    for beats, limit in ((1, 1.0), (2, 2**0.3), (10, 10**0.3)):
+    for beats, limit in ((1, 1.0), (2, 2**TIME_POWER), (10, 10**TIME_POWER)):
         for change, noticed in ((0.999 * limit, False), (1.001 * limit, True)):
-            detector = used_to_little(params, LocalViewParams())
+            detector = used_to_little(KidnapParams())
             assert detector.observe(change, None, beats) is noticed

@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ratslam_core import LocalView, Recognition
-from ratslam_core.local_view.front_ends.template import grey_template
+from ratslam_core.local_view.front_ends.template import Template, grey_template
 
 from .scenes import view_of
 
@@ -85,7 +85,7 @@ def test_a_new_scene_recruits_a_cell_and_is_known_from_then_on() -> None:
     assert first == Recognition(view=0, recruited=True, best_view=-1, difference=math.inf)
     second = local_view.observe(image(2))
     assert (second.view, second.recruited, second.best_view) == (1, True, 0)
-    assert second.difference > local_view.params.match_threshold
+    assert second.difference > local_view.threshold
     again = local_view.observe(image(1))
     assert again == Recognition(view=0, recruited=False, best_view=0, difference=0.0, facing_rad=0.0)
     assert len(local_view) == 2
@@ -96,7 +96,7 @@ def test_a_new_scene_recruits_a_cell_and_is_known_from_then_on() -> None:
 def test_the_threshold_decides() -> None:
     base = image(4)
     brighter = (base.astype(int) + 6).clip(0, 255).astype(np.uint8)
-    for threshold, recruited in ((6.0, False), (5.9, True)):
+    for threshold, recruited in ((1.0, False), (0.98, True)):
         local_view = templates(match_threshold=threshold, shift=0)
         local_view.observe(base)
         assert local_view.observe(brighter).recruited is recruited
@@ -132,7 +132,7 @@ def test_the_shift_of_the_image_tells_the_heading(columns: float) -> None:
     wrong = []
     for seed in range(20):
         scene = panorama(seed)
-        local_view = templates(match_threshold=40.0)
+        local_view = templates(match_threshold=7.0)
         local_view.observe(look(scene, 20))
         seen = local_view.observe(look(scene, 20 - columns))
         assert seen.view == 0
@@ -143,7 +143,7 @@ def test_the_shift_of_the_image_tells_the_heading(columns: float) -> None:
 
 
 def test_without_shifts_nothing_is_known_of_the_heading() -> None:
-    local_view = templates(shift=0, match_threshold=60.0)
+    local_view = templates(shift=0, match_threshold=10.0)
     local_view.observe(look(panorama(1), 20))
     seen = local_view.observe(look(panorama(1), 19))
     assert (seen.view, seen.facing_rad) == (0, 0.0)
@@ -181,7 +181,7 @@ def test_surprise_is_a_matter_of_degree(jump: int) -> None:
     scene = panorama(7)
     change, _, _ = literal_match(look(scene, 20 + jump), [look(scene, 20)], 0)
     for limit, surprised in ((change - 0.01, True), (change + 0.01, False)):
-        local_view = templates(surprise=limit)
+        local_view = templates(surprise=limit / Template.surprise)
         local_view.observe(look(scene, 20))
         local_view.observe(look(scene, 20 + jump))
         assert (local_view.image_change > 1) is surprised

@@ -105,22 +105,13 @@ def test_in_2004_the_packet_is_where_the_robot_is() -> None:
 
 
 OFF = {name: value for addition in ADDITIONS for name, value in addition.off.items()}
-ELSEWHERE = {
-    "local_view.min_pattern": "test_image_and_sonars.py: here a bare wall makes an experience with a view or without one",
-}
-
-
-FITS = {  # the front end that a switch is of, if not of every one
-    "local_view.min_edges": "complex cells",
-    "local_view.min_colour": "hue and saturation",
-    "local_view.front_end": "image and sonars",
-}
+FITS = {"local_view.front_end": "image and sonars"}  # the front end that a switch is of, if not of every one
 
 
 @pytest.mark.slow
 def test_each_addition_alone_changes_the_run(subtests: pytest.Subtests) -> None:
     """Each switch must have an effect."""
-    switches = [name for name, value in OFF.items() if value != PRESETS["ours"][name] and name not in ELSEWHERE]
+    switches = [name for name, value in OFF.items() if value != PRESETS["ours"][name]]
     for front_end in ("template", *FITS.values()):
         base = with_values(RatSlamParams(), {"local_view.front_end": front_end})
         told = _told(base)

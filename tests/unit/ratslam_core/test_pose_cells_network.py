@@ -7,7 +7,7 @@ import pytest
 
 from ratslam_core import PoseCellParams, PoseCells
 from ratslam_core.pose_cells import activity_kernels as kernels
-from ratslam_core.pose_cells import attractor_kernels
+from ratslam_core.pose_cells import attractor_kernels, network
 from ratslam_core.pose_cells.network import ROOM
 
 from . import literal
@@ -70,7 +70,7 @@ def test_active_slot_and_activity_say_the_same() -> None:
 def test_live_parameters_act_at_once_and_the_size_is_fixed() -> None:
     pose_cells = settled()
     sharp = len(pose_cells.active[0])
-    pose_cells.set_params(PoseCellParams(excite_sigma=1.0, excite_radius=3))
+    pose_cells.set_params(PoseCellParams(excite_sigma=1.0))
     rest(pose_cells, 30)
     assert len(pose_cells.active[0]) > sharp
     for other in ({"n_x": 65}, {"n_y": 63}, {"n_theta": 72}, {"cell_m": 0.5}):
@@ -137,24 +137,20 @@ def test_a_shift_has_room_for_eight_times_as_many_cells() -> None:
     assert pose_cells.activity.sum(dtype=np.float64) == pytest.approx(1.0, abs=1e-6)
 
 
-@pytest.mark.parametrize(("excite", "inhibit"), [(1, 3), (3, 1), (2, 2)])
-def test_a_cluster_as_large_as_the_window_has_room(excite: int, inhibit: int, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("sigma", "radius"), [(0.5, 2), (0.8, 3), (1.2, 4)])
+def test_a_cluster_as_large_as_the_window_has_room(sigma: float, radius: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Interpreted, since compiled code would write beyond the end."""
     literal.interpret(attractor_kernels, monkeypatch)
-    params = PoseCellParams(
-        n_x=12, n_y=12, n_theta=12, window=2, excite_radius=excite, local_inhibit_radius=inhibit,
-        inhibit=0.0, local_inhibit=0.2, excite_sigma=0.8, local_inhibit_sigma=1.5,
-    )  # fmt: skip
-    pose_cells = PoseCells(params)
+    monkeypatch.setattr(network, "WINDOW", 2)
+    pose_cells = PoseCells(PoseCellParams(n_x=12, n_y=12, n_theta=12, inhibit=0.0, excite_sigma=sigma))
     dense = np.zeros(pose_cells.shape)
     dense[4:9, 4:9, 4:9] = 1.0
     dense[6, 6, 6] = 2.0
     dense /= dense.sum()
     literal.fill(pose_cells, dense)
     pose_cells.attract()
-    excited = literal.convolve(dense, literal.gaussian(0.8, excite))
-    left = excited - 0.2 * literal.convolve(excited, literal.gaussian(1.5, inhibit))
-    assert np.abs(pose_cells.activity - literal.inhibit(left, 0.0)).max() < 2e-6
+    excited = literal.convolve(dense, literal.gaussian(sigma, radius))
+    assert np.abs(pose_cells.activity - literal.inhibit(excited, 0.0)).max() < 2e-6
 
 
 def test_distances_are_around_the_torus() -> None:

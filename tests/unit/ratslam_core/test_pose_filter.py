@@ -6,14 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ratslam_core import Pose2, PoseFilterParams
-from ratslam_core.extensions.pose_filter import LatestLook, PoseFilter
+from ratslam_core import Pose2
+from ratslam_core.extensions.pose_filter import LEAST_SIGMA, SNAP, SNAP_RAD, LatestLook, PoseFilter
 
-P = PoseFilterParams()
+CELL_M = 0.25
 
 
 def believing(local: Pose2, sigma_m: float) -> PoseFilter:
-    belief = PoseFilter(P)
+    belief = PoseFilter(CELL_M)
     belief.local, belief.sigma_m = local, sigma_m
     return belief
 
@@ -26,7 +26,7 @@ sigmas = st.floats(0.001, 0.9)
 def test_a_look_and_odometry_are_weighed_by_their_variances(look: Pose2, own: float, sigma: float) -> None:
     belief = believing(Pose2(0.0, 0.0, 0.0), own)
     belief.see(look, sigma)
-    own = max(own, P.least_sigma_m)
+    own = max(own, LEAST_SIGMA * CELL_M)
     share = (1 / sigma**2) / (1 / sigma**2 + 1 / own**2)
     assert belief.local.x == pytest.approx(share * look.x, abs=1e-9)
     assert belief.local.y == pytest.approx(share * look.y, abs=1e-9)
@@ -47,7 +47,7 @@ def test_a_doubtful_look_moves_the_belief_little() -> None:
 
 
 @pytest.mark.parametrize(
-    "look", [Pose2(P.snap_m + 0.01, 0.0, 0.0), Pose2(0.0, -1.5, 0.0), Pose2(0.0, 0.0, -P.snap_rad - 0.01)]
+    "look", [Pose2(SNAP * CELL_M + 0.01, 0.0, 0.0), Pose2(0.0, -1.5, 0.0), Pose2(0.0, 0.0, -SNAP_RAD - 0.01)]
 )
 def test_a_look_that_disagrees_altogether_is_believed_at_once(look: Pose2) -> None:
     belief = believing(Pose2(0.0, 0.0, 0.0), 0.05)
@@ -76,7 +76,7 @@ def test_headings_are_weighed_the_shorter_way_round() -> None:
 
 
 def test_who_was_carried_may_be_anywhere_until_it_sees_something_or_begins_a_map() -> None:
-    belief = PoseFilter(P)
+    belief = PoseFilter(CELL_M)
     belief.forget(100.0)
     belief.move(Pose2(0.5, 0.0, 0.0), 0.1)
     belief.make(sure=False)
@@ -87,12 +87,12 @@ def test_who_was_carried_may_be_anywhere_until_it_sees_something_or_begins_a_map
     belief.forget(100.0)
     belief.make(sure=True)
     assert belief.sigma_m == 0.0
-    assert math.isinf(LatestLook(P).sigma_m)
+    assert math.isinf(LatestLook().sigma_m)
 
 
 @given(near, sigmas)
 def test_the_plain_twin_is_where_it_was_seen_last_and_where_the_wheels_brought_it(look: Pose2, sigma: float) -> None:
-    belief = LatestLook(P)
+    belief = LatestLook()
     belief.move(Pose2(3.0, 1.0, 0.5), 0.1)
     assert belief.see(look, sigma)
     assert belief.local == look
@@ -102,8 +102,7 @@ def test_the_plain_twin_is_where_it_was_seen_last_and_where_the_wheels_brought_i
 
 def test_a_look_at_the_very_limit_is_still_weighed() -> None:
     """Farther or more turned than the limits is a snap; as far and as turned is not."""
-    params = PoseFilterParams(snap_m=1.0, snap_rad=0.5)
-    for look in (Pose2(1.0, 0.0, 0.0), Pose2(0.0, 0.0, 0.5)):
-        estimate = PoseFilter(params)
+    for look in (Pose2(SNAP * CELL_M, 0.0, 0.0), Pose2(0.0, 0.0, SNAP_RAD)):
+        estimate = PoseFilter(CELL_M)
         assert estimate.see(look, 1.0)
         assert estimate.local != look

@@ -25,20 +25,14 @@ class AsItIs(FrontEnd):
     shifts, scale, vague = True, 2.0, 3.0
 
     def __init__(self, limit: float = 11.0, jump: float = 4.0) -> None:
-        self._limit, self._surprise = limit, jump
+        self.threshold, self.surprise = limit, jump
 
     def look(self, image: Bytes | None, _scene: int | None = None, _ranges_m: object = None, /) -> Bytes:
         assert image is not None
         return image
 
-    def bland(self, features: Bytes, _params: LocalViewParams, /) -> bool:
+    def bland(self, features: Bytes, /) -> bool:
         return not features.any()
-
-    def threshold(self, _params: LocalViewParams, /) -> float:
-        return self._limit
-
-    def surprise(self, _params: LocalViewParams, /) -> float:
-        return self._surprise
 
     def picture(self, features: Bytes, /) -> Bytes:
         return features
@@ -121,7 +115,7 @@ def test_a_turn_of_a_part_of_a_column_is_no_jump(columns: float) -> None:
 def test_wheels_may_be_wrong_by_a_share_of_the_turn(error: float, explained: bool) -> None:
     """The right turn is tried, what they tell, and what they tell give or take a share."""
     scene = np.random.default_rng(1).integers(60, 200, 50).astype(np.uint8)
-    local_view = LocalView(LocalViewParams(turn_slack=0.3), front_end=AsItIs())
+    local_view = LocalView(LocalViewParams(), front_end=AsItIs())
     local_view.observe(scene[20:32])
     local_view.observe(scene[22:34], turned_rad=-2 * FOV / 12 / (1 + error))
     assert (local_view.image_change < 0.1) is explained
@@ -184,7 +178,7 @@ def test_without_facing_a_shift_tells_no_heading() -> None:
 @given(st.integers(-9, 9), st.integers(0, 2), st.integers(0, 2**32 - 1))
 def test_a_view_is_compared_under_the_turn_that_is_asked_for(shift: int, slack: int, seed: int) -> None:
     """As the sum of absolute differences over the columns that overlap says, byte by byte, echoes beside them."""
-    local_view = LocalView(LocalViewParams(composite_threshold=0.0, composite_surprise=255.0))
+    local_view = LocalView(LocalViewParams(match_threshold=0.0, surprise=100.0))
     rng = np.random.default_rng(seed)
     for _ in range(3):
         local_view._recruit(rng.integers(0, 256, local_view.features.size, np.uint8), faded=-1)

@@ -23,7 +23,7 @@ def _apart(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def test_a_lamp_counts_no_more_than_a_wall() -> None:
-    end, dark = LimitedLevels(PARAMS), _scene()
+    end, dark = LimitedLevels(), _scene()
     lamp = dark.copy()
     lamp[0:6, 0:5] = 255
     brighter = dark.copy()
@@ -33,7 +33,7 @@ def test_a_lamp_counts_no_more_than_a_wall() -> None:
 
 
 def test_most_of_the_light_is_taken_off() -> None:
-    end, scene = LimitedLevels(PARAMS), _scene()
+    end, scene = LimitedLevels(), _scene()
     assert _apart(end.look(scene), end.look((scene * 1.4).astype(np.uint8))) < 8
 
 

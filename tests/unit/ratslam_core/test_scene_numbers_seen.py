@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ratslam_core import LocalViewParams, Odometry, RatSlam, RatSlamParams
-from ratslam_core.local_view.front_ends import named_front_end
+from ratslam_core.local_view.front_ends.scene_numbers import SceneNumbers
 
 from .scenes import office, view_of
 
@@ -47,7 +47,7 @@ def test_a_view_takes_no_more_than_150_bytes() -> None:
 @pytest.mark.parametrize("scene", [0, 7, 1234567, 2**63 - 1])
 def test_a_scene_number_is_drawn_whole(scene: int) -> None:
     """All around the digits there is paper."""
-    end = named_front_end(LocalViewParams(front_end="scene numbers"))
+    end = SceneNumbers()
     picture = end.picture(end.look(None, scene))
     assert picture.max() > 200
     for edge in (picture[0], picture[-1], picture[:, 0], picture[:, -1]):
@@ -57,7 +57,7 @@ def test_a_scene_number_is_drawn_whole(scene: int) -> None:
 @pytest.mark.parametrize("scene", [0, 42, 1234567, 2**63 - 1])
 def test_the_digits_stand_in_the_middle_of_a_card(scene: int) -> None:
     """Two thirds as high as it is wide, or as high as the digits need."""
-    end = named_front_end(LocalViewParams(front_end="scene numbers"))
+    end = SceneNumbers()
     picture = end.picture(end.look(None, scene))
     high, wide = picture.shape
     assert high == pytest.approx(max(36, 2 * wide / 3), abs=4)

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ratslam_core import LocalViewParams, MemoryParams, Odometry, PoseCellParams, RatSlam, RatSlamParams, laws
+from ratslam_core import ExperienceMapParams, LocalViewParams, Odometry, PoseCellParams, RatSlam, RatSlamParams, laws
+from ratslam_core.localisation import SNAP_CELLS
 from tests.unit.ratslam_core.drives import LAP, SONARS, Circle, start
 
 
@@ -72,17 +73,17 @@ def test_new_parameters_reach_every_part_and_the_size_is_refused() -> None:
     circle.advance(brain, 5)
 
 
-def test_new_parameters_reach_the_grids_of_a_robot_with_sonars() -> None:
-    brain = RatSlam(sonar_angles_rad=np.zeros(1))
+def test_new_parameters_reach_the_memories() -> None:
+    brain = RatSlam()
     new = replace(brain.params, occupancy=replace(brain.params.occupancy))
     brain.set_params(new)
-    assert brain.occupancy is not None
-    assert brain.map_grid is not None
-    assert brain.occupancy.params is brain.map_grid.params is new.occupancy
+    assert brain.memories.params is new.occupancy
+    assert brain.goal_memory.params is new.goal_memory
 
 
 def test_without_robust_weights_every_link_is_believed_as_measured() -> None:
-    circle, brain = start(params=RatSlamParams(memory=MemoryParams(familiar=False)))  # so that loops go on closing
+    closing = ExperienceMapParams(familiar_ground=False)  # loops go on closing
+    circle, brain = start(params=RatSlamParams(experience_map=closing))
     for robust in (True, False):
         experience_map = replace(brain.params.experience_map, robust=robust, solve_every=5)
         brain.set_params(replace(brain.params, experience_map=experience_map))
@@ -170,7 +171,7 @@ def test_a_packet_relocalises_when_it_jumps_farther_than_the_limit(
     beyond: float, relocalised: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     circle, brain = start()
-    jump = brain.params.pose_cells.snap_cells + beyond
+    jump = SNAP_CELLS + beyond
     monkeypatch.setattr(brain.pose_cells, "cells_apart", lambda *_: jump)
     assert circle.advance(brain, 1)[0].relocalised is relocalised
     assert brain.relocalisations == relocalised

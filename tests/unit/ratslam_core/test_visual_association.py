@@ -59,7 +59,7 @@ def test_the_adaptive_rate_follows_vision_and_confidence() -> None:
         rates.append(brain.association.learning_rate)
     assert 0 <= min(rates) < max(rates) <= 2 * eta
     one = circle.advance(brain, 1)[0]
-    strength = 1 - one.recognition.difference / brain.local_view.front_end.threshold(params.local_view)
+    strength = 1 - one.recognition.difference / brain.local_view.threshold
     assert brain.association.learning_rate == pytest.approx(2 * eta * strength * brain.pose_cells.winner.mass, rel=0.05)
     circle.angle += 2.6
     circle.advance(brain, 1)
