@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.options import Verbs, port_number
+from app.cli.options import ENGINES, Verbs, port_number
 from disk import require_writable
 from disk.limits import TRIALS
 
@@ -29,9 +29,7 @@ def add_experiment(commands: Verbs) -> None:
         "results             writes results.md and results.json from the stored trials (--out, default ./docs)",
     )
     parser.add_argument("what", nargs="*", metavar="NAME|FILE.toml|all|open ID|check FILE", help="see below")
-    parser.add_argument(
-        "--engine", choices=("paper", "ours", "both"), default="both", help="whose rules (default both)"
-    )
+    parser.add_argument("--engine", choices=(*ENGINES, "all"), default="all", help="whose rules (default all)")
     parser.add_argument("--trials", type=int, metavar="N", help="trials in each cell (default: the experiment's)")
     parser.add_argument("--quick", action="store_true", help="made short, to see that it works")
     parser.add_argument(

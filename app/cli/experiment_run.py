@@ -59,7 +59,7 @@ def run_one(name: str, args: argparse.Namespace) -> int:
 def run_all(args: argparse.Namespace) -> int:
     """Every experiment of the catalogue that has the engine asked for."""
     folder = make_folder(args.out or OUT)
-    experiments = [each for each in catalogue() if args.engine == "both" or args.engine in each.engines]
+    experiments = [each for each in catalogue() if args.engine == "all" or args.engine in each.engines]
     with Store(args.store) as store, _workers(args) as workers:
         plans = [_planned(experiment, args, store) for experiment in experiments]
         seconds = sum(plan.duration.seconds for plan in plans) / workers.count
@@ -78,7 +78,7 @@ def _workers(args: argparse.Namespace) -> Workers:
 
 
 def _planned(experiment: Experiment, args: argparse.Namespace, store: Store) -> _Plan:
-    engines: list[EngineName] | None = None if args.engine == "both" else [args.engine]
+    engines: list[EngineName] | None = None if args.engine == "all" else [args.engine]
     trials = experiment.make_trials(engines, args.trials, args.quick)
     measured = store.seconds(experiment.name, args.quick)
     waiting = Counter(trial.engine for trial in pending(trials, store))
@@ -135,7 +135,7 @@ def _show_in_gallery(figures: Sequence[Path], folder: Path) -> None:
 def _command(name: str, args: argparse.Namespace) -> str:
     """The command that makes the same again."""
     words = ["ratslam", "experiment", name]
-    words += [] if args.engine == "both" else ["--engine", args.engine]
+    words += [] if args.engine == "all" else ["--engine", args.engine]
     words += [] if args.trials is None else ["--trials", str(args.trials)]
     words += ["--quick"] if args.quick else []
     for option, value in (("--scheduler", args.scheduler), ("--out", args.out), ("--store", args.store)):

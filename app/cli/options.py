@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 Verbs: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"  # pyright: ignore[reportPrivateUsage]
 
+ENGINES = ("ours", "paper", "paper-2005", "paper-2006")  # as `EngineName`, which loads more
+
 
 def add_session_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.for_class import add_class_options, for_class
-from app.cli.options import Verbs, add_session_options, port_number
+from app.cli.options import ENGINES, Verbs, add_session_options, port_number
 from app.cli.serving import PAST_DISK_MB, PAST_MB, Serving, serve
 from app.runs.folder import BUDGET_MB
 
@@ -57,7 +57,7 @@ def add_run(commands: Verbs) -> None:
         "--recording", type=Path, metavar="PATH", help="play a recording of a robot: MCAP, bag, video, pictures, ..."
     )
     run.add_argument("--experiment", metavar="NAME|FILE", help="watch a trial of this experiment (--seed: this one)")
-    run.add_argument("--engine", choices=("ours", "paper"), help="with --experiment: our rules or the paper's")
+    run.add_argument("--engine", choices=ENGINES, help="with --experiment: our rules or the paper's")
     run.add_argument("--levels", nargs="+", metavar="LEVEL", help="with --experiment: one level of each of its axes")
     run.set_defaults(do=_run, seed=None)
 

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from app.cli.options import Verbs
+from app.cli.options import ENGINES, Verbs
 from app.cli.progress import compile_first, with_progress
 from app.cli.reports import write_report
 from disk import require_writable
@@ -25,7 +25,7 @@ def add_trial(commands: Verbs) -> None:
         help="N_vis: per cent of scenes taken for others (default 0)",
     )
     trial.add_argument("--vision", choices=("camera", "scene"), default="camera", help="images, or numbers of scenes")
-    trial.add_argument("--engine", choices=("ours", "paper"), default="ours", help="our rules or the paper's")
+    trial.add_argument("--engine", choices=ENGINES, default="ours", help="our rules or the paper's")
     trial.add_argument("--seed", type=int, default=1, help="same seed, same trial (default 1)")
     trial.add_argument(
         "--report", type=Path, metavar="FILE", help="write the report to FILE as JSON (default: print it)"

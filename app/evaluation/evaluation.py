@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.evaluation.alignment import alignment, rmse
-from app.evaluation.earlier_passes import off_earlier_passes
+from app.evaluation.earlier_passes import EVERY, off_earlier_passes, off_same_estimate
 from app.evaluation.kidnapping import Kidnapping
 from disk import kind
 from ratslam_core import CellsOnly, ExperienceMap, Odometry, Pose2
@@ -22,7 +22,7 @@ LEAST_WAY_M = 0.5  # a path with a smaller spread (RMS distance from its middle)
 Points = NDArray[np.float64]  # (n, 2)
 
 
-@kind("evaluation/1")
+@kind("evaluation/2")
 class Evaluation:
     """Keeps, tick by tick, what is needed to compare the map with the truth."""
 
@@ -65,7 +65,7 @@ class Evaluation:
         self._judge(time_s, truth, experiences, abs(truth.speed) * odometry.dt)
 
     def kidnapped(self, time_s: float, experiences: ExperienceMap) -> None:
-        self.kidnaps.append(Kidnapping(time_s, self.map_in_office(experiences), len(experiences.poses)))
+        self.kidnaps.append(Kidnapping(time_s, self.map_in_office(experiences), len(experiences.poses), self._count))
 
     def made_at(self, experience: int, experiences: ExperienceMap) -> tuple[float, float]:
         """Where the robot truly was when it made this experience (m, office frame). For an experience that the brain
@@ -101,7 +101,7 @@ class Evaluation:
         when it passed here before, NaN on new ground: what the cells hold need not be Cartesian.
         """
         if isinstance(experiences, CellsOnly):
-            return self._off_passes(self._count, truth, experiences)
+            return off_earlier_passes(*self._estimates(self._count, experiences), _pose(truth), experiences.robot)
         x, y, heading, _ = self._made_at[experiences.active].tolist()
         if math.isnan(x):
             return math.nan, math.nan
@@ -162,37 +162,57 @@ class Evaluation:
         truth, mapped, odometry = self.trajectories(experiences, every)
         return rmse(mapped, truth), rmse(odometry, truth)
 
-    def _off_passes(self, before: int, truth: Truth, experiences: ExperienceMap) -> tuple[float, float]:
-        """How far the robot is from the estimates of the passes in the first so many rows."""
-        here, estimate = Pose2(truth.x, truth.y, truth.heading_rad), experiences.local_pose
-        return off_earlier_passes(self._rows[:before, :3], self._rows[:before, 3:6], here, estimate)
+    def _estimates(self, rows: int, experiences: ExperienceMap) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """True poses and estimates, in the map as it is now, of the first so many ticks, thinned; (n, 3) each."""
+        row, pose = self._rows[:rows:EVERY], experiences.poses[self._experience[:rows:EVERY]]
+        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        x, y = pose[:, 0] + c * row[:, 3] - s * row[:, 4], pose[:, 1] + s * row[:, 3] + c * row[:, 4]
+        return row[:, :3], np.stack([x, y, pose[:, 2] + row[:, 5]], axis=1)
 
     def _judge(self, time_s: float, truth: Truth, experiences: ExperienceMap, way_m: float) -> None:
-        revisits = time_s - self._made_at[experiences.active, 3] > REVISIT_AGE_S
-        lost = [kidnap for kidnap in self.kidnaps[-1:] if kidnap.after_s is None]
-        if not (revisits or lost):
-            return
-        off = self.belief_off(truth, experiences)
-        revisits = revisits and not math.isnan(off[0])
-        if revisits:
-            self._revisits += 1
-            self._consistent += off[0] <= CONSISTENT_M
-        for kidnap in lost:
-            kidnap.note(time_s, way_m, self._knows(kidnap, time_s, truth, experiences, off))
+        if time_s - self._made_at[experiences.active, 3] > REVISIT_AGE_S:
+            off_m, _ = self.belief_off(truth, experiences)
+            if not math.isnan(off_m):
+                self._revisits += 1
+                self._consistent += off_m <= CONSISTENT_M
+        for kidnap in self.kidnaps[-1:]:
+            if not kidnap.judged:
+                self._judge_kidnap(kidnap, time_s, truth, experiences, way_m)
 
-    def _knows(
-        self, kidnap: Kidnapping, time_s: float, truth: Truth, experiences: ExperienceMap, off: tuple[float, float]
-    ) -> bool:
-        """Whether place and heading are right. Place alone is not enough: a robot turned on the spot has not moved."""
+    def _judge_kidnap(
+        self, kidnap: Kidnapping, time_s: float, truth: Truth, experiences: ExperienceMap, way_m: float
+    ) -> None:
+        kidnap.drive(way_m)
+        kidnap.carried(time_s, experiences.carried)
+        if kidnap.after_s is None:
+            kidnap.believes(time_s, self._right(kidnap, truth, experiences))
+        if kidnap.consistent_s is None:
+            passes = self._estimates(kidnap.ticks, experiences)
+            kidnap.agrees(time_s, _near(off_earlier_passes(*passes, _pose(truth), experiences.robot)))
+
+    def _right(self, kidnap: Kidnapping, truth: Truth, experiences: ExperienceMap) -> bool | None:
+        """Whether place and heading are right where the robot believes itself to be; None if it is lost, or at a new place.
+
+        Place alone is not enough: a robot turned on the spot has not moved. Without a map the estimate stands for where
+        the robot was when it was nearest to this.
+        """
         if isinstance(experiences, CellsOnly):
-            known = round(self._count * kidnap.at_s / time_s)
-            off = self._off_passes(known, truth, experiences)
-            return off[0] <= NEAR_M and off[1] <= NEAR_RAD
-        made_s = float(self._made_at[experiences.active, 3])
-        if made_s <= kidnap.at_s:
-            return off[0] <= NEAR_M and off[1] <= NEAR_RAD
-        if math.isnan(made_s) and experiences.active < kidnap.known:  # the brain brought it: the map says where it is
+            passes = self._estimates(kidnap.ticks, experiences)
+            off = off_same_estimate(*passes, _pose(truth), experiences.robot)
+            return None if math.isnan(off[0]) else _near(off)
+        if experiences.lost or experiences.active >= kidnap.known:
+            return None
+        off = self.belief_off(truth, experiences)
+        if math.isnan(off[0]):  # the brain brought it: the map says where it is
             robot = kidnap.map_in_office.compose(experiences.robot)
             turn = abs(math.remainder(robot.heading_rad - truth.heading_rad, math.tau))
-            return math.hypot(robot.x - truth.x, robot.y - truth.y) <= NEAR_M and turn <= NEAR_RAD
-        return False
+            off = math.hypot(robot.x - truth.x, robot.y - truth.y), turn
+        return _near(off)
+
+
+def _pose(truth: Truth) -> Pose2:
+    return Pose2(truth.x, truth.y, truth.heading_rad)
+
+
+def _near(off: tuple[float, float]) -> bool:
+    return off[0] <= NEAR_M and off[1] <= NEAR_RAD

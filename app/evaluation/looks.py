@@ -45,7 +45,7 @@ def _judged(experiences: ExperienceMap, births: Births, which: NDArray[np.bool_]
     and where the second was truly made.
     """
     t = experiences.transitions
-    claims = t.weight[: t.count] >= (experiences.params.odometry_sigma / FALSE_M) ** 2  # a row's sigma is at most 1 m
+    claims = t.weight[: t.count] >= (experiences.step_sigma_m / FALSE_M) ** 2  # a row's sigma is at most 1 m
     rows = np.flatnonzero(which[: t.count] & claims)
     rows = rows[np.isfinite(births[t.ends[rows], 0]).all(axis=1)]
     ends, move = t.ends[rows], t.move[rows]

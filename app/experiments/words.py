@@ -5,7 +5,9 @@ from __future__ import annotations
 from app.experiments.stored_trial import StoredTrial
 from app.trials.experiment import Score
 
-ENGINE_WORDS = {"paper": "the paper's rules", "ours": "our rules"}
+ENGINE_WORDS = {
+    "paper": "the paper's rules", "paper-2005": "the rules of 2005", "paper-2006": "the rules of 2006", "ours": "our rules",
+}  # fmt: skip
 
 
 def value_of(score: Score, trial: StoredTrial) -> float | None:

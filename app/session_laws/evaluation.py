@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.evaluation import Evaluation
-from app.evaluation.kidnapping import Kidnapping
+from app.evaluation.kidnapping import Kidnapping, Stretch
 from ratslam_core.laws.kinds import same_kind
 from ratslam_core.laws.measures import FAR_M, array, number, pose, true, whole, within
 
@@ -40,8 +40,19 @@ def _kidnap(kidnap: Kidnapping, experiences: int) -> None:
     number("the time of a kidnap", kidnap.at_s, 0.0, LONGEST_S)
     pose("the map before a kidnap", kidnap.map_in_office)
     whole("what was known before a kidnap", kidnap.known, 0, experiences)
+    whole("ticks before a kidnap", kidnap.ticks, 0)
     number("the way since a kidnap", kidnap._way_m, 0.0, FAR_M)
-    for name in ("after_s", "after_m", "_right_since_s", "_right_since_m"):
-        value = getattr(kidnap, name)
-        if value is not None:
-            number(f"a kidnap's {name}", value, 0.0, LONGEST_S)
+    true(isinstance(kidnap._noticed, bool), "whether a kidnap was noticed must be true or false")
+    for name in ("after_s", "after_m", "joined_s", "consistent_s"):
+        _time(name, getattr(kidnap, name))
+    for name in ("wrong", "_right", "_agrees"):
+        stretch = getattr(kidnap, name)
+        true(isinstance(stretch, Stretch), f"a kidnap's {name} must be a stretch")
+        _time(f"{name} since", stretch.since_s)
+        number(f"a kidnap's {name} at most", stretch.most_s, 0.0, LONGEST_S)
+        number(f"a kidnap's {name} after", stretch.way_m, 0.0, FAR_M)
+
+
+def _time(name: str, value: float | None) -> None:
+    if value is not None:
+        number(f"a kidnap's {name}", value, 0.0, LONGEST_S)

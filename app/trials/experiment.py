@@ -7,7 +7,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
@@ -36,9 +36,8 @@ from app.trials.steps import (
 from app.trials.trial import Trial, text_of
 from disk.limits import AXES, CELLS, TRIAL_S, TRIALS
 from disk.words import one_line
-from web.messages.command import Label
+from web.messages.command import EngineName, Label
 
-EngineName = Literal["paper", "ours"]
 Labelled = Annotated[Label, Field(min_length=1)]
 _CATALOGUE = Path(__file__).with_name("catalogue")
 
@@ -142,7 +141,7 @@ class Experiment(_Part):
         if unknown:
             raise ValueError(f"measures: unknown {unknown[0]!r}; expected one of: {', '.join(sorted(MEASURES))}")
         if not self.engines:
-            raise ValueError("engines: give [engines.paper], [engines.ours] or both")
+            raise ValueError("engines: give [engines.paper], [engines.ours] or others")
         _require_different([axis.name for axis in self.axes], "axes: two are named")
         _require_different([score.label for score in self.scores], "scores: two are labelled")
         self._require_room()

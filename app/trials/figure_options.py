@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from web.messages.command import EngineName
+
 if TYPE_CHECKING:
     from app.trials.experiment import Experiment, FigureSpec
 
@@ -32,7 +34,7 @@ class Options(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
     at: list[str] = []
-    engines: list[Literal["paper", "ours"]] = []  # all of the experiment's, if none is named
+    engines: list[EngineName] = []  # all of the experiment's, if none is named
     width: Annotated[float, Field(gt=0, le=30)] = 0.0  # of the figure, inches; 0: as the kind has it
 
 

@@ -57,6 +57,8 @@ class GoalMemoryRoutes:
 
 def _route(memory: GoalMemory, begin: Packet, goal: Packet) -> NDArray[np.float64]:
     """The cells (n, 2) that the directions lead through, a cell a step; empty if they do not lead to the goal."""
+    from ratslam_core.goal_memory import ARRIVED
+
     n_y, n_x = memory.shape[1:]
     times = memory.times_to(round(goal.x) % n_x, round(goal.y) % n_y)
     at, cells = begin, [(begin.x, begin.y)]
@@ -67,7 +69,7 @@ def _route(memory: GoalMemory, begin: Packet, goal: Packet) -> NDArray[np.float6
         at = replace(at, x=(at.x + math.cos(bearing)) % n_x, y=(at.y + math.sin(bearing)) % n_y)
         cells.append((at.x, at.y))
     away = math.hypot(_apart(at.x, goal.x, n_x), _apart(at.y, goal.y, n_y))
-    return np.array(cells) if away <= memory.params.arrived + 1 else np.zeros((0, 2))
+    return np.array(cells) if away <= ARRIVED + 1 else np.zeros((0, 2))
 
 
 def _off(route: NDArray[np.float64], base: NDArray[np.float64]) -> float:

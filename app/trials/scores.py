@@ -20,8 +20,11 @@ _ALWAYS = (
     "false_positives", "consistent",
 )  # fmt: skip
 _OF_VISITS = ("goals", "reached")
-_OF_KIDNAPS = ("kidnaps", "recovered", "kidnap_median_s")
-_OF_ONE = re.compile(r"(goal|kidnap)_([1-9][0-9]{0,6})_(s|m|miss_m)")
+_OF_KIDNAPS = ("kidnaps", "recovered", "wrong", "wrong_long", "joined", "consistent", "kidnap_median_s")
+_OF_A_KIDNAP = ("s", "m", "wrong_s", "joined_s", "consistent_s")
+_NUMBER = "([1-9][0-9]{0,6})"
+_OF_ONE = re.compile(f"goal_{_NUMBER}_(?:s|m|miss_m)|kidnap_{_NUMBER}_(?:{'|'.join(_OF_A_KIDNAP)})")
+WRONG_S, WRONG_LONG_S = 0.5, 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +38,12 @@ class Counted:
 def unknown_score(name: str, measures: Sequence[str], counted: Counted) -> str:
     """Why no trial can have this score; empty if one can."""
     one = _OF_ONE.fullmatch(name)
-    if one is not None and one[1] + one[3] != "kidnapmiss_m":
-        what, most = ("visit", counted.visits) if one[1] == "goal" else ("kidnap", counted.kidnaps)
-        return "" if int(one[2]) <= most else f"{name!r} is of {what} {one[2]}; the protocol has {most}"
+    if one is not None:
+        what, number, most = ("visit", one[1], counted.visits) if one[1] else ("kidnap", one[2], counted.kidnaps)
+        return "" if int(number) <= most else f"{name!r} is of {what} {number}; the protocol has {most}"
     known = [*_ALWAYS, *(score for measure in measures for score in SCORES[measure])]
     known += [*_OF_VISITS, "goal_1_s", "goal_1_m", "goal_1_miss_m"] if counted.visits else []
-    known += [*_OF_KIDNAPS, "kidnap_1_s", "kidnap_1_m"] if counted.kidnaps else []
+    known += [*_OF_KIDNAPS, *(f"kidnap_1_{what}" for what in _OF_A_KIDNAP)] if counted.kidnaps else []
     if name in known:
         return ""
     by = next((measure for measure, scores in SCORES.items() if name in scores), None)
@@ -91,11 +94,24 @@ def _kidnaps(course: Course) -> dict[str, float]:
     kidnaps = course.session.evaluation.kidnaps
     if not kidnaps:
         return {}
-    scores = {"kidnaps": float(len(kidnaps)), "recovered": float(sum(k.after_s is not None for k in kidnaps))}
+    scores = {
+        "kidnaps": float(len(kidnaps)),
+        "recovered": float(sum(k.after_s is not None for k in kidnaps)),
+        "wrong": float(sum(k.wrong.most_s > WRONG_S for k in kidnaps)),
+        "wrong_long": float(sum(k.wrong.most_s > WRONG_LONG_S for k in kidnaps)),
+        "joined": float(sum(k.joined_s is not None for k in kidnaps)),
+        "consistent": float(sum(k.consistent_s is not None for k in kidnaps)),
+    }
     after = [kidnap.after_s for kidnap in kidnaps if kidnap.after_s is not None]
     if after:
         scores["kidnap_median_s"] = statistics.median(after)
     for number, kidnap in enumerate(kidnaps, start=1):
-        if kidnap.after_s is not None:
-            scores[f"kidnap_{number}_s"], scores[f"kidnap_{number}_m"] = kidnap.after_s, kidnap.after_m or 0.0
+        found = {
+            "s": kidnap.after_s,
+            "m": kidnap.after_m,
+            "joined_s": kidnap.joined_s,
+            "consistent_s": kidnap.consistent_s,
+        }
+        found["wrong_s"] = kidnap.wrong.most_s
+        scores |= {f"kidnap_{number}_{name}": value for name, value in found.items() if value is not None}
     return scores

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from pathlib import Path
-from typing import Annotated, Any, Literal, Protocol
+from typing import Annotated, Any, Protocol
 
 from fastapi import FastAPI
 from fastapi import Path as InPath
@@ -15,8 +15,8 @@ from web.http.bodies import json_response
 from web.http.commands import Declined, Problem
 from web.http.security import Limits
 from web.http.state import to_json
+from web.messages.command import EngineName
 
-Engine = Literal["paper", "ours"]
 Name = Annotated[str, InPath(max_length=40, description="its name")]
 TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
@@ -49,7 +49,7 @@ class Card(BaseModel):
     asks: str
     found: str  # by the paper
     world: str  # its title
-    engines: list[Engine]
+    engines: list[EngineName]
     axes: list[Axis]
     watch: list[str]  # the levels at which it is watched unless others are chosen
     seed: int  # of its first trial
@@ -76,7 +76,7 @@ class Dot(BaseModel):
 class Cell(BaseModel):
     """The trials of one engine at one level of each axis. `shade`: from 0 to 1, for its colour; None without trials."""
 
-    engine: Engine
+    engine: EngineName
     levels: list[str]
     n: int
     words: str  # the score with its interval

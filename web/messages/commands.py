@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from web.messages.command import CommandModel, Finite
+from web.messages.command import CommandModel, EngineName, Finite
 from web.messages.command import Label as _Label
 from web.messages.command import Name as _Name
 from web.messages.lesson_orders import LessonOrder
@@ -164,7 +164,7 @@ class WatchExperiment(CommandModel):
 
     type: Literal["watch_experiment"]
     experiment: _Label
-    engine: Literal["paper", "ours"] | None = None
+    engine: EngineName | None = None
     levels: Annotated[list[_Label], Field(max_length=8)] | None = None
     seed: Annotated[int, Field(ge=0, le=2**32 - 1)] | None = None
     quick: bool = False  # the shortened trial

@@ -8,7 +8,7 @@ ORANGE, SKY, BLACK = "#e69f00", "#56b4e9", "#000000"
 
 CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, SOFT)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-ENGINE_COLOUR = {"paper": BLUE, "ours": VERMILION}
+ENGINE_COLOUR = {"paper": BLUE, "paper-2005": GREEN, "paper-2006": PURPLE, "ours": VERMILION}
 # The page has its own shade of each, for light and dark.
 THEMED = {
     INK: "ink", SOFT: "soft", WALL: "wall", FAINT: "faint", PAPER: "paper", BLACK: "ink",

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.evaluation.earlier_passes import off_earlier_passes
+from app.evaluation.earlier_passes import off_earlier_passes, off_same_estimate
 from ratslam_core import Pose2
 
 STRAIGHT = np.column_stack([np.arange(0.0, 6.0, 0.03), np.zeros(200), np.zeros(200)])  # 6 m along x
@@ -55,3 +55,27 @@ def test_another_state_is_as_far_off_as_it_is_from_half_of_the_passes(passes_up:
 def test_new_ground_and_this_pass_say_nothing(here: Pose2) -> None:
     assert math.isnan(off(STRAIGHT, STRAIGHT, here, here)[0])
     assert math.isnan(off(STRAIGHT[:0], STRAIGHT[:0], here, here)[0])
+
+
+@given(
+    st.floats(-20, 20),
+    st.floats(-20, 20),
+    st.floats(-3, 3),
+    st.floats(0.2, 5.8),
+    st.floats(-0.4, 0.4),
+    st.floats(-0.5, 0.5),
+)
+def test_an_estimate_stands_for_where_the_robot_was_when_it_had_it(
+    x: float, y: float, turn: float, ahead: float, aside: float, facing: float
+) -> None:
+    """However the cells lie: the robot is where it is, and its estimate is one that it had elsewhere on the way."""
+    frame, here = Pose2(x, y, turn), Pose2(1.0, 2.0, 0.3)
+    estimated = np.array([[p.x, p.y, p.heading_rad] for p in (frame.compose(Pose2(*row)) for row in STRAIGHT.tolist())])
+    metres, radians = off_same_estimate(STRAIGHT, estimated, here, frame.compose(Pose2(ahead, aside, facing)))
+    assert metres == pytest.approx(math.hypot(ahead - 1.0, aside - 2.0), abs=1e-9)
+    assert radians == pytest.approx(abs(facing - 0.3), abs=1e-9)
+
+
+@pytest.mark.parametrize("estimate", [Pose2(3.0, 0.6, 0.0), Pose2(3.0, 0.0, 0.7), Pose2(-1.0, 0.0, 0.0)])
+def test_an_estimate_that_it_never_had_stands_for_no_place(estimate: Pose2) -> None:
+    assert math.isnan(off_same_estimate(STRAIGHT, STRAIGHT, Pose2(3.0, 0.0, 0.0), estimate)[0])

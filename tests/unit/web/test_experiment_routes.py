@@ -93,7 +93,7 @@ def test_the_command_is_taken_and_refused_like_any_other() -> None:
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
-        (b'"experiment": "table", "engine": "theirs"', "engine must be paper or ours"),
+        (b'"experiment": "table", "engine": "theirs"', "engine must be paper, paper-2005, paper-2006 or ours"),
         (b'"experiment": "table", "levels": [2]', "levels must be a list of texts"),
         (b'"experiment": "table", "moment_s": -1', "moment_s must be at least 0"),
         (b'"seed": 3', "experiment is missing"),
