@@ -29,13 +29,8 @@ class Activity:
 
 
 def excited(activity: Activity, params: PoseCellParams) -> Activity:
-    """Every cell excites its neighbours on the torus. Local inhibition subtracts a wider Gaussian of the result."""
-    near = _spread(activity, params, gaussian(params.excite_sigma, params.excite_radius))
-    if params.local_inhibit == 0:
-        return near
-    wide = _spread(near, params, gaussian(params.local_inhibit_sigma, params.local_inhibit_radius))
-    taken = wide.values[np.searchsorted(wide.flat, near.flat)]  # `wide` has every cell of `near`
-    return Activity(near.flat, near.values - params.local_inhibit * taken)
+    """Every cell excites its neighbours on the torus."""
+    return _spread(activity, params, gaussian(params.excite_sigma))
 
 
 def inhibited(activity: Activity, params: PoseCellParams) -> Activity:

@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.session import Session
-from ratslam_core import ExperienceMap
-from ratslam_core.extensions.evidence import ODDS
+from ratslam_core import ExperienceMap, Pose2
+from ratslam_core.extensions.evidence import ODDS, SUBMAP
 from web.messages import Belief, Hypothesis
 
 POSSIBLE = 3.0  # nats: a place that is twenty times less likely than the likeliest is not counted
 MOST_LOG_ODDS = 14.0  # a million to one is enough
 MOST_OTHERS = 4  # places that are shown beside that where it believes itself to be
+HELD_M = 1.0  # a place stands for a state of the pose cells if an experience is so near
 LEAST_SHARE = 0.02  # how likely a place must be before one is shown that a robot in doubt may be at
 
 
@@ -55,5 +56,20 @@ def other_places(map_: ExperienceMap) -> tuple[Hypothesis, ...]:
     for k in np.argsort(-shares, kind="stable").tolist():
         x, y, heading = rows[k, :3].tolist()
         if shares[k] >= least and math.hypot(x - here.x, y - here.y) > 1e-6:
-            found.append(Hypothesis(x, y, heading, float(shares[k])))
+            state = state_of(map_, Pose2(x, y, heading), int(rows[k, SUBMAP]))
+            found.append(Hypothesis(x, y, heading, float(shares[k]), state))
     return tuple(found[:MOST_OTHERS])
+
+
+def state_of(map_: ExperienceMap, place: Pose2, submap: int) -> tuple[float, float, float] | None:
+    """The state of the pose cells of the nearest experience of this submap, moved by as much as the place is beside it."""
+    own = np.flatnonzero(map_.island_of == submap)
+    apart = np.hypot(map_.poses[own, 0] - place.x, map_.poses[own, 1] - place.y)
+    if not len(own) or apart.min() > HELD_M:
+        return None
+    near = int(own[np.argmin(apart)])
+    x, y, theta, _ = map_.cell_state(near)
+    beside = map_.pose(near).inverse().compose(place)
+    facing = theta * math.tau / map_.shape[0]
+    state = Pose2(x * map_.cell_m, y * map_.cell_m, facing).compose(beside)
+    return state.x / map_.cell_m, state.y / map_.cell_m, state.heading_rad

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import get_args
 
 from app.session import Session, is_lost
@@ -12,7 +13,7 @@ from app.views.snap_causes import words_of
 from disk import kind
 from ratslam_core import find_places
 from web.messages import GoalState, Packet, Snap
-from web.messages.told import goal_meaning
+from web.messages.told import goal_meaning, odds_words
 
 FALSE_EVERY_S = 5.0  # false positives are marked no more often
 PLACES_EVERY_S = 10.0
@@ -20,7 +21,7 @@ NEW_GROUND, LONG_AGO_S = 20, 30.0  # after so many new experiences, one that was
 DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
-@kind("event_watch/3")
+@kind("event_watch/4")
 class EventWatch:
     """Call `watch` after each tick."""
 
@@ -34,6 +35,8 @@ class EventWatch:
         self.last_snap: Snap | None = None
         self.lost = False
         self._at_a_loss = False  # lost, or not yet on the map again although it believes a place
+        self._lost_s: float | None = None  # when it noticed that it was carried, until its map is one again
+        self._believed, self._joined = False, 0  # some place since then; submaps that were joined before
         self._before = session.brain.pose_cells.winner
         self._goal_state: tuple[int | None, str] = None, ""  # the goal, and what was last true of it
         self._false_marked, self._false_due_s = 0, 0.0
@@ -95,6 +98,25 @@ class EventWatch:
             why = "the image jumped: carried away?" if carried else f"{packets} packets compete"
             self.reasons.lost(self._log.note("lost", why))
         self._at_a_loss, self.lost = lost, is_lost(session)
+        self._watch_belief(carried)
+
+    def _watch_belief(self, carried: bool) -> None:
+        """Marks that a robot that knows that it was carried believes a place again, and that its map is one again."""
+        session, map_ = self._session, self._session.brain.experience_map
+        belief, joined = map_.belief, map_.islands.joined
+        if carried and self._lost_s is None:
+            self._lost_s, self._believed, self._joined = session.time_s, False, joined
+        if self._lost_s is None:
+            return
+        after = f"{session.time_s - self._lost_s:.1f} s after it noticed that it was carried"
+        if carried and belief is not None and not self._believed:
+            self._believed = True
+            event = self._log.note("believes", f"a place again {after}, {odds_words(math.exp(belief.log_odds))}")
+            self.reasons.believes(event, belief)
+        if not carried:
+            self._lost_s = None
+            if joined > self._joined:
+                self._log.note("joined", f"its map is one again {after}")
 
     def _watch_goal(self) -> None:
         """Marks what is true of the goal. What a robot that is lost believes of it waits until it knows where it is."""

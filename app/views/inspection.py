@@ -78,7 +78,7 @@ def view_report(session: Session, visits: VisitLog, view: int) -> ViewReport:
         now=present_picture(brain),
         camera=camera_image(session),
         difference=brain.local_view.difference_to(view),
-        threshold=brain.local_view.front_end.threshold(brain.params.local_view),
+        threshold=brain.local_view.threshold,
         active=session.estimate.recognition.view == view,
         experiences=tuple(np.flatnonzero(brain.experience_map.views == view).tolist()),
         hebbian=_hebbian(brain, view),

@@ -1,4 +1,5 @@
-"""Why a packet snapped, a loop closed, a look was false, the robot felt lost: the chain that led there, kept when it happens.
+"""Why a packet snapped, a loop closed, a look was false, the robot felt lost or believes a place again: the chain that led
+there, kept when it happens.
 
 ACRA 2004 5.2, ACRA 2005 3.4 and 5.2, ACRA 2006 5.1.
 """
@@ -12,8 +13,11 @@ from app.views.brain_pictures import packet_of, stored_picture
 from app.views.event_log import EventLog
 from app.views.senses import camera_image
 from app.views.snap_causes import SnapCauses
+from app.views.spoken_for import SpokenFor
 from ratslam_core import Packet, Pose2
+from ratslam_core.extensions.evidence import Belief
 from web import messages as m
+from web.messages.told import odds_words
 
 MOST_KEPT = 200
 MOST_VIEWS = 4
@@ -26,7 +30,7 @@ class Reasons:
     def __init__(self, session: Session, log: EventLog) -> None:
         """log: the chain is kept with its event."""
         self._session, self._kept = session, log.why
-        self.causes = SnapCauses(session)
+        self.causes, self._spoken = SnapCauses(session), SpokenFor()
         self._before = self._now = self._packets()
         self._robot_before = self._robot = session.brain.experience_map.robot
         self._seen: list[tuple[float, int]] = []  # when each of the views of late was recognised first
@@ -35,12 +39,15 @@ class Reasons:
         """ValueError: nothing is known of this event."""
         if event not in self._kept:
             known = f"; the newest is {max(self._kept)}" if self._kept else ": there has been none yet"
-            raise ValueError(f"event must be a snap, closure, false look or lost moment of late, got {event}{known}")
+            raise ValueError(
+                f"event must be a snap, closure, false look, lost moment or belief of late, got {event}{known}"
+            )
         return self._kept[event]
 
     def watch(self) -> None:
         session = self._session
         self.causes.watch()
+        self._spoken.watch(session.time_s, session.brain.experience_map)
         self._before, self._now = self._now, self._packets()
         self._robot_before, self._robot = self._robot, session.brain.experience_map.robot
         view = session.estimate.recognition.view
@@ -115,11 +122,28 @@ class Reasons:
         views = [(view, f"seen {event.time_s - at:.1f} s before") for at, view in reversed(since[-MOST_VIEWS:])]
         self._keep(event, [*looks, *chain], views, since[0][0] if since else event.time_s, tuple(v for v, _ in views))
 
+    def believes(self, event: m.Event, belief: Belief) -> None:
+        """A robot that was carried believes a place again."""
+        said = self._spoken.of(belief.pose)
+        spoken, against = (sum(sign * nats > 0 for _, nats in said) for sign in (1, -1))
+        view = int(self._session.brain.experience_map.views[belief.experience])
+        odds = odds_words(math.exp(belief.log_odds))
+        chain = [
+            (said[0][0] if said else event.time_s, "a view that it knew suggested this place, among others"),
+            (event.time_s, f"of what it saw since, {_parts(spoken)} spoke for it and {_parts(against)} against"),
+            (
+                event.time_s,
+                f"it is likelier than all other places together, {odds}: here it acts, and learns nothing from it",
+            ),
+        ]
+        since_s = said[0][0] if said else event.time_s
+        self._keep(event, chain, [(view, "expected here")], since_s, (), (belief.experience,), tuple(said))
+
     # ------------------------------------------------------------ inside
 
     def _keep(
         self, event: m.Event, chain: list[tuple[float, str]], views: list[tuple[int, str]], since_s: float,
-        without: tuple[int, ...], experiences: tuple[int, ...] = (),
+        without: tuple[int, ...], experiences: tuple[int, ...] = (), said: tuple[tuple[float, float], ...] = (),
     ) -> None:  # fmt: skip
         brain = self._session.brain
         shown = [m.SeenView(view, words, stored_picture(brain, view)) for view, words in views if view >= 0]
@@ -129,15 +153,19 @@ class Reasons:
             event.number, event.time_s, event.kind, event.text, tuple(sorted(chain, key=lambda entry: entry[0])),
             camera_image(self._session), tuple(shown[:MOST_VIEWS]), brain.pose_cells.shape,
             tuple(map(packet_of, self._before)), tuple(map(packet_of, self._now)),
-            experiences or (self._session.estimate.experience,), since_s, without,
+            experiences or (self._session.estimate.experience,), since_s, without, said,
         )  # fmt: skip
 
     def _packets(self) -> tuple[Packet, ...]:
         return tuple(self._session.brain.pose_cells.packets)
 
     def _differs(self) -> str:
-        limit = self._session.brain.local_view.front_end.threshold(self._session.config.local_view)
+        limit = self._session.brain.local_view.threshold
         return f"it differs by {self._session.estimate.recognition.difference:.1f}, the threshold is {limit:.1f}"
+
+
+def _parts(count: int) -> str:
+    return "one part" if count == 1 else f"{count} parts"
 
 
 def _looks(count: int) -> str:

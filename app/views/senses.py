@@ -30,7 +30,7 @@ def senses_of(session: Session) -> Senses:
         best_words="" if stored is None else front_end.words(stored),
         best_view=best,
         difference=recognition.difference,
-        threshold=front_end.threshold(local_view.params),
+        threshold=local_view.threshold,
         active_view=recognition.view,
         recruited=recognition.recruited,
         false_positive=recognition.false_positive,

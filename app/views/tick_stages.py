@@ -122,7 +122,7 @@ class TickRecorder:
     def _view_match(self) -> str:
         seen = self._session.estimate.recognition
         local_view = self._session.brain.local_view
-        limit = local_view.front_end.threshold(local_view.params)
+        limit = local_view.threshold
         if seen.view < 0:
             return "The picture shows nothing that could be told apart from elsewhere: no view is active."
         if not math.isfinite(seen.difference):

@@ -154,6 +154,7 @@ class Hypothesis:
     y: float
     heading_rad: float
     share: float  # how likely it is, 0 to 1
+    cells: tuple[float, float, float] | None = None  # its state of the pose cells: x', y' (cells), heading (rad)
 
 
 @dataclass(frozen=True, slots=True)

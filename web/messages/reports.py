@@ -118,6 +118,7 @@ class WhyReport:
     experiences: tuple[int, ...]  # that were linked, or became active
     since_s: float  # when the chain began; a run without it differs from here on
     without: tuple[int, ...]  # views; had they led nowhere, this would not have happened
+    said: tuple[tuple[float, float], ...] = ()  # when (s), and what spoke for a place (nats; negative: against it)
 
 
 Report = ExperienceReport | ViewReport | CellReport | WhyReport

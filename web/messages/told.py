@@ -88,11 +88,13 @@ def robot_told(facts: Facts) -> Chip:
     if facts.over:
         return Chip("check", "", "the recording has ended")
     if not facts.running:
-        return Chip("play", "good", "playing up to a moment") if facts.played_ahead else Chip("pause", "", "paused")
-    if facts.lost:
-        return Chip("lost", "lost", _lost(facts))
-    if facts.odds is not None and facts.mode in ("explore", "recorded"):
-        return Chip("compass", "good", f"believes it is here, {odds_words(facts.odds)}")
+        if facts.played_ahead:
+            return Chip("play", "good", "playing up to a moment")
+        return Chip("pause", "", "; ".join(filter(None, ("paused", _lost(facts) or _believes(facts)))))
+    if lost := _lost(facts):
+        return Chip("lost", "lost", lost)
+    if facts.mode in ("explore", "recorded") and (believes := _believes(facts)):
+        return Chip("compass", "good", believes)
     if facts.mode == "recorded":
         return Chip("play", "good", "playing a recording")
     if facts.mode == "manual":
@@ -113,7 +115,13 @@ def goal_told(goal: Goal) -> GoalChip:
     return GoalChip(icon, words, short, metres, seconds_words(goal.eta_s) if known and goal.eta_s is not None else "")
 
 
+def _believes(facts: Facts) -> str:
+    return "" if facts.odds is None else f"believes it is here, {odds_words(facts.odds)}"
+
+
 def _lost(facts: Facts) -> str:
+    if not facts.lost:
+        return ""
     if facts.places:
         return "lost: one place is possible" if facts.places == 1 else f"lost: {facts.places} places possible"
     return f"lost: {facts.packets} packets" if facts.packets > 1 else "lost"

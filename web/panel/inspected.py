@@ -20,7 +20,7 @@ from web.panel.part import Content
 from web.panel.words import Rows, clock, degrees, often, percent, table
 
 LINKS, NUMBERS, MOST_PACKETS, MOST_EVENTS = 24, 6, 6, 6
-EXPLAINED = ("snap", "closure", "false", "lost")  # events of which is known why
+EXPLAINED = ("snap", "closure", "false", "lost", "believes")  # events of which is known why
 
 
 def active(snapshot: Snapshot) -> Content:
@@ -122,6 +122,7 @@ def _why(report: WhyReport) -> Content:
         ]
         for packets in (report.before, report.after)
     ]
+    data["said"] = [[round(at, 1), round(nats, 2)] for at, nats in report.said]
     data["seen"] = [[seen.view, seen.words] for seen in report.views]
     linked = [(experience, "") for experience in report.experiences]
     data["sections"] = [

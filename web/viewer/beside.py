@@ -51,6 +51,7 @@ class Beside:
         offer["times"].offer(now_s, view.times)
         offer["estimate"].offer(now_s, view.estimate)
         offer["others"].offer(now_s, view.others)
+        offer["cell_others"].offer(now_s, view.others, view.pose_cells.shape)
         offer["goal"].offer(now_s, view.goal)
 
     def hurry(self) -> None:
@@ -97,6 +98,7 @@ class Beside:
                 "times": Throttle(2, plate.set_times),
                 "estimate": Throttle(10, plate.set_robot),
                 "others": Throttle(5, plate.set_others),
+                "cell_others": Throttle(5, cells.set_others),
                 "goal": Throttle(2, plate.set_goal),
             }
         for layer in self._layers.values():

@@ -47,6 +47,7 @@ class Layers:
             "living": Throttle(12, office.set_living),
             "cells": Throttle(6, cells.set_cells),
             "path": Throttle(2, cells.set_path),
+            "cell_others": Throttle(6, cells.set_others),
             "glow": Throttle(3, cells.set_glow),
             "map": Throttle(2, self._draw_map),
             "times": Throttle(3, map_plate.set_times),
@@ -103,6 +104,8 @@ class Layers:
         self._draw_overlays(snapshot, laid, now_s)
         offer["cells"].offer(now_s, cells)
         offer["path"].offer(now_s, cells.path, cells.shape)
+        others = snapshot.belief.others if snapshot.belief else ()
+        offer["cell_others"].offer(now_s, others, cells.shape)
         offer["glow"].offer(now_s, cells, self._scenery.cells.under)
         if self._replay.draw(now_s):
             self.forget("map", *ON_MAP)

@@ -7,6 +7,7 @@ import pytest
 from app.config import Config
 from app.session import Session
 from app.views.history import History
+from ratslam_core.extensions.evidence import ODDS
 from sim2d import load_world
 from web.messages import WhyReport
 
@@ -53,6 +54,24 @@ def snapped() -> tuple[Session, History]:
     raise AssertionError("it never relocalised")
 
 
+def test_who_was_carried_believes_then_joins_and_what_was_said_adds_up_to_the_odds() -> None:
+    """The bars are changes of the log odds of the place that is believed, from when it was first thought of."""
+    session = Session(OFFICE, 11)
+    history = watched(session, 4000)
+    session.kidnap()
+    evidence, odds = session.brain.experience_map.evidence, None
+    for _ in range(1200):
+        session.tick()
+        history.watch()
+        if odds is None and evidence.belief is not None:
+            odds = float(evidence.hypotheses[:, ODDS].max())
+    kinds = [event.kind for event in history.log.events if event.kind in ("lost", "believes", "joined")]
+    assert kinds == ["lost", "believes", "joined"]
+    (why,) = reasons_of(history, "believes")
+    assert sum(nats for _, nats in why.said) == pytest.approx(odds)
+    assert why.since_s == why.said[0][0] < why.said[-1][0] == why.time_s
+
+
 def test_a_closed_loop_is_marked_and_says_what_was_linked() -> None:
     session = Session(OFFICE, 3)
     history = watched(session, 2000)
@@ -79,5 +98,7 @@ def test_a_false_look_says_which_view_was_right() -> None:
 
 def test_an_unknown_event_is_refused() -> None:
     history = watched(Session(OFFICE, 3), 50)
-    with pytest.raises(ValueError, match="event must be a snap, closure, false look or lost moment of late, got 77"):
+    with pytest.raises(
+        ValueError, match="event must be a snap, closure, false look, lost moment or belief of late, got 77"
+    ):
         history.events.reasons.of(77)

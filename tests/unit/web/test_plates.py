@@ -248,12 +248,13 @@ def test_where_the_robot_may_be_instead_are_pale_arrows_with_how_likely_that_is(
     bench.settle()
     assert not bench.visible("/map/other_0")
     here = snapshot.estimate
-    other = Hypothesis(here.x, here.y, here.heading_rad, 0.3)
-    doubt = Belief(0.1, (other, replace(other, x=here.x + 1.0, share=0.1)), 0, 0, 0, 0, 0, 0)
+    other = Hypothesis(here.x, here.y, here.heading_rad, 0.3, (8.0, 12.0, 1.0))
+    doubt = Belief(0.1, (other, replace(other, x=here.x + 1.0, share=0.1, cells=None)), 0, 0, 0, 0, 0, 0)
     bench.show(replace(snapshot, belief=doubt), 5)
     bench.settle()
     assert [bench.visible(f"/map/other_{k}") for k in range(3)] == [True, True, False]
     assert [bench.visible(f"/map/other_{k}_label") for k in range(3)] == [True, True, False]
+    assert len(bench.drawn("/pose_cells/other")) == 24  # the sides of a ring: of the other place it has no state
     assert bench.node("/map/other_0")["position"][:2] == bench.node("/map/arrow")["position"][:2]
     bench.show(replace(snapshot, belief=replace(doubt, others=())), 5)
     bench.settle()

@@ -89,6 +89,10 @@ MOMENTS: dict[str, tuple[Snapshot, set[PlateName]]] = {
     "in doubt": (
         replace(PLAIN, belief=Belief(0.2, (Hypothesis(1.0, 1.0, 0.0, 0.3),), 0, 0, 0, 0, 0, 0)), {"map"}
     ),
+    "in doubt, and the cells have that place": (
+        replace(PLAIN, belief=Belief(0.2, (Hypothesis(1.0, 1.0, 0.0, 0.3, (9.0, 11.0, 0.5)),), 0, 0, 0, 0, 0, 0)),
+        {"pose", "map"},
+    ),
     "a lesson's marks": (replace(PLAIN, lesson=taught().lesson), {"office", "pose", "map"}),
 }  # fmt: skip
 

@@ -35,7 +35,8 @@ def test_the_robot_and_its_goal_never_contradict_each_other() -> None:
         facts = Facts(packets=packets, mode=mode, goal=state, **on)
         robot = robot_told(facts)
         stands_still = facts.past or facts.faulty or facts.over or not facts.running
-        assert ("lost" in robot.words) is (facts.lost and not stands_still)
+        tells_of_something_else = facts.past or facts.faulty or facts.over or (facts.played_ahead and not facts.running)
+        assert ("lost" in robot.words) is (facts.lost and not tells_of_something_else)
         if state is None:
             assert "goal" not in robot.words
             continue
@@ -63,7 +64,9 @@ def test_what_counts_most_is_said() -> None:
     assert robot_told(Facts(**lost, past=True, faulty=True)).words == "the past, played"
     assert robot_told(Facts(**lost, faulty=True)).words == "in a long tick"
     assert robot_told(Facts(**lost, faulty=True, running=False)).words == "stopped by a fault"
-    assert robot_told(Facts(**lost, running=False)).words == "paused"
+    assert robot_told(Facts(**lost, running=False)).words == "paused; lost"
+    assert robot_told(Facts(odds=40.4, running=False)).words == "paused; believes it is here, 40:1"
+    assert robot_told(Facts(running=False)).words == "paused"
     assert robot_told(Facts(**lost, running=False, played_ahead=True)).words == "playing up to a moment"
     assert robot_told(Facts(**lost, packets=2)).words == "lost: 2 packets"
     assert robot_told(Facts(mode="manual", goal="tracking")).words == "driving by hand"

@@ -8,6 +8,13 @@ const circle = (r) => `M${-r} 0a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 
 const KINDS = {
   kidnap: { name: "kidnap", weight: 5, d: "M0-7l6 7-6 7-6-7z" },
   lost: { name: "lost", weight: 3, d: "M-5-5l10 10M5-5l-10 10", open: true },
+  believes: { name: "believes", weight: 3, d: `${circle(5)}${circle(1)}`, open: true },
+  joined: {
+    name: "map joined",
+    weight: 3,
+    d: "M-7 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0M-1 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0",
+    open: true,
+  },
   recovered: { name: "recovered", weight: 3, d: circle(5), open: true },
   snap: { name: "snap", weight: 0, d: circle(5) },
   goal: { name: "goal set", weight: 4, d: "M-4 7v-15l10 4-8.4 4v7z" },

@@ -7,6 +7,8 @@ const TOLD = new Set(
   /** @type {EventKind[]} */ ([
     "kidnap",
     "lost",
+    "believes",
+    "joined",
     "recovered",
     "goal",
     "arrived",

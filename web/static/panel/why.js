@@ -8,7 +8,7 @@ import { caption, choice, heading, note, renew } from "./parts.js";
 const MOST_VIEWS = 4;
 
 /** @typedef {[number, number, number, number]} Packet number, x, y (cells), share of the activity */
-/** @typedef {{ id: number, without: number[], event: string, number: string, cells: [number, number], packets: [Packet[], Packet[]], seen: [number, string][] }} Told */
+/** @typedef {{ id: number, without: number[], event: string, number: string, cells: [number, number], packets: [Packet[], Packet[]], seen: [number, string][], said: [number, number][] }} Told */
 
 export class Why {
   /** @param {(wish: Record<string, number>) => void} inspect @param {import("./panel.js").Ask} ask */
@@ -17,13 +17,25 @@ export class Why {
     this.ask = ask;
     this.without = make("div", { className: "without" });
     this.packets = make("div", { className: "pair" });
+    this.said = make("div");
     this.views = make("div", { className: "seen" });
     this.pictures = Array.from({ length: MOST_VIEWS }, () => new Picture("a view"));
-    this.box = make("div", { hidden: true }, heading("Packets, from above"), this.packets, this.views, this.without);
+    this.box = make(
+      "div",
+      { hidden: true },
+      this.said,
+      heading("Packets, from above"),
+      this.packets,
+      this.views,
+      this.without,
+    );
   }
 
   /** @param {Told} told @param {import("./senses.js").Arrays} arrays */
   show(told, arrays) {
+    renew(this.said, told.said, () =>
+      told.said.length ? [heading("What spoke for this place, and against it"), bars(told.said)] : [],
+    );
     renew(this.packets, told.packets, () =>
       told.packets.map((packets, k) => {
         const words = k === 0 ? "the tick before" : "then";
@@ -54,6 +66,30 @@ export class Why {
     });
     return [heading("Views that played a part"), ...cards];
   }
+}
+
+/** What was said of a place, part by part: upwards for it, downwards against it. @param {[number, number][]} said s, nats */
+function bars(said) {
+  const [wide, high] = [100, 34];
+  const most = Math.max(1, ...said.map(([, nats]) => Math.abs(nats)));
+  const each = wide / said.length;
+  const drawn = said.map(([, nats], k) => {
+    const tall = (Math.abs(nats) / most) * (high / 2 - 5);
+    const at = { x: k * each + 0.1 * each, y: nats > 0 ? high / 2 - tall : high / 2, width: 0.8 * each, height: tall };
+    return svg("rect", { ...at, class: nats > 0 ? "for" : "against" });
+  });
+  const sum = said.reduce((all, [, nats]) => all + nats, 0);
+  const [first, last] = [said[0][0], said[said.length - 1][0]];
+  const words = `${said.length} parts from ${first} to ${last} s, ${sum.toFixed(1)} nats in all`;
+  return svg(
+    "svg",
+    { viewBox: `0 0 ${wide} ${high}`, role: "img", class: "spoken", "aria-label": words },
+    svg("path", { d: `M0 ${high / 2}h${wide}`, class: "zero" }),
+    ...drawn,
+    svg("text", { x: 0, y: high - 0.6 }, `${first} s`),
+    svg("text", { x: wide, y: high - 0.6, "text-anchor": "end" }, `${last} s`),
+    svg("text", { x: 0, y: 3.6 }, `highest bar ${most.toFixed(1)} nats; ${sum.toFixed(1)} in all`),
+  );
 }
 
 /** Packets as discs on the floor of the pose cells; the area is the share of the activity. */

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import cv2
 import numpy as np
@@ -10,9 +11,10 @@ import viser
 from numpy.typing import NDArray
 
 from web.cell_owners import owners
-from web.messages import ExperienceReport, GoalMemoryLayer, OccupancyLayer, PoseCellLayer, Report, Snap
+from web.messages import ExperienceReport, GoalMemoryLayer, Hypothesis, OccupancyLayer, PoseCellLayer, Report, Snap
 from web.viewer.camera_views import camera_for, seen_by
 from web.viewer.fits.cell_fit import SIDE, CellFit, broken_where_it_wraps
+from web.viewer.marks.cell_hypotheses import CellHypotheses
 from web.viewer.marks.inspected import CellMark
 from web.viewer.marks.pill_layout import spread
 from web.viewer.plates import overlays
@@ -79,6 +81,7 @@ class PoseCellPlate(Plate):
         ]
         self._ends = [Pill(scene, f"{self.root}/snap_{letter}", 0.4, palette.goal, palette) for letter in "SF"]
         self._empty = Sign(scene, f"{self.root}/empty", 0.4 * palette.letters, anchor="centre", leaning=True)
+        self._others = CellHypotheses(scene, palette, f"{self.root}/other")
         self.mark = CellMark(scene, palette, self.root)
         self._way = scene.add_frame(f"{self.root}/way", show_axes=False, visible=False)
         add_mesh(scene, f"{self.root}/way/casing", way_arrow(0.05), palette.lit(palette.casing), position=(0, 0, 0.02))
@@ -177,6 +180,10 @@ class PoseCellPlate(Plate):
         self._snap.points = meshes.some(meshes.dashes(start, end, 0.2, 0.13), DASHES)
         for pill, letter, at in zip(self._ends, "SF", (start, end), strict=True):
             pill.show(letter, self.palette.on_goal, (float(at[0]), float(at[1]), float(at[2])))
+
+    def set_others(self, others: Sequence[Hypothesis], shape: tuple[int, int, int]) -> None:
+        """Shows the states that stand for where the robot may be instead of where it believes itself to be."""
+        self._others.show(others, CellFit(shape))
 
     def set_path(self, path: NDArray[np.float32], shape: tuple[int, int, int]) -> None:
         """Shows the winner's path of the last two minutes, (p, 3): x', y' in cells and heading."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from web.cell_owners import owners
 from web.messages import GoalMemoryLayer, PoseCellLayer, Snap
+from web.messages.told import share_words
 from web.viewer.plates.glass_box import metres_words
 from web.viewer.plates.pose_cell_plate import BELIEVES, LEAST_SHARE, NO_ACTIVITY, PACKETS
 from web.viewer.primitives.palette import Palette
@@ -52,6 +53,14 @@ def draw_pose_cells(subject: Subject) -> str:
     for packet, colour in zip(shown, palette.packets, strict=False):
         words = f"{packet.id}: {100 * packet.mass:.0f} %"
         sheet.label((packet.x, packet.y), words, palette.on_packet, size=18, up=40, fill=colour)
+    for other in subject.others:
+        if other.cells is not None:
+            x, y, _ = other.cells
+            at = (x + 0.5) % n_x - 0.5, (y + 0.5) % n_y - 0.5
+            sheet.dot(at, PACKET, None, palette.robot)
+            sheet.label(at, share_words(other.share), palette.text, size=14, up=24)
+    if any(other.cells for other in subject.others):
+        legend.append(("ring", palette.robot, "where it may be instead, and how likely"))
     if not len(layer.cells):
         sheet.label(((n_x - 1) / 2, (n_y - 1) / 2), NO_ACTIVITY, palette.text_2)
     draw_cell_marks(sheet, subject)
