@@ -28,7 +28,6 @@ LASER_GATE_RAD = (
     0.8  # scans laid on scans keep the heading: a look that turns the robot farther at once is a look-alike
 )
 WIDTH_ERROR = 1.1  # the camera's width is measured to a tenth
-LOUD = ("local_view.", "kidnap.", "occupancy.")  # their lengths are those of echoes, which do not grow with the speed
 
 
 def rules(recording: Recording, scans: ScanRules | None = None) -> tuple[Config, Motion]:
@@ -82,16 +81,12 @@ def _front_end(recording: Recording) -> str:
 
 
 def _lengths(base: Config, scale: float) -> dict[str, Value]:
-    """All lengths of the engine, times the scale, as far as their ranges go."""
-    values: dict[str, Value] = {}
+    """The lengths of the engine, times the scale, as far as their ranges go. Those of the map are in cells."""
     own = {section.name for section in fields(base.engine)}
+    values: dict[str, Value] = {}
     for name, item, value in base.items():
-        if name.split(".")[0] not in own or name.startswith(LOUD) or isinstance(value, str):
-            continue
-        power = {"m": 1, "rad/m": -1}.get(item.metadata["unit"], 0)
-        if power:
-            low, high = item.metadata["low"], item.metadata["high"]
-            values[name] = min(max(value * scale**power, low), high)
+        if name.split(".")[0] in own and item.metadata["unit"] == "m" and isinstance(value, float):
+            values[name] = min(max(value * scale, item.metadata["low"]), item.metadata["high"])
     return values
 
 

@@ -12,7 +12,7 @@ from ratslam_core import ExperienceMap, Pose2
 from ratslam_core.extensions.evidence import ODDS, SUBMAP
 from web.messages import Belief, Hypothesis
 
-POSSIBLE = 3.0  # nats: a place that is twenty times less likely than the likeliest is not counted
+POSSIBLE = 3.0  # nats: a place that is twenty times less likely than the likeliest, or than a new one, is not counted
 MOST_LOG_ODDS = 14.0  # a million to one is enough
 MOST_OTHERS = 4  # places that are shown beside that where it believes itself to be
 HELD_M = 1.0  # a place stands for a state of the pose cells if an experience is so near
@@ -42,7 +42,7 @@ def possible_places(map_: ExperienceMap) -> NDArray[np.float64]:
         return np.zeros((0, 3))
     rows = map_.evidence.hypotheses
     likely = rows[np.argsort(-rows[:, ODDS], kind="stable")]
-    return likely[likely[:, ODDS] > likely[:1, ODDS].max(initial=-math.inf) - POSSIBLE][:, :3].copy()
+    return likely[likely[:, ODDS] > likely[:1, ODDS].max(initial=0.0) - POSSIBLE][:, :3].copy()
 
 
 def other_places(map_: ExperienceMap) -> tuple[Hypothesis, ...]:
@@ -50,9 +50,11 @@ def other_places(map_: ExperienceMap) -> tuple[Hypothesis, ...]:
     rows, beside = map_.evidence.weighed(map_.robot_here)
     if not len(rows) or not (map_.carried or map_.evidence.in_doubt):
         return ()
-    shares = np.exp(rows[:, ODDS] - np.logaddexp.reduce(np.append(rows[:, ODDS], beside)))
+    all_odds = np.append(rows[:, ODDS], beside)
+    every = np.exp(all_odds - np.logaddexp.reduce(all_odds))
+    shares = every[: len(rows)]
     here, found = map_.robot, list[Hypothesis]()
-    least = shares.max() * math.exp(-POSSIBLE) if map_.carried else LEAST_SHARE
+    least = every.max() * math.exp(-POSSIBLE) if map_.carried else LEAST_SHARE
     for k in np.argsort(-shares, kind="stable").tolist():
         x, y, heading = rows[k, :3].tolist()
         if shares[k] >= least and math.hypot(x - here.x, y - here.y) > 1e-6:

@@ -27,10 +27,8 @@ from ratslam_core.types import Odometry, Pose2, Recognition
 
 ENOUGH = 0.5  # a place is familiar when the shares of recognised sights of the experiences there add up to this
 SIGHTS = 20  # over which that share is averaged
-NEAR, NEAR_RAD = (
-    1.6,
-    math.radians(17),
-)  # cells; experiences this near, whose headings differ by no more, are of one place
+NEAR = 1.6  # cells; experiences this near are of one place
+NEAR_RAD = math.radians(17)  # if their headings differ by no more
 SURE = 1.2  # cells: only a robot whose place is known to this precision calls it familiar
 VIEWS = 5  # a place of so many gets another only in the room of that which was longest not recognised
 LINKS = 4  # two experiences that both have so many get none between them

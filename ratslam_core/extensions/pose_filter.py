@@ -46,7 +46,7 @@ class PoseFilter:
 
     def __init__(self, cell_m: float) -> None:
         """cell_m: side of a cell of the pose cells."""
-        self._snap_m, self._least_sigma_m = SNAP * cell_m, LEAST_SIGMA * cell_m
+        self.cell_m = cell_m
         self.local = IDENTITY
         self.sigma_m = 0.0
 
@@ -65,10 +65,10 @@ class PoseFilter:
     def see(self, look: Pose2, sigma_m: float) -> bool:
         dx, dy = look.x - self.local.x, look.y - self.local.y
         turn = wrap_angle(look.heading_rad - self.local.heading_rad)
-        if math.hypot(dx, dy) > self._snap_m or abs(turn) > SNAP_RAD:
+        if math.hypot(dx, dy) > SNAP * self.cell_m or abs(turn) > SNAP_RAD:
             self.local, self.sigma_m = look, sigma_m
             return False
-        own = max(self.sigma_m, self._least_sigma_m)
+        own = max(self.sigma_m, LEAST_SIGMA * self.cell_m)
         gain = own**2 / (own**2 + sigma_m**2)
         heading = wrap_angle(self.local.heading_rad + gain * turn)
         self.local = Pose2(self.local.x + gain * dx, self.local.y + gain * dy, heading)

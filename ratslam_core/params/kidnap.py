@@ -16,7 +16,6 @@ class KidnapParams:
     enabled: bool = param(
         True, meaning="notice a kidnap; off = a jump of the image is only another view", source="ours", live=False
     )
-
     range_surprise: float = param(
         2.0,
         low=0.0,

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from ratslam_core import PoseCellParams, PoseCells
@@ -134,6 +134,13 @@ def test_every_active_cell_belongs_to_one_cluster_within_the_window(dense: np.nd
             assert (apart.min(), apart.max()) == (bounds[c, axis], bounds[c, 3 + axis])
 
 
+def undecided(pose_cells: PoseCells, places: list[np.ndarray]) -> bool:
+    """Whether a cell is as near to one packet as to another: it may count for either."""
+    size, cells = np.array(pose_cells.shape), np.argwhere(pose_cells.activity)[:, None]
+    squares = np.sort((((cells - np.array(places) + size / 2) % size - size / 2) ** 2).sum(axis=2), axis=1)
+    return bool((np.diff(squares[:, :2], axis=1) < 1e-6).any())
+
+
 @EXAMPLES
 @given(activities(), st.floats(-1.0, 1.0), st.floats(-3, 3))
 @pytest.mark.slow
@@ -144,7 +151,9 @@ def test_carry_is_what_the_attractor_took_from_each_packet(dense: np.ndarray, ce
     places = [row[2::-1].copy() for row in pose_cells._rows[: pose_cells._found]]
     ids = pose_cells._ids[: pose_cells._found].copy()
     before = literal.centres(pose_cells.activity.astype(np.float64), places, 2 * WINDOW)
+    assume(not undecided(pose_cells, places))
     pose_cells.attract()
+    assume(not undecided(pose_cells, places))
     after = literal.centres(pose_cells.activity.astype(np.float64), places, 2 * WINDOW)
     for id_, was, now in zip(ids, before, after, strict=True):
         for row in pose_cells._rows[: pose_cells._found][pose_cells._ids[: pose_cells._found] == id_]:
