@@ -129,7 +129,10 @@ class Reasons:
         view = int(self._session.brain.experience_map.views[belief.experience])
         odds = odds_words(math.exp(belief.log_odds))
         chain = [
-            (said[0][0] if said else event.time_s, "a view that it knew suggested this place, among others"),
+            (
+                said[0][0] if said else event.time_s,
+                "a view that it knew suggested this place, among others; a guess begins with odds against it",
+            ),
             (event.time_s, f"of what it saw since, {_parts(spoken)} spoke for it and {_parts(against)} against"),
             (
                 event.time_s,
