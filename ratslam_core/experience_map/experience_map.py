@@ -100,22 +100,14 @@ class ExperienceMap(PoseGraph):
             return True
         for _ in range(beats):
             self._move(odometry)
-        by = Senses(views, witness)
         if self.evidence.known and views is not None and seen.view >= 0:
             self.evidence.observe(self, views, self.islands.current)
         if seen.recruited:
             self.forget_view(seen.view)
         before = self._departure()
-        # On familiar ground there is something to see, so the experiences of nothing do not count.
-        best, seen = (-1, seen) if seen.familiar else self._seen_experience(packet, seen, by)
-        by_place = self.ground.of_view(self, seen.view) if best < 0 else -1
-        look = None
-        if best >= 0 and best != before.experience:
-            look = self._measured(best, packet, seen, witness)
-            best = -1 if look is None else best
-        if max(best, by_place) < 0 and self.ground.spare():
+        best, look, seen = self._choose(packet, seen, Senses(views, witness))
+        if best < 0 and self.ground.spare():
             return False
-        best = max(best, by_place)
         if best < 0:
             self._create(packet, seen.view, self.robot_here)
             driven = self._learn_link(before, behaviour)
@@ -248,6 +240,21 @@ class ExperienceMap(PoseGraph):
         self.pose_filter.move(moved, self.params.odometry_drift * way_m)
 
     # ------------------------------------------------------------ choosing
+
+    def _choose(
+        self, packet: Packet, seen: Recognition, by: Senses
+    ) -> tuple[int, tuple[Pose2, float] | None, Recognition]:
+        """The experience that the robot is at, -1 for none; the look at it and how far off that may be, if it is another
+        than before and was seen; and as what it is seen.
+        """
+        # On familiar ground there is something to see, so the experiences of nothing do not count.
+        best, seen = (-1, seen) if seen.familiar else self._seen_experience(packet, seen, by)
+        by_place = self.ground.of_view(self, seen.view) if best < 0 else -1
+        look = None
+        if best >= 0 and best != self.here:
+            look = self._measured(best, packet, seen, by.witness)
+            best = -1 if look is None else best
+        return max(best, by_place), look, seen
 
     def log_prior(self, experience: int, pose: Pose2) -> float:
         """Log odds of a place, before anything speaks for it: how far odometry may have led astray since the robot was there."""
