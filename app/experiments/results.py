@@ -29,6 +29,7 @@ what ours do. The numbers are in [results.json](results.json); this file is made
 and must not be edited. Rates have their 95 % intervals after Wilson, medians theirs by the bootstrap. n is the number of
 trials of each engine at these levels.
 """
+BESIDE = 2  # engines whose scores stand side by side in a row
 
 
 def definition_digest(experiment: Experiment) -> str:
@@ -166,8 +167,25 @@ def _picture(experiment: Experiment) -> str:
 
 
 def _table(experiment: Experiment, cells: list[CellSummary]) -> str:
-    """A row for each cell; for each score the paper's value, if there is one at all, and each engine's."""
+    """A row for each cell; for each score the paper's value, if there is one at all, and each engine's.
+
+    Of more than two engines each has rows of its own.
+    """
     engines = [engine for engine in experiment.engines if any(cell.engine == engine for cell in cells)]
+    if len(engines) > BESIDE:
+        heads = ["rules", *(axis.name for axis in experiment.axes), "n", *(score.label for score in experiment.scores)]
+        told = [
+            [
+                ENGINE_WORDS[cell.engine],
+                *cell.levels,
+                str(cell.n),
+                *(words(cell.values[s.label], s) for s in experiment.scores),
+            ]
+            for engine in engines
+            for cell in cells
+            if cell.engine == engine
+        ]
+        return _lines([heads, ["---"] * len(heads), *told])
     heads = [*(axis.name for axis in experiment.axes), "n"]
     for score in experiment.scores:
         if any(original.score == score.label for original in experiment.original):
@@ -183,6 +201,10 @@ def _table(experiment: Experiment, cells: list[CellSummary]) -> str:
             row += [here[0] if here else ""] if of else []
             row += [words(at[engine].values[score.label], score) if engine in at else "-" for engine in engines]
         rows.append(row)
+    return _lines(rows)
+
+
+def _lines(rows: Sequence[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows)
 
 
