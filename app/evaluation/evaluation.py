@@ -17,6 +17,8 @@ from sim2d import Truth
 REVISIT_AGE_S = 20.0  # an active experience that was made longer ago than this counts as revisited
 NEAR_M, NEAR_RAD = 1.0, 0.6
 CONSISTENT_M = 0.5  # a revisit is consistent if the robot is truly this near to where it believes itself to be
+MOST_TICKS = 20_000  # before a kidnap, with whose estimates one after it is compared: the work is bounded
+CONSISTENT_WITHIN_S = 300.0  # of a kidnap; later nobody asks whether the estimate agrees with those of before
 LEAST_WAY_M = 0.5  # a path with a smaller spread (RMS distance from its middle) does not determine the map's rotation
 
 Points = NDArray[np.float64]  # (n, 2)
@@ -101,7 +103,8 @@ class Evaluation:
         when it passed here before, NaN on new ground: what the cells hold need not be Cartesian.
         """
         if isinstance(experiences, CellsOnly):
-            return off_earlier_passes(*self._estimates(self._count, experiences), _pose(truth), experiences.robot)
+            passes = self._estimates(slice(0, self._count, EVERY), experiences)
+            return off_earlier_passes(*passes, _pose(truth), experiences.robot)
         x, y, heading, _ = self._made_at[experiences.active].tolist()
         if math.isnan(x):
             return math.nan, math.nan
@@ -126,12 +129,9 @@ class Evaluation:
 
     def trajectories(self, experiences: ExperienceMap, every: int = 1) -> tuple[Points, Points, Points]:
         """True path, path through the map as it is now, and path by odometry alone; (n, 2) each, not aligned."""
-        rows, at = self._rows[: self._count : every], self._experience[: self._count : every]
-        pose = experiences.poses[at]
-        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-        x = pose[:, 0] + c * rows[:, 3] - s * rows[:, 4]
-        y = pose[:, 1] + s * rows[:, 3] + c * rows[:, 4]
-        return rows[:, :2], np.stack([x, y], axis=1), rows[:, 6:8]
+        ticks = slice(0, self._count, every)
+        true, mapped = self._estimates(ticks, experiences)
+        return true[:, :2], mapped[:, :2], self._rows[ticks, 6:8]
 
     def map_in_office(self, experiences: ExperienceMap, every: int = 1) -> Pose2:
         """The pose of the map's frame in the office: the very fit after which `errors` measures the map. While the path is
@@ -162,12 +162,17 @@ class Evaluation:
         truth, mapped, odometry = self.trajectories(experiences, every)
         return rmse(mapped, truth), rmse(odometry, truth)
 
-    def _estimates(self, rows: int, experiences: ExperienceMap) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """True poses and estimates, in the map as it is now, of the first so many ticks, thinned; (n, 3) each."""
-        row, pose = self._rows[:rows:EVERY], experiences.poses[self._experience[:rows:EVERY]]
+    def _estimates(self, ticks: slice, experiences: ExperienceMap) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """True poses and estimates, in the map as it is now, of these ticks; (n, 3) each."""
+        row, pose = self._rows[ticks], experiences.poses[self._experience[ticks]]
         c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
         x, y = pose[:, 0] + c * row[:, 3] - s * row[:, 4], pose[:, 1] + s * row[:, 3] + c * row[:, 4]
         return row[:, :3], np.stack([x, y, pose[:, 2] + row[:, 5]], axis=1)
+
+    def _passes_before(
+        self, kidnap: Kidnapping, experiences: ExperienceMap
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return self._estimates(slice(max(0, kidnap.ticks - MOST_TICKS), kidnap.ticks, EVERY), experiences)
 
     def _judge(self, time_s: float, truth: Truth, experiences: ExperienceMap, way_m: float) -> None:
         if time_s - self._made_at[experiences.active, 3] > REVISIT_AGE_S:
@@ -186,8 +191,8 @@ class Evaluation:
         kidnap.carried(time_s, experiences.carried)
         if kidnap.after_s is None:
             kidnap.believes(time_s, self._right(kidnap, truth, experiences))
-        if kidnap.consistent_s is None:
-            passes = self._estimates(kidnap.ticks, experiences)
+        if kidnap.consistent_s is None and time_s - kidnap.at_s < CONSISTENT_WITHIN_S:
+            passes = self._passes_before(kidnap, experiences)
             kidnap.agrees(time_s, _near(off_earlier_passes(*passes, _pose(truth), experiences.robot)))
 
     def _right(self, kidnap: Kidnapping, truth: Truth, experiences: ExperienceMap) -> bool | None:
@@ -197,7 +202,7 @@ class Evaluation:
         the robot was when it was nearest to this.
         """
         if isinstance(experiences, CellsOnly):
-            passes = self._estimates(kidnap.ticks, experiences)
+            passes = self._passes_before(kidnap, experiences)
             off = off_same_estimate(*passes, _pose(truth), experiences.robot)
             return None if math.isnan(off[0]) else _near(off)
         if experiences.lost or experiences.active >= kidnap.known:

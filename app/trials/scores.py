@@ -111,7 +111,7 @@ def _kidnaps(course: Course) -> dict[str, float]:
             "m": kidnap.after_m,
             "joined_s": kidnap.joined_s,
             "consistent_s": kidnap.consistent_s,
+            "wrong_s": kidnap.wrong.most_s,
         }
-        found["wrong_s"] = kidnap.wrong.most_s
         scores |= {f"kidnap_{number}_{name}": value for name, value in found.items() if value is not None}
     return scores

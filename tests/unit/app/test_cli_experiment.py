@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from app.cli.command_line import main
+from app.cli.options import ENGINES
+from app.experiments.figures.palette import ENGINE_COLOUR
 from app.experiments.store import Store
+from app.experiments.words import ENGINE_WORDS
 from app.trials.experiment import catalogue, read_experiment
 from tests.unit.app.trial_makers import make_outcome, make_trial
+from web.messages.command import EngineName
 
 DOCS = Path(__file__).parents[3] / "docs"
 
@@ -113,3 +118,7 @@ def test_a_file_of_ones_own_runs_once_and_leaves_table_figures_and_page(
         assert kept.stored([trial])[0].scores["goals"] == 2.0
     assert main(command) == 0
     assert "to run" not in capsys.readouterr().err
+
+
+def test_whose_rules_can_be_asked_for_is_the_same_everywhere() -> None:
+    assert set(ENGINES) == set(get_args(EngineName)) == set(ENGINE_WORDS) == set(ENGINE_COLOUR)

@@ -11,6 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.evaluation import Evaluation, align, alignment, rmse
+from app.evaluation.earlier_passes import EVERY
+from app.evaluation.evaluation import CONSISTENT_WITHIN_S, MOST_TICKS
 from ratslam_core import Odometry, Pose2
 from sim2d import Truth
 
@@ -287,3 +289,19 @@ def test_experiences_that_a_brain_brought_are_where_the_map_says() -> None:
     x, y = evaluation.made_at(1510, map_)  # type: ignore[arg-type]
     here = evaluation.trajectories(map_)  # type: ignore[arg-type]
     assert math.dist((x, y), here[0][0]) == pytest.approx(10.0 - 0.03, abs=1e-6)  # the first place is a tick on
+
+
+def test_what_a_kidnap_asks_of_the_past_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However long the robot drove before it, and however long it is never consistent."""
+    evaluation, map_, asked = Evaluation(), Map(), list[int]()
+    drive(evaluation, map_, MOST_TICKS + 5000)
+    evaluation.kidnapped(evaluation._count * DT, map_)  # type: ignore[arg-type]
+
+    def passes(true: np.ndarray, *_rest: object) -> tuple[float, float]:
+        asked.append(len(true))
+        return math.nan, math.nan
+
+    monkeypatch.setattr("app.evaluation.evaluation.off_earlier_passes", passes)
+    drive(evaluation, map_, 3200, start=MOST_TICKS + 5000, wrong_m=9.0)
+    assert set(asked) == {MOST_TICKS // EVERY}
+    assert len(asked) == pytest.approx(CONSISTENT_WITHIN_S / DT, abs=2)
