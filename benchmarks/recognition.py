@@ -77,11 +77,10 @@ class Frames:
 
 @dataclass(frozen=True, slots=True)
 class Sights:
-    """Each frame's nearest older frame (-1: none), how far off it is in levels, and whether the frame shows anything."""
+    """Each frame's nearest older frame (-1: none), and how far off it is in levels."""
 
     best: NDArray[np.int64]
     levels: NDArray[np.float64]
-    shows: NDArray[np.bool_]
 
 
 def driven(world: World, seed: int, minutes: float) -> Frames:
@@ -112,7 +111,7 @@ def sights(frames: Frames, way: Way) -> Sights:
         view, apart, _ = matcher.nearest(known[: k - gap], known[k], params.shift if end.shifts else 0)
         doubt = end.doubt(known[k]) if way.doubts else 0.0
         best[k], levels[k] = view, max(apart * end.scale + doubt, end.vague)
-    return Sights(best, levels, np.array([not end.bland(features) for features in known]))
+    return Sights(best, levels)
 
 
 def off(poses: NDArray[np.float64], others: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -135,7 +134,7 @@ def recalls(frames: Frames, seen: Sights, again: NDArray[np.bool_]) -> list[tupl
     """For each precision the share of the revisits that are recognised, and the threshold. Shares are 0 if none is right."""
     away, turn = off(frames.poses, frames.poses[seen.best])
     right = (away < RIGHT_M) & (turn < RIGHT_RAD)
-    order = np.flatnonzero(seen.shows & (seen.best >= 0))
+    order = np.flatnonzero(seen.best >= 0)
     order = order[np.argsort(seen.levels[order], kind="stable")]
     count = np.arange(1, len(order) + 1)
     precision, found = np.cumsum(right[order]) / count, np.cumsum((right & again)[order])

@@ -30,27 +30,20 @@ class Localisation:
         strength: how sure the recognition is, 0 to 1; lost: the robot knows that it was carried away; watch: called
         with the name of each stage after it.
 
-        Several beats in one tick: the way is driven beat by beat, and the image, which belongs to its end, is associated
-        there once for each. The attractor follows every such part of a stage.
-
-        [ours] The image belongs to the end of the movement, so path integration comes first. Otherwise every view would
-        be linked one step behind. ACRA 2004 section 4 associates first (`pose_cells.move_first` off). test_papers.py.
+        Several beats in one tick: the image is associated once for each, and the way is driven beat by beat. The
+        attractor follows every such part of a stage.
         """
-
-        def integrate(_seen: Recognition) -> None:
-            self._integrate(tick.moved)
-
-        def associate(seen: Recognition) -> None:
-            self.association.step(seen, strength, tick.moved.dt, self.pose_cells, lost)
-
-        stages = [("path integration", integrate), ("injection", associate)]
         jumped = False
-        for stage, do in stages if self.params.move_first else stages[::-1]:
-            for beat in range(tick.beats):
-                do(seen if beat == 0 else again(seen))
-                if beat < tick.beats - 1:
-                    jumped |= self._attract()[1]
-            watch(stage)
+        for beat in range(tick.beats):
+            if beat:
+                jumped |= self._attract()[1]
+            self.association.step(again(seen) if beat else seen, strength, tick.moved.dt, self.pose_cells, lost)
+        watch("injection")
+        for beat in range(tick.beats):
+            if beat:
+                jumped |= self._attract()[1]
+            self._integrate(tick.moved)
+        watch("path integration")
         packet, jumps = self._attract()
         watch("attractor")
         return packet, jumped or jumps

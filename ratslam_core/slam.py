@@ -16,8 +16,8 @@ from ratslam_core.parts import Witness
 from ratslam_core.pose_graph.transitions import require_behaviour
 from ratslam_core.types import Estimate, Odometry, Recognition
 
-# The stages of `RatSlam.step`. In the papers the second and the third change places (`pose_cells.move_first` off).
-STAGES = ("view match", "path integration", "injection", "attractor", "experience", "correction", "memories")
+# The stages of `RatSlam.step`, in the papers' order.
+STAGES = ("view match", "injection", "path integration", "attractor", "experience", "correction", "memories")
 
 
 def _nobody(_stage: str) -> None:

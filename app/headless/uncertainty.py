@@ -23,7 +23,7 @@ class Uncertainty:
     def note(self, session: Session) -> None:
         self._ticks += 1
         self._lost += session.brain.lost
-        sigma_m: float = getattr(session.brain.experience_map.pose_filter, "sigma_m", math.inf)
+        sigma_m = session.brain.experience_map.off_m
         if not math.isfinite(sigma_m) or session.brain.carried or session.tick_count % EVERY:
             return
         self._sigma_m.append(sigma_m)

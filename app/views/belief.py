@@ -23,7 +23,7 @@ def belief_of(session: Session) -> Belief:
     brain = session.brain
     map_ = brain.experience_map
     return Belief(
-        off_m=math.inf if map_.carried else map_.pose_filter.sigma_m,
+        off_m=math.inf if map_.carried else map_.off_m,
         others=other_places(map_),
         corrected=map_.corrected,
         apart=int(np.count_nonzero(map_.island_of != map_.islands.current)),

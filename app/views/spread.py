@@ -20,7 +20,7 @@ def spread_of(session: Session) -> Spread | None:
     map_ = session.brain.experience_map
     if isinstance(map_, CellsOnly):
         return None
-    sigma = map_.pose_filter.sigma_m
+    sigma = map_.off_m
     if math.isfinite(sigma):
         return Spread(sigma, sigma, 0.0, "filter")
     return packet_spread(session)

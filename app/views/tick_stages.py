@@ -22,8 +22,8 @@ from web.messages import Pose, PoseCellLayer, TickStage, TickWalk
 TITLES = {
     "image": "Image and odometry",
     "view match": "View match",
-    "path integration": "Path integration",
     "injection": "Injection by the view",
+    "path integration": "Path integration",
     "excitation": "Excitation",
     "inhibition": "Inhibition",
     "normalisation": "Normalisation",
@@ -87,8 +87,8 @@ class TickRecorder:
         if self._between:
             words = f"{self._image()} It is not looked at: views, packets and map wait for the next tenth of a second."
             return Walk((Still(TickStage("image", TITLES["image"], words), {}),))
-        moved, injected = self._cells["path integration"], self._cells["injection"]
-        near = excited(injected, params)
+        seen, injected, moved = (self._cells[stage] for stage in ("view match", "injection", "path integration"))
+        near = excited(moved, params)
         left = inhibited(near, params)
         chosen = {"times": after["times"], **self._map}
 
@@ -101,9 +101,9 @@ class TickRecorder:
         steps: list[tuple[str, str, dict[str, Any]]] = [
             ("image", self._image(), before),
             ("view match", self._view_match(), before),
+            ("injection", self._injection(seen, injected), cells(injected)),
             ("path integration", self._path_integration(), cells(moved)),
-            ("injection", self._injection(moved, injected), cells(injected)),
-            ("excitation", _grown(injected, near), cells(near)),
+            ("excitation", _grown(moved, near), cells(near)),
             ("inhibition", _shrunk(near, left, params.inhibit), cells(left)),
             ("normalisation", self._normalisation(left), before | {"pose_cells": after["pose_cells"]}),
             ("experience", self._choice(), chosen | {"pose_cells": after["pose_cells"]}),

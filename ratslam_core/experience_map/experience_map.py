@@ -24,7 +24,7 @@ from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.islands import Islands
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges
-from ratslam_core.extensions.pose_filter import SNAP, LatestLook, PoseEstimate, PoseFilter
+from ratslam_core.extensions.pose_filter import SNAP, PoseFilter
 from ratslam_core.extensions.torn import open_way_m, soften
 from ratslam_core.params import EvidenceParams, ExperienceMapParams
 from ratslam_core.parts import LocalViewPart, Optimiser, Witness
@@ -37,7 +37,7 @@ from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, r
 CARRIED = 400.0  # cells: how far off the robot may be after it was carried
 REACH_SIGMA = 5.0  # a look may move the robot by so many times its uncertainty
 BLIND = 4.0  # cells: when there is nothing to see, only experiences this near in the map can become active,
-BLIND_SIGMA = 2.0  # cells: and the robot may be so far off them
+BLIND_LEVELS = 10.0  # and such a look is as uncertain as one that differs by so much
 
 
 class Senses(NamedTuple):
@@ -66,7 +66,7 @@ class ExperienceMap(PoseGraph):
         self.ground = ground or NewGround()
         self.transitions.reuses = isinstance(self.ground, FamiliarGround)
         self.evidence = Evidence(evidence or EvidenceParams(), cell_m)
-        self.pose_filter: PoseEstimate = PoseFilter(cell_m) if self.params.pose_filter else LatestLook()
+        self.pose_filter = PoseFilter(cell_m)
         self.islands = Islands()
         self._temporal_map = TemporalMap(self)
         self._edges = OdometryEdges() if self.params.odometry_edges else NoOdometryEdges()
@@ -208,6 +208,11 @@ class ExperienceMap(PoseGraph):
     def robot_here(self) -> Pose2:
         """Where the robot is on its submap."""
         return self.pose(self.here).compose(self.pose_filter.local)
+
+    @property
+    def off_m(self) -> float:
+        """How far off the robot may be where it maps; inf if nothing tells, by the rules of the papers."""
+        return self.pose_filter.sigma_m if self.params.anchor_sigma > 0 else math.inf
 
     @property
     def lost(self) -> bool:
@@ -372,7 +377,7 @@ class ExperienceMap(PoseGraph):
 
     def _deviation(self, seen: Recognition) -> float:
         """How far (m) the robot may be from where the view was taken: the more the view differs, the farther."""
-        return self.params.anchor_sigma * seen.difference if seen.view >= 0 else BLIND_SIGMA * self.cell_m
+        return self.params.anchor_sigma * (seen.difference if seen.view >= 0 else BLIND_LEVELS)
 
     def _look_by_view(self, experience: int, seen: Recognition) -> Pose2:
         """[ours] The look without the pose cells: the robot is where the view was taken. See `FamiliarGround.of_view`."""

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from disk import kind
 from ratslam_core.beats import weight
 from ratslam_core.extensions.islands import Islands
-from ratslam_core.extensions.pose_filter import PoseEstimate
+from ratslam_core.extensions.pose_filter import PoseFilter
 from ratslam_core.pose_graph.transitions import Transitions
 from ratslam_core.types import Odometry, Pose2, Recognition
 
@@ -42,7 +42,7 @@ class Map(Protocol):
     cell_m: float
     agrees: bool  # whether the last look agreed with where the robot believed itself to be
     islands: Islands
-    pose_filter: PoseEstimate
+    pose_filter: PoseFilter
 
     def __len__(self) -> int: ...
     @property

@@ -1,14 +1,14 @@
 """[ours] Where the robot is in the map: each look is weighed against odometry.
 
 A single look is precise to decimetres and degrees only. If each were taken as it is, the estimate would swerve.
-test_pose_filter.py::test_a_doubtful_look_moves_the_belief_little. `LatestLook` is the plain twin: in ACRA 2006 section
-3 the robot is at the active experience, moved on by the odometry since.
+test_pose_filter.py::test_a_doubtful_look_moves_the_belief_little. A look without a sigma is believed as it is, as in ACRA
+2006 section 3: the robot is at the active experience, moved on by the odometry since
+(test_pose_filter.py::test_a_look_without_a_sigma_is_where_the_robot_is).
 """
 
 from __future__ import annotations
 
 import math
-from typing import Protocol
 
 from disk import kind
 from ratslam_core.types import IDENTITY, Pose2, wrap_angle
@@ -17,52 +17,33 @@ SNAP, SNAP_RAD = 4.0, 0.8  # cells; a look farther off, or turned by more, is be
 LEAST_SIGMA = 0.24  # cells: the error of the estimate is never taken as smaller, so that it can follow the map
 
 
-class PoseEstimate(Protocol):
-    """A pose in the frame of the active experience."""
-
-    local: Pose2
-    sigma_m: float  # how far off it may be
-
-    def forget(self, sigma_m: float, /) -> None:
-        """The robot was carried away."""
-        ...
-
-    def make(self, *, sure: bool) -> None:
-        """An experience was made where the robot is. sure: it is the first of its map, so that this is certain."""
-        ...
-
-    def move(self, moved: Pose2, drift_m: float, /) -> None:
-        """The robot moved by odometry, which may be wrong by `drift_m`."""
-        ...
-
-    def see(self, look: Pose2, sigma_m: float, /) -> bool:
-        """A look puts the robot at `look`, give or take `sigma_m`. Returns whether that agrees with the pose so far."""
-        ...
-
-
 @kind("pose filter/4")
 class PoseFilter:
-    """The pose and how far off it may be (m)."""
+    """The pose in the frame of the active experience, and how far off it may be (m)."""
 
     def __init__(self, cell_m: float) -> None:
         """cell_m: side of a cell of the pose cells."""
         self.cell_m = cell_m
         self.local = IDENTITY
-        self.sigma_m = 0.0
+        self.sigma_m: float = 0.0  # how far off it may be
 
     def forget(self, sigma_m: float) -> None:
+        """The robot was carried away."""
         self.sigma_m = sigma_m
 
     def make(self, *, sure: bool) -> None:
+        """An experience was made where the robot is. sure: it is the first of its map, so that this is certain."""
         self.local = IDENTITY
         if sure:
             self.sigma_m = 0.0
 
     def move(self, moved: Pose2, drift_m: float) -> None:
+        """The robot moved by odometry, which may be wrong by `drift_m`."""
         self.local = self.local.compose(moved)
         self.sigma_m += drift_m
 
     def see(self, look: Pose2, sigma_m: float) -> bool:
+        """A look puts the robot at `look`, give or take `sigma_m`. Returns whether that agrees with the pose so far."""
         dx, dy = look.x - self.local.x, look.y - self.local.y
         turn = wrap_angle(look.heading_rad - self.local.heading_rad)
         if math.hypot(dx, dy) > SNAP * self.cell_m or abs(turn) > SNAP_RAD:
@@ -73,27 +54,4 @@ class PoseFilter:
         heading = wrap_angle(self.local.heading_rad + gain * turn)
         self.local = Pose2(self.local.x + gain * dx, self.local.y + gain * dy, heading)
         self.sigma_m = own * math.sqrt(1 - gain)
-        return True
-
-
-@kind("latest look/3")
-class LatestLook:
-    """As in the papers: the robot is where the last look put it, moved on by the odometry since."""
-
-    sigma_m = math.inf  # it does not know
-
-    def __init__(self) -> None:
-        self.local = IDENTITY
-
-    def forget(self, _sigma_m: float) -> None:
-        """It does not know how far off it may be."""
-
-    def make(self, *, sure: bool) -> None:  # noqa: ARG002
-        self.local = IDENTITY
-
-    def move(self, moved: Pose2, _drift_m: float) -> None:
-        self.local = self.local.compose(moved)
-
-    def see(self, look: Pose2, _sigma_m: float) -> bool:
-        self.local = look
         return True

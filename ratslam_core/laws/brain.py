@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from ratslam_core.extensions.kidnap_detector import MOST_USUAL, KidnapDetector
-from ratslam_core.extensions.pose_filter import PoseFilter
 from ratslam_core.laws import memories
 from ratslam_core.laws.beats import beats
 from ratslam_core.laws.experience_map import LONGEST, experience_map
@@ -98,8 +97,7 @@ def _agree(brain: RatSlam, handed: dict[str, Any]) -> None:
     for part in (*cells, brain.goal_memory):
         true(part.shape == shape, f"the shape of {type(part).__name__} must be {shape}, got {part.shape}")
     maps = [brain.experience_map] if "experience_map" not in handed else []
-    lengths: list[Any] = [map_.evidence for map_ in maps]
-    lengths += [map_.pose_filter for map_ in maps if isinstance(map_.pose_filter, PoseFilter)]
+    lengths: list[Any] = [part for map_ in maps for part in (map_.evidence, map_.pose_filter)]
     for part in (*maps, *lengths, brain.goal_memory, *((brain.occupancy,) if brain.occupancy else ())):
         true(part.cell_m == cell_m, f"a cell of {type(part).__name__} must be {cell_m} m wide")
 

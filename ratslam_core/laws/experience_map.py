@@ -13,7 +13,6 @@ from ratslam_core.extensions.evidence import MOST as MOST_HYPOTHESES
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import MOST_NEAR, FamiliarGround
 from ratslam_core.extensions.odometry_edges import OdometryEdges
-from ratslam_core.extensions.pose_filter import PoseFilter
 from ratslam_core.laws import experiences as law
 from ratslam_core.laws.measures import FAR_M, MOST, array, number, pose, true, whole, within
 from ratslam_core.pose_graph.preintegrated import PreintegratedOdometry
@@ -32,8 +31,7 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     law.transitions(map_.transitions, n)
     whole("the active experience", map_.here, 0 if n else -1, n - 1)
     pose("the robot's place", map_.pose_filter.local)
-    if isinstance(map_.pose_filter, PoseFilter):
-        number("how far off it may be", map_.pose_filter.sigma_m, 0.0, LONGEST)
+    number("how far off it may be", map_.pose_filter.sigma_m, 0.0, LONGEST)
     pose("offset", map_._offset)
     pose("travel", map_._travel)
     for name in ("_driven_m", "_driving_s", "_sigma"):

@@ -120,9 +120,7 @@ class LocalView:
         turned_rad: what the wheels say of the turn since the image before, left positive. room: whether a new cell may be
         recruited, and whose room it gets.
 
-        [ours] An image that shows nothing (a wall at arm's length) activates no cell and recruits none, since such
-        images look alike everywhere. test_local_view.py::test_a_bland_view_shows_nothing. With vision off, no image
-        does.
+        An image that is bland to the front end activates no cell and recruits none; with vision off, no image does.
         """
         features = self.front_end.look(image, scene, ranges_m)
         self.image_change = self._jump(features, turned_rad)
@@ -130,7 +128,7 @@ class LocalView:
         most = self.params.shift if self.front_end.shifts else 0
         best, apart, shift = self._matcher.nearest(self.templates, features, most)
         apart = self._levels(apart, features)
-        if not self.params.enabled or (self.params.bland and self.front_end.bland(features)):
+        if not self.params.enabled or self.front_end.bland(features):
             self.recognition = Recognition(NOTHING, False, best, apart)
         elif apart <= self.threshold:
             self.recognition = self._recognised(best, apart, shift)

@@ -19,22 +19,11 @@ class Addition:
 
 ADDITIONS = (
     Addition(
-        "order of the stages",
-        "path integration comes before association",
-        "the image belongs to the end of the movement; otherwise every view is linked one step behind",
-        {"pose_cells.move_first": False},
-    ),
-    Addition(
         "carry",
-        "the motion that the attractor swallows is added to the next movement",
-        "an attractor pins slow packets to the lattice of its cells",
+        "a packet goes as far as the wheels say, along the arc driven: what the attractor swallows is added to the next "
+        "movement, and the spread of its headings divided out",
+        "an attractor pins slow packets to the lattice of its cells, and spread headings shorten the way",
         {"pose_cells.carry": False},
-    ),
-    Addition(
-        "undoing the spread of headings",
-        "a packet's movement is divided by the mean of exp(iθ) over its headings, and follows the arc driven",
-        "spread headings shorten the movement, and where it ends must not depend on the tick rate",
-        {"pose_cells.divide_spread": False},
     ),
     Addition(
         "capped injection",
@@ -44,7 +33,7 @@ ADDITIONS = (
     ),
     Addition(
         "image and sonars",
-        "views are levels in even light together with the sonars' echoes; what tells little is doubted",
+        "views are levels in even light together with the sonars' echoes; what tells little is doubted, and nothing is no view",
         "grey levels change with every lamp, and walls look alike where echoes differ",
         {"local_view.front_end": "template"},
     ),
@@ -53,12 +42,6 @@ ADDITIONS = (
         "a new view injects nothing for some seconds, and later only what it had learnt before the step",
         "otherwise it would hold the packet back where it has just been learnt",
         {"local_view.rest": 0.0, "local_view.learn_first": True},
-    ),
-    Addition(
-        "gate for bland views",
-        "an image that shows nothing activates no view",
-        "walls at arm's length look alike everywhere",
-        {"local_view.bland": False},
     ),
     Addition(
         "heading from the shift",
@@ -73,9 +56,9 @@ ADDITIONS = (
         {"experience_map.zone_offset": False, "experience_map.best_look": False},
     ),
     Addition(
-        "weighted transitions",
-        "a passage weighs in map correction by how precisely it is known",
-        "looks are imprecise, odometry over one step is not",
+        "uncertain looks",
+        "a look is weighed against odometry, and a passage in map correction, by how precisely it is known",
+        "looks are imprecise, odometry over one step is not; taken as they are, the estimate swerves and the map bends",
         {"experience_map.anchor_sigma": 0.0, "experience_map.odometry_drift": 0.0},
     ),
     Addition(
@@ -101,12 +84,6 @@ ADDITIONS = (
         "the bias of the yaw rate is learnt from what the map cannot explain, held against how large it may be",
         "it is the largest error of odometry, and closed loops reveal it",
         {"experience_map.calibrate": False},
-    ),
-    Addition(
-        "pose filter",
-        "a look is weighed against odometry",
-        "if each look were taken as it is, the estimate would swerve",
-        {"experience_map.pose_filter": False},
     ),
     Addition(
         "law of evidence",

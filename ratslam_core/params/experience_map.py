@@ -8,7 +8,7 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of experience map/3")
+@kind("parameters of experience map/4")
 @dataclass(frozen=True, slots=True)
 class ExperienceMapParams:
     """Experiences, their links and the correction of the map (B 4, D 3)."""
@@ -147,12 +147,6 @@ class ExperienceMapParams:
         high=10.0,
         meaning="how large a bias of the yaw rate may well be; what a few short loops seem to show beyond it is not believed",
         source="ours",
-    )
-    pose_filter: bool = param(
-        True,
-        meaning="weigh a look against odometry; off = the latest look is the robot's place",
-        source="ours",
-        live=False,
     )
     familiar_ground: bool = param(
         True,

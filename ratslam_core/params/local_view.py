@@ -11,7 +11,7 @@ from ratslam_core.params.parameter import check_ranges, param
 COLUMNS, ROWS = 12, 8  # of a view
 
 
-@kind("parameters of local view/2")
+@kind("parameters of local view/3")
 @dataclass(frozen=True, slots=True)
 class LocalViewParams:
     """Recognising scenes (D section 7) and their Hebbian links to pose cells (A 4). They learn and inject once a beat."""
@@ -51,9 +51,6 @@ class LocalViewParams:
         high=6.3,
         meaning="width of the camera's view, to read headings from shifts",
         source="A 3, C IV.A",
-    )
-    bland: bool = param(
-        True, meaning="an image that shows nothing activates no view; off = all images do", source="ours"
     )
     learning_rate: float = param(0.15, symbol="η", low=0.0, high=1.0, meaning="Hebbian learning rate", source="C IV.C")
     adaptive: bool = param(

@@ -10,7 +10,7 @@ from ratslam_core.params.parameter import check_ranges, param
 MOST_CELLS = 2**26  # of the pose cells, four bytes each: a brain has to fit into memory, and into its file
 
 
-@kind("parameters of pose cells/4")
+@kind("parameters of pose cells/5")
 @dataclass(frozen=True, slots=True)
 class PoseCellParams:
     """The continuous attractor network (A section 4)."""
@@ -51,17 +51,11 @@ class PoseCellParams:
         meaning="global inhibition taken from every cell",
         source="A eq. 11; value ours",
     )
-    carry: bool = param(True, meaning="give back the motion that the attractor swallows", source="ours")
-    divide_spread: bool = param(
+    carry: bool = param(
         True,
-        meaning="a packet moves along the arc driven, whatever the spread of its headings; off = each layer straight on",
+        meaning="a packet goes as far as the wheels say: the motion that the attractor swallows, and that the spread of its "
+        "headings takes away, is given back; off = each layer straight on",
         source="ours",
-    )
-    move_first: bool = param(
-        True,
-        meaning="path integration comes before association: the image belongs to the end of the movement",
-        source="ours; A 4 associates first",
-        live=False,
     )
     yaw_bias: float = param(
         0.0,

@@ -143,7 +143,7 @@ class PoseCells:
 
         [ours] Each packet's movement is divided by the mean of exp(i theta) over its headings, because their spread
         would shorten it, and the heading is that in the middle of the movement, so that where it ends does not depend on
-        the tick rate (`divide_spread`). What the attractor pulled the packet back in the last step is added (`carry`).
+        the tick rate. What the attractor pulled the packet back in the last step is added. The plain twin is `carry` off.
         test_path_integration.py::{test_gain_is_one_up_to_a_cell_and_a_half_a_step, test_an_arc_ends_where_it_should},
         test_papers.py::test_a_run_is_that_of_the_literal_twin.
         """
@@ -152,7 +152,7 @@ class PoseCells:
         p = self.params
         packet_kernels.advance(
             self._rows, self._found, self.shape, along, turn_rad,
-            p.divide_spread, self._moves, self._yaws,
+            p.carry, self._moves, self._yaws,
         )  # fmt: skip
         self._make_room(self._n * 8)
         m = kernels.shift(

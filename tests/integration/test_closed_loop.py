@@ -123,7 +123,7 @@ def test_the_camera_tells_headings_with_the_right_sign(turn_deg: float) -> None:
         for heading in (-2.0, 0.0, 1.0, 2.5):
             session = Session(OFFICE, 1, Config().with_value("robot.image_noise", 0.0))
             session.kidnap(x, y, heading)
-            local_view = LocalView(LocalViewParams(match_threshold=10.0, bland=False))
+            local_view = LocalView(LocalViewParams(front_end="template", match_threshold=10.0))
             local_view.observe(session.frame.image)
             session.kidnap(x, y, heading + math.radians(turn_deg))
             seen: Recognition = local_view.observe(session.frame.image)

@@ -22,7 +22,6 @@ WAVELENGTH, SIGMA, REACH = 6.0, 2.4, 5  # pixels
 AROUND = 9  # pixels: width of the neighbourhood by whose brightness an edge is divided
 DARK = 8.0  # grey levels added to that brightness, so that noise in the dark is not amplified
 GAIN = 600.0  # levels of an edge as strong as the brightness around it
-LEAST_EDGES = 16.0  # levels on average; an image with less shows nothing
 GLYPH = 9  # pixels of the small picture that stands for one place
 
 
@@ -55,10 +54,6 @@ class ComplexCells(FrontEnd):
             edges = cv2.magnitude(a, b) / around
             features[:, :, k] = cv2.resize(edges, (COLUMNS, BANDS), interpolation=cv2.INTER_AREA).T
         return np.minimum(np.rint(GAIN * features), 255).astype(np.uint8).ravel()
-
-    def bland(self, features: Features) -> bool:
-        """A wall at arm's length has no edges."""
-        return float(features.mean()) < LEAST_EDGES
 
     def picture(self, features: Features) -> NDArray[np.uint8]:
         """Short bars along the edges; the stronger the edges, the brighter the bars."""

@@ -13,7 +13,7 @@ from ratslam_core.local_view.matcher import Features
 class FrontEnd(Protocol):
     """Features are uint8, shape (columns * rows + echoes,). Their mean absolute difference says how unlike two views are.
 
-    A class that inherits from this has no echoes and never doubts.
+    A class that inherits from this has no echoes, never doubts, and is shown something by every image, as in the papers.
     """
 
     columns: int
@@ -36,9 +36,9 @@ class FrontEnd(Protocol):
         """The features of what is sensed now; ValueError says what is wrong with it."""
         ...
 
-    def bland(self, features: Features, /) -> bool:
-        """Whether they show nothing that could be recognised."""
-        ...
+    def bland(self, _features: Features, /) -> bool:
+        """[ours] Whether they show nothing that could be told apart from elsewhere."""
+        return False
 
     def doubt(self, _features: Features, /) -> float:
         """Levels that are added to every difference, since the features tell little."""

@@ -15,7 +15,6 @@ HUES, SATURATIONS = COLUMNS, ROWS  # bins
 FULL_SATURATION = 0.5  # from which on a pixel falls into the last bin
 CERTAIN_SATURATION = 0.1  # from which on the hue of a pixel is trusted
 FULL_BIN = 1 / 6  # share of the image that fills a bin
-LEAST_COLOUR = 0.6  # share of the image; one with less shows nothing
 WIDTH, HEIGHT = 32, 24  # pixels; fewer than the camera's, which averages out its noise
 
 
@@ -34,10 +33,6 @@ class HueSaturation(FrontEnd):
         hsv = np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2HSV), np.float32)
         shares = histogram(hsv[..., 0].ravel(), hsv[..., 1].ravel(), FULL_SATURATION, CERTAIN_SATURATION)
         return np.minimum(np.rint(255 / FULL_BIN * shares), 255).astype(np.uint8).ravel()
-
-    def bland(self, features: Features) -> bool:
-        """An image that is grey all over."""
-        return FULL_BIN / 255 * float(features.reshape(HUES, SATURATIONS)[:, 1:].sum()) < LEAST_COLOUR
 
     def picture(self, features: Features) -> NDArray[np.uint8]:
         """Hue to the right, saturation downwards; each bin in its colour, the brighter the larger its share."""

@@ -35,9 +35,6 @@ class SceneNumbers(FrontEnd):
         features[NUMBER] = np.frombuffer(int(scene).to_bytes(8, "little"), np.uint8)
         return features
 
-    def bland(self, _features: Features) -> bool:
-        return False
-
     def picture(self, features: Features) -> NDArray[np.uint8]:
         """The number in digits."""
         text = self.words(features).removeprefix("scene ")

@@ -11,8 +11,6 @@ from ratslam_core.local_view.front_ends.front_end import FrontEnd
 from ratslam_core.local_view.front_ends.image import grey
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
 
-LEAST_CONTRAST = 12.0  # grey levels; an image with less shows nothing
-
 
 @kind("template/2")
 class Template(FrontEnd):
@@ -23,10 +21,6 @@ class Template(FrontEnd):
 
     def look(self, image: NDArray[np.uint8] | None, _scene: int | None = None, _ranges_m: object = None) -> Features:
         return np.ascontiguousarray(grey_template(image).T).ravel()
-
-    def bland(self, features: Features) -> bool:
-        """A wall at arm's length has no contrast."""
-        return float(cv2.meanStdDev(self.picture(features))[1][0, 0]) < LEAST_CONTRAST
 
     def picture(self, features: Features) -> NDArray[np.uint8]:
         return features.reshape(COLUMNS, ROWS).T

@@ -184,7 +184,7 @@ def test_from_now_on_and_again_from_the_beginning_after_a_restart() -> None:
         ({"pair": "cells", "values": {"pose_cells.n_x": 8}}, "either a pair or values"),
         ({"pair": "cells-64"}, "the first brain is that already: nothing would differ; what would: papers, vision"),
         ({"pair": "nobody"}, "there is no pair 'nobody'; expected one of: papers, vision"),
-        ({"pair": "exact"}, "no-map; or an addition: order of the stages, carry, "),
+        ({"pair": "exact"}, "no-map; or an addition: carry, capped injection, "),
         ({"pair": "exact solver", "since": "now"}, "experience_map.exact_solver cannot change while a brain runs"),
         ({"values": {"pose_cells.n_x": 64}}, "nothing would differ"),
         ({"values": {"pilot.seek": False}}, "pilot.seek cannot differ"),

@@ -108,7 +108,7 @@ def test_what_is_judged_lies_within_its_bounds() -> None:
 
 
 def test_a_belief_without_a_sigma_has_no_uncertainty() -> None:
-    sure = run_headless(OFFICE, 4, 0.1, config=Config().with_value("experience_map.pose_filter", False))["uncertainty"]
+    sure = run_headless(OFFICE, 4, 0.1, config=Config().with_value("experience_map.anchor_sigma", 0.0))["uncertainty"]
     assert (sure["median_m"], sure["most_m"], sure["within_two_sigma"]) == (None, None, None)
 
 

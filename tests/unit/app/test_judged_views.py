@@ -111,7 +111,7 @@ def test_doubt_is_the_filters_sigma_and_by_the_papers_rules_the_packets_spread()
     sigma = session.brain.experience_map.pose_filter.sigma_m
     assert seen is not None
     assert (seen.along_m, seen.across_m, seen.by) == (sigma, sigma, "filter")
-    plain = Config().with_value("experience_map.pose_filter", False)
+    plain = Config().with_value("experience_map.anchor_sigma", 0.0)
     session = a_session(TICKS, config=plain)
     seen = spread_of(session)
     assert seen is not None

@@ -11,7 +11,6 @@ from ratslam_core.local_view.front_ends.complex_cells import (
     AROUND,
     DARK,
     GAIN,
-    LEAST_EDGES,
     REACH,
     ComplexCells,
     gabor_pair,
@@ -110,10 +109,3 @@ def test_the_brightest_of_several_edges_shows() -> None:
     place = ComplexCells().picture(features.ravel())[:9, :9]
     assert place[4].tolist() == [255] * 9
     assert place[[0, 1, 7, 8], 4].tolist() == [100] * 4
-
-
-def test_bland_is_less_than_the_limit_on_average() -> None:
-    end, features = ComplexCells(), np.full(96, LEAST_EDGES, np.uint8)
-    assert not end.bland(features)
-    features[0] -= 1
-    assert end.bland(features)

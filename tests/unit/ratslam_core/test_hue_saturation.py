@@ -109,14 +109,3 @@ def test_features_are_shares_of_the_full_bin(monkeypatch: pytest.MonkeyPatch) ->
     assert np.count_nonzero(features) == 2
     monkeypatch.setattr(hue_saturation, "FULL_BIN", 0.4)
     assert HueSaturation().look(image).max() == 255
-
-
-@pytest.mark.parametrize(("level", "bland"), [(51, False), (50, True)])
-def test_bland_is_less_colour_than_the_limit(level: int, bland: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Saturation 0 is no colour, however much there is of it."""
-    features = np.zeros((12, 8), np.uint8)
-    features[:, 0] = 200
-    features[3, 1] = level
-    monkeypatch.setattr(hue_saturation, "FULL_BIN", 0.5)
-    monkeypatch.setattr(hue_saturation, "LEAST_COLOUR", 0.1)
-    assert HueSaturation().bland(features.ravel()) is bland

@@ -147,10 +147,3 @@ def test_the_ranges_of_a_step_reach_the_local_view() -> None:
     assert len(brain.local_view) == 2
     deaf = LocalView(P)
     assert [deaf.observe(office(1)).view for _ in range(2)] == [0, 0]
-
-
-def test_a_bare_wall_activates_no_view_unless_it_is_asked_for() -> None:
-    wall = np.full((48, 64), 90, np.uint8)
-    for bland, view in ((True, -1), (False, 0)):
-        seen = LocalView(LocalViewParams(bland=bland)).observe(wall, None, np.full(8, 1.0))
-        assert (seen.view, seen.recruited) == (view, view == 0)

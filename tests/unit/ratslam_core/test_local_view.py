@@ -113,19 +113,6 @@ def test_thousands_of_views_are_all_kept() -> None:
     assert len(local_view) == 2500
 
 
-def test_a_bland_view_shows_nothing() -> None:
-    local_view = templates()
-    wall = np.full((8, 12), 140, np.uint8)
-    wall[:, 6:] += 20  # contrast 10
-    nothing = local_view.observe(wall)
-    assert (nothing.view, nothing.recruited, nothing.best_view) == (-1, False, -1)
-    assert len(local_view) == 0
-    local_view.observe(image(1))
-    assert local_view.observe(wall).view == -1
-    wall[:, 6:] += 6  # contrast 13
-    assert local_view.observe(wall).recruited
-
-
 @pytest.mark.parametrize("columns", [-2.0, -1.4, -1.0, -0.5, 0.0, 0.3, 1.0, 1.6, 2.0])
 def test_the_shift_of_the_image_tells_the_heading(columns: float) -> None:
     """When the robot turns left, everything in the image moves to the right: it looks at columns further left."""

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ratslam_core import Pose2
-from ratslam_core.extensions.pose_filter import LEAST_SIGMA, SNAP, SNAP_RAD, LatestLook, PoseFilter
+from ratslam_core.extensions.pose_filter import LEAST_SIGMA, SNAP, SNAP_RAD, PoseFilter
+from ratslam_core.types import wrap_angle
 
 CELL_M = 0.25
 
@@ -87,17 +88,20 @@ def test_who_was_carried_may_be_anywhere_until_it_sees_something_or_begins_a_map
     belief.forget(100.0)
     belief.make(sure=True)
     assert belief.sigma_m == 0.0
-    assert math.isinf(LatestLook().sigma_m)
 
 
-@given(near, sigmas)
-def test_the_plain_twin_is_where_it_was_seen_last_and_where_the_wheels_brought_it(look: Pose2, sigma: float) -> None:
-    belief = LatestLook()
-    belief.move(Pose2(3.0, 1.0, 0.5), 0.1)
-    assert belief.see(look, sigma)
-    assert belief.local == look
-    belief.move(Pose2(0.2, 0.0, 0.1), 0.1)
-    assert belief.local == look.compose(Pose2(0.2, 0.0, 0.1))
+@given(near, near)
+def test_a_look_without_a_sigma_is_where_the_robot_is(before: Pose2, look: Pose2) -> None:
+    """As in the papers: where it was seen last, and where the wheels brought it since."""
+    belief = PoseFilter(CELL_M)
+    belief.move(before, 0.0)
+    belief.see(look, 0.0)
+    at = belief.local
+    assert (at.x, at.y) == pytest.approx((look.x, look.y), abs=1e-9)
+    assert wrap_angle(at.heading_rad - look.heading_rad) == pytest.approx(0.0, abs=1e-9)
+    belief.move(Pose2(0.2, 0.0, 0.1), 0.0)
+    assert belief.local == at.compose(Pose2(0.2, 0.0, 0.1))
+    assert belief.sigma_m == 0.0
 
 
 def test_a_look_at_the_very_limit_is_still_weighed() -> None:

@@ -149,6 +149,7 @@ def test_what_is_bland_still_has_a_nearest_view() -> None:
     local_view = LocalView(front_end=AsItIs())
     local_view.observe(even(40))
     assert local_view.observe(even(0)) == Recognition(-1, False, 0, 80.0)
+    assert len(local_view) == 1
 
 
 def test_false_positives_come_from_the_generator_handed_in_or_the_same_one_always() -> None:

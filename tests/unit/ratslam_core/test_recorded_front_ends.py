@@ -10,8 +10,6 @@ from ratslam_core.local_view.front_ends.limited_levels import LimitedLevels
 from ratslam_core.local_view.recogniser import LocalView
 from ratslam_core.params import LocalViewParams
 
-PARAMS = LocalViewParams(front_end="limited levels")
-
 
 def _scene(seed: int = 0) -> np.ndarray:
     small = np.random.default_rng(seed).integers(60, 140, (8, 12), np.uint8)
@@ -38,7 +36,7 @@ def test_most_of_the_light_is_taken_off() -> None:
 
 
 def test_a_bland_picture_shows_nothing() -> None:
-    view = LocalView(PARAMS)
+    view = LocalView(LocalViewParams(front_end="limited levels"))
     assert view.observe(np.full((48, 64), 99, np.uint8)).view == -1
     assert view.observe(_scene()).recruited
 
