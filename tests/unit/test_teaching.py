@@ -10,6 +10,7 @@ import pytest
 from app.config import Config
 from app.config.pairs import pairs_beside
 from app.lessons.files import catalogue
+from app.lessons.performance import perform_round
 from app.lessons.report import report_of
 from app.lessons.schema import Lesson
 from web.shared import TABS
@@ -96,11 +97,30 @@ def test_the_rates_come_out_on_other_seeds_as_in_the_answers(seed: int) -> None:
 
 @pytest.mark.long
 def test_the_kidnaps_take_on_other_seeds_what_lesson_and_answers_say() -> None:
-    times = re.findall(r"Seeds 1 to 6: ([\d., ]+) s, and never", PAGE)[0].split(", ")
+    times = re.findall(r"Seeds 1 to 6: ([\d., ]+) s\.", PAGE)[0].split(", ")
     found = [report_of(LESSONS["kidnapped"], seed).performances[0].values for seed in range(1, 7)]
     took = [values["found_s"] for values in found if values is not None]
-    assert [f"{time:.1f}" for time in took] == [*times, "inf"]
-    assert f"{', '.join(f'{time:.0f}' for time in took[:4])} and {took[4]:.0f} s" in LESSONS["kidnapped"].because
+    assert [f"{time:.1f}" for time in took] == times
+    assert f"{', '.join(f'{time:.0f}' for time in took[:5])} and {took[5]:.0f} s" in LESSONS["kidnapped"].because
+
+
+@pytest.mark.parametrize(("name", "kind", "answer"), [("loop", "closure", 4), ("snap", "snap", 5)])
+def test_what_inspect_tells_of_it_stands_in_the_answers(name: str, kind: str, answer: int) -> None:
+    """When it was, the views that led to it, by how much they differ or how often they were seen."""
+    log = perform_round(LESSONS[name], 0).history.log
+    why = next(report for report in log.why.values() if report.kind == kind)
+    chain = " ".join(words for _, words in why.chain)
+    (task,) = re.findall(rf"^{answer}\. (.*?)^{answer + 1}\. ", PAGE, re.MULTILINE | re.DOTALL)
+    (told,) = re.findall(rf"^\*\*{answer}\.\*\*(.*?)\n\n", PAGE, re.MULTILINE | re.DOTALL)
+    assert (
+        f"click {'loop closed' if kind == 'closure' else kind} {int(why.time_s) // 60}:{int(why.time_s) % 60:02}"
+        in task
+    )
+    for view, differs in re.findall(r"view (\d+) is recognised \(it differs by ([\d.]+)", chain):
+        assert f"View {view} was recognised; it differs by {differs}" in told
+    for view, looks, share in re.findall(r"view (\d+), learnt .*?: (\d+) looks? put (\d+)%", chain):
+        assert f"View {view}: {looks} look" in told
+        assert f", {share} %" in told
 
 
 def comes_out_as_it_stands_there(lesson: Lesson, lines: tuple[str, ...]) -> None:
