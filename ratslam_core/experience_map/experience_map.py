@@ -22,7 +22,7 @@ from ratslam_core.experience_map.temporal_map import TemporalMap
 from ratslam_core.extensions.evidence import PRIOR, Belief, Evidence
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
-from ratslam_core.extensions.islands import Islands
+from ratslam_core.extensions.islands import Islands, Merge
 from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges
 from ratslam_core.extensions.pose_filter import SNAP, PoseFilter
 from ratslam_core.extensions.torn import open_way_m, soften
@@ -72,7 +72,9 @@ class ExperienceMap(PoseGraph):
         self._edges = OdometryEdges() if self.params.odometry_edges else NoOdometryEdges()
         self.here = -1  # the experience at which the map is being learnt
         self.carried = False  # it knows that it was carried away and has not found itself again
-        self.corrected = 0  # how often evidence proved that it was carried unnoticed, or its wheels slipped
+        self.corrected = (
+            0  # how often evidence proved it elsewhere: carried unnoticed, slipped, or merged where it was not
+        )
         self.agrees = True  # whether the last look agreed with where the robot believed itself to be
         self._offset = IDENTITY  # the robot in the frame of the active experience, at the best look so far
         self._sigma = 0.0  # how far off that may be, m
@@ -239,6 +241,7 @@ class ExperienceMap(PoseGraph):
         self._travel = self._travel.compose(moved)
         self._leg.add(moved, odometry)
         self.evidence.move(odometry)
+        self.islands.move(way_m / self.cell_m, self.evidence.params.unnoticed)
         self._edges.move(moved, odometry)
         self._driven_m += way_m
         self._driving_s += odometry.dt * (odometry.speed != 0)
@@ -262,12 +265,25 @@ class ExperienceMap(PoseGraph):
         return max(best, by_place), look, seen
 
     def log_prior(self, experience: int, pose: Pose2) -> float:
-        """Log odds of a place, before anything speaks for it: how far odometry may have led astray since the robot was there."""
+        """Log odds of a place, before anything speaks for it: how far odometry may have led astray since the robot was there,
+        or how sure it was not carried unnoticed, or merged where it was not.
+        """
         if not self.evidence.in_doubt or self.island_of[experience] != self.islands.current:
             return PRIOR
+        return -min(self._against_drift(experience, pose), self._against_error(experience))
+
+    def _against_drift(self, experience: int, pose: Pose2) -> float:
         drift = self.params.odometry_drift * open_way_m(self.transitions, experience, len(self))
-        sigma = max(math.hypot(self.pose_filter.sigma_m, drift), 1e-9)
-        return -min(0.5 * (self._off(pose) / sigma) ** 2, self.evidence.params.unnoticed)
+        return 0.5 * (self._off(pose) / max(math.hypot(self.pose_filter.sigma_m, drift), 1e-9)) ** 2
+
+    def _against_error(self, experience: int) -> float:
+        merge, unnoticed = self._merge_before(experience), self.evidence.params.unnoticed
+        return unnoticed if merge is None else min(merge.log_odds, unnoticed)
+
+    def _merge_before(self, experience: int) -> Merge | None:
+        """The merge that put the robot where it is on the map that this experience was of before; None if it cannot be undone."""
+        merge = self.islands.merge
+        return merge if merge is not None and experience < merge.first else None
 
     def _off(self, pose: Pose2) -> float:
         return math.hypot(pose.x - self.robot_here.x, pose.y - self.robot_here.y)
@@ -337,14 +353,25 @@ class ExperienceMap(PoseGraph):
             return None
         view, other = int(self.views[belief.experience]), int(self.island_of[belief.experience])
         if other != self.islands.current:
+            own = self.carried and other < self.islands.current
             self.islands.join(other, self.island_of, self.poses, self.robot_here, belief.pose)
-        elif self.log_prior(belief.experience, belief.pose) <= -self.evidence.params.unnoticed:
-            self.corrected += 1
-            off, sigma = self._off(belief.pose), self.step_sigma_m
-            soften(self.transitions, belief.experience, self.evidence.known, off, sigma)
+            self.islands.merge = Merge(self.evidence.known, belief.log_odds) if own else None
+        elif self._against_drift(belief.experience, belief.pose) >= self._against_error(belief.experience):
+            self._correct_error(belief)
         self._end_of_doubt()
         self.carried = False
         return belief.experience, Recognition(view, False, view, by.views.difference_to(view), belief.facing_rad)
+
+    def _correct_error(self, belief: Belief) -> None:
+        """The robot is where odometry cannot have led it from where it believed itself to be."""
+        self.corrected += 1
+        merge = self._merge_before(belief.experience)
+        if merge is not None and self.here >= merge.first:
+            self.islands.undo(self.transitions, self.poses, self.robot_here, belief.pose)
+            merge.log_odds, self._arrival = belief.log_odds, None
+        else:
+            off, sigma = self._off(belief.pose), self.step_sigma_m
+            soften(self.transitions, belief.experience, self.evidence.known, off, sigma)
 
     def _end_of_doubt(self) -> None:
         self.evidence.end(len(self) if np.any(self.island_of != self.islands.current) else 0)

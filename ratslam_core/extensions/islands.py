@@ -4,19 +4,36 @@ While the robot does not know where it is, a single look that is believed would 
 is not, and bend both. On a submap it maps what is there. Where the evidence is strong enough (`evidence.py`), the younger
 submap is moved as a whole, and a closure ties the two. test_evidence.py::{
 test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole,test_the_younger_submap_becomes_part_of_the_older}.
+A merge may be wrong, in a twin of the right place. So it is remembered which experiences came with it and how sure it was,
+until the robot has driven on for long; when evidence proves that it is elsewhere, all that tied them to the older map goes,
+and they are moved there instead. test_evidence.py::test_a_merge_that_proves_wrong_is_undone.
 With `experience_map.islands` off there is one map, as in the papers, and a robot that is lost believes every look.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
+from ratslam_core.pose_graph.transitions import Transitions
 from ratslam_core.types import Pose2
 
+SURER = 0.01  # nats that each cell driven adds to the odds of a merge, as long as nothing contradicts it
 
-@kind("islands/2")
+
+@kind("merge/1")
+@dataclass(slots=True)
+class Merge:
+    """How the robot's submap became part of an older one."""
+
+    first: int  # this experience and all after it came with it, or were made since
+    log_odds: float  # that it was right
+
+
+@kind("islands/3")
 class Islands:
     """The island that the robot is on. Islands have numbers, 0 for the first; `Experiences.island` says which lies where."""
 
@@ -24,11 +41,19 @@ class Islands:
         self.current = 0
         self.begun = 0  # how many were begun after the first
         self.joined = 0  # how many of them were joined with another
+        self.merge: Merge | None = None  # the last one, as long as it may be undone
 
     def begin(self) -> None:
         """The robot was carried away: what it makes from now on lies on a new island."""
         self.begun += 1
-        self.current = self.begun
+        self.current, self.merge = self.begun, None
+
+    def move(self, cells: float, most: float) -> None:
+        """The robot drove on. most: log odds of a merge above which it need no longer be undone."""
+        if self.merge is not None:
+            self.merge.log_odds += SURER * cells
+            if self.merge.log_odds >= most:
+                self.merge = None
 
     def join(
         self, other: int, islands: NDArray[np.int32], poses: NDArray[np.float64], robot: Pose2, claimed: Pose2
@@ -43,6 +68,13 @@ class Islands:
         move(np.flatnonzero(moved), poses, *((robot, claimed) if self.current == younger else (claimed, robot)))
         islands[moved] = self.current = older
         self.joined += 1
+
+    def undo(self, t: Transitions, poses: NDArray[np.float64], robot: Pose2, claimed: Pose2) -> None:
+        """The last merge was wrong: the robot is at `claimed`, not at `robot`, and so is all that came with it."""
+        assert self.merge is not None
+        ends = t.ends[: t.count]
+        t.let_go(np.flatnonzero((ends < self.merge.first).any(axis=1) & (ends >= self.merge.first).any(axis=1)))
+        move(np.arange(self.merge.first, len(poses)), poses, robot, claimed)
 
 
 def move(which: NDArray[np.intp], poses: NDArray[np.float64], robot: Pose2, claimed: Pose2) -> None:

@@ -52,6 +52,9 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     whole("the latest island", map_.islands.begun)
     whole("the island", map_.islands.current, 0, map_.islands.begun)
     whole("joined islands", map_.islands.joined, 0, map_.islands.begun)
+    if map_.islands.merge is not None:
+        whole("the first experience of a merge", map_.islands.merge.first, 0, n)
+        number("the log odds of a merge", map_.islands.merge.log_odds, -LONGEST, LONGEST)
     _evidence(map_.evidence, n, map_.islands.begun)
 
 

@@ -140,6 +140,13 @@ class Transitions:
         self._drop(row)
         return True
 
+    def let_go(self, rows: NDArray[np.intp]) -> None:
+        """These rows tie nothing any more, and are no ways."""
+        for row in rows.tolist():
+            if self.travelled[row]:
+                self._drop(row)
+        self.weight[rows] = self.believed[rows] = 0.0
+
     def _drop(self, row: int) -> None:
         """The row is no longer a way. A row of odometry goes on holding the map together; a look no longer counts."""
         i, j = int(self.ends[row, 0]), int(self.ends[row, 1])

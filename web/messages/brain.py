@@ -163,7 +163,7 @@ class Belief:
 
     off_m: float  # how far off it may be; inf: it does not know
     others: tuple[Hypothesis, ...]  # the likeliest first
-    corrected: int  # how often evidence proved that it had been carried unnoticed
+    corrected: int  # how often evidence proved it elsewhere: carried unnoticed, slipped, or merged where it was not
     apart: int  # experiences on submaps other than the robot's
     joined: int  # submaps that were merged
     spared: int  # sights on familiar ground that became no experience

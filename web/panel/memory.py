@@ -55,7 +55,7 @@ def _belief(snapshot: Snapshot) -> dict[str, Any]:
     rows = [
         ("may be off by", number(belief.off_m, "m", 2) if known else "it does not know"),
         ("may be elsewhere", _elsewhere(belief, snapshot)),
-        ("found out that it was carried unnoticed", often(belief.corrected) if belief.corrected else "never"),
+        ("found out that it was elsewhere", often(belief.corrected) if belief.corrected else "never"),
     ]
     if belief.odds is not None:
         rows.append(("odds of this place", odds_words(belief.odds)))

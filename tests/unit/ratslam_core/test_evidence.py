@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition
 from ratslam_core.extensions import evidence as law
 from ratslam_core.extensions.evidence import AGAINST, FOR, LIKENESS, NATS, PRIOR, Evidence, nats
-from ratslam_core.extensions.islands import Islands, move
+from ratslam_core.extensions.islands import Islands, Merge, move
 from ratslam_core.params import EvidenceParams
+from ratslam_core.pose_graph.transitions import Transitions
 
 from .drives import CELL_M, SHAPE, relative
 
@@ -428,6 +430,59 @@ def test_who_was_carried_unnoticed_gives_way_and_its_odometry_with_it() -> None:
     assert math.hypot(map_.robot.x - robot.pose.x, map_.robot.y - robot.pose.y) < 0.5
     softer = map_.transitions.weight[: map_.transitions.count] < weights[: map_.transitions.count]
     assert softer.any()
+
+
+def merged_wrongly(robot: Robot, sure: float) -> int:
+    """It was carried to x = 1 m, and its submap is merged six metres farther on, with a closure there."""
+    map_, known = robot.map, len(robot.map)
+    robot.carry(Pose2(1.0, 0.0, 0.0))
+    robot.recognises = False
+    robot.drive(40)
+    claimed = Pose2(robot.pose.x + 6.0, 0.0, 0.0)
+    map_.islands.join(0, map_.island_of, map_.poses, map_.robot_here, claimed)
+    map_.islands.merge = Merge(known, sure)
+    map_.tie(len(map_) - 1, known - 10, Pose2(0.0, 0.0, 0.0), 0.1)
+    map_.evidence.end()
+    map_.declare_found()
+    robot.recognises = True
+    return known
+
+
+def test_a_merge_that_proves_wrong_is_undone() -> None:
+    robot = explored()
+    map_ = robot.map
+    known = merged_wrongly(robot, sure=7.0)
+    t = map_.transitions
+    before, weights, ties = map_.poses[:known].copy(), t.weight[: t.count].copy(), across(t, known)
+    assert ties.any()
+    while map_.corrected == 0:
+        robot.drive(1)
+        assert robot.pose.x < 8.0
+    assert math.hypot(map_.robot.x - robot.pose.x, map_.robot.y - robot.pose.y) < 0.5
+    made = np.array([[p.x, p.y] for p in robot.sights.taken[known : known + 3]])
+    assert map_.poses[known : known + 3, :2] == pytest.approx(made, abs=0.5)
+    assert np.array_equal(map_.poses[:known], before)
+    assert t.weight[: len(weights)] == pytest.approx(np.where(ties, 0.0, weights))  # odometry is not to blame
+    assert (t.weight[: t.count] > 0)[across(t, known)].sum() == 1  # the new merge
+
+
+def across(t: Transitions, known: int) -> NDArray[np.bool_]:
+    """Which rows tie what came with the submap to the map of before."""
+    ends = t.ends[: t.count]
+    return (ends.min(axis=1) < known) & (ends.max(axis=1) >= known)
+
+
+def test_who_drives_on_unchallenged_need_not_undo_its_merge() -> None:
+    islands = Islands()
+    islands.merge = Merge(3, 7.0)
+    for metres in (50.0, 49.0):
+        islands.move(metres / CELL_M, 11.0)
+        assert islands.merge is not None
+    islands.move(2.0 / CELL_M, 11.0)
+    assert islands.merge is None
+    islands.merge = Merge(3, 7.0)
+    islands.begin()
+    assert islands.merge is None
 
 
 def test_a_long_loop_closes_and_odometry_is_not_to_blame() -> None:

@@ -82,7 +82,7 @@ def test_the_memory_tells_how_sure_the_robot_is_and_where_else_it_may_be(page: P
     for told in (
         "'may be off by', '0.08 m'",
         "'may be elsewhere', 'nowhere'",
-        "'found out that it was carried unnoticed', 'never'",
+        "'found out that it was elsewhere', 'never'",
         "12\\xa0345",
     ):
         assert told in words
