@@ -3,7 +3,8 @@
 Sweeps alone lag behind a growing map. A larger map is solved less often, so that a step costs the same on average.
 Links that the map contradicts weigh less (`robust`). A disagreement that no map can explain, but a bias of the yaw rate
 can, is learnt as that bias (`calibrate`). test_relaxation_sweep.py::test_sweeps_and_solution_agree,
-test_experience_map_correction.py::test_a_correction_that_was_hard_is_followed_by_a_long_rest. `relaxation.Relaxation` is the
+test_experience_map_correction.py::{test_a_correction_that_was_hard_is_followed_by_a_long_rest,
+test_a_very_large_map_is_swept_in_some_beats_only}. `relaxation.Relaxation` is the
 plain twin: sweeps and nothing else.
 """
 
@@ -18,13 +19,14 @@ from ratslam_core.extensions.graduated_trust import BAR, contradiction, kept
 from ratslam_core.pose_graph import relaxation
 from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS, PoseGraph
 
+MOST_SWEPT = 8000  # experiences a beat, on average: a larger map is swept in every second beat, or third ...
 WORK_A_STEP = 1e5  # of exact corrections, on average over the beats; so much takes about half a millisecond
 TRIAL = 36.0  # sigma squared; all closures are put on trial when the map leaves one of them farther off
 
 
 @kind("exact solver/2")
 class ExactSolver:
-    """Sweeps in every step, and the exact solution in some."""
+    """Sweeps in every step, unless the map is very large, and the exact solution in some."""
 
     def __init__(self) -> None:
         self._sweeps = relaxation.Relaxation()
@@ -33,7 +35,8 @@ class ExactSolver:
 
     def correct(self, graph: PoseGraph) -> None:
         """One step of map correction."""
-        self._sweeps.correct(graph)
+        if graph.steps % (1 + len(graph) // MOST_SWEPT) == 0:
+            self._sweeps.correct(graph)
         p = graph.params
         rest = max(p.solve_every, self._rest_after_solve)
         due = p.solve_every and graph.steps - self._solved_at >= rest

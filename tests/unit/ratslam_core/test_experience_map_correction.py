@@ -102,6 +102,18 @@ def test_a_correction_that_was_hard_is_followed_by_a_long_rest(
     assert len(solved) == pytest.approx(60 / rests, abs=1)
 
 
+@pytest.mark.parametrize(("most", "every"), [(1000, 1), (16, 2), (5, 4)])
+def test_a_very_large_map_is_swept_in_some_beats_only(most: int, every: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """So that a beat costs no more than one with a map of `most` experiences, on average."""
+    robot = loop(ExperienceMapParams(solve_every=0), 1.0, 0.0, 1)
+    assert len(robot.map) == 16
+    monkeypatch.setattr(exact_solver, "MOST_SWEPT", most)
+    swept = []
+    monkeypatch.setattr(relaxation, "sweep", lambda *_: swept.append(robot.map.steps))
+    robot.map.correct(beats=12)
+    assert len(swept) == 12 // every
+
+
 def test_without_calibration_no_bias_is_learnt() -> None:
     robot = loop(ExperienceMapParams(solve_every=5, calibrate=False), 1.0, 0.02, 3)
     assert robot.map.yaw_bias == 0.0
