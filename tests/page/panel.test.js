@@ -142,8 +142,8 @@ test("a tick goes stage by stage from the panel, and over the page", () =>
     assert.deepEqual(titles, [
       "Image and odometry",
       "View match",
-      "Path integration",
       "Injection by the view",
+      "Path integration",
       "Excitation",
       "Inhibition",
       "Normalisation",

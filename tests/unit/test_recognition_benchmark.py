@@ -46,10 +46,10 @@ def test_recall_is_that_at_the_last_place_where_precision_holds() -> None:
     best, levels = np.full(2 * LAP, -1), np.full(2 * LAP, np.inf)
     best[LAP:], levels[LAP:] = np.arange(LAP), np.arange(LAP)
     best[LAP + 50 : LAP + 52] = 0
-    seen = Sights(best, levels, np.ones(2 * LAP, np.bool_))
+    seen = Sights(best, levels)
     found = recalls(frames, seen, revisits(frames))
     assert found == [(50 / LAP, 49.0), (50 / LAP, 50.0), (58 / LAP, 59.0)]
-    shown = Sights(best, levels, levels < 50)
+    shown = Sights(np.where(levels < 50, best, -1), levels)
     assert [recall for recall, _ in recalls(frames, shown, revisits(frames))] == [50 / LAP] * 3
-    few = Sights(best, levels, levels < 19)
+    few = Sights(np.where(levels < 19, best, -1), levels)
     assert recalls(frames, few, revisits(frames)) == [(0.0, 0.0)] * 3

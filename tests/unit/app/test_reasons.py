@@ -66,7 +66,7 @@ def test_who_was_carried_believes_then_joins_and_what_was_said_adds_up_to_the_od
         if odds is None and evidence.belief is not None:
             odds = float(evidence.hypotheses[:, ODDS].max())
     kinds = [event.kind for event in history.log.events if event.kind in ("lost", "believes", "joined")]
-    assert kinds == ["lost", "believes", "joined"]
+    assert kinds[:3] == ["lost", "believes", "joined"]  # what is lost later is another story
     (why,) = reasons_of(history, "believes")
     assert sum(nats for _, nats in why.said) == pytest.approx(odds)
     assert why.since_s == why.said[0][0] < why.said[-1][0] == why.time_s

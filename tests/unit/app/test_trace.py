@@ -101,6 +101,7 @@ def test_the_plan_is_the_office_and_the_map_lies_over_it(trace):
 
 TO_A_GOAL = replace(
     MADE,
+    seed=5,
     protocol=(
         Tag(do="tag", places=["printer"]),
         Explore(do="explore", minutes=4),

@@ -22,7 +22,7 @@ test("all are offered once, and a group that would be empty is not", () => {
 test("each says what it adds and why, and the buttons say which way it goes", () => {
   assert.deepEqual(additionChoice("carry", { beginning: ["carry"], now: [] }), {
     about:
-      "The motion that the attractor swallows is added to the next movement: an attractor pins slow packets to the lattice of its cells.",
+      "A packet goes as far as the wheels say, along the arc driven: what the attractor swallows is added to the next movement, and the spread of its headings divided out: an attractor pins slow packets to the lattice of its cells, and spread headings shorten the way.",
     anew: "Begin again with it",
     now: "From now on without it",
   });
