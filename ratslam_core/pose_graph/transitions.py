@@ -72,7 +72,7 @@ class Transitions:
         self.row_of: dict[tuple[int, int], int] = {}
         self.reuses = False  # whether the next rows take the room of those that are free
         self.free: list[int] = []  # rows of looks that are no way any more
-        self.dropped: list[tuple[int, int]] = []  # every link that was deleted, in order
+        self.dropped: list[tuple[int, int]] = []  # every link that was deleted because it failed, in order
 
     def add(self, i: int, j: int, *, travelled: bool, behaviour: int = 0) -> int:
         """A new row, still without a move; returns its number."""
@@ -141,13 +141,17 @@ class Transitions:
         return True
 
     def let_go(self, rows: NDArray[np.intp]) -> None:
-        """These rows tie nothing any more, and are no ways."""
+        """These rows tie nothing any more, and are no ways. They have not failed, so they are not among the `dropped`."""
         for row in rows.tolist():
             if self.travelled[row]:
-                self._drop(row)
+                self._close(row)
         self.weight[rows] = self.believed[rows] = 0.0
 
     def _drop(self, row: int) -> None:
+        self.dropped.append((int(self.ends[row, 0]), int(self.ends[row, 1])))
+        self._close(row)
+
+    def _close(self, row: int) -> None:
         """The row is no longer a way. A row of odometry goes on holding the map together; a look no longer counts."""
         i, j = int(self.ends[row, 0]), int(self.ends[row, 1])
         del self.row_of[i, j]
@@ -155,7 +159,6 @@ class Transitions:
         if not self.chain[row]:
             self.weight[row] = self.believed[row] = 0.0
             self.free.append(row)
-        self.dropped.append((i, j))
 
     def link(self, row: int) -> Link:
         """One row, as plain values."""

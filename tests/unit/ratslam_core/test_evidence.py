@@ -441,7 +441,10 @@ def merged_wrongly(robot: Robot, sure: float) -> int:
     claimed = Pose2(robot.pose.x + 6.0, 0.0, 0.0)
     map_.islands.join(0, map_.island_of, map_.poses, map_.robot_here, claimed)
     map_.islands.merge = Merge(known, sure)
-    map_.tie(len(map_) - 1, known - 10, Pose2(0.0, 0.0, 0.0), 0.1)
+    t = map_.transitions
+    row = t.add(len(map_) - 1, known - 10, travelled=True)
+    t.measure(row, Pose2(0.0, 0.0, 0.0), 0.5, t.move[row], 0.0)
+    t.take_time(row, 1.0, 0.0)
     map_.evidence.end()
     map_.declare_found()
     robot.recognises = True
@@ -454,7 +457,7 @@ def test_a_merge_that_proves_wrong_is_undone() -> None:
     known = merged_wrongly(robot, sure=7.0)
     t = map_.transitions
     before, weights, ties = map_.poses[:known].copy(), t.weight[: t.count].copy(), across(t, known)
-    assert ties.any()
+    assert t.travelled[: t.count][ties].any()
     while map_.corrected == 0:
         robot.drive(1)
         assert robot.pose.x < 8.0
@@ -464,6 +467,7 @@ def test_a_merge_that_proves_wrong_is_undone() -> None:
     assert np.array_equal(map_.poses[:known], before)
     assert t.weight[: len(weights)] == pytest.approx(np.where(ties, 0.0, weights))  # odometry is not to blame
     assert (t.weight[: t.count] > 0)[across(t, known)].sum() == 1  # the new merge
+    assert map_.dropped_links == ()  # nothing failed, and nobody is told so
 
 
 def across(t: Transitions, known: int) -> NDArray[np.bool_]:
