@@ -140,9 +140,7 @@ class ExperienceMap(PoseGraph):
     def tried(self, i: int, j: int, reached: bool) -> bool:
         """Count one trial of the links between two experiences, in both directions. True when a link was deleted for it.
 
-        [ours] The paper counts every departure under a link's behaviour as a trial (`link_trials_are`). Where several
-        links leave a place, however, the behaviour does not say which of them to expect. A robot on a route knows which
-        it tries. test_link_confidence.py::test_exploring_deletes_nothing_of_what_was_not_tried.
+        Beside the departures that the paper counts: a robot on a route knows which links it tries.
         """
         rows = [self.transitions.row_of.get(ends, -1) for ends in ((i, j), (j, i))]
         deleted = [self._judge(row, reached) for row in rows if row >= 0]
@@ -472,15 +470,9 @@ class ExperienceMap(PoseGraph):
         return row
 
     def _count(self, row: int, behaviour: int) -> None:
-        """Count a trial of the link just driven; by "departures", also of the others from there. ACRA 2006 3.4, eq. 9."""
-        t, failed = self.transitions, []
-        if self.params.link_trials_are == "departures":
-            departures = t.departures(int(t.ends[row, 0]), behaviour)
-            failed = [int(other) for other in departures if other != row]
-        for other in failed:
-            self._judge(other, False)
-        if self.params.link_trials_are == "tried" or t.behaviour[row] == behaviour:
-            self._judge(row, True)
+        """Every departure under a link's behaviour is a trial of it, which succeeds for the link driven. ACRA 2006 3.4, eq. 9."""
+        for other in self.transitions.departures(int(self.transitions.ends[row, 0]), behaviour).tolist():
+            self._judge(other, other == row)
 
     def _judge(self, row: int, reached: bool) -> bool:
         deleted = self.transitions.judge(row, reached, self.params)

@@ -104,12 +104,6 @@ ADDITIONS = (
         {"experience_map.pace_floor": False},
     ),
     Addition(
-        "trials of links",
-        "a link is on trial when it is driven or a route takes it, and the newest trials count most",
-        "where several links leave a place, the behaviour does not say which of them to expect",
-        {"experience_map.link_trials_are": "departures", "experience_map.link_recency": 0.0},
-    ),
-    Addition(
         "familiar ground",
         "where enough of the sights are recognised, no more views, experiences and links are learnt",
         "otherwise the memory grows for as long as the robot drives, in a place that never changes",

@@ -8,7 +8,7 @@ from disk import kind
 from ratslam_core.params.parameter import check_ranges, param
 
 
-@kind("parameters of experience map/4")
+@kind("parameters of experience map/5")
 @dataclass(frozen=True, slots=True)
 class ExperienceMapParams:
     """Experiences, their links and the correction of the map (B 4, D 3)."""
@@ -101,19 +101,6 @@ class ExperienceMapParams:
     )
     link_trials: int = param(
         5, symbol="n_min", low=1, high=1000, meaning="least trials before a link is deleted", source="ours"
-    )
-    link_recency: float = param(
-        0.3,
-        low=0.0,
-        high=1.0,
-        meaning="least weight of the newest trial of a link; 0 = all count the same",
-        source="D 3.4, as next step",
-    )
-    link_trials_are: str = param(
-        "tried",
-        choices=("tried", "departures"),
-        meaning="a link is on trial when it is driven or a route takes it, or at every departure under its behaviour",
-        source="ours; D eq. 9",
     )
     robust: bool = param(
         True, meaning="looks and odometry that the map contradicts weigh less in the exact correction", source="ours"

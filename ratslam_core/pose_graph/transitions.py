@@ -128,13 +128,9 @@ class Transitions:
         return np.flatnonzero(own)
 
     def judge(self, row: int, reached: bool, p: ExperienceMapParams) -> bool:
-        """Count one more trial of a link; True when it has failed so often that it was deleted. ACRA 2006 eq. 9.
-
-        With `link_recency` 0, c_ij = n_ij / n. Otherwise the newest trial has at least this weight, which the paper
-        names as the next step (3.4).
-        """
+        """Count one more trial of a link: c_ij = n_ij / n, ACRA 2006 eq. 9. True when it failed so often that it was deleted."""
         n = self.trials[row] = self.trials[row] + 1
-        self.confidence[row] += max(p.link_recency, 1 / n) * (reached - self.confidence[row])
+        self.confidence[row] += (reached - self.confidence[row]) / n
         if n < p.link_trials or self.confidence[row] >= p.link_confidence:
             return False
         self._drop(row)

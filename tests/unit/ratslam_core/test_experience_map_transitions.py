@@ -246,7 +246,7 @@ def test_no_link_is_quicker_than_the_robot() -> None:
 
 
 def test_what_is_deleted_elsewhere_does_not_keep_a_better_look_from_measuring() -> None:
-    robot = Robot(replace(EXACT, link_recency=0.3, anchor_sigma=0.05, odometry_edges=False))
+    robot = Robot(replace(EXACT, anchor_sigma=0.05, odometry_edges=False))
     robot.see(0, new=True)
     here = robot.packet()
     for view in (1, 2, 1):

@@ -21,48 +21,21 @@ outcomes = st.lists(st.booleans(), max_size=60)
 
 
 @settings(max_examples=200)
-@given(outcomes)
-def test_confidence_is_the_share_of_trials_that_arrived(tried: list[bool]) -> None:
-    """D9 with plain counts: c_ij = n_ij / n. The passage by which it was learnt is the first trial."""
-    robot = two_places(replace(EXACT, link_confidence=0.0, link_recency=0.0))
+@given(outcomes, st.integers(1, 8), st.floats(0.0, 0.9))
+def test_a_link_is_as_sure_as_its_trials_and_goes_below_the_bar(tried: list[bool], least: int, bar: float) -> None:
+    """D9: c_ij = n_ij / n. The passage by which it was learnt is the first trial."""
+    robot = two_places(replace(EXACT, link_confidence=bar, link_trials=least))
+    arrived, n = 1, 1
     for reached in tried:
-        assert not robot.map.tried(0, 1, reached)
-    link = robot.map.link(0, 1)
-    assert link.trials == 1 + len(tried)
-    assert link.confidence == pytest.approx((1 + sum(tried)) / (1 + len(tried)))
-
-
-@settings(max_examples=200)
-@given(outcomes, st.floats(0.01, 1.0))
-def test_with_recency_old_trials_fade(tried: list[bool], recency: float) -> None:
-    """The newest trial has the weight `recency`, and those before it share the rest; few trials all count the same."""
-    robot = two_places(replace(EXACT, link_confidence=0.0, link_recency=recency))
-    expected, n = 1.0, 1
-    for reached in tried:
-        n += 1
-        newest = max(recency, 1 / n)
-        expected = (1 - newest) * expected + newest * reached
-        robot.map.tried(0, 1, reached)
-    assert robot.map.link(0, 1).confidence == pytest.approx(expected)
-    assert 0.0 <= robot.map.link(0, 1).confidence <= 1.0
-
-
-@settings(max_examples=200)
-@given(outcomes, st.sampled_from([0.0, 0.3]), st.integers(1, 8), st.floats(0.05, 0.9))
-def test_a_link_goes_when_its_confidence_falls_below_the_bar(
-    tried: list[bool], recency: float, least: int, bar: float
-) -> None:
-    robot = two_places(replace(EXACT, link_confidence=bar, link_trials=least, link_recency=recency))
-    confidence, n = 1.0, 1
-    for reached in tried:
-        n += 1
-        confidence += max(recency, 1 / n) * (reached - confidence)
-        gone = n >= least and confidence < bar
+        arrived, n = arrived + reached, n + 1
+        gone = n >= least and arrived < bar * n
         assert robot.map.tried(0, 1, reached) is gone
         if gone:
             assert (0, 1) in robot.map.dropped_links
             return
         assert robot.map.dropped_links == ()
+        link = robot.map.link(0, 1)
+        assert (link.trials, link.confidence) == (n, pytest.approx(arrived / n))
 
 
 def fail(robot: Robot, i: int, j: int) -> None:
@@ -74,22 +47,15 @@ def fail(robot: Robot, i: int, j: int) -> None:
 
 
 def test_a_trial_counts_for_both_ways_round() -> None:
-    robot = two_places(replace(EXACT, link_recency=0.3))
+    robot = two_places(EXACT)
     fail(robot, 0, 1)
     assert sorted(robot.map.dropped_links) == [(0, 1), (1, 0)]
     assert robot.map.link_count == len(robot.map.links) == len(robot.map.link_times) == 0
     assert not robot.map.tried(0, 1, True)  # nothing there to be judged
 
 
-def test_without_a_bar_nothing_is_deleted() -> None:
-    robot = two_places(replace(EXACT, link_confidence=0.0, link_recency=0.0))
-    for _ in range(200):
-        assert not robot.map.tried(0, 1, False)
-    assert robot.map.link(0, 1).confidence == pytest.approx(1 / 201)
-
-
 def test_a_deleted_link_comes_back_when_driven_again() -> None:
-    robot = two_places(replace(EXACT, link_recency=0.3))
+    robot = two_places(EXACT)
     robot.see(0)
     fail(robot, 0, 1)
     drive_there_and_back(robot, behaviour=4)
@@ -101,7 +67,7 @@ def test_a_deleted_link_comes_back_when_driven_again() -> None:
 
 
 def test_a_deleted_look_leaves_its_row_to_the_next() -> None:
-    robot = two_places(replace(EXACT, link_recency=0.3))
+    robot = two_places(EXACT)
     robot.see(0)
     t, rows = robot.map.transitions, robot.map.transitions.count
     t.reuses = True
@@ -118,7 +84,7 @@ def test_a_deleted_look_leaves_its_row_to_the_next() -> None:
 
 def test_what_was_deleted_is_measured_no_more() -> None:
     """It may be the link by which the robot has just arrived, and which a better look would measure again."""
-    robot = two_places(replace(EXACT, link_recency=0.3, anchor_sigma=0.05))
+    robot = two_places(replace(EXACT, anchor_sigma=0.05))
     robot.go(1.0, 0.0, 1, packet=robot.packet(Pose2(1.0, 0.0, 0.0)), difference=5.0)
     fail(robot, 0, 1)
     t = robot.map.transitions
@@ -132,7 +98,7 @@ def test_what_was_deleted_is_measured_no_more() -> None:
 @given(st.lists(st.tuples(st.integers(0, 11), st.integers(0, 11)), max_size=20))
 def test_whatever_is_deleted_the_map_stays_in_one_piece(doubted: list[tuple[int, int]]) -> None:
     """Odometry between successive experiences still holds them together; only looks at known places lose their weight."""
-    params = ExperienceMapParams(link_recency=0.5, solve_every=1)
+    params = ExperienceMapParams(solve_every=1)
     robot = Robot(params)
     robot.see(0, new=True)
     for view in range(1, 12):
@@ -161,9 +127,9 @@ def test_whatever_is_deleted_the_map_stays_in_one_piece(doubted: list[tuple[int,
 # ---------------------------------------------------------------- what is a trial
 
 
-def crossroads(trials_are: str) -> Robot:
-    """One place with eight links from it, each driven in turn, five times, under one behaviour."""
-    robot = Robot(replace(EXACT, link_trials_are=trials_are))
+def test_no_way_of_a_crossroads_is_sure() -> None:
+    """D9 to the letter: each of eight links that are driven in turn by one behaviour has a confidence of 1/8, and is deleted."""
+    robot = Robot(EXACT)
     robot.see(0, new=True)
     for lap in range(5):
         for way in range(8):
@@ -171,27 +137,14 @@ def crossroads(trials_are: str) -> Robot:
             robot.go(1.5, 0.0, 1 + way, new=lap == 0)
             robot.pose = HOME
             robot.see(0)
-    return robot
-
-
-def test_exploring_deletes_nothing_of_what_was_not_tried() -> None:
-    robot = crossroads("tried")
-    assert robot.map.dropped_links == ()
-    assert robot.map.confidences.tolist() == [1.0] * 16
-
-
-def test_counted_by_departures_no_way_of_a_crossroads_is_sure() -> None:
-    """D9 to the letter: each of eight links that are driven in turn has a confidence of 1/8, and is deleted."""
-    robot = crossroads("departures")
     gone = robot.map.dropped_links
     assert len(gone) > 8
     assert {i for i, _ in gone} == {0}  # the ways back are the only ones from where they begin
-    for way in range(1, 9):
-        assert robot.map.link(way, 0).confidence == 1.0
+    assert all(robot.map.link(way, 0).confidence == 1.0 for way in range(1, 9))
 
 
 def test_departures_under_another_behaviour_are_no_trials() -> None:
-    robot = two_places(replace(EXACT, link_trials_are="departures"))
+    robot = two_places(EXACT)
     robot.behaviour = 2
     robot.go(1.5, 0.0, 2, new=True)
     assert robot.map.link(0, 1).trials == 1
