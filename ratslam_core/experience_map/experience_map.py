@@ -35,7 +35,6 @@ from ratslam_core.pose_graph.transitions import require_behaviour
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite, wrap_angle
 
 CARRIED = 400.0  # cells: how far off the robot may be after it was carried
-REACH_SIGMA = 5.0  # a look may move the robot by so many times its uncertainty
 BLIND = 4.0  # cells: when there is nothing to see, only experiences this near in the map can become active,
 BLIND_LEVELS = 10.0  # and such a look is as uncertain as one that differs by so much
 
@@ -311,8 +310,8 @@ class ExperienceMap(PoseGraph):
 
     @property
     def _reach_m(self) -> float:
-        """A look may move the robot by so much."""
-        return max(SNAP * self.cell_m, REACH_SIGMA * self.pose_filter.sigma_m)
+        """A look may move the robot by so much: that odometry has led it farther astray is less likely than that it was carried."""
+        return max(SNAP * self.cell_m, math.sqrt(2 * self.evidence.params.unnoticed) * self.pose_filter.sigma_m)
 
     def _turns(self, experience: int, packet: Packet, seen: Recognition) -> bool:
         """[ours] Whether a look would turn the robot farther than its heading can be off, wherever it puts it.
