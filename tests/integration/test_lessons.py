@@ -17,7 +17,7 @@ from sim2d import load_world
 from tests.unit.app.engines import an_engine, tell
 from tests.unit.test_teaching import comes_out_as_it_stands_there
 
-MOST_TICKS = 2600  # of a scene: what a quiet machine does in less than two seconds
+MOST_TICKS = 6000  # of a scene: what a quiet machine does in about three seconds
 LESSONS = list(catalogue())
 
 
