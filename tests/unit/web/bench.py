@@ -95,9 +95,10 @@ class Bench:
         at = np.asarray(self.node(name)[places])
         return at[(at > FAR_BELOW).all(tuple(range(1, at.ndim)))]
 
-    def dots(self, places: str = "points") -> np.ndarray:
-        """Of the map's experiences, which lie in several nodes: their places, or their colours."""
-        names = sorted((n for n in self.nodes() if n.startswith("/map/nodes_")), key=lambda n: int(n.split("_")[-1]))
+    def dots(self, places: str = "points", plate: str = "map") -> np.ndarray:
+        """Of a map's experiences, which lie in several nodes: their places, or their colours."""
+        names = [name for name in self.nodes() if name.startswith(f"/{plate}/nodes_")]
+        names.sort(key=lambda name: int(name.split("_")[-1]))
         at = np.concatenate([np.asarray(self.node(name)["points"]) for name in names])
         there = (at > FAR_BELOW).all(1)
         return np.concatenate([np.asarray(self.node(name)[places]) for name in names])[there]

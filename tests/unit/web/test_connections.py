@@ -5,17 +5,22 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import errno
+import gc
 import logging
 import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from itertools import product
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import psutil
 import pytest
+import uvicorn
+from uvicorn.server import ServerState
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect as connect_now
@@ -25,6 +30,7 @@ from tests.patience import PATIENCE_S, until
 from tests.unit.web.doubles import StubEngine, StubViewer, StubViewers, viser_double
 from tests.unit.web.test_viser_server import PROTOCOL, camera
 from web.http import connections, proxy, server
+from web.http.handshake import WebSocketProtocol
 from web.http.proxy import ViewersLike
 from web.http.server import Dashboard, ForClass
 from web.latest import Latest
@@ -32,7 +38,7 @@ from web.viewer import Viewers
 
 pytestmark = pytest.mark.slow
 
-ROUNDS, AT_ONCE = 50, 10
+ROUNDS, AT_ONCE = 10, 10
 
 
 @contextlib.contextmanager
@@ -51,19 +57,36 @@ def served(stages: ViewersLike) -> Iterator[Dashboard]:
         thread.join()
 
 
-def left_behind(made: Dashboard) -> dict[str, int]:
-    """What the process holds for connections: threads except asyncio's own pool, tasks of the server's loop, open files."""
-    assert made._server is not None
-    loop = made._server._door._task.get_loop()  # type: ignore[union-attr]
+def ours(made: Dashboard) -> tuple[str, str]:
+    """The page's address as an Origin, and as that of websockets."""
+    origin = made.url.removesuffix("/")
+    return origin, origin.replace("http", "ws")
+
+
+def doors(made: Dashboard) -> tuple[int, int]:
+    """The ports of the main door and of that of the class."""
+    assert made.classroom is not None
+    return int(ours(made)[0].rpartition(":")[2]), made.classroom.port
+
+
+# ---------------------------------------------------------------- those that come and go
+
+
+def left_behind() -> dict[str, int]:
+    """What the process holds for connections: threads except asyncio's own pool, tasks, open files."""
+    process = psutil.Process()
     return {
         "threads": sum(not thread.name.startswith("asyncio_") for thread in threading.enumerate()),
-        "tasks": len(asyncio.all_tasks(loop)),
-        "files": psutil.Process().num_fds() if hasattr(psutil.Process, "num_fds") else psutil.Process().num_handles(),
+        "tasks": sum(isinstance(one, asyncio.Task) and not one.done() for one in gc.get_objects()),
+        "files": process.num_fds() if hasattr(process, "num_fds") else process.num_handles(),
     }
 
 
-def ours(made: Dashboard) -> str:
-    return made.url.removesuffix("/")
+def settled() -> dict[str, int]:
+    """What is held once start-up work is over, such as the tasks of a server that has just begun."""
+    seen: list[dict[str, int]] = []
+    until(lambda: seen.append(left_behind()) or (len(seen) > 10 and all(one == seen[-1] for one in seen[-10:])))
+    return seen[-1]
 
 
 async def enter(url: str, origin: str, **options: Any) -> ClientConnection:
@@ -78,12 +101,12 @@ async def enter(url: str, origin: str, **options: Any) -> ClientConnection:
 
 async def visit(made: Dashboard, number: int) -> None:
     """A page and its viewer; every other one is cut off instead of closing its connection."""
-    where, page = ours(made), f"page-{number:020d}"
-    stream = await enter(f"{where.replace('http', 'ws')}/api/stream?page={page}", where)
+    (origin, where), page = ours(made), f"page-{number:020d}"
+    stream = await enter(f"{where}/api/stream?page={page}", origin)
     await stream.send('{"type": "theme", "name": "light"}')
     await stream.send('{"type": "view", "name": "map"}')
     await stream.recv()
-    stage = await enter(f"{where.replace('http', 'ws')}/viser/ws/{page}", where, subprotocols=[PROTOCOL])
+    stage = await enter(f"{where}/viser/ws/{page}", origin, subprotocols=[PROTOCOL])
     await stage.send(b"camera")
     assert await stage.recv() == b"camera"
     for talk in (stream, stage):
@@ -99,107 +122,97 @@ async def visits(made: Dashboard, rounds: int) -> None:
 
 
 @pytest.mark.long
-def test_a_thousand_connections_leave_no_thread_task_or_file_behind() -> None:
+def test_hundreds_of_connections_leave_no_thread_task_or_file_behind() -> None:
     stage = StubViewer()
     with viser_double(stage), served(StubViewers(stage)) as made:  # type: ignore[arg-type]
-        before = settled(lambda: left_behind(made))
+        before = settled()
         asyncio.run(visits(made, 1))  # the first ones make what is made once
         asyncio.run(visits(made, ROUNDS))
-        until(lambda: all(now <= before[name] for name, now in left_behind(made).items()), (before, left_behind(made)))
+        until(lambda: all(now <= before[name] for name, now in left_behind().items()), (before, left_behind()))
 
 
-def settled(look: Callable[[], dict[str, int]]) -> dict[str, int]:
-    """What is seen once start-up work is over, such as the tasks of a server that has just begun."""
-    seen: list[dict[str, int]] = []
+def test_the_end_of_the_program_takes_a_farewell_that_was_there_first() -> None:
+    async def accepting(_scope: Any, receive: Any, send: Any) -> None:
+        await receive()
+        await send({"type": "websocket.accept"})
+        while (await receive())["type"] != "websocket.disconnect":
+            pass
 
-    def still() -> bool:
-        seen.append(look())
-        return len(seen) > 20 and all(one == seen[-1] for one in seen[-20:])
+    async def ended_while_the_browser_says_farewell() -> None:
+        config, state = uvicorn.Config(accepting, log_config=None), ServerState()
+        config.load()
+        protocol = WebSocketProtocol(config, state, {})
+        protocol.connection_made(line)
+        protocol.data_received(
+            b"GET / HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+            b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+        )
+        while not protocol.handshake_complete:
+            await asyncio.sleep(0)
+        going_away = (1001).to_bytes(2, "big")
+        protocol.data_received(bytes([0x88, 0x82]) + bytes(4) + going_away)  # masked with nothing
+        protocol.shutdown()
+        await asyncio.gather(*state.tasks)
 
-    until(still)
-    return seen[-1]
+    line = Mock(asyncio.Transport, **{"is_closing.side_effect": lambda: line.close.called})  # it sends nothing yet
+    line.get_extra_info.side_effect = lambda _name, default=None: default
+    asyncio.run(ended_while_the_browser_says_farewell())
+    assert line.write.call_args_list[0].args[0].startswith(b"HTTP/1.1 101")
+    assert line.close.called
+
+
+# ---------------------------------------------------------------- those that read nothing
 
 
 def test_a_browser_that_takes_nothing_of_the_stage_keeps_nobody_waiting(monkeypatch) -> None:
     """Far more is drawn than fits into the buffers between the viewer and the browser that stalls."""
     monkeypatch.setattr(proxy, "SEND_TIMEOUT_S", 1e6)  # so that it is never disconnected
     stages = Viewers(Latest(), StubEngine().submit)
-    with served(stages) as made, contextlib.closing(narrow_line(made)) as line:
-        stage, where = stages.of("dark"), ours(made)
-        url = f"{where.replace('http', 'ws')}/viser/ws/"
-        options: dict[str, Any] = {"origin": where, "subprotocols": [PROTOCOL], "max_size": None}
-        stalled = connect_now(url + "s" * 22, sock=line, max_queue=1, close_timeout=0, **options)
-        with stalled, connect_now(url + "l" * 22, **options) as live:
+    with served(stages) as made, socket.socket() as line:
+        line.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 65536)
+        line.connect(("127.0.0.1", doors(made)[0]))
+        stage, (origin, where) = stages.of("dark"), ours(made)
+        options: dict[str, Any] = {"origin": origin, "subprotocols": [PROTOCOL], "max_size": None}
+        stalled = connect_now(f"{where}/viser/ws/{'s' * 22}", sock=line, max_queue=1, close_timeout=0, **options)
+        with stalled, connect_now(f"{where}/viser/ws/{'l' * 22}", **options) as live:
             for browser in (stalled, live):
                 browser.send(camera())
             until(lambda: len(stage.server.get_clients()) == 2)
-            noise = np.random.default_rng(7)
+            noise = np.random.default_rng(7).random((90_000, 3))
             for number in range(30):
-                stage.server.scene.add_point_cloud(
-                    f"/noise{number}", noise.random((90_000, 3)), (0, 0, 0), precision="float32"
-                )
+                stage.server.scene.add_point_cloud(f"/noise{number}", noise, (0, 0, 0), precision="float32")
                 while len(live.recv(timeout=PATIENCE_S)) < 1_000_000:
                     pass
             assert len(stage.server.get_clients()) == 2
 
 
-def narrow_line(made: Dashboard) -> socket.socket:
-    line = socket.socket()
-    line.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 65536)
-    line.connect(("127.0.0.1", made._port))
-    return line
-
-
 # ---------------------------------------------------------------- those that say nothing, or not enough
 
+GET = "GET / HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\n"
+POST = GET.replace("GET /", "POST /api/{1}") + "Content-Type: application/json\r\nContent-Length: 99\r\n"
 DOORS = """
 import resource, threading
 resource.setrlimit(resource.RLIMIT_NOFILE, (160, 160))
-from tests.unit.web.test_connections import served
+from tests.unit.web.test_connections import doors, served
 from tests.unit.web.doubles import StubViewers
 with served(StubViewers()) as made:
-    print(made._port, made.classroom.port, flush=True)
+    print(*doors(made), flush=True)
     input()
     open("/dev/null")  # there is still a descriptor for whoever needs one
 """
 
 
-def asked(port: int, path: str = "/", origin: str = "127.0.0.1") -> bytes:
-    """The first line of the answer to a request that is sent at once."""
-    with socket.create_connection(("127.0.0.1", port), PATIENCE_S, (origin, 0)) as line:
-        line.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
-        return line.recv(12)
-
-
-def test_more_connections_than_there_are_descriptors_hold_up_neither_door() -> None:
-    """The door of the class, and the main one; with nothing, a part of the headers, and a part of a body."""
-    asks = "POST /api/vote HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\nOrigin: http://127.0.0.1:{0}\r\nContent-Type: application/json\r\n"
-    parts = ("", "GET / HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\nX: ", asks + "Content-Length: 99\r\n\r\n{{")
-    program = subprocess.Popen(
-        [sys.executable, "-c", DOORS], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    try:
-        assert program.stdout is not None
-        main, room = map(int, program.stdout.readline().split())
-        for port in (room, main):
-            for part in parts:
-                with contextlib.ExitStack() as held:
-                    for _ in range(200):
-                        line = held.enter_context(socket.create_connection(("127.0.0.1", port), PATIENCE_S))
-                        with contextlib.suppress(OSError):  # it had to go already
-                            line.sendall(part.format(port).encode())
-                    assert asked(main) == asked(room) == b"HTTP/1.1 200", (port, part)
-        _, said = program.communicate("\n", timeout=PATIENCE_S)
-        assert (program.returncode, said) == (0, "")
-    finally:
-        program.kill()
-        program.communicate()
-
-
 def open_to(port: int, origin: str = "127.0.0.1", said: str = "") -> socket.socket:
     line = socket.create_connection(("127.0.0.1", port), PATIENCE_S, (origin, 0))
-    line.sendall(said.format(port).encode())
+    with contextlib.suppress(OSError):  # it had to go already
+        line.sendall(said.format(port, "commands").encode())
     return line
+
+
+def asked(port: int, origin: str = "127.0.0.1") -> bytes:
+    """The first line of the answer to a request that is sent at once."""
+    with open_to(port, origin, f"{GET}\r\n") as line:
+        return line.recv(12)
 
 
 def ended(line: socket.socket) -> bool:
@@ -214,22 +227,38 @@ def ended(line: socket.socket) -> bool:
     return True
 
 
+def test_more_connections_than_there_are_descriptors_hold_up_neither_door() -> None:
+    """The door of the class, and the main one; with nothing, a part of the headers, and a part of a body."""
+    vote = f"{POST}Origin: http://127.0.0.1:{{0}}\r\n\r\n{{{{".replace("{1}", "vote")
+    program = subprocess.Popen(
+        [sys.executable, "-c", DOORS], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        assert program.stdout is not None
+        main, room = map(int, program.stdout.readline().split())
+        for port, part in product((room, main), ("", f"{GET}X: ", vote)):
+            with contextlib.ExitStack() as held:
+                for _ in range(200):
+                    held.enter_context(open_to(port, said=part))
+                assert asked(main) == asked(room) == b"HTTP/1.1 200", (port, part)
+        _, said = program.communicate("\n", timeout=PATIENCE_S)
+        assert (program.returncode, said) == (0, "")
+    finally:
+        program.kill()
+        program.communicate()
+
+
 def test_who_has_many_connections_takes_no_place_from_another_address(monkeypatch) -> None:
     monkeypatch.setattr(server, "CLASS_SHARE", 16 / 1024)
     with served(StubViewers()) as made, contextlib.ExitStack() as held:
-        assert made.classroom is not None
-        port = made.classroom.port
+        _, port = doors(made)
         other = held.enter_context(open_to(port, "127.0.0.2"))
         crowd = [held.enter_context(open_to(port)) for _ in range(100)]
         assert asked(port) == b"HTTP/1.1 200"  # when the crowd is in
         assert all(ended(line) for line in crowd[:-8])  # those of its own half, who came first
         other.settimeout(0.1)
         assert not ended(other)
-        with held.enter_context(open_to(port, "127.0.0.2", "GET / HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\n\r\n")) as theirs:
-            assert theirs.recv(12) == b"HTTP/1.1 200"
-
-
-HEAD = "POST /api/commands HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\nContent-Type: application/json\r\nContent-Length: 99\r\n"
+        assert asked(port, "127.0.0.2") == b"HTTP/1.1 200"
 
 
 def test_headers_bodies_and_goodbyes_have_a_time_limit_and_a_page_that_is_open_has_none(monkeypatch) -> None:
@@ -237,12 +266,12 @@ def test_headers_bodies_and_goodbyes_have_a_time_limit_and_a_page_that_is_open_h
     monkeypatch.setattr(connections, "STALLED_S", 0.5)
     monkeypatch.setattr(server, "LOOK_EVERY", 1)
     with served(StubViewers()) as made, contextlib.ExitStack() as held:
-        url = f"{ours(made).replace('http', 'ws')}/api/stream?page={'p' * 22}"
-        page = held.enter_context(connect_now(url, origin=ours(made)))  # type: ignore[arg-type]
-        silent = held.enter_context(open_to(made._port))
-        slow = held.enter_context(open_to(made._port, said="GET / HTTP/1.1\r\nX: "))
-        stalled = held.enter_context(open_to(made._port, said=HEAD + "\r\n{{"))
-        again = held.enter_context(open_to(made._port, said="GET / HTTP/1.1\r\nHost: 127.0.0.1:{0}\r\n\r\nGET"))
+        (origin, where), (port, _) = ours(made), doors(made)
+        page = held.enter_context(connect_now(f"{where}/api/stream?page={'p' * 22}", origin=origin))  # type: ignore[arg-type]
+        silent, slow, stalled, again = (
+            held.enter_context(open_to(port, said=said))
+            for said in ("", "GET / HTTP/1.1\r\nX: ", f"{POST}\r\n{{{{", f"{GET}\r\nGET")
+        )
 
         def drip() -> None:
             with contextlib.suppress(OSError):
@@ -275,9 +304,8 @@ def test_a_connection_that_cannot_be_accepted_is_told_of_once_and_tried_again(mo
             return await accept(listener)
 
         monkeypatch.setattr(loop, "sock_accept", refused)
-        listener = connections_socket()
-        made: Any = asyncio.Protocol
-        door = connections.Door(listener, connections.Places(9, 9), made, set())
+        listener, made = server.listening_socket("127.0.0.1", 0), asyncio.Protocol
+        door = connections.Door(listener, connections.Places(9, 9), made, set())  # type: ignore[arg-type]
         reader, writer = await asyncio.open_connection(*listener.getsockname())
         writer.close()
         left = await reader.read()
@@ -288,7 +316,3 @@ def test_a_connection_that_cannot_be_accepted_is_told_of_once_and_tried_again(mo
         assert asyncio.run(full()) == b""
     (said,) = caplog.messages
     assert "Too many open files" in said
-
-
-def connections_socket() -> socket.socket:
-    return server.listening_socket("127.0.0.1", 0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+from typing import Any
 
 import pytest
 
@@ -12,21 +13,27 @@ from web.http import listening
 from web.http.listening import CannotListen, class_socket, listening_socket
 
 
-@pytest.mark.parametrize(
-    "host", ["0.0.0.0", "::", "", "0", "*", "192.168.1.1", "example.org", "127.0.0.2", "::ffff:0.0.0.0"]
-)
-def test_only_loopback(host):
-    with pytest.raises(CannotListen, match="localhost or ::1 only"):
-        listening_socket(host, 0)
+def test_where_one_cannot_listen_is_a_sentence(subtests) -> None:
+    def refused(open_socket: Any, host: str, port: int, words: str) -> None:
+        with subtests.test(door=open_socket.__name__, host=host, port=port), pytest.raises(CannotListen, match=words):
+            open_socket(host, port)
+
+    for host in ("0.0.0.0", "::", "", "0", "*", "192.168.1.1", "example.org", "127.0.0.2", "::ffff:0.0.0.0"):
+        refused(listening_socket, host, 0, "localhost or ::1 only")
+    for port in (-1, 65536, 10**9):
+        refused(listening_socket, "127.0.0.1", port, "does not exist")
+        refused(class_socket, "127.0.0.1", port, "does not exist")
+    for host in ("0.0.0.0", "::"):
+        refused(class_socket, host, 0, "every address")
+    for host in ("", "0", "*", "localhost", "school.example", "::ffff:0.0.0.0", "fe80::1%eth0", "224.0.0.1"):
+        refused(class_socket, host, 0, "takes one IP address")
+    refused(class_socket, "203.0.113.9", 0, "no address of this machine")
+    with class_socket("127.0.0.1", 0) as taken:
+        refused(class_socket, "127.0.0.1", taken.getsockname()[1], "is not free .* --class-port")
+        refused(listening_socket, "127.0.0.1", taken.getsockname()[1], "is not free .* --port")
 
 
-@pytest.mark.parametrize("port", [-1, 65536, 10**9])
-def test_a_port_must_exist(port):
-    with pytest.raises(CannotListen, match="does not exist"):
-        listening_socket("127.0.0.1", port)
-
-
-def test_small_messages_are_sent_at_once():
+def test_small_messages_are_sent_at_once() -> None:
     """Else the second of two waits for 40 ms, until the browser has confirmed the first."""
 
     async def is_sent_at_once(listener: socket.socket) -> bool:
@@ -45,65 +52,44 @@ def test_small_messages_are_sent_at_once():
         assert asyncio.run(is_sent_at_once(listener))
 
 
-@pytest.mark.parametrize(
-    ("host", "words"),
-    [
-        ("0.0.0.0", "every address"),
-        ("::", "every address"),
-        ("", "takes one IP address"),
-        ("0", "takes one IP address"),
-        ("*", "takes one IP address"),
-        ("localhost", "takes one IP address"),
-        ("school.example", "takes one IP address"),
-        ("::ffff:0.0.0.0", "takes one IP address"),
-        ("fe80::1%eth0", "takes one IP address"),
-        ("224.0.0.1", "takes one IP address"),
-        ("203.0.113.9", "no address of this machine"),
-    ],
-)
-def test_only_one_address_of_this_machine(host, words):
-    with pytest.raises(CannotListen, match=words):
-        class_socket(host, 0)
-
-
-def test_a_taken_port_is_a_sentence():
-    with class_socket("127.0.0.1", 0) as taken, pytest.raises(CannotListen, match="--class-port"):
-        class_socket("127.0.0.1", taken.getsockname()[1])
-    with pytest.raises(CannotListen, match="does not exist"):
-        class_socket("127.0.0.1", 70_000)
-
-
-class Probe:
+class Socket:
     """A socket of a machine with this address; None: with none."""
 
     def __init__(self, address: str | None) -> None:
-        self.address = address
+        self.address, self.bound = address, None
 
-    def __enter__(self):
+    def __enter__(self) -> Socket:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         pass
 
-    def connect(self, _to) -> None:
+    def connect(self, _to: object) -> None:
         if self.address is None:
             raise OSError("network is unreachable")
 
-    def getsockname(self):
+    def getsockname(self) -> tuple[str | None, int]:
         return self.address, 1
 
+    def setsockopt(self, *_: object) -> None:
+        pass
 
-@pytest.mark.parametrize(
-    ("address", "words"),
-    [(None, "in no network"), ("127.0.0.1", "in no network"), ("8.8.8.8", "whole internet; if that is meant")],
-)
-def test_the_address_is_found_out_and_never_a_public_one(monkeypatch, address, words):
-    monkeypatch.setattr(listening.socket, "socket", lambda *_: Probe(address))
-    with pytest.raises(CannotListen, match=words):
-        listening._in_local_network()
+    def bind(self, at: tuple[str, int]) -> None:
+        self.bound = at
+
+    def listen(self, _most: int) -> None:
+        pass
 
 
-def test_an_address_in_the_local_network_is_taken(monkeypatch):
-    monkeypatch.setattr(listening.socket, "socket", lambda *_: Probe("192.168.1.5"))
-    assert str(listening._in_local_network()) == "192.168.1.5"
-    assert socket.socket(socket.AF_INET) is not None
+def test_the_address_in_the_local_network_is_found_out_and_never_a_public_one(monkeypatch, subtests) -> None:
+    for address, words in (
+        (None, "in no network"),
+        ("127.0.0.1", "in no network"),
+        ("0.0.0.0", "in no network"),
+        ("8.8.8.8", "whole internet; if that is meant"),
+    ):
+        monkeypatch.setattr(listening.socket, "socket", lambda *_, address=address: Socket(address))
+        with subtests.test(address=address), pytest.raises(CannotListen, match=words):
+            class_socket(None, 8001)
+    monkeypatch.setattr(listening.socket, "socket", lambda *_: Socket("192.168.1.5"))
+    assert class_socket(None, 8001).bound == ("192.168.1.5", 8001)  # type: ignore[attr-defined]

@@ -1,4 +1,4 @@
-"""What moves in the office: on its plate, as a browser receives it, and in the panel's tab."""
+"""What moves in the office and what the robot tries there: on its plate, as a browser receives it, and in the panel's tab."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ import pytest
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
-from tests.unit.web.office_moments import living
-from web.messages import LivingLayer, Parameter, Refused, SetDoor, TaggedPlace
+from tests.unit.web.office_moments import living, tried
+from web.messages import LivingLayer, Movements, Parameter, Refused, SetDoor, TaggedPlace
 from web.panel.office import MOST, tags
 from web.panel.office import office as office_tab
 from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.marks.movements import ENLARGED, arc_on_plate
 from web.viewer.plates.office_plate import ORIGIN
 from web.viewer.pointer import DOOR_Z
 
-PEOPLE = Parameter("office.people", True, True, "", "", None, None, "people walk", "ours", True)
-SEED = Parameter("office.seed", 0, 0, "", "", 0, 99, "of people", "ours", False)
+PLAIN: Any = fake_snapshot(430)
+FIT = OfficeFit(PLAIN.world.bounds)
 
 
 class Office(Bench):
@@ -28,24 +29,24 @@ class Office(Bench):
 
     def live(self, layer: LivingLayer | None) -> int:
         """Show a layer; returns how many messages the round sends."""
-        return sum(self.show(replace(fake_snapshot(430), living=layer)).values())
+        return sum(self.show(replace(PLAIN, living=layer)).values())
 
-    def shown(self) -> dict[str, int]:
-        """How many things of each kind are visible."""
-        counts = dict.fromkeys(("door", "box", "lamp"), 0)
-        for name, node in self.nodes().items():
-            kind = name.rpartition("/")[2].partition("_")[0]
-            if name.startswith("/office/") and kind in counts and name[-1].isdigit():
-                counts[kind] += node["visible"]
-        return counts | {"person": len(self.standing())}
+    def shown(self) -> tuple[int, ...]:
+        """How many doors, boxes, people and lamps are visible."""
+        nodes = self.nodes()
+
+        def count(kind: str) -> int:
+            return sum(node["visible"] for name, node in nodes.items() if name.startswith(f"/office/{kind}_"))
+
+        return count("door"), count("box"), len(self.standing()), count("lamp")
 
     def standing(self) -> np.ndarray:
         """(n, 3): where people are on the plate."""
         people = "/office/people"
         return self.drawn(people, "batched_positions") if self.visible(people) else np.zeros((0, 3))
 
-
-FIT = OfficeFit(fake_snapshot(430).world.bounds)
+    def shows(self, *names: str) -> list[bool]:
+        return [self.visible(f"/office/{name}") for name in names]
 
 
 @pytest.fixture(scope="module")
@@ -57,11 +58,9 @@ def shared() -> Iterator[Office]:
 
 @pytest.fixture
 def office(shared: Office) -> Office:
+    shared.show(PLAIN, 20.0)
     shared.live(living())
     shared.settle()
-    shared.engine.commands.clear()
-    shared.engine.answers.clear()
-    shared.told.clear()
     return shared
 
 
@@ -69,31 +68,28 @@ def office(shared: Office) -> Office:
 
 
 def test_every_living_thing_stands_on_the_plate(office: Office) -> None:
-    assert office.shown() == {"door": 2, "box": 1, "person": 2, "lamp": 1}
+    assert office.shown() == (2, 1, 2, 1)
     assert office.standing()[:, :2] == pytest.approx(FIT.to_plate(np.array([[1.0, 1.0], [6.0, 1.0]])))
-    assert office.visible("/office/pools")
-    assert not office.visible("/office/dark")
+    assert office.shows("pools", "dark") == [True, False]
     office.live(living(people=living().people[:1], people_rgb=living().people_rgb[1:], boxes=np.zeros((0, 6))))
-    assert office.shown() == {"door": 2, "box": 0, "person": 1, "lamp": 1}
+    assert office.shown() == (2, 0, 1, 1)
     office.live(None)
-    assert office.shown() == {"door": 0, "box": 0, "person": 0, "lamp": 0}
-    assert not office.visible("/office/pools")
+    assert (office.shown(), office.shows("pools")) == ((0, 0, 0, 0), [False])
 
 
 def test_who_walks_is_moved_and_who_stands_sends_nothing(office: Office) -> None:
-    snapshot = living()
-    before = office.standing().copy()
-    assert office.live(replace(snapshot, people=snapshot.people.copy())) == 0
-    walked = snapshot.people.copy()
+    layer, before = living(), office.standing().copy()
+    assert office.live(replace(layer, people=layer.people.copy())) == 0
+    walked = layer.people.copy()
     walked[0, 0] += 0.5
-    assert office.live(replace(snapshot, people=walked)) == 1  # their places, and nothing else
+    assert office.live(replace(layer, people=walked)) == 1  # their places, and nothing else
     after = office.standing()
     assert after[0, 0] > before[0, 0]
     assert np.array_equal(after[1], before[1])
-    more = np.vstack([walked, walked + np.float32([1, 1, 0, 0, 0])])
-    office.live(replace(snapshot, people=more, people_rgb=np.tile(snapshot.people_rgb, (2, 1))))
-    assert office.shown()["person"] == 4
-    office.live(snapshot)
+    more = np.vstack([walked, walked + np.array([1, 1, 0, 0, 0], np.float32)])
+    office.live(replace(layer, people=more, people_rgb=np.tile(layer.people_rgb, (2, 1))))
+    assert len(office.standing()) == 4
+    office.live(layer)
     assert np.array_equal(office.standing(), before)
 
 
@@ -102,111 +98,161 @@ def test_lamps_and_daylight_change_the_floor(office: Office) -> None:
     dark = np.array([(5.0, 4.0, 3.0, 0.0)], np.float32)
     office.live(living(lamps=dark, lamp_on=np.array([False]), daylight=0.4))
     assert tuple(office.node("/office/lamp_0")["color"]) != lit
-    assert not office.visible("/office/pools")
-    assert office.visible("/office/dark")
+    assert office.shows("pools", "dark") == [False, True]
     assert office.node("/office/dark")["opacity"] == pytest.approx(0.45)
 
 
-def click(office: Office, x: float, y: float) -> None:
-    at = FIT.to_plate(np.array([[x, y]]))[0]
-    office.click((ORIGIN[0] + float(at[0]), ORIGIN[1] + float(at[1]), DOOR_Z))
-    office.live(living())
-
-
 def test_a_click_on_a_leaf_opens_or_shuts_it(office: Office) -> None:
-    click(office, 2.5, 4.0)
-    click(office, 8.0, 4.5)
+    for place in ((2.5, 4.0), (8.0, 4.5), (5.0, 6.0)):  # the last one is far from any
+        x, y = FIT.to_plate(np.array([place]))[0].tolist()
+        office.click((ORIGIN[0] + x, ORIGIN[1] + y, DOOR_Z))
+        office.live(living())
     assert office.engine.commands == [
         SetDoor(type="set_door", name="lab", open=True),
         SetDoor(type="set_door", name="hall", open=False),
     ]
     office.answer(Refused("name", "hall", "no door named 'hall'"))
-    assert office.told == ["The door stays as it is: no door named 'hall'"]
-    click(office, 5.0, 6.0)  # far from any
-    assert len(office.engine.commands) == 2
+    assert "The door stays as it is: no door named 'hall'" in office.told
 
 
 def test_glass_and_slow_floors_are_drawn(office: Office) -> None:
-    s = fake_snapshot(430)
-    kinds = list(s.world.wall_kind)
+    kinds = list(PLAIN.world.wall_kind)
     kinds[4] = "glass"
     zone = np.array([(1.0, 1.0), (3.0, 1.0), (3.0, 3.0), (1.0, 3.0)], np.float32)
     plain = office.node("/office/floor")["_data"]
-    office.show(replace(s, world=replace(s.world, wall_kind=tuple(kinds), slow_zones=(zone,))), 20)
+    office.show(replace(PLAIN, world=replace(PLAIN.world, wall_kind=tuple(kinds), slow_zones=(zone,))), 20)
     glass = office.node("/office/furniture_glass")
     assert glass["vertices"][:, 2].max() > 0
     assert glass["opacity"] < 1
     assert office.node("/office/floor")["_data"] != plain
-    office.show(s, 20)
+
+
+def test_the_robot_stands_where_it_is_and_the_echoes_lie_where_its_sonars_hear_them(office: Office) -> None:
+    truth, reach = PLAIN.truth, PLAIN.senses.ranges_m
+    (here,) = FIT.to_plate(np.array([[truth.x, truth.y]]))
+    assert office.node("/office/robot")["position"][:2] == pytest.approx(here, abs=1e-4)
+    angles = truth.heading_rad + PLAIN.world.sonar_angles_rad
+    heard = np.column_stack([truth.x + reach * np.cos(angles), truth.y + reach * np.sin(angles)])
+    for drawn in (office.drawn("/office/echoes"), office.drawn("/office/sonar")[:, 1]):
+        assert np.allclose(drawn[:, :2], FIT.to_plate(heard), atol=1 / 256)
 
 
 def test_the_view_ends_at_a_leaf_and_goes_on_behind_glass(office: Office) -> None:
-    s = fake_snapshot(430)
-    truth = replace(s.truth, x=5.0, y=4.0, heading_rad=0.0)
-    pane = (6.0, 3.0, 6.0, 5.0)
-    walls = np.vstack([s.world.walls, [pane]]).astype(np.float32)
-    heights = np.append(s.world.wall_height_m, 2.5).astype(np.float32)
+    world, pane = PLAIN.world, (6.0, 3.0, 6.0, 5.0)
+    walls = np.vstack([world.walls, [pane]]).astype(np.float32)
+    heights = np.append(world.wall_height_m, 2.5).astype(np.float32)
 
     def reach(kind: str, layer: LivingLayer | None) -> float:
-        world = replace(s.world, walls=walls, wall_height_m=heights, wall_kind=(*s.world.wall_kind, kind))
-        office.show(replace(s, world=world, truth=truth, living=layer), 20.0)
+        drawing = replace(world, walls=walls, wall_height_m=heights, wall_kind=(*world.wall_kind, kind))
+        here = replace(PLAIN.truth, x=5.0, y=4.0, heading_rad=0.0)
+        office.show(replace(PLAIN, world=drawing, truth=here, living=layer), 20.0)
         tips = office.drawn("/office/view_edges")[:, 1, :2]  # of the two outermost rays
         return float(FIT.to_office(tips)[:, 0].max())
 
-    leaf = np.array([(6.0, 3.0, 6.0, 5.0), (8.0, 4.0, 8.0, 5.0)], np.float32)
     assert reach("wall", None) == pytest.approx(6.0, abs=1e-5)
     assert reach("glass", living()) > 6.3  # a desk
+    leaf = np.array([pane, (8.0, 4.0, 8.0, 5.0)], np.float32)
     assert reach("glass", living(doors=leaf)) == pytest.approx(6.0, abs=1e-5)
-    office.show(s, 20)
+
+
+# ---------------------------------------------------------------- what the robot tries there
+
+NOTHING = {"free": 0, "blocked": 0, "ends": 0, "chosen": 0}
+
+
+def arrow(bench: Bench) -> np.ndarray:
+    return bench.drawn("/office/movements/chosen", "vertices")
+
+
+def there(bench: Bench) -> dict[str, int]:
+    lines = {kind: len(bench.drawn(f"/office/movements/{kind}")) for kind in ("free", "blocked", "ends")}
+    return lines | {"chosen": len(arrow(bench))}
+
+
+def test_they_are_drawn_and_computed_only_while_somebody_wants_them_and_the_robot_chooses_one(bench: Bench) -> None:
+    asked = []
+
+    def movements() -> Movements:
+        asked.append("once")
+        return tried()
+
+    bench.show(replace(PLAIN, movements=movements))
+    assert (asked, there(bench)) == ([], NOTHING)
+    bench.switch("movements", True)
+    assert asked == ["once"]
+    shown = there(bench)
+    assert shown == {"free": 8, "blocked": 4, "ends": 4, "chosen": shown["chosen"]}
+    assert shown["chosen"] > 0
+    bench.show(fake_snapshot(431))  # it chooses no arc
+    assert there(bench) == NOTHING
+    bench.show(replace(PLAIN, movements=tried))
+    assert there(bench) == shown
+    bench.switch("movements", False)
+    bench.show(replace(PLAIN, movements=lambda: tried()))
+    assert there(bench) == NOTHING
+
+
+def test_the_arrow_ends_where_the_chosen_arc_ends_enlarged(bench: Bench) -> None:
+    bench.switch("movements", True)
+    for chosen, reach in ((1, 0.4), (2, 0.1)):
+        bench.show(replace(PLAIN, movements=lambda chosen=chosen: tried(chosen)))
+        (tip,) = FIT.to_plate(np.array([(5.0 + ENLARGED * reach, 4.0)]))
+        assert arrow(bench)[:, 0].max() == pytest.approx(tip[0], abs=0.25)
+        assert arrow(bench)[:, 1].mean() == pytest.approx(tip[1], abs=0.05)
+
+
+def test_an_arc_begins_at_the_robot_and_a_turn_on_the_spot_is_one_around_it() -> None:
+    moved = replace(tried(), paths=tried().paths + np.array((1.0, 0.5), np.float32))
+    (end,) = FIT.to_plate(np.array([(6.0 + ENLARGED * 0.4, 4.5)]))
+    assert arc_on_plate(moved, 1, FIT, 0.25)[-1] == pytest.approx(end, abs=1e-6)
+    away = arc_on_plate(moved, 3, FIT, 0.25) - FIT.to_plate(np.array([(6.0, 4.5)]))
+    assert np.hypot(*away.T) == pytest.approx(1.7 * 0.25)
+    turned = np.arctan2(away[:, 1], away[:, 0])
+    assert (turned[0], turned[-1]) == (pytest.approx(0.0, abs=1e-6), pytest.approx(0.6))
 
 
 # ---------------------------------------------------------------- in the panel's tab
 
-
-def told(layer: LivingLayer | None, switches: tuple[str, ...]) -> dict[str, Any]:
-    return dict(office_tab(layer, (PEOPLE, SEED), PRESETS, "ideal", switches).data)
-
-
+PEOPLE = Parameter("office.people", True, True, "", "", None, None, "people walk", "ours", True)
+SEED = Parameter("office.seed", 0, 0, "", "", 0, 99, "of people", "ours", False)
 PRESETS = ("Pioneer 2DXE 2004", "ideal")
 
 
+def told(layer: LivingLayer | None, *switches: str) -> dict[str, Any]:
+    return dict(office_tab(layer, (PEOPLE, SEED), PRESETS, "ideal", switches).data)
+
+
 def test_the_tab_has_a_switch_for_what_the_world_has() -> None:
-    data = told(living(), ("people", "seed"))
-    assert data["doors"] == [("lab", False), ("hall", True)]
-    assert data["lamps"] == [("sun", True)]
+    data = told(living(), "people", "seed")
+    assert (data["doors"], data["lamps"]) == ([("lab", False), ("hall", True)], [("sun", True)])
     assert [(knob["name"], knob["value"]) for knob in data["knobs"]] == [("office.people", True), ("office.seed", 0)]
     assert (data["presets"], data["preset"]) == (PRESETS, "ideal")
-    bare = told(None, ())
+    bare = told(None)
     assert (bare["doors"], bare["lamps"], bare["knobs"]) == ([], [], [])
+    many = living(
+        door_names=tuple(f"door {k}" for k in range(1000)), doors=np.tile(living().doors[:1], (1000, 1)),
+        door_wanted=np.zeros(1000, bool), door_opening=np.zeros(1000, np.float32),
+    )  # fmt: skip
+    assert len(told(many)["doors"]) == MOST
 
 
 def test_the_tab_says_what_is_there() -> None:
-    switches = ("people", "seed", "boxes", "daylight")
-    words = told(living(), switches)["words"]
-    assert words == "Here now: 2 people, 1 box, 1 of 2 doors not open, 1 of 1 lamps lit, daylight 1.00."
-    assert told(None, ())["words"].startswith("Nothing lives in this world")
-    assert told(None, ("reflections",))["words"] == "Nothing moves in this world."
-    empty = np.zeros((0, 5), np.float32)
-    bare = living(
-        door_names=(), doors=empty[:, :4], door_wanted=np.zeros(0, bool), door_opening=empty[:, 0], people=empty
-    )
-    assert told(bare, ("lamps",))["words"] == "Here now: 1 of 1 lamps lit."
-    assert told(bare, ("lamps", "people"))["words"] == "Here now: 0 people, 1 of 1 lamps lit."
-    dark = replace(bare, lamps=empty[:, :4], lamp_names=(), lamp_on=np.zeros(0, bool))
-    assert told(dark, ("script",))["words"] == "A script is carried out here."
-
-
-def test_a_thousand_doors_are_no_thousand_switches() -> None:
-    names = tuple(f"door {k}" for k in range(1000))
-    doors = np.tile(living().doors[:1], (1000, 1))
-    many = living(
-        door_names=names, doors=doors, door_wanted=np.zeros(1000, bool), door_opening=np.zeros(1000, np.float32)
-    )
-    assert len(told(many, ())["doors"]) == MOST
+    no = np.zeros((0, 5), np.float32)
+    bare = living(door_names=(), doors=no[:, :4], door_wanted=np.zeros(0, bool), door_opening=no[:, 0], people=no)
+    dark = replace(bare, lamps=no[:, :4], lamp_names=(), lamp_on=np.zeros(0, bool))
+    everything = "2 people, 1 box, 1 of 2 doors not open, 1 of 1 lamps lit, daylight 1.00."
+    for layer, switches, words in (
+        (living(), ("people", "seed", "boxes", "daylight"), f"Here now: {everything}"),
+        (None, ("reflections",), "Nothing moves in this world."),
+        (bare, ("lamps",), "Here now: 1 of 1 lamps lit."),
+        (bare, ("lamps", "people"), "Here now: 0 people, 1 of 1 lamps lit."),
+        (dark, ("script",), "A script is carried out here."),
+    ):
+        assert told(layer, *switches)["words"] == words
+    assert told(None)["words"].startswith("Nothing lives in this world")
 
 
 def test_the_tab_lists_the_names_of_places_and_not_where_they_are() -> None:
     """The map bends all the time; the list is told anew only when a name comes or goes."""
     places = (TaggedPlace("kitchen", 3, 1.0, 2.0), TaggedPlace("desk", 9, -1.0, 0.0))
-    assert tags(places).data == {"tags": ["kitchen", "desk"]}
-    assert tags(()).data == {"tags": []}
+    assert [tags(some).data for some in (places, ())] == [{"tags": ["kitchen", "desk"]}, {"tags": []}]
