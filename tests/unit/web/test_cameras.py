@@ -6,6 +6,7 @@ from __future__ import annotations
 import asyncio
 import math
 import threading
+from collections.abc import Callable, Coroutine
 from itertools import product
 from types import SimpleNamespace
 from typing import Any
@@ -19,7 +20,7 @@ from tests.unit.web.doubles import PAGE, StubViewer, house
 from tests.unit.web.frames import until
 from web.http.proxy import MOST_CLIENTS
 from web.http.proxy import Cameras as Pages
-from web.viewer.camera_views import FLIGHT_S, VIEWS, Camera, Flight, camera_for, corners_of, seen_by
+from web.viewer.camera_views import FLIGHT_S, VIEWS, Camera, camera_for, corners_of, seen_by
 from web.viewer.cameras import Cameras
 from web.viewer.fits.cell_fit import HEIGHT
 from web.viewer.following import REST_S, Follower, follow_camera
@@ -30,13 +31,16 @@ TURNED = Camera(np.ones(3), np.zeros(3), 0.5)
 # ---------------------------------------------------------------- where they stand
 
 
-def test_every_view_looks_down_at_its_plate(subtests) -> None:
-    for view, aspect in product(VIEWS, (0.46, 1.0, 1.2, 2.2)):
-        with subtests.test(view=view, aspect=aspect):
-            camera = camera_for(view, aspect)
+def test_every_view_looks_down_at_its_plates_and_shows_them_as_large_as_the_window_allows(subtests) -> None:
+    for view, aspect, two in product(VIEWS, (0.46, 1.0, 1.2, 2.2, 3.0), (False, True)):
+        with subtests.test(view=view, aspect=aspect, two=two):
+            camera = camera_for(view, aspect, two=two)
             back = camera.position - camera.look_at
+            half = math.tan(camera.fov_rad / 2) * np.linalg.norm(back)
+            seen = seen_by(camera, corners_of(view, True, two))[0] / (half * aspect, half)
             assert back[1] < 0 < 5 < back[2]
-            assert 10 < np.linalg.norm(back) < 250
+            assert np.abs(seen).max() < 1
+            assert np.ptp(seen, axis=0).max() > (1.1 if two and aspect == 3.0 else 1.5)  # of 2
     assert len(corners_of("all", True, False)) > len(corners_of("all", False, False))  # an office is one plate more
 
 
@@ -50,16 +54,6 @@ def test_the_plates_stand_below_the_buttons(subtests) -> None:
             half = math.tan(camera.fov_rad / 2) * float(np.linalg.norm(camera.position - camera.look_at))
             highest = seen_by(camera, np.array(corners))[0][:, 1].max() / half
             assert (1 - highest) / 2 >= top - 0.005
-
-
-def test_a_flight_begins_and_ends_where_it_should() -> None:
-    start, end = Camera(np.zeros(3), np.ones(3), 0.5), Camera(np.ones(3), np.zeros(3), 0.6)
-    for now_s, camera, there in ((10.0, start, False), (10.01 + FLIGHT_S, end, True)):
-        at, arrived = Flight(start, end, 10.0).at(now_s)
-        assert arrived is there
-        assert np.allclose(at.position, camera.position)
-        assert np.allclose(at.look_at, camera.look_at)
-        assert at.fov_rad == pytest.approx(camera.fov_rad)
 
 
 # ---------------------------------------------------------------- of browsers
@@ -99,8 +93,12 @@ class Browsers:
     def camera(self, number: int = 1) -> Any:
         return self.clients[number].camera
 
-    def stands(self, at: Camera, number: int = 1) -> bool:
-        return np.allclose(self.camera(number).position, at.position)
+    def stands(self, at: Camera, towards: Camera | None = None, share: float = 0.0, number: int = 1) -> bool:
+        """Whether a camera is at a place, or a share of the way from there to another, looking as it should."""
+        camera = self.camera(number)
+        here = np.hstack([camera.position, camera.look_at, camera.fov])
+        start, end = (np.hstack([c.position, c.look_at, c.fov_rad]) for c in (at, towards or at))
+        return np.allclose(here, start + share * (end - start))
 
     def told(self) -> int:
         """The first browser tells of its camera; returns how much work that gave the viewer's thread."""
@@ -116,13 +114,15 @@ def test_cameras_are_framed_flown_and_framed_anew() -> None:
     cameras, screen = browsers.cameras, browsers.camera()
     assert browsers.initial_camera.far > browsers.initial_camera.near
     assert browsers.stands(camera_for("all", 1.5))
-    assert browsers.stands(camera_for("map", 0.46), 2)
+    assert browsers.stands(camera_for("map", 0.46), number=2)
     cameras.take_off(1, "pose", 10.0)
-    cameras.fly_on(10.35)
-    assert cameras.flying
-    cameras.fly_on(11.0)
+    for share, weight in ((0.0, 0.0), (0.25, 5 / 32), (0.5, 0.5)):  # slow at both ends
+        cameras.fly_on(10.0 + share * FLIGHT_S)
+        assert browsers.stands(camera_for("all", 1.5), camera_for("pose", 1.5), weight)
+        assert cameras.flying
+    cameras.fly_on(10.01 + FLIGHT_S)
     assert browsers.stands(camera_for("pose", 1.5))
-    assert browsers.stands(camera_for("map", 0.46), 2)
+    assert browsers.stands(camera_for("map", 0.46), number=2)
 
     assert browsers.told() == 0  # orbiting alone changes nothing
     for size, aspect in (
@@ -221,14 +221,15 @@ def test_the_hand_is_obeyed_and_not_disturbed_and_our_own_moves_are_not_taken_fo
 
 
 def test_it_begins_near_the_robot_in_worlds_of_any_size(subtests) -> None:
-    at = np.array([-3.0, 1.0, 0.0])
-    for scale, aspect in product((0.05, 0.22, 1.0), (0.46, 1.0, 1.5, 2.4)):
+    at, widths = np.array([-3.0, 1.0, 0.0]), {0.05: 1.4, 0.22: 1.4, 0.5: 3.0, 1.0: 4.2}
+    for (scale, half_width), aspect in product(widths.items(), (0.46, 1.0, 1.5, 2.4)):
         with subtests.test(scale=scale, aspect=aspect):
             camera = follow_camera(at, scale, aspect)
-            away = float(np.linalg.norm(camera.position - at))
+            back = camera.position - at
+            half_height = np.linalg.norm(back) * math.tan(camera.fov_rad / 2)
             assert camera.look_at == pytest.approx(at)
-            assert away > 1.5  # before the near plane
-            assert 0.8 < away * math.tan(camera.fov_rad / 2) < 9
+            assert back[1] < 0 < 1.1 < back[2]  # from before it, and before the near plane
+            assert half_height == pytest.approx(half_width / min(max(aspect, 0.5), 1.6))
 
 
 def test_cameras_follow_on_the_plate_they_look_at_until_another_view_is_asked_for() -> None:
@@ -274,74 +275,70 @@ async def arrive(pages: Pages, stage: StubViewer, number: int, page: str = PAGE)
     assert await pages.pair(page, stage, pass_on)
 
 
-def test_one_that_is_turned_is_taken_along_once_unless_another_view_is_asked_for() -> None:
-    async def run() -> None:
-        dark, light, pages = StubViewer(), StubViewer(), Pages()
-        await pages.show(PAGE, "all")
-        await arrive(pages, dark, 3)
-        dark.cameras[3] = TURNED
-        pages.unpair(PAGE, dark)
-        await arrive(pages, light, 8)
-        assert light.calls == [("jump", 8, "all", TURNED)]
-        pages.unpair(PAGE, light)  # it stands at its view
-        await arrive(pages, dark, 4)
-        assert dark.calls[-1] == ("jump", 4, "all")
-        dark.cameras[4] = TURNED
-        pages.unpair(PAGE, dark)
-        await pages.show(PAGE, "map")
-        await arrive(pages, dark, 5)
-        assert dark.calls[-1] == ("jump", 5, "map")
-
-    asyncio.run(run())
+def in_a_loop(test: Callable[[], Coroutine[None, None, None]]) -> Callable[[], None]:
+    return lambda: asyncio.run(test())
 
 
-def test_those_of_pages_that_have_gone_are_forgotten() -> None:
-    async def run() -> None:
-        stage, pages = StubViewer(cameras={3: TURNED}), Pages()
-        names = [f"page {number}" for number in range(3 * MOST_CLIENTS)]
-        for page in names:
-            await pages.show(page, "map")
-            await arrive(pages, stage, 3, page)
-            pages.unpair(page, stage)
-        stage.calls.clear()
-        for page in names[MOST_CLIENTS - 1 : MOST_CLIENTS + 1]:  # the last one that is forgotten, the first that is not
-            await arrive(pages, stage, 3, page)
-        assert stage.calls == [("jump", 3, "map", TURNED)]
-
-    asyncio.run(run())
-
-
-def test_one_that_a_link_brings_is_taken_when_its_viewer_comes_or_at_once() -> None:
-    async def run() -> None:
-        stage, pages = StubViewer(), Pages()
-        assert pages.turned(PAGE) is None
-        await pages.turn(PAGE, "map", TURNED)
-        await arrive(pages, stage, 3)
-        assert stage.calls == [("jump", 3, "map", TURNED)]
-        await pages.turn(PAGE, "pose", TURNED)
-        assert stage.calls[-1] == ("fly", 3, "pose", TURNED)
-        stage.cameras[3] = TURNED
-        assert pages.turned(PAGE) is TURNED
-
-    asyncio.run(run())
+@in_a_loop
+async def test_one_that_is_turned_is_taken_along_once_unless_another_view_is_asked_for() -> None:
+    dark, light, pages = StubViewer(), StubViewer(), Pages()
+    await pages.show(PAGE, "all")
+    await arrive(pages, dark, 3)
+    dark.cameras[3] = TURNED
+    pages.unpair(PAGE, dark)
+    await arrive(pages, light, 8)
+    assert light.calls == [("jump", 8, "all", TURNED)]
+    pages.unpair(PAGE, light)  # it stands at its view
+    await arrive(pages, dark, 4)
+    assert dark.calls[-1] == ("jump", 4, "all")
+    dark.cameras[4] = TURNED
+    pages.unpair(PAGE, dark)
+    await pages.show(PAGE, "map")
+    await arrive(pages, dark, 5)
+    assert dark.calls[-1] == ("jump", 5, "map")
 
 
-def test_a_page_follows_also_in_the_viewer_of_the_other_theme() -> None:
-    async def run() -> None:
-        dark, light, pages = StubViewer(), StubViewer(), Pages()
-        await pages.show(PAGE, "office")
-        await arrive(pages, dark, 3)
-        pages.follow(PAGE, True)
-        assert dark.calls[-1] == ("follow", 3, True)
-        pages.unpair(PAGE, dark)
-        await arrive(pages, light, 8)
-        assert light.calls[-1] == ("follow", 8, True)
-        await pages.show(PAGE, "all")
-        pages.unpair(PAGE, light)
-        await arrive(pages, dark, 4)
-        assert dark.calls[-1][0] == "jump"
+@in_a_loop
+async def test_those_of_pages_that_have_gone_are_forgotten() -> None:
+    stage, pages = StubViewer(cameras={3: TURNED}), Pages()
+    names = [f"page {number}" for number in range(3 * MOST_CLIENTS)]
+    for page in names:
+        await pages.show(page, "map")
+        await arrive(pages, stage, 3, page)
+        pages.unpair(page, stage)
+    stage.calls.clear()
+    for page in names[MOST_CLIENTS - 1 : MOST_CLIENTS + 1]:  # the last one that is forgotten, the first that is not
+        await arrive(pages, stage, 3, page)
+    assert stage.calls == [("jump", 3, "map", TURNED)]
 
-    asyncio.run(run())
+
+@in_a_loop
+async def test_one_that_a_link_brings_is_taken_when_its_viewer_comes_or_at_once() -> None:
+    stage, pages = StubViewer(), Pages()
+    assert pages.turned(PAGE) is None
+    await pages.turn(PAGE, "map", TURNED)
+    await arrive(pages, stage, 3)
+    assert stage.calls == [("jump", 3, "map", TURNED)]
+    await pages.turn(PAGE, "pose", TURNED)
+    assert stage.calls[-1] == ("fly", 3, "pose", TURNED)
+    stage.cameras[3] = TURNED
+    assert pages.turned(PAGE) is TURNED
+
+
+@in_a_loop
+async def test_a_page_follows_also_in_the_viewer_of_the_other_theme() -> None:
+    dark, light, pages = StubViewer(), StubViewer(), Pages()
+    await pages.show(PAGE, "office")
+    await arrive(pages, dark, 3)
+    pages.follow(PAGE, True)
+    assert dark.calls[-1] == ("follow", 3, True)
+    pages.unpair(PAGE, dark)
+    await arrive(pages, light, 8)
+    assert light.calls[-1] == ("follow", 8, True)
+    await pages.show(PAGE, "all")
+    pages.unpair(PAGE, light)
+    await arrive(pages, dark, 4)
+    assert dark.calls[-1][0] == "jump"
 
 
 def test_what_makes_no_sense_is_refused(subtests) -> None:
