@@ -169,7 +169,7 @@ def there(bench: Bench) -> dict[str, int]:
     return lines | {"chosen": len(arrow(bench))}
 
 
-def test_they_are_drawn_and_computed_only_while_somebody_wants_them_and_the_robot_chooses_one(bench: Bench) -> None:
+def test_movements_are_computed_only_while_somebody_wants_them_and_the_robot_tries_some(bench: Bench) -> None:
     asked = []
 
     def movements() -> Movements:
