@@ -36,6 +36,15 @@ def two(tick: int = 430, of: int = 300) -> Snapshot:
     return replace(one, beside=view)
 
 
+@pytest.fixture
+def bench(shared: Bench) -> Bench:
+    """One that shows one brain."""
+    shared.show(fake_snapshot(430), 10.0)
+    shared.settle()
+    shared.engine.commands.clear()
+    return shared
+
+
 def at(bench: Bench, plate: str) -> np.ndarray:
     return np.array(bench.node(f"/{plate}")["position"])
 

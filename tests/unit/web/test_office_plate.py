@@ -58,6 +58,7 @@ def shared() -> Iterator[Office]:
 
 @pytest.fixture
 def office(shared: Office) -> Office:
+    shared.switches.turn("movements", False)
     shared.show(PLAIN, 20.0)
     shared.live(living())
     shared.settle()
@@ -160,45 +161,45 @@ def test_the_view_ends_at_a_leaf_and_goes_on_behind_glass(office: Office) -> Non
 NOTHING = {"free": 0, "blocked": 0, "ends": 0, "chosen": 0}
 
 
-def arrow(bench: Bench) -> np.ndarray:
-    return bench.drawn("/office/movements/chosen", "vertices")
+def arrow(office: Office) -> np.ndarray:
+    return office.drawn("/office/movements/chosen", "vertices")
 
 
-def there(bench: Bench) -> dict[str, int]:
-    lines = {kind: len(bench.drawn(f"/office/movements/{kind}")) for kind in ("free", "blocked", "ends")}
-    return lines | {"chosen": len(arrow(bench))}
+def there(office: Office) -> dict[str, int]:
+    lines = {kind: len(office.drawn(f"/office/movements/{kind}")) for kind in ("free", "blocked", "ends")}
+    return lines | {"chosen": len(arrow(office))}
 
 
-def test_movements_are_computed_only_while_somebody_wants_them_and_the_robot_tries_some(bench: Bench) -> None:
+def test_movements_are_computed_only_while_somebody_wants_them_and_the_robot_tries_some(office: Office) -> None:
     asked = []
 
     def movements() -> Movements:
         asked.append("once")
         return tried()
 
-    bench.show(replace(PLAIN, movements=movements))
-    assert (asked, there(bench)) == ([], NOTHING)
-    bench.switch("movements", True)
+    office.show(replace(PLAIN, movements=movements))
+    assert (asked, there(office)) == ([], NOTHING)
+    office.switch("movements", True)
     assert asked == ["once"]
-    shown = there(bench)
+    shown = there(office)
     assert shown == {"free": 8, "blocked": 4, "ends": 4, "chosen": shown["chosen"]}
     assert shown["chosen"] > 0
-    bench.show(fake_snapshot(431))  # it chooses no arc
-    assert there(bench) == NOTHING
-    bench.show(replace(PLAIN, movements=tried))
-    assert there(bench) == shown
-    bench.switch("movements", False)
-    bench.show(replace(PLAIN, movements=lambda: tried()))
-    assert there(bench) == NOTHING
+    office.show(fake_snapshot(431))  # it chooses no arc
+    assert there(office) == NOTHING
+    office.show(replace(PLAIN, movements=tried))
+    assert there(office) == shown
+    office.switch("movements", False)
+    office.show(replace(PLAIN, movements=lambda: tried()))
+    assert there(office) == NOTHING
 
 
-def test_the_arrow_ends_where_the_chosen_arc_ends_enlarged(bench: Bench) -> None:
-    bench.switch("movements", True)
+def test_the_arrow_ends_where_the_chosen_arc_ends_enlarged(office: Office) -> None:
+    office.switch("movements", True)
     for chosen, reach in ((1, 0.4), (2, 0.1)):
-        bench.show(replace(PLAIN, movements=lambda chosen=chosen: tried(chosen)))
+        office.show(replace(PLAIN, movements=lambda chosen=chosen: tried(chosen)))
         (tip,) = FIT.to_plate(np.array([(5.0 + ENLARGED * reach, 4.0)]))
-        assert arrow(bench)[:, 0].max() == pytest.approx(tip[0], abs=0.25)
-        assert arrow(bench)[:, 1].mean() == pytest.approx(tip[1], abs=0.05)
+        assert arrow(office)[:, 0].max() == pytest.approx(tip[0], abs=0.25)
+        assert arrow(office)[:, 1].mean() == pytest.approx(tip[1], abs=0.05)
 
 
 def test_an_arc_begins_at_the_robot_and_a_turn_on_the_spot_is_one_around_it() -> None:
