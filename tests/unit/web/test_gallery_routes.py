@@ -81,6 +81,7 @@ def test_what_is_not_there_is_said_and_without_a_gallery_there_is_nothing(client
         assert (answer.status_code, words in answer.json()["detail"][0]["reason"]) == (404, True), path
     with house() as made:
         assert [made.client.get(f"/api/{path}").json() for path in ("experiments", "lessons")] == [[], []]
+        assert {made.client.get("/api/lessons/castle").status_code for _ in range(40)} == {404, 429}
 
 
 def test_their_commands_are_taken_and_refused_like_any_other(served: House) -> None:
