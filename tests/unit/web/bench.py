@@ -90,6 +90,22 @@ class Bench:
         above = ["/" + "/".join(parts[: k + 1]) for k in range(len(parts))]
         return all(nodes[one]["visible"] for one in above if one in nodes)
 
+    def shown(self, prefix: str) -> list[str]:
+        """The nodes that are seen and whose names begin so."""
+        nodes = self.nodes()
+        return [name for name in nodes if name.startswith(prefix) and self.visible(name, nodes)]
+
+    def at(self, name: str) -> tuple[float, float, float]:
+        """Where a node stands in the scene."""
+        nodes, parts = self.nodes(), name.strip("/").split("/")
+        above = ["/" + "/".join(parts[: k + 1]) for k in range(len(parts))]
+        x, y, z = np.sum([nodes[one].get("position", (0.0, 0.0, 0.0)) for one in above], axis=0).tolist()
+        return x, y, z
+
+    def on_map(self, xy: np.ndarray) -> np.ndarray:
+        """Where places of the map lie on its plate."""
+        return self.viewer._scenery.map.fit.to_plate(xy)
+
     def drawn(self, name: str, places: str = "points") -> np.ndarray:
         """The places of a node, without those far below everything."""
         at = np.asarray(self.node(name)[places])

@@ -11,6 +11,7 @@ from starlette.testclient import TestClient
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
 from tests.unit.web.doubles import House, StubEngine, house
+from web.messages import Snapshot
 
 
 @pytest.fixture(scope="module")
@@ -29,6 +30,22 @@ def bench() -> Iterator[Bench]:
     made.settle()
     yield made
     made.viewer.stop()
+
+
+@pytest.fixture
+def moment() -> Snapshot:
+    """What `stage` shows, for a file of tests to say."""
+    return fake_snapshot(430)
+
+
+@pytest.fixture
+def stage(shared: Bench, moment: Snapshot) -> Bench:
+    """The bench that a file shares, as if new: one moment is drawn, and nobody has done anything."""
+    shared.show(moment, 10.0)
+    shared.settle()
+    for noted in (shared.engine.commands, shared.engine.answers, shared.complaints, shared.told):
+        noted.clear()
+    return shared
 
 
 @pytest.fixture

@@ -44,6 +44,16 @@ def strokes(picture: Picture, colour: Rgb) -> list[np.ndarray]:
     return [np.array(re.findall(r"-?\d+\.\d+", way), float).reshape(-1, 2) for way in ways]
 
 
+def filled(picture: Picture, colour: Rgb) -> list[Picture]:
+    """The shapes that are filled with a colour."""
+    return [path for path in picture.iter(f"{SVG}path") if path.get("fill") == ink(colour)]
+
+
+def corners(shape: Picture) -> np.ndarray:
+    """(n, 2) of a shape, pixels."""
+    return np.array(re.findall(r"-?\d+\.\d+", shape.get("d", "")), float).reshape(-1, 2)
+
+
 def circles(picture: Picture, colour: Rgb) -> np.ndarray:
     """Middles of the rings of a colour in the field."""
     field = next(group for group in picture if group.get("clip-path"))

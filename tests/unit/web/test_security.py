@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
+from collections.abc import Iterator
 from itertools import product
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from starlette.testclient import WebSocketDenialResponse
 from starlette.websockets import WebSocketDisconnect
 
-from tests.unit.web.doubles import ORIGIN, OURS, PAGE, PORT, house
+from tests.unit.web.doubles import ORIGIN, OURS, PAGE, PORT, House, house
+from tests.unit.web.frames import until
 from web.http import asking, brain_download, security
 from web.http.api import STATIC
 from web.http.security import Bucket, Guard, Limits, own_hosts
@@ -24,27 +30,39 @@ _ORIGINS = """
     http://localhost:8000 http://192.168.0.1:8000
 """
 FOREIGN_HOSTS, FOREIGN_ORIGINS = _HOSTS.split(), _ORIGINS.split()
+PAUSE = b'{"type": "pause"}'
 
 
 @pytest.fixture(scope="module")
-def server():
+def server() -> Iterator[House]:
     with house() as made:
         yield made
 
 
-@pytest.mark.parametrize("host", ["127.0.0.1:8000", "localhost:8000", "[::1]:8000"])
-def test_our_own_names_enter(server, host):
-    assert server.client.get("/healthz", headers={"Host": host, "Origin": f"http://{host}"}).status_code == 200
+def routes(server: House) -> dict[str, set[str]]:
+    """Every path of the API, with its parameters filled in, and the methods that it takes."""
+    paths = server.client.get("/openapi.json").json()["paths"]
+    return {
+        path.replace("{number}", "0").replace("{name}", "mine"): {*map(str.upper, kinds)}
+        for path, kinds in paths.items()
+    }
 
 
-@pytest.mark.parametrize("host", [*FOREIGN_HOSTS, ""])
-def test_any_other_host_is_refused(server, host):
-    answer = server.client.get("/healthz", headers={"Host": host})
-    assert answer.status_code == 403
-    assert "127.0.0.1:8000" in answer.json()["detail"][0]["reason"]
+def test_our_own_names_enter_and_any_other_host_is_refused(server: House, subtests: pytest.Subtests) -> None:
+    for host in ("127.0.0.1:8000", "localhost:8000", "[::1]:8000"):
+        assert server.client.get("/healthz", headers={"Host": host, "Origin": f"http://{host}"}).status_code == 200
+    for host in [*FOREIGN_HOSTS, ""]:
+        with subtests.test(host=host):
+            answer = server.client.get("/healthz", headers={"Host": host})
+            assert answer.status_code == 403
+            assert "127.0.0.1:8000" in answer.json()["detail"][0]["reason"]
+    for twice in (("Host", "127.0.0.1:8000"), ("Origin", ORIGIN)):
+        assert server.client.get("/healthz", headers=[twice, twice]).status_code == 400
+    assert "127.0.0.1" in own_hosts(80)  # browsers leave that port out
+    assert "127.0.0.1" not in own_hosts(81)
 
 
-def test_who_comes_through_a_tunnel_with_another_port_reads_what_is_possible(server):
+def test_who_comes_through_a_tunnel_with_another_port_reads_what_is_possible(server: House) -> None:
     """A browser asks for text/html and shows what it gets as text; a program gets JSON."""
     host = {"Host": "localhost:9000"}
     answer = server.client.get("/", headers=host | {"Accept": "text/html,application/xhtml+xml,*/*;q=0.8"})
@@ -54,139 +72,63 @@ def test_who_comes_through_a_tunnel_with_another_port_reads_what_is_possible(ser
     assert program.json()["detail"][0]["reason"] == answer.text.strip()
 
 
-def test_any_other_origin_is_refused(subtests, server):
+def test_any_other_origin_is_refused(server: House, subtests: pytest.Subtests) -> None:
     for origin, path in product([*FOREIGN_ORIGINS, ""], ["/api/state", "/", "/viser/"]):
         with subtests.test(origin=origin, path=path):
             assert server.client.get(path, headers={"Origin": origin}).status_code == 403
 
 
-@pytest.mark.parametrize("origin", [*FOREIGN_ORIGINS, ""])
-def test_a_foreign_origin_changes_nothing(server, origin):
-    before = len(server.engine.commands)
-    status, _ = server.post(b'{"type": "pause"}', Origin=origin)
-    assert status == 403
-    assert len(server.engine.commands) == before
-
-
-def test_a_websocket_is_refused_before_it_is_accepted(subtests, server):
+def test_a_websocket_is_refused_before_it_is_accepted(server: House, subtests: pytest.Subtests) -> None:
     for origin, path in product([*FOREIGN_ORIGINS, None], [f"/api/stream?page={PAGE}", f"/viser/ws/{PAGE}"]):
         with subtests.test(origin=origin, path=path):
             headers = {"Host": OURS["Host"]} | ({} if origin is None else {"Origin": origin})
-            with (
-                pytest.raises(WebSocketDenialResponse) as refused,
-                server.client.websocket_connect(path, headers=headers),
-            ):
+            connecting = server.client.websocket_connect(path, headers=headers)
+            with pytest.raises(WebSocketDenialResponse) as refused, connecting:
                 pass
             assert refused.value.status_code == 403
 
 
-def test_a_websocket_without_denial_responses_is_closed():
-    import asyncio
+def test_a_websocket_without_denial_responses_is_closed() -> None:
+    sent: list[Any] = []
 
-    sent = []
+    async def send(message: Any) -> None:
+        sent.append(message)
 
-    async def run():
-        async def send(message):
-            sent.append(message)
-
-        headers = [(b"host", b"evil.example")]
-        await Guard(None, PORT)({"type": "websocket", "headers": headers, "path": "/"}, None, send)
-
-    asyncio.run(run())
-    assert sent[0]["type"] == "websocket.close"
-    assert sent[0]["code"] == 1008
+    scope: Any = {"type": "websocket", "headers": [(b"host", b"evil.example")], "path": "/"}
+    nothing: Any = None
+    asyncio.run(Guard(nothing, PORT)(scope, nothing, send))
+    assert (sent[0]["type"], sent[0]["code"]) == ("websocket.close", 1008)
 
 
-@pytest.mark.parametrize(
-    "headers", [[("Host", "127.0.0.1:8000"), ("Host", "127.0.0.1:8000")], [("Origin", ORIGIN), ("Origin", ORIGIN)]]
-)
-def test_repeated_headers_are_malformed(server, headers):
-    assert server.client.get("/healthz", headers=headers).status_code == 400
+def test_what_our_server_does_not_speak_ends_the_stream_quietly(server: House) -> None:
+    with server.stream() as socket:
+        socket.send_bytes(b"binary is not spoken here")
+        with pytest.raises(WebSocketDisconnect):
+            until(socket, "the end")
 
 
-def test_curl_may_post_json_without_an_origin(server):
-    assert server.post(b'{"type": "pause"}')[0] == 200
+CHANGES: list[tuple[dict[str, Any], int]] = [
+    ({}, 200),  # curl may post JSON without an origin
+    ({"Content-Type": "application/json; charset=utf-8"}, 200),
+    *(({"Origin": origin}, 403) for origin in [*FOREIGN_ORIGINS, ""]),
+    *(({"Sec-Fetch-Site": site}, 403) for site in ("cross-site", "same-site", "nonsense")),
+    *(({"Content-Type": kind}, 415)
+      for kind in ("text/plain", "application/x-www-form-urlencoded", "multipart/form-data", "", "application/jsonp")),
+    *(({"Content-Length": length.encode("latin-1")}, status)
+      for length, status in (("70000", 413), ("1" * 30, 413), ("-1", 400), ("x", 400), ("²", 400))),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("site", ["cross-site", "same-site", "nonsense"])
-def test_a_cross_site_change_is_refused(server, site):
-    assert server.post(b'{"type": "pause"}', **{"Sec-Fetch-Site": site})[0] == 403
-
-
-@pytest.mark.parametrize(
-    "kind", ["text/plain", "application/x-www-form-urlencoded", "multipart/form-data", "", "application/jsonp"]
-)
-def test_only_json_changes_something(server, kind):
-    assert server.post(b'{"type": "pause"}', **{"Content-Type": kind})[0] == 415
-
-
-def test_charset_is_allowed(server):
-    assert server.post(b'{"type": "pause"}', **{"Content-Type": "application/json; charset=utf-8"})[0] == 200
-
-
-@pytest.mark.parametrize(("length", "status"), [("70000", 413), ("1" * 30, 413), ("-1", 400), ("x", 400), ("²", 400)])
-def test_content_length_is_bounded_and_a_number(server, length, status):
-    assert server.post(b"{}", **{"Content-Length": length.encode("latin-1")})[0] == status
-
-
-def test_a_body_without_length_is_bounded_too(server):
-    parts = (b" " * 10_000 for _ in range(20))
-    answer = server.client.post("/api/commands", content=parts, headers={"Content-Type": "application/json"})
-    assert answer.status_code == 413
-
-
-@pytest.mark.parametrize("path", ["/", "/docs", "/static/main.js", "/api/state", "/nothing"])
-def test_every_answer_binds_the_browser(server, path):
-    headers = server.client.get(path).headers
-    assert "default-src 'none'" in headers["content-security-policy"]
-    assert "frame-ancestors 'self'" in headers["content-security-policy"]
-    assert "unsafe" not in headers["content-security-policy"]
-    assert headers["x-content-type-options"] == "nosniff"
-    assert headers["referrer-policy"] == "no-referrer"
-    assert "access-control-allow-origin" not in headers
-
-
-def test_get_cannot_command(server):
-    before = len(server.engine.commands)
-    assert server.client.get("/api/commands").status_code == 405
-    assert len(server.engine.commands) == before
-
-
-def routes(server) -> dict[str, set[str]]:
-    """Every path of the API, with its parameters filled in, and the methods that it takes."""
-    paths = server.client.get("/openapi.json").json()["paths"]
-    return {
-        path.replace("{number}", "0").replace("{name}", "mine"): {*map(str.upper, kinds)}
-        for path, kinds in paths.items()
-    }
-
-
-@pytest.mark.slow
-def test_whatever_is_only_looked_at_changes_nothing(monkeypatch, tmp_path):
-    monkeypatch.setenv("HOME", str(tmp_path))
-    monkeypatch.setattr(asking, "ANSWER_TIMEOUT_S", 0.01)
-    monkeypatch.setattr(brain_download, "COPY_TIMEOUT_S", 0.01)
+def test_a_change_is_json_of_a_bounded_length_from_our_own_pages(subtests: pytest.Subtests) -> None:
     with house() as server:
-        server.engine.answer = None
-        looked = [path for path, methods in routes(server).items() if "GET" in methods]
-        for path in [
-            *looked,
-            "/",
-            "/docs",
-            "/viser/",
-            "/openapi.json",
-            "/healthz?type=kidnap",
-            "/api/state?type=reset",
-        ]:
-            for method in ("GET", "HEAD"):
-                server.client.request(method, path, headers={"Content-Type": "application/json"})
-        assert len(looked) >= 4
-        assert {type(asked).__name__ for asked in server.engine.commands} <= {
-            "ReadBrain",
-            "ReadExperience",
-            "ReadWorld",
-        }
-    assert not list(tmp_path.iterdir())
+        for headers, status in CHANGES:
+            with subtests.test(msg=str(headers)):
+                assert server.post(PAUSE, **headers)[0] == status
+        parts = (b" " * 10_000 for _ in range(20))  # without a length
+        answer = server.client.post("/api/commands", content=parts, headers={"Content-Type": "application/json"})
+        assert answer.status_code == 413
+        assert server.client.get("/api/commands").status_code == 405
+        assert len(server.engine.commands) == 2
 
 
 @pytest.mark.parametrize(
@@ -201,69 +143,69 @@ def test_whatever_is_only_looked_at_changes_nothing(monkeypatch, tmp_path):
         ({"Content-Length": "9" * 12}, 413),
     ],
 )
-def test_no_way_to_change_something_is_open_to_others(server, headers, status):
-    before = len(server.engine.commands)
-    changed = 0
+def test_no_way_to_change_something_is_open_to_others(server: House, headers: dict[str, str], status: int) -> None:
+    before, tried = len(server.engine.commands), 0
     for path, methods in routes(server).items():
         for method in methods - {"GET", "HEAD"}:
             kind = "application/octet-stream" if path == "/api/brain" else "application/json"
             answer = server.client.request(method, path, content=b"{}", headers={"Content-Type": kind} | headers)
             assert answer.status_code == status, (method, path)
-            changed += 1
-    assert changed >= 4
+            tried += 1
+    assert tried >= 4
     assert len(server.engine.commands) == before
 
 
-def test_the_page_never_makes_markup_of_text():
+@pytest.mark.slow
+def test_whatever_is_only_looked_at_changes_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setattr(asking, "ANSWER_TIMEOUT_S", 0.01)
+    monkeypatch.setattr(brain_download, "COPY_TIMEOUT_S", 0.01)
+    others = ["/", "/docs", "/viser/", "/openapi.json", "/healthz?type=kidnap", "/api/state?type=reset"]
+    with house() as server:
+        server.engine.answer = None
+        looked = [path for path, methods in routes(server).items() if "GET" in methods]
+        for path, method in product([*looked, *others], ("GET", "HEAD")):
+            server.client.request(method, path, headers={"Content-Type": "application/json"})
+        assert len(looked) >= 4
+        asked = {type(command).__name__ for command in server.engine.commands}
+        assert asked <= {"ReadBrain", "ReadExperience", "ReadWorld"}
+    assert not list(tmp_path.iterdir())
+
+
+def test_every_answer_binds_the_browser(server: House, subtests: pytest.Subtests) -> None:
+    for path in ("/", "/docs", "/static/main.js", "/api/state", "/nothing"):
+        with subtests.test(path=path):
+            headers = server.client.get(path).headers
+            policy = headers["content-security-policy"]
+            assert "default-src 'none'" in policy
+            assert "frame-ancestors 'self'" in policy
+            assert "unsafe" not in policy
+            assert (headers["x-content-type-options"], headers["referrer-policy"]) == ("nosniff", "no-referrer")
+            assert "access-control-allow-origin" not in headers
+
+
+def test_the_page_never_makes_markup_of_text() -> None:
     wrong = re.compile(
         r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(|new Function|srcdoc|javascript:"
     )
-    for file in STATIC.rglob("*.*"):
-        if "vendor" in file.parts:
-            continue
-        assert not wrong.search(file.read_text()), file.name
+    files = [file for file in STATIC.rglob("*.*") if "vendor" not in file.parts]
+    assert [file.name for file in files if wrong.search(file.read_text())] == []
 
 
-def test_on_port_80_browsers_leave_the_port_out():
-    assert "127.0.0.1" in own_hosts(80)
-    assert "127.0.0.1" not in own_hosts(81)
-
-
-def test_drive_60_a_second_and_others_10(monkeypatch):
+def test_drive_60_a_second_and_others_10_and_nothing_is_saved_up(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [0.0]
-    monkeypatch.setattr(security.time, "monotonic", lambda: now[0])
-    limits = Limits()
-    assert sum(limits.refusal("drive") is None for _ in range(100)) == 60
-    assert sum(limits.refusal("pause") is None for _ in range(100)) == 10
+    monkeypatch.setattr(security, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    limits, bucket = Limits(), Bucket(10)
+
+    def passed() -> list[int]:
+        return [sum(limits.refusal(kind) is None for _ in range(100)) for kind in ("drive", "pause")]
+
+    assert passed() == [60, 10]
     assert "60 drive" in str(limits.refusal("drive"))
     assert "10 commands" in str(limits.refusal("pause"))
     now[0] = 0.5
-    assert sum(limits.refusal("drive") is None for _ in range(100)) == 30
-    assert sum(limits.refusal("pause") is None for _ in range(100)) == 5
-
-
-def test_a_bucket_does_not_save_up(monkeypatch):
-    now = [0.0]
-    monkeypatch.setattr(security.time, "monotonic", lambda: now[0])
-    bucket = Bucket(10)
+    assert passed() == [30, 5]
     now[0] = 100.0
     assert sum(bucket.take() for _ in range(50)) == 10
-
-
-def test_too_many_commands_get_429():
     with house() as crowded:
-        statuses = [crowded.post(b'{"type": "pause"}')[0] for _ in range(14)]
-        assert statuses.count(200) < 14
-        assert statuses[-1] == 429
-
-
-def test_lifespan_passes_the_guard_and_disconnects_are_quiet(server):
-    with server.stream() as socket:
-        socket.send_bytes(b"binary is not spoken here")
-        with pytest.raises(WebSocketDisconnect):
-            drain(socket)
-
-
-def drain(socket):
-    while True:
-        socket.receive_text()
+        assert [crowded.post(PAUSE)[0] for _ in range(14)] == 10 * [200] + 4 * [429]

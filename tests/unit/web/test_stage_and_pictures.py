@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -24,27 +23,15 @@ PLAIN = judged(830, nodes=200, movements=tried)  # 3 s after a snap, so that all
 REPORTS = fake_reports()
 
 
-@pytest.fixture(scope="module")
-def stage() -> Iterator[Bench]:
-    bench = Bench()
-    yield bench
-    bench.viewer.stop()
+def text_of(props: dict[str, Any]) -> str:
+    return repr({key: value.tobytes() if isinstance(value, np.ndarray) else value for key, value in props.items()})
 
 
 def on_stage(bench: Bench, snapshot: Snapshot) -> dict[PlateName, dict[str, str]]:
     bench.show(snapshot, 100.0)
     bench.settle()
     nodes = bench.nodes()
-    return {
-        plate: {
-            name: repr(
-                {key: value.tobytes() if isinstance(value, np.ndarray) else value for key, value in props.items()}
-            )
-            for name, props in nodes.items()
-            if name.startswith(f"{root}/") and bench.visible(name, nodes)
-        }
-        for plate, root in ROOTS.items()
-    }
+    return {plate: {name: text_of(nodes[name]) for name in bench.shown(f"{root}/")} for plate, root in ROOTS.items()}
 
 
 def in_pictures(bench: Bench, snapshot: Snapshot) -> dict[PlateName, str]:
@@ -57,18 +44,18 @@ def differing(one: dict[PlateName, Any], other: dict[PlateName, Any]) -> set[Pla
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_switch_changes_the_pictures_of_the_plates_that_it_changes(stage: Bench, name: Name) -> None:
-    stage.switch(name, True)
-    lit = on_stage(stage, PLAIN), in_pictures(stage, PLAIN)
-    stage.switch(name, False)
-    dark = on_stage(stage, PLAIN), in_pictures(stage, PLAIN)
-    changed = differing(lit[0], dark[0])
-    assert differing(lit[1], dark[1]) == changed
+def test_a_switch_changes_the_pictures_of_the_plates_that_it_changes(shared: Bench, name: Name) -> None:
+    seen = []
+    for on in (False, True):
+        shared.switch(name, on)
+        seen.append((on_stage(shared, PLAIN), in_pictures(shared, PLAIN)))
+    changed, in_picture = (differing(dark, lit) for dark, lit in zip(*seen, strict=True))
+    assert in_picture == changed
     assert bool(changed) == (name != "click_inspects")
-    stage.switch(name, True)
 
 
-CELLS = PLAIN.pose_cells
+CELLS, LIVING, KNOWN = PLAIN.pose_cells, replace(PLAIN, living=living()), crowded()
+BEFORE = {"daylight": LIVING, "a lamp that is off": LIVING, "no known places": KNOWN}  # PLAIN for all others
 MOMENTS: dict[str, tuple[Snapshot, set[PlateName]]] = {
     "an experience": (replace(PLAIN, inspected=REPORTS["experience"]), {"pose", "map"}),
     "a view": (replace(PLAIN, inspected=REPORTS["view"]), {"pose", "map"}),
@@ -93,49 +80,38 @@ MOMENTS: dict[str, tuple[Snapshot, set[PlateName]]] = {
         replace(PLAIN, belief=Belief(0.2, (Hypothesis(1.0, 1.0, 0.0, 0.3, (9.0, 11.0, 0.5)),), 0, 0, 0, 0, 0, 0)),
         {"pose", "map"},
     ),
+    "daylight": (replace(LIVING, living=living(daylight=0.4)), {"office"}),
+    "a lamp that is off": (
+        replace(LIVING, living=living(lamps=np.array([(5.0, 4.0, 3.0, 0.0)], np.float32))), {"office"}
+    ),
+    "no known places": (replace(KNOWN, places=()), {"map", "office"}),
     "a lesson's marks": (replace(PLAIN, lesson=taught().lesson), {"office", "pose", "map"}),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("what", MOMENTS)
-def test_what_changes_a_plate_changes_its_picture_and_no_other(stage: Bench, what: str) -> None:
+def test_what_changes_a_plate_changes_its_picture_and_no_other(shared: Bench, what: str) -> None:
     other, plates = MOMENTS[what]
     for found in (on_stage, in_pictures):
-        assert differing(found(stage, PLAIN), found(stage, other)) == plates
+        assert differing(found(shared, BEFORE.get(what, PLAIN)), found(shared, other)) == plates
 
 
-@pytest.mark.parametrize(
-    ("one", "other"),
-    [(living(), living(daylight=0.4)), (living(), living(lamps=np.array([(5.0, 4.0, 3.0, 0.0)], np.float32)))],
-)
-def test_light_is_seen_on_both(stage: Bench, one: Any, other: Any) -> None:
-    for found in (on_stage, in_pictures):
-        first, second = (found(stage, replace(PLAIN, living=layer)) for layer in (one, other))
-        assert differing(first, second) == {"office"}
-
-
-def test_of_two_brains_neither_has_what_is_laid_over_one(stage: Bench) -> None:
+def test_of_two_brains_neither_has_what_is_laid_over_one(shared: Bench) -> None:
     """And what is inspected is the first one's."""
     two = two_brains()
     bare = replace(two, occupancy=None, goal_memory=None)
     for found in (on_stage, in_pictures):
-        assert not differing(found(stage, two), found(stage, bare)) - {"pose"}  # there it may lie below the cells
+        assert not differing(found(shared, two), found(shared, bare)) - {"pose"}  # there it may lie below the cells
     told = replace(two, inspected=REPORTS["experience"])
     for plate in ("pose_2", "map_2"):
         assert vector_picture(plate, told, "dark", NAMES) == vector_picture(plate, two, "dark", NAMES)
     assert vector_picture("map", told, "dark", NAMES) != vector_picture("map", two, "dark", NAMES)
 
 
-def test_names_of_known_places_are_on_both(stage: Bench) -> None:
-    known = crowded()
-    for found in (on_stage, in_pictures):
-        assert "map" in differing(found(stage, known), found(stage, replace(known, places=())))
-
-
-def test_the_map_of_a_new_run_lies_the_same_whatever_was_shown_before(stage: Bench) -> None:
+def test_the_map_of_a_new_run_lies_the_same_whatever_was_shown_before(shared: Bench) -> None:
     seen = []
     for run, size in enumerate((0.9, 1.1), start=900):
         layer = replace(PLAIN.map, xy=PLAIN.map.xy * np.float32(size))
-        on_stage(stage, replace(PLAIN, map=layer, run=run))
-        seen.append(on_stage(stage, replace(PLAIN, run=run + 10))["map"]["/map/nodes_0"])
+        on_stage(shared, replace(PLAIN, map=layer, run=run))
+        seen.append(on_stage(shared, replace(PLAIN, run=run + 10))["map"]["/map/nodes_0"])
     assert seen[0] == seen[1]

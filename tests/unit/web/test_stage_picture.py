@@ -6,6 +6,7 @@ import math
 import re
 import xml.etree.ElementTree as ET
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from tests.unit.web.crowded import two_brains
 from tests.unit.web.doubles import house
 from web.messages import GoalMemoryLayer, OccupancyLayer, OccupancyPicture
 from web.switches import NAMES
-from web.viewer.camera_views import CELLS_AT, MAP_AT, OFFICE_AT, VIEWS, camera_for, seen_by, stands
+from web.viewer.camera_views import CELLS_AT, MAP_AT, OFFICE_AT, VIEWS, Camera, camera_for, seen_by, stands
 from web.viewer.fits.cell_fit import SIDE
 from web.viewer.fits.map_fit import MapFit, refit
 from web.viewer.fits.office_fit import OfficeFit
@@ -25,97 +26,93 @@ from web.viewer.primitives.palette import BRAINS, DARK, LIGHT, Rgb, mix
 pytestmark = pytest.mark.slow
 
 
-@pytest.mark.parametrize("view", VIEWS)
-@pytest.mark.parametrize("aspect", [0.46, 1.63])
-def test_it_is_a_whole_picture_of_what_stands_there(view: str, aspect: float) -> None:
-    root = ET.fromstring(picture(fake_snapshot(430), view, aspect, DARK, NAMES))  # type: ignore[arg-type]
-    drawn = [part for part in root.iter() if part.tag.endswith(("path", "circle"))]
-    assert len(drawn) > 200
-    assert all(math.isfinite(float(n)) for part in drawn for n in re.findall(r"-?[\d.]+", part.get("d", "0")))
+ASPECT = 1.63
+PLAIN = fake_snapshot(430)
 
 
-def test_the_robot_is_where_the_camera_sees_it() -> None:
-    """Beside the plain pinhole: the circle in the robot's colour lies where the robot's place is projected to."""
-    snapshot, aspect = fake_snapshot(430), 1.63
-    camera = camera_for("all", aspect)
-    world, truth = snapshot.world, snapshot.truth
-    assert world is not None
-    assert truth is not None
-    at = OfficeFit(world.bounds).to_plate(np.array([[truth.x, truth.y]]))[0] + OFFICE_AT
-    offset = np.array([*at, 0.2]) - camera.position
-    ahead = camera.look_at - camera.position
-    ahead /= np.linalg.norm(ahead)
-    right = np.cross(ahead, (0.0, 0.0, 1.0))
-    right /= np.linalg.norm(right)
-    zoom = UNITS / 2 / math.tan(camera.fov_rad / 2) / (offset @ ahead)
-    wanted = offset @ right * zoom, -(offset @ np.cross(right, ahead)) * zoom
-    colour = "#" + "".join(f"{part:02x}" for part in DARK.robot)
-    root = ET.fromstring(picture(snapshot, "all", aspect, DARK, NAMES))
-    (robot,) = [part for part in root.iter() if part.tag.endswith("circle") and part.get("fill") == colour]
-    assert float(robot.get("cx", "nan")) == pytest.approx(wanted[0], abs=0.2)
-    assert float(robot.get("cy", "nan")) == pytest.approx(wanted[1], abs=0.2)
+def zoomed(camera: Camera) -> float:
+    """Units of the picture for one in the camera's plane of sight."""
+    return UNITS / 2 / math.tan(camera.fov_rad / 2) / float(np.linalg.norm(camera.look_at - camera.position))
 
 
 def of_colour(svg: str, colour: Rgb) -> np.ndarray:
     """(n, 2) all corners of what has this colour."""
-    ink = "#" + "".join(f"{part:02x}" for part in colour)
+    ink = f"#{bytes(colour).hex()}"
     ways = [part.get("d", "") for part in ET.fromstring(svg).iter() if ink in (part.get("fill"), part.get("stroke"))]
     return np.array(re.findall(r"-?\d+\.\d+", " ".join(ways)), float).reshape(-1, 2)
 
 
+def test_it_is_a_whole_picture_of_what_stands_there(subtests: pytest.Subtests) -> None:
+    for view, aspect in product(VIEWS, (0.46, ASPECT)):
+        with subtests.test(view=view, aspect=aspect):
+            root = ET.fromstring(picture(PLAIN, view, aspect, DARK, NAMES))
+            drawn = [part for part in root.iter() if part.tag.endswith(("path", "circle"))]
+            assert len(drawn) > 200
+            assert all(math.isfinite(float(n)) for part in drawn for n in re.findall(r"-?[\d.]+", part.get("d", "0")))
+
+
+def test_the_robot_is_where_the_camera_sees_it() -> None:
+    """Beside the plain pinhole: the circle in the robot's colour lies where the robot's place is projected to."""
+    camera, world, truth = camera_for("all", ASPECT), PLAIN.world, PLAIN.truth
+    assert world is not None
+    assert truth is not None
+    at = OfficeFit(world.bounds).to_plate(np.array([[truth.x, truth.y]]))[0] + OFFICE_AT
+    offset, ahead = np.array([*at, 0.2]) - camera.position, camera.look_at - camera.position
+    ahead /= np.linalg.norm(ahead)
+    right = np.cross(ahead, (0.0, 0.0, 1.0))
+    right /= np.linalg.norm(right)
+    zoom = UNITS / 2 / math.tan(camera.fov_rad / 2) / (offset @ ahead)
+    root = ET.fromstring(picture(PLAIN, "all", ASPECT, DARK, NAMES))
+    (robot,) = [c for c in root.iter() if c.tag.endswith("circle") and c.get("fill") == f"#{bytes(DARK.robot).hex()}"]
+    wanted = offset @ right * zoom, -(offset @ np.cross(right, ahead)) * zoom
+    assert [float(robot.get(name, "nan")) for name in ("cx", "cy")] == pytest.approx(wanted, abs=0.2)
+
+
 def test_what_lies_on_the_floors_is_where_the_plates_have_it() -> None:
     """A cell in which something stands, and one from which a way is known; nothing while its switch is off."""
-    plain, camera = fake_snapshot(430), camera_for("all", 1.63)
+    camera = camera_for("all", ASPECT)
     probability = np.full((6, 8), 0.5, np.float32)
     probability[4, 2] = 0.95
     met = OccupancyPicture(probability, (0.5, -0.5), 0.25)
     seconds = np.full((64, 64), np.inf, np.float32)
     seconds[20, 50] = 0.0
     snapshot = replace(
-        plain, occupancy=OccupancyLayer(np.full((64, 64), 0.5, np.float32), lambda: met), goal=None,
+        PLAIN, occupancy=OccupancyLayer(np.full((64, 64), 0.5, np.float32), lambda: met), goal=None,
         goal_memory=GoalMemoryLayer(9, None, seconds, None),
     )  # fmt: skip
-    svg, bare = (picture(snapshot, "all", 1.63, DARK, on) for on in (NAMES, ()))
+    svg, bare = (picture(snapshot, "all", ASPECT, DARK, on) for on in (NAMES, ()))
     unit = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
     cell = (np.array([2, 4]) + unit - 0.5) * 0.25 + (0.5, -0.5)
     fit = refit(MapFit(), snapshot.map.extent_xy, snapshot.map_turn_rad)
     known = (np.array([50, 20]) + unit) / 64 * SIDE - SIDE / 2 + CELLS_AT
     near = tuple(DARK.times(np.zeros(1, np.float32), 1.0)[0].tolist())
-    zoom = UNITS / 2 / math.tan(camera.fov_rad / 2) / np.linalg.norm(camera.look_at - camera.position)
     for colour, at in (
         (mix(DARK.floor, DARK.occupied, 0.9), fit.to_plate(cell) + MAP_AT),
         (mix(DARK.floor, near, 0.85), known),
     ):
-        seen = seen_by(camera, np.column_stack([at, np.full(4, -0.02)]))[0] * (zoom, -zoom)
+        seen = seen_by(camera, np.column_stack([at, np.full(4, -0.02)]))[0] * zoomed(camera) * (1, -1)
         assert of_colour(svg, colour) == pytest.approx(seen, abs=0.11)
         assert not len(of_colour(bare, colour))
 
 
 def test_of_two_brains_each_stands_where_its_plates_do() -> None:
     """The arrows of both, on their own maps by their own fits, and the rims in their colours."""
-    snapshot, aspect = two_brains(), 1.63
-    beside = snapshot.beside
-    assert beside is not None
-    svg, camera = picture(snapshot, "all", aspect, DARK, NAMES), camera_for("all", aspect, two=True)
-    zoom = UNITS / 2 / math.tan(camera.fov_rad / 2) / np.linalg.norm(camera.look_at - camera.position)
-    wanted: list[np.ndarray] = []
-    for layer, turn, pose, at in (
-        (snapshot.map, snapshot.map_turn_rad, snapshot.estimate, stands(office=True, two=True).maps[0]),
-        (beside.map, beside.map_turn_rad, beside.estimate, stands(office=True, two=True).maps[1]),
-    ):
-        fit = refit(MapFit(), layer.extent_xy, turn)
+    snapshot = two_brains()
+    assert snapshot.beside is not None
+    svg, camera = picture(snapshot, "all", ASPECT, DARK, NAMES), camera_for("all", ASPECT, two=True)
+    arrows = of_colour(svg, DARK.robot)
+    for brain, at in zip((snapshot, snapshot.beside), stands(office=True, two=True).maps, strict=True):
+        fit, pose = refit(MapFit(), brain.map.extent_xy, brain.map_turn_rad), brain.estimate
         c, s = math.cos(pose.heading_rad + fit.turn_rad), math.sin(pose.heading_rad + fit.turn_rad)
         tip = fit.to_plate(np.array([[pose.x, pose.y]])) + at + 0.5 * np.array([c, s])
-        wanted.append(seen_by(camera, np.column_stack([tip, [0.22]]))[0][0] * (zoom, -zoom))
-    arrows = of_colour(svg, DARK.robot)
-    for tip in wanted:
-        assert np.hypot(*(arrows - tip).T).min() < 0.2
+        seen = seen_by(camera, np.column_stack([tip, [0.22]]))[0][0] * zoomed(camera) * (1, -1)
+        assert np.hypot(*(arrows - seen).T).min() < 0.2
     for colour in BRAINS[DARK.dark]:
         assert svg.count(f'stroke="#{bytes(colour).hex()}"') == 2
 
 
 def test_what_is_inspected_is_ringed() -> None:
-    plain = replace(fake_snapshot(430), goal=None)
+    plain = replace(PLAIN, goal=None)
     bare = len(of_colour(picture(plain, "map", 1.5, DARK, NAMES), DARK.text))
     for report, rings, links in (("experience", 1, 2), ("view", 2, 0), ("cell", 2, 0), ("why", 2, 0)):
         told = picture(replace(plain, inspected=fake_reports()[report]), "map", 1.5, DARK, NAMES)
@@ -123,12 +120,10 @@ def test_what_is_inspected_is_ringed() -> None:
 
 
 def test_without_office_or_map_it_is_there_all_the_same() -> None:
-    plain = fake_snapshot(430)
-    assert "<circle" in picture(replace(plain, world=None, truth=None), "all", 1.5, LIGHT, NAMES)
-    few = replace(plain.map, ids=plain.map.ids[:0], xy=plain.map.xy[:0], links=plain.map.links[:0])
-    assert "<path" in picture(
-        replace(plain, map=few, times=replace(plain.times, seconds=plain.times.seconds[:0])), "map", 1.5, DARK, NAMES
-    )
+    assert "<circle" in picture(replace(PLAIN, world=None, truth=None), "all", 1.5, LIGHT, NAMES)
+    few = replace(PLAIN.map, ids=PLAIN.map.ids[:0], xy=PLAIN.map.xy[:0], links=PLAIN.map.links[:0])
+    times = replace(PLAIN.times, seconds=PLAIN.times.seconds[:0])
+    assert "<path" in picture(replace(PLAIN, map=few, times=times), "map", 1.5, DARK, NAMES)
 
 
 def test_it_is_served_and_before_the_first_tick_there_is_none() -> None:

@@ -4,23 +4,27 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import orjson
 import pytest
 
 from tests.fake_snapshots import fake_reports, fake_snapshot, fake_walk
-from tests.unit.web.test_office_plate import living
+from tests.unit.web.office_moments import living
+from web.http.places import places_of
 from web.http.state import StateText, page_fields, state, to_json
+from web.messages import KnownPlace, Snapshot
+
+SNAPSHOT = fake_snapshot(500)
 
 
-@pytest.fixture
-def snapshot():
-    return fake_snapshot(500)
+def read(snapshot: Snapshot) -> dict[str, Any]:
+    return orjson.loads(to_json(state(snapshot)))
 
 
-def test_has_the_fields_of_the_contract_and_no_others(snapshot):
-    fields = orjson.loads(to_json(state(snapshot)))
+def test_has_the_fields_of_the_contract_and_no_others_with_the_snapshot_s_values() -> None:
+    fields = read(SNAPSHOT)
     assert list(fields) == [
         "tick", "time_s", "mode", "running", "speed", "world", "seed", "robot", "estimate", "pose_cells", "views",
         "experiences", "links", "relocalisations", "goal", "error_m", "living", "trial",
@@ -31,67 +35,62 @@ def test_has_the_fields_of_the_contract_and_no_others(snapshot):
     assert list(fields["pose_cells"]["packets"][0]) == ["x", "y", "heading_rad", "mass"]
     assert list(fields["goal"]) == ["experience", "x", "y", "state", "eta_s", "remaining_m"]
     assert list(fields["error_m"]) == ["map", "odometry"]
+    assert SNAPSHOT.world is not None
+    assert SNAPSHOT.truth is not None
+    told = [fields[name] for name in ("tick", "mode", "running", "world")]
+    assert told == [SNAPSHOT.tick, SNAPSHOT.mode, SNAPSHOT.running, SNAPSHOT.world.name]
+    assert fields["robot"]["x"] == pytest.approx(SNAPSHOT.truth.x)
+    assert fields["estimate"]["y"] == pytest.approx(SNAPSHOT.estimate.y)
+    assert fields["pose_cells"]["shape"] == list(SNAPSHOT.pose_cells.shape)
 
 
-def test_holds_the_snapshot_s_values(snapshot):
-    fields = orjson.loads(to_json(state(snapshot)))
-    assert (fields["tick"], fields["mode"], fields["running"]) == (snapshot.tick, snapshot.mode, snapshot.running)
-    assert fields["robot"]["x"] == pytest.approx(snapshot.truth.x)
-    assert fields["estimate"]["y"] == pytest.approx(snapshot.estimate.y)
-    assert fields["world"] == snapshot.world.name
-    assert fields["pose_cells"]["shape"] == list(snapshot.pose_cells.shape)
+def test_what_there_is_not_or_is_not_finite_is_null_and_as_fast_as_possible_is_0_as_in_the_command() -> None:
+    fields = read(replace(SNAPSHOT, goal=None, speed=math.inf))
+    assert (fields["goal"], fields["speed"]) == (None, 0)
+    told = [page_fields(replace(SNAPSHOT, goal=goal))["told"]["goal"] for goal in (None, SNAPSHOT.goal)]
+    assert [one is None for one in told] == [True, False]
+    for value in (math.nan, math.inf, -math.inf):
+        assert read(replace(SNAPSHOT, error_map_m=value))["error_m"]["map"] is None
 
 
-def test_without_a_goal_it_is_null(snapshot):
-    assert state(replace(snapshot, goal=None))["goal"] is None
-
-
-def test_as_fast_as_possible_is_speed_0_as_in_the_command(snapshot):
-    assert state(replace(snapshot, speed=math.inf))["speed"] == 0
-
-
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_what_is_not_finite_is_null(snapshot, value):
-    fields = orjson.loads(to_json(state(replace(snapshot, error_map_m=value))))
-    assert fields["error_m"]["map"] is None
-
-
-def test_map_is_the_whole_state_and_the_nodes(snapshot):
+def test_each_text_is_made_once_per_snapshot_and_the_full_one_has_the_nodes() -> None:
     text = StateText()
-    full = orjson.loads(text.full(snapshot))
+    light, full = text.light(SNAPSHOT), orjson.loads(text.full(SNAPSHOT))
     layer = full.pop("map")
-    assert layer["ids"] == snapshot.map.ids.tolist()
-    np.testing.assert_allclose(layer["xy"], snapshot.map.xy, rtol=1e-6)
-    assert full == orjson.loads(text.light(snapshot))
+    assert full == orjson.loads(light)
+    assert layer["ids"] == SNAPSHOT.map.ids.tolist()
+    np.testing.assert_allclose(layer["xy"], SNAPSHOT.map.xy, rtol=1e-6)
+    assert text.light(SNAPSHOT) is light
+    assert text.page(SNAPSHOT) is text.page(SNAPSHOT)
+    assert text.light(replace(SNAPSHOT, tick=501)) != light
+    assert text.full(SNAPSHOT) == text.full(SNAPSHOT)
 
 
-def test_each_text_is_made_once_per_snapshot(snapshot):
-    text = StateText()
-    assert text.light(snapshot) is text.light(snapshot)
-    assert text.page(snapshot) is text.page(snapshot)
-    before = text.light(snapshot)
-    assert text.light(replace(snapshot, tick=501)) != before
-    assert text.full(snapshot) == text.full(snapshot)
-
-
-def test_the_page_is_told_where_people_are_and_which_boxes(snapshot):
-    assert page_fields(replace(snapshot, living=None))["moving"] is None
-    moving = orjson.loads(to_json(page_fields(replace(snapshot, living=living()))))["moving"]
+def test_the_page_is_told_where_people_are_and_which_boxes() -> None:
+    assert page_fields(replace(SNAPSHOT, living=None))["moving"] is None
+    moving = orjson.loads(to_json(page_fields(replace(SNAPSHOT, living=living()))))["moving"]
     assert moving == {"walkers": {"ann": [1.0, 1.0, 0.0], "bob": [6.0, 1.0, 1.0]}, "boxes": ["crate"]}
 
 
-def test_the_page_is_told_of_the_walk_and_of_what_is_inspected(snapshot):
-    plain = page_fields(snapshot)
-    assert plain["walk"] is None
-    assert plain["inspected"] is None
-    walking = page_fields(replace(snapshot, walk=fake_walk(2)))["walk"]
+def test_the_page_is_told_of_the_walk_and_of_what_is_inspected() -> None:
+    plain = page_fields(SNAPSHOT)
+    assert (plain["walk"], plain["inspected"]) == (None, None)
+    walking = page_fields(replace(SNAPSHOT, walk=fake_walk(2)))["walk"]
     assert walking == {"at": 3, "of": 3, "title": "Correction", "words": "This is what the correction did."}
-    names = {
-        kind: page_fields(replace(snapshot, inspected=report))["inspected"] for kind, report in fake_reports().items()
+    told = {
+        kind: page_fields(replace(SNAPSHOT, inspected=report))["inspected"] for kind, report in fake_reports().items()
     }
-    assert names == {
-        "experience": "experience #12",
-        "view": "view #7",
-        "cell": "pose cells at 31, 22",
-        "why": "snap at 63.2 s",
-    }
+    assert told == {
+        "experience": "experience #12", "view": "view #7", "cell": "pose cells at 31, 22", "why": "snap at 63.2 s",
+    }  # fmt: skip
+
+
+def test_a_place_of_the_office_is_an_experience_near_it_or_there_is_a_reason() -> None:
+    """For who does not see the map."""
+    x, y = SNAPSHOT.map.xy[3].tolist()
+    known, unknown = KnownPlace("kitchen", 9.0, 1.0, (x, y)), KnownPlace("library", 1.0, 7.0, None)
+    reason = "the robot has not been near it yet"
+    assert places_of(replace(SNAPSHOT, places=(known, unknown)))["named"] == [
+        {"name": "kitchen", "experience": int(SNAPSHOT.map.ids[3]), "x": x, "y": y, "why": None},
+        {"name": "library", "experience": None, "x": None, "y": None, "why": reason},
+    ]

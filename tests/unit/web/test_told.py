@@ -17,13 +17,9 @@ FLAGS = ("lost", "running", "past", "faulty", "over", "played_ahead")
 
 
 def a_goal(
-    state: GoalState,
-    eta_s: float | None = 61.4,
-    remaining_m: float | None = 12.34,
-    *,
-    lost: bool = False,
+    state: GoalState, eta_s: float | None = 61.4, remaining_m: float | None = 12.34, *, lost: bool = False,
     followed: bool = True,
-) -> Goal:
+) -> Goal:  # fmt: skip
     nothing: Any = np.zeros((0, 2), np.float32)
     return Goal(7, 1.0, 2.0, state, eta_s, remaining_m, nothing, nothing[:, 0], lost=lost, followed=followed)
 
@@ -59,20 +55,28 @@ def test_each_meaning_has_words_of_its_own() -> None:
     assert len(words) == len(meanings) == len(STATES) + 4
 
 
-def test_what_counts_most_is_said() -> None:
-    lost: dict[str, Any] = {"lost": True, "goal": "tracking", "mode": "goal"}
-    assert robot_told(Facts(**lost, past=True, faulty=True)).words == "the past, played"
-    assert robot_told(Facts(**lost, faulty=True)).words == "in a long tick"
-    assert robot_told(Facts(**lost, faulty=True, running=False)).words == "stopped by a fault"
-    assert robot_told(Facts(**lost, running=False)).words == "paused; lost"
-    assert robot_told(Facts(odds=40.4, running=False)).words == "paused; believes it is here, 40:1"
-    assert robot_told(Facts(running=False)).words == "paused"
-    assert robot_told(Facts(**lost, running=False, played_ahead=True)).words == "playing up to a moment"
-    assert robot_told(Facts(**lost, packets=2)).words == "lost: 2 packets"
-    assert robot_told(Facts(mode="manual", goal="tracking")).words == "driving by hand"
-    assert robot_told(Facts(mode="recorded")).words == "playing a recording"
-    assert robot_told(Facts(mode="recorded", running=False, over=True)).words == "the recording has ended"
-    assert robot_told(Facts(goal="tracking")).words == "exploring"
+LOST: dict[str, Any] = {"lost": True, "goal": "tracking", "mode": "goal"}
+
+
+@pytest.mark.parametrize(
+    ("facts", "words"),
+    [
+        (Facts(**LOST, past=True, faulty=True), "the past, played"),
+        (Facts(**LOST, faulty=True), "in a long tick"),
+        (Facts(**LOST, faulty=True, running=False), "stopped by a fault"),
+        (Facts(**LOST, running=False), "paused; lost"),
+        (Facts(odds=40.4, running=False), "paused; believes it is here, 40:1"),
+        (Facts(running=False), "paused"),
+        (Facts(**LOST, running=False, played_ahead=True), "playing up to a moment"),
+        (Facts(**LOST, packets=2), "lost: 2 packets"),
+        (Facts(mode="manual", goal="tracking"), "driving by hand"),
+        (Facts(mode="recorded"), "playing a recording"),
+        (Facts(mode="recorded", running=False, over=True), "the recording has ended"),
+        (Facts(goal="tracking"), "exploring"),
+    ],
+)
+def test_what_counts_most_is_said(facts: Facts, words: str) -> None:
+    assert robot_told(facts).words == words
 
 
 @pytest.mark.parametrize(

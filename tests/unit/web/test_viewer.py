@@ -4,60 +4,42 @@ from __future__ import annotations
 
 import copy
 import re
-import threading
 from collections import Counter
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from viser import _messages
 
 from tests.fake_snapshots import fake_snapshot
-from tests.patience import until
-from tests.unit.web.bench import Bench, Engine
-from web.latest import Latest
+from tests.unit.web.bench import Bench
 from web.messages import RecordingView, Snapshot
-from web.switches import Switches
 from web.throttle import Throttle
-from web.viewer import Viewer
+
+PLAIN = fake_snapshot(430)
 
 
-@pytest.fixture
-def bench(shared: Bench) -> Bench:
-    shared.show(fake_snapshot(430), 10.0)
-    shared.settle()
-    return shared
+def backlog(stage: Bench) -> dict[Any, Any]:
+    """What a browser that comes now would be sent."""
+    return stage.viewer.server._websock_server._broadcast_buffer.message_from_id
 
 
-# ---------------------------------------------------------------- life
-
-
-def test_it_starts_and_stops_without_leaving_threads() -> None:
-    before = set(threading.enumerate())
-    latest: Latest[Snapshot] = Latest()
-    viewer = Viewer(latest, Engine().submit, Switches(), theme="light")
-    viewer.start()
-    latest.put(fake_snapshot(3))
-    viewer.stop()
-    viewer.stop()
-    until(lambda: not set(threading.enumerate()) - before)
-
-
-def test_only_the_loopback_and_no_way_to_ask_for_a_tunnel(bench: Bench) -> None:
-    server = bench.viewer.server
+def test_only_the_loopback_and_nothing_of_viser_s_own_but_the_scene(stage: Bench) -> None:
+    """No way to ask for a tunnel, and no element of viser's panel, since the page has its own."""
+    server = stage.viewer.server
     assert server.get_host() == "127.0.0.1"
-    assert bench.viewer.port == server.get_port() > 0
-    handlers = server._websock_server._incoming_handlers
-    assert _messages.ShareUrlRequest not in handlers
-    assert _messages.ShareUrlDisconnect not in handlers
-    assert _messages.GuiUpdateMessage not in handlers  # there is nothing of viser's own to be turned
+    assert stage.viewer.port == server.get_port() > 0
+    unheard = {_messages.ShareUrlRequest, _messages.ShareUrlDisconnect, _messages.GuiUpdateMessage}
+    assert not unheard & server._websock_server._incoming_handlers.keys()
+    assert not [told for told in backlog(stage).values() if isinstance(told, _messages._CreateGuiComponentMessage)]
 
 
-def test_views_have_names(bench: Bench) -> None:
+def test_views_have_names(stage: Bench) -> None:
     with pytest.raises(ValueError, match=re.escape("unknown view 'moon'; expected one of: all, office, pose, map")):
-        bench.viewer.fly(None, "moon")
-    bench.viewer.fly(3, "map")
-    bench.show(None)
+        stage.viewer.fly(None, "moon")
+    stage.viewer.fly(3, "map")
+    stage.show(None)
 
 
 # ---------------------------------------------------------------- what is sent
@@ -68,114 +50,78 @@ def as_new(snapshot: Snapshot) -> Snapshot:
     return replace(copy.deepcopy(snapshot), world=snapshot.world)
 
 
-def test_nothing_but_the_scene_is_sent(bench: Bench) -> None:
-    """No element of viser's own panel, since the page has its own."""
-    bench.show(fake_snapshot(470), 10.0)
-    bench.settle()
-    told = bench.viewer.server._websock_server._broadcast_buffer.message_from_id.values()
-    assert not [message for message in told if isinstance(message, _messages._CreateGuiComponentMessage)]
+def test_what_looks_the_same_is_not_sent_again_and_unwatched_nothing_is_drawn(stage: Bench) -> None:
+    nearly = replace(PLAIN.map, xy=PLAIN.map.xy + np.float32(1e-7))  # moved by less than can be seen
+    for again in (PLAIN, as_new(PLAIN), replace(PLAIN, map=nearly)):
+        assert stage.show(again, 5.0) == Counter()
+    before = len(stage.sent)
+    stage.viewer.tick(fake_snapshot(460), stage.now_s + 10, watched=False)
+    assert len(stage.sent) == before
 
 
-def test_nothing_new_sends_nothing(bench: Bench) -> None:
-    snapshot = fake_snapshot(430)
-    bench.show(snapshot)
-    bench.settle()
-    assert bench.show(snapshot) == Counter()
+def test_only_what_has_changed_is_drawn(stage: Bench) -> None:
+    moved = replace(PLAIN.estimate, x=PLAIN.estimate.x + 0.5)
+    assert set(stage.show(replace(PLAIN, estimate=moved))) == {"/map/arrow"}
 
 
-def test_what_looks_the_same_is_not_sent_again(bench: Bench) -> None:
-    snapshot = fake_snapshot(430)
-    bench.show(snapshot, 5.0)
-    bench.settle()
-    assert bench.show(as_new(snapshot), 5.0) == Counter()
-
-
-def test_what_moves_by_less_than_can_be_seen_is_not_sent_again(bench: Bench) -> None:
-    snapshot = fake_snapshot(430)
-    bench.show(snapshot)
-    bench.settle()
-    nearly = replace(snapshot.map, xy=snapshot.map.xy + np.float32(1e-7))
-    assert bench.show(replace(snapshot, map=nearly), 5.0) == Counter()
-
-
-def test_a_link_more_sends_the_newest_lines_alone(bench: Bench) -> None:
+def test_a_link_more_sends_the_newest_lines_alone(stage: Bench) -> None:
     snapshot = fake_snapshot(450, nodes=1000)
-    bench.show(snapshot)
-    bench.settle()
-    lines = {name: len(bench.drawn(name)) for name in bench.nodes() if name.startswith("/map/links_")}
+    stage.show(snapshot)
+    stage.settle()
+    lines = {name: len(stage.drawn(name)) for name in stage.nodes() if name.startswith("/map/links_")}
     assert len(lines) > 4
     more = replace(snapshot.map, links=np.vstack([snapshot.map.links, [[996, 999]]]).astype(np.int32))
-    sent = bench.show(replace(snapshot, map=more), 5.0)
+    sent = stage.show(replace(snapshot, map=more), 5.0)
     newest = max((name for name, count in lines.items() if count), key=lambda name: int(name.rpartition("_")[2]))
     assert [name for name in sent if name.startswith("/map/links_")] == [newest]
 
 
-def test_only_what_has_changed_is_drawn(bench: Bench) -> None:
-    snapshot = fake_snapshot(440)
-    bench.show(snapshot)
-    bench.settle()
-    moved = replace(snapshot.estimate, x=snapshot.estimate.x + 0.5)
-    assert set(bench.show(replace(snapshot, estimate=moved))) == {"/map/arrow"}
-
-
-def test_without_an_office_its_plate_goes_and_the_map_stands_in_the_middle(bench: Bench) -> None:
-    snapshot, scenery = fake_snapshot(600), bench.viewer._scenery
-    played = RecordingView("walk", "MCAP", 3, 0.2, ("camera",), over=False)
-    bench.show(replace(snapshot, world=None, truth=None, living=None, movements=None, recording=played))
-    assert not scenery.office.frame.visible
-    assert scenery.map.frame.position[0] == scenery.map.origin[0] == 0.0
-    assert snapshot.world is not None
+def test_without_an_office_its_plate_goes_and_the_map_stands_in_the_middle(stage: Bench) -> None:
+    assert PLAIN.world is not None
+    played = replace(PLAIN, living=None, recording=RecordingView("walk", "MCAP", 3, 0.2, ("camera",), over=False))
     none = np.zeros(0, np.float32)
-    bare = replace(snapshot.world, walls=none.reshape(0, 4), wall_kind=(), wall_height_m=none, is_office=False)
-    bench.show(replace(snapshot, world=bare, living=None, recording=played))
-    assert scenery.office.frame.visible
-    assert not scenery.office._fan.visible
-    bench.show(fake_snapshot(601))
-    assert scenery.office._fan.visible
-    assert scenery.map.origin[0] > 0
+    bare = replace(PLAIN.world, walls=none.reshape(0, 4), wall_kind=(), wall_height_m=none, is_office=False)
+    for moment, office, view in (
+        (replace(played, world=None, truth=None, movements=None), False, False),
+        (replace(played, world=bare), True, False),
+        (PLAIN, True, True),
+    ):
+        stage.show(moment)
+        assert (stage.visible("/office"), stage.visible("/office/view")) == (office, view)
+        assert (stage.at("/map")[0] > 0) == office
+    assert stage.at("/map")[0] > 0
 
 
-def test_the_newest_wins_and_rates_are_kept(bench: Bench) -> None:
-    bench.show(fake_snapshot(500))
-    bench.settle()
-    before = len(bench.sent)
+def test_the_newest_wins_and_rates_are_kept(stage: Bench) -> None:
+    stage.show(fake_snapshot(500))
+    stage.settle()
+    before = len(stage.sent)
     for k in range(40):  # two seconds at twenty a second
-        bench.show(fake_snapshot(501 + k), 0.05)
+        stage.show(fake_snapshot(501 + k), 0.05)
     about = Counter(
         (message.name, next(iter(message.updates)))
-        for message in bench.sent[before:]
+        for message in stage.sent[before:]
         if isinstance(message, _messages.SceneNodeUpdateMessage)
     )
     assert not [name for name, _ in about if name.startswith("/office/furniture")]
     assert 10 <= about["/pose_cells/voxels", "batched_positions"] <= 13
     assert about["/pose_cells/floor", "_data"] <= 7
     assert 0 < about["/map/nodes_0", "points"] <= 5
-    bench.settle()  # what was not due is drawn later, without another snapshot
-    assert bench.show(as_new(fake_snapshot(540)), 5.0) == Counter()
+    stage.settle()  # what was not due is drawn later, without another snapshot
+    assert stage.show(as_new(fake_snapshot(540)), 5.0) == Counter()
 
 
 @pytest.mark.slow
-def test_nodes_and_backlog_stay_the_same_over_two_hundred_snapshots(bench: Bench) -> None:
-    backlog = bench.viewer.server._websock_server._broadcast_buffer.message_from_id
+def test_nodes_and_backlog_stay_the_same_over_a_long_run(stage: Bench) -> None:
+    """Nodes without those for the map's links and dots, of which a larger map has more."""
     sizes, waiting = set(), []
-    for k in range(200):
-        bench.show(fake_snapshot(800 + 7 * k, goal=k % 40 < 30), 0.2)
-        sizes.add(count(bench))
-        waiting.append(len(backlog))
-    assert len(sizes) == 1
-    assert max(waiting[100:]) <= max(waiting[:100]) + 5
-    assert count(bench) < 250
-
-
-def count(bench: Bench) -> int:
-    """The number of nodes without those for the map's links and dots, of which a larger map has more."""
-    return sum("/map/links_" not in name and "/map/nodes_" not in name for name in bench.nodes())
-
-
-def test_unwatched_it_draws_nothing(bench: Bench) -> None:
-    before = len(bench.sent)
-    bench.viewer.tick(fake_snapshot(460), bench.now_s + 10, watched=False)
-    assert len(bench.sent) == before
+    for k in range(80):
+        stage.show(fake_snapshot(800 + 18 * k, goal=k % 10 < 7), 0.2)
+        sizes.add(sum("/map/links_" not in name and "/map/nodes_" not in name for name in stage.nodes()))
+        waiting.append(len(backlog(stage)))
+    (size,) = sizes
+    assert size < 250
+    assert max(waiting[40:]) <= max(waiting[:40]) + 5
 
 
 def test_a_throttle_waits_its_turn_and_forgets_on_request() -> None:

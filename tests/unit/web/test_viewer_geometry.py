@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -25,7 +26,7 @@ from web.viewer.plates.pose_cell_plate import ORIGIN, PILL_M, pill_places
 from web.viewer.plates.sight import FAR_M, distances, fan_of_view, inside, solid_runs, solids
 from web.viewer.primitives import images, meshes
 from web.viewer.primitives import tone_mapping as paint
-from web.viewer.primitives.palette import DARK, LIGHT, mix, palette_of, rgb
+from web.viewer.primitives.palette import DARK, LARGE, LIGHT, mix, palette_of, rgb
 
 WORLD = fake_snapshot(0).world
 metres = st.floats(-60, 60)
@@ -81,11 +82,11 @@ def test_a_ray_meets_a_plate_where_it_was_aimed(x: float, y: float, ex: float, e
 
 
 def test_a_ray_beside_or_away_from_the_plate_meets_nothing() -> None:
-    assert point_on_plane(np.array([0, 0, 5.0]), np.array([1.0, 0, 0]), (0, 0, 0)) is None
-    assert point_on_plane(np.array([0, 0, 5.0]), np.array([0, 0, 1.0]), (0, 0, 0)) is None
+    for beside_or_away in ([1.0, 0, 0], [0, 0, 1.0]):
+        assert point_on_plane(np.array([0, 0, 5.0]), np.array(beside_or_away), (0, 0, 0)) is None
 
 
-def test_cells_stand_in_the_box_and_the_torus_closes() -> None:
+def test_cells_stand_in_the_box_and_the_torus_closes_and_no_path_is_drawn_across_the_box() -> None:
     fit = CellFit((36, 64, 64))
     middles = fit.cells(np.array([[0, 0, 0], [35, 63, 63]]))
     assert np.all(np.abs(middles[:, :2]) < SIDE / 2)
@@ -95,52 +96,41 @@ def test_cells_stand_in_the_box_and_the_torus_closes() -> None:
     edge = replace(edge, cells=np.array([[35, 63, 63], [18, 32, 32]], np.int32), activity=np.ones(2, np.float32))
     assert owners(edge).tolist() == [0, 1]
     assert owners(replace(edge, packets=())).tolist() == [0, 0]
-
-
-def test_a_path_around_the_torus_is_not_drawn_across_the_box() -> None:
-    path = CellFit((36, 64, 64)).path(np.array([[63, 5, 0.1], [0.5, 5, 0.1], [2, 5, 0.1], [2, 5, -0.1]]))
+    path = fit.path(np.array([[63, 5, 0.1], [0.5, 5, 0.1], [2, 5, 0.1], [2, 5, -0.1]]))
     assert len(broken_where_it_wraps(path)) == 1
 
 
 # ---------------------------------------------------------------- sight
 
 
+def sides(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """On which side of the lines from p to q the points r lie."""
+    along, aside = q - p, r - p
+    return along[..., 0] * aside[..., 1] - along[..., 1] * aside[..., 0]
+
+
 @given(st.floats(0.05, 9.95), st.floats(0.05, 7.95), angles, st.floats(0.2, 3.0))
 @settings(max_examples=60)
 @pytest.mark.slow
 def test_the_view_never_passes_a_wall(x: float, y: float, heading: float, fov: float) -> None:
-    walls = np.asarray(WORLD.walls, np.float64)
+    walls, eye = np.asarray(WORLD.walls, np.float64), np.array([x, y])
     rim = fan_of_view(walls, Pose(x, y, heading), fov, rays=31)
     turns = heading + np.linspace(-fov / 2, fov / 2, 31)
-    for point, turn in zip(rim, turns, strict=True):
-        reach = math.dist(point, (x, y))
-        assert reach <= FAR_M
-        for k in np.linspace(0.02, 0.98, 9):  # an independent, slow look along the ray: no wall is crossed before
-            a, b = np.array([x, y]), np.array([x, y]) + k * reach * np.array([math.cos(turn), math.sin(turn)])
-            assert not any(_crosses(a, b, wall) for wall in walls)
-
-
-def _crosses(a: np.ndarray, b: np.ndarray, wall: np.ndarray) -> bool:
-    def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> float:
-        return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
-
-    c, d = wall[:2], wall[2:]
-    if max(abs(side(c, d, a)), 0) < 1e-6:
-        return False  # the eye stands on the wall's line
-    return side(a, b, c) * side(a, b, d) < -1e-9 and side(c, d, a) * side(c, d, b) < -1e-9
+    reach = np.hypot(*(rim - eye).T)
+    assert reach.max() <= FAR_M + 1e-9
+    ways = 0.98 * reach[:, None] * np.column_stack([np.cos(turns), np.sin(turns)])
+    ends, c, d = (eye + ways)[:, None], walls[:, :2], walls[:, 2:]  # an independent look along each ray
+    crossed = (sides(eye, ends, c) * sides(eye, ends, d) < -1e-9) & (sides(c, d, eye) * sides(c, d, ends) < -1e-9)
+    assert not (crossed & (np.abs(sides(c, d, eye)) >= 1e-6)).any()  # but where the eye stands on a wall's line
 
 
 def test_without_walls_one_sees_far() -> None:
-    nothing = np.zeros((0, 4))
-    assert distances(nothing, (0, 0), np.zeros(3)).tolist() == [FAR_M] * 3
+    assert distances(np.zeros((0, 4)), (0, 0), np.zeros(3)).tolist() == [FAR_M] * 3
 
 
-def test_solid_furniture_is_found() -> None:
+def test_solid_furniture_is_found_and_desks_that_lean_on_a_partition_are_solid() -> None:
     assert len(solids(WORLD)) == 6
     assert inside(solids(WORLD)[0], 2.8, 5.7)
-
-
-def test_desks_that_lean_on_a_partition_are_solid() -> None:
     corner = [(4, 2, 4, 2.75), (4, 2.75, 2.85, 2.75)]
     u_shape = [(3.8, 5.3, 3.8, 6.05), (3.8, 6.05, 2.3, 6.05), (2.3, 6.05, 2.3, 5.3)]
     lone, straight = [(8, 1, 9, 1)], [(5, 7, 6, 7), (6, 7, 7, 7)]
@@ -159,14 +149,9 @@ def test_desks_that_lean_on_a_partition_are_solid() -> None:
 @settings(max_examples=80)
 def test_pills_do_not_overlap(centres: list[tuple[float, float]], width: float) -> None:
     places = spread(np.array(centres), np.full(len(centres), width), 0.6)
-    for i in range(len(places)):
-        for j in range(i):
-            assert not overlap(places[i], places[j], width, 0.6)
-
-
-def test_many_pills_on_one_place_are_stacked() -> None:
-    places = spread(np.zeros((6, 2)), np.full(6, 2.0), 0.5, rounds=1)
-    assert np.all(np.diff(np.sort(places[:, 1])) >= 0.5)
+    assert not any(overlap(one, other, width, 0.6) for one, other in combinations(places, 2))
+    stacked = spread(np.zeros((6, 2)), np.full(6, 2.0), 0.5, rounds=1)
+    assert np.all(np.diff(np.sort(stacked[:, 1])) >= 0.5)
 
 
 @given(st.lists(st.tuples(*(st.floats(-3.5, 3.5),) * 2, st.floats(0, 4.6)), min_size=2, max_size=4))
@@ -174,13 +159,12 @@ def test_many_pills_on_one_place_are_stacked() -> None:
 def test_packets_pills_are_apart_as_the_viewer_sees_them(tops: list[tuple[float, float, float]]) -> None:
     widths = np.full(len(tops), 2.1)
     seen, larger = seen_by(camera_for("all", 1.2), pill_places(np.array(tops), widths) + np.array(ORIGIN))
-    for i in range(len(tops)):
-        for j in range(i):
-            mean = (larger[i] + larger[j]) / 2
-            assert not overlap(seen[i], seen[j], 2.1 * mean, PILL_M * mean)
+    for i, j in combinations(range(len(tops)), 2):
+        mean = (larger[i] + larger[j]) / 2
+        assert not overlap(seen[i], seen[j], 2.1 * mean, PILL_M * mean)
 
 
-def test_pills_on_a_route_keep_their_distance() -> None:
+def test_pills_on_a_route_keep_their_distance_and_larger_ones_are_fewer() -> None:
     goal = fake_snapshot(4830).goal
     assert goal is not None
     end = goal.route_xy[-1].astype(float)
@@ -189,6 +173,10 @@ def test_pills_on_a_route_keep_their_distance() -> None:
     for k, (_, x, y) in enumerate(stops):
         assert all(math.hypot(x - a, y - b) >= APART for _, a, b in stops[:k])
     assert pill_stops(np.array([[0, 0], [9000.0, 0]]), np.array([0, 9000.0]), np.array([9000.0, 0]))[0][0] > 100
+    way = np.column_stack([np.linspace(0.0, 9.0, 90), np.zeros(90)])
+    usual, larger = (pill_stops(way, np.linspace(0.0, 60.0, 90), way[-1], letters) for letters in (1.0, LARGE))
+    assert len(larger) < len(usual)
+    assert np.diff([x for _, x, _ in larger]).min() >= APART * LARGE
 
 
 @given(st.lists(st.tuples(st.floats(-5, 5), st.floats(-5, 5)), min_size=1, max_size=12))
@@ -201,23 +189,19 @@ def test_ribbons_are_finite_flat_and_face_up(line: list[tuple[float, float]]) ->
 
 
 def test_flat_shapes_face_up_and_prisms_outwards() -> None:
-    square = meshes.rounded_rectangle(2, 2, 0.5)
-    straight = meshes.ribbon(np.array([[0.0, 0], [1, 0], [2, 1]]), 0.2, 0.0)
-    for vertices, faces in (
-        meshes.disc((0, 0), 1, 0),
-        meshes.ring(1, 0.2),
-        meshes.flat_polygon(square, 0),
-        straight,
-    ):
-        a, b, c = (vertices[faces[:, k]] for k in range(3))
-        assert np.all(np.cross(b - a, c - a)[:, 2] > -1e-6)
-    vertices, faces = meshes.extruded(square, 0, 1)
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    outwards = np.cross(b - a, c - a)
-    assert np.all((outwards * ((a + b + c) / 3 - [0, 0, 0.5])).sum(1) > -1e-6)
-    cube, sides = meshes.sharp(meshes.UNIT_CUBE)
-    a, b, c = (cube[sides[:, k]] for k in range(3))
-    assert np.all((np.cross(b - a, c - a) * (a + b + c)).sum(1) > 0)
+    def faces_of(mesh: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Where the faces look, and three times their middles."""
+        a, b, c = (mesh[0][mesh[1][:, k]] for k in range(3))
+        return np.cross(b - a, c - a), a + b + c
+
+    square, bent = meshes.rounded_rectangle(2, 2, 0.5), np.array([[0.0, 0], [1, 0], [2, 1]])
+    flat = meshes.disc((0, 0), 1, 0), meshes.ring(1, 0.2), meshes.flat_polygon(square, 0), meshes.ribbon(bent, 0.2, 0.0)
+    for mesh in flat:
+        assert np.all(faces_of(mesh)[0][:, 2] > -1e-6)
+    outwards, middles = faces_of(meshes.extruded(square, 0, 1))
+    assert np.all((outwards * (middles / 3 - [0, 0, 0.5])).sum(1) > -1e-6)
+    outwards, middles = faces_of(meshes.sharp(meshes.UNIT_CUBE))
+    assert np.all((outwards * middles).sum(1) > 0)
 
 
 def test_no_more_segments_than_there_are_and_one_at_least() -> None:
@@ -225,6 +209,7 @@ def test_no_more_segments_than_there_are_and_one_at_least() -> None:
     assert np.array_equal(meshes.some(lines, 6), lines)
     assert np.array_equal(meshes.some(lines, 2), lines[-2:])
     assert meshes.some(lines[:0], 6).shape == (1, 2, 3)
+    assert len(meshes.dashes(np.zeros(3), np.array([1.0, 0, 0]), 0.2, 0.1)) == 4
 
 
 @given(arrays(np.float64, (40, 2), elements=st.floats(-3, 3)), st.floats(0.01, 1.0))
@@ -232,7 +217,6 @@ def test_a_thinned_way_has_both_ends_and_no_near_neighbours(way: np.ndarray, apa
     kept = meshes.thinned(way, apart)
     assert np.array_equal(kept[[0, -1]], way[[0, -1]])
     assert np.all(np.hypot(*np.diff(kept[:-1], axis=0).T) >= apart)
-    assert len(meshes.dashes(np.zeros(3), np.array([1.0, 0, 0]), 0.2, 0.1)) == 4
 
 
 # ---------------------------------------------------------------- colours

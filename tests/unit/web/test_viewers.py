@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
-import numpy as np
 import pytest
 from viser import _messages
 from websockets.sync.client import ClientConnection, connect
@@ -19,7 +18,6 @@ from web.latest import Latest
 from web.messages import Snapshot
 from web.themes import Look, Themes
 from web.viewer import Viewer, Viewers
-from web.viewer.marks.route import APART, pill_stops
 from web.viewer.plates.plate import MOST_LARGE
 from web.viewer.primitives.palette import LARGE
 from web.viewer.viser_server import SECRET_HEADER
@@ -27,21 +25,22 @@ from web.viewer.viser_server import SECRET_HEADER
 pytestmark = pytest.mark.slow
 
 
-class Both:
+class Both(NamedTuple):
     """A dark and a light viewer that run."""
 
-    def __init__(self) -> None:
-        self.latest: Latest[Snapshot] = Latest()
-        self.viewers = Viewers(self.latest, StubEngine().submit)
-        self.viewers.start()
-        self.dark, self.light = self.viewers.of("dark"), self.viewers.of("light")
+    latest: Latest[Snapshot]
+    viewers: Viewers
+    dark: Viewer
+    light: Viewer
 
 
 @pytest.fixture(scope="module")
 def both() -> Iterator[Both]:
-    made = Both()
-    yield made
-    made.viewers.stop()
+    latest: Latest[Snapshot] = Latest()
+    viewers = Viewers(latest, StubEngine().submit)
+    viewers.start()
+    yield Both(latest, viewers, viewers.of("dark"), viewers.of("light"))
+    viewers.stop()
 
 
 def look(viewer: Viewer) -> ClientConnection:
@@ -59,12 +58,8 @@ def told(viewer: Viewer, kind: type[Any], name: str = "") -> list[Any]:
     return [one for one in kept if isinstance(one, kind) and name in ("", getattr(one, "name", ""))]
 
 
-def test_the_second_is_built_when_it_is_asked_for_and_stays(both: Both) -> None:
-    assert both.viewers.of("light") is both.light is not both.dark
-    assert both.viewers.of("dark") is both.dark
-
-
-def test_each_shows_its_own_theme(both: Both) -> None:
+def test_each_is_built_when_it_is_asked_for_stays_and_shows_its_own_theme(both: Both) -> None:
+    assert (both.viewers.of("dark"), both.viewers.of("light")) == (both.dark, both.light)
     for viewer, dark in ((both.dark, True), (both.light, False)):
         (theme,) = told(viewer, _messages.ThemeConfigurationMessage)
         assert theme.dark_mode is dark
@@ -103,14 +98,6 @@ def test_a_page_that_presents_wants_another_look_and_keeps_its_theme() -> None:
     assert themes.of("another") == Look()
 
 
-def test_larger_pills_on_a_route_are_fewer() -> None:
-    way = np.column_stack([np.linspace(0.0, 9.0, 90), np.zeros(90)])
-    arrival_s, goal = np.linspace(0.0, 60.0, 90), np.array([9.0, 0.0])
-    usual, larger = pill_stops(way, arrival_s, goal), pill_stops(way, arrival_s, goal, LARGE)
-    assert len(larger) < len(usual)
-    assert np.diff([x for _, x, _ in larger]).min() >= APART * LARGE
-
-
 def test_what_is_switched_off_is_off_at_both(both: Both) -> None:
     def shown(viewer: Viewer) -> bool:
         return told(viewer, _messages.SetSceneNodeVisibilityMessage, "/map/occupancy")[-1].visible
@@ -139,9 +126,11 @@ def test_only_the_one_that_is_looked_at_draws(both: Both) -> None:
 
 def test_after_the_end_there_is_none_and_no_thread_is_left() -> None:
     before = set(threading.enumerate())
-    viewers = Viewers(Latest(), StubEngine().submit)
+    latest: Latest[Snapshot] = Latest()
+    viewers = Viewers(latest, StubEngine().submit)
     viewers.of("light")
     viewers.start()
+    latest.put(fake_snapshot(3))
     viewers.stop()
     viewers.stop()
     with pytest.raises(ConnectionError):

@@ -15,7 +15,7 @@ import websockets.asyncio.server
 from viser import ViserServer
 from viser.infra import _infra
 from websockets.exceptions import InvalidStatus
-from websockets.sync.client import connect
+from websockets.sync.client import ClientConnection, connect
 
 from tests.patience import until
 from tests.unit.web.doubles import OURS, PAGE, StubEngine, house
@@ -58,18 +58,9 @@ UPGRADE = (
 
 
 def test_a_raw_socket_gets_neither_page_nor_websocket(subtests: pytest.Subtests, stage: Viewer) -> None:
-    for origin, host, upgrade in product(
-        [
-            "",
-            "null",
-            "http://evil.example",
-            "http://127.0.0.1:{port}",
-            "http://127.0.0.1:8000",
-            "http://localhost:{port}",
-        ],
-        ["127.0.0.1:{port}", "127.0.0.1:8000", "evil.example"],
-        [(), UPGRADE, tuple(line.lower() for line in UPGRADE)],
-    ):
+    ours = "http://127.0.0.1:{port}", "http://127.0.0.1:8000", "http://localhost:{port}"
+    hosts, upgrades = ("127.0.0.1:{port}", "evil.example"), ((), UPGRADE, tuple(map(str.lower, UPGRADE)))
+    for origin, host, upgrade in product(("", "null", "http://evil.example", *ours), hosts, upgrades):
         with subtests.test(origin=origin, host=host, upgrade=upgrade):
             lines = ["GET / HTTP/1.1", f"Host: {host}", *([f"Origin: {origin}"] if origin else []), *upgrade]
             answer = say(stage.port, *(line.replace("{port}", str(stage.port)) for line in lines))
@@ -77,41 +68,36 @@ def test_a_raw_socket_gets_neither_page_nor_websocket(subtests: pytest.Subtests,
             assert len(answer) < 500
 
 
-@pytest.mark.parametrize(
-    "path", ["/index.html", "/../../pyproject.toml", "/%2e%2e/%2e%2e/etc/passwd", "/..\\..\\x", "//etc/passwd"]
-)
-def test_no_path_leads_past_the_secret_and_none_to_a_file(stage: Viewer, path: str) -> None:
-    assert say(stage.port, f"GET {path} HTTP/1.1", "Host: x").startswith(b"HTTP/1.1 403 ")
-    knowing = say(stage.port, f"GET {path} HTTP/1.1", "Host: x", f"{SECRET_HEADER}: {stage.secret}")
-    assert knowing.startswith(b"HTTP/1.1 426 "), knowing[:200]
-
-
-def near_misses(secret: str) -> list[list[str]]:
-    other = "A" if secret[0] != "A" else "B"
-    wrong = ["", "x", secret[:-1], secret + "A", other + secret[1:], secret.swapcase(), "\xff" + secret, f'"{secret}"']
-    return [[text] for text in wrong] + [[secret, secret], [secret, "x"], ["x", secret]]
+def test_no_path_leads_past_the_secret_and_none_to_a_file(stage: Viewer) -> None:
+    for path in ("/index.html", "/../../pyproject.toml", "/%2e%2e/%2e%2e/etc/passwd", "/..\\..\\x", "//etc/passwd"):
+        asked = f"GET {path} HTTP/1.1", "Host: x"
+        assert say(stage.port, *asked).startswith(b"HTTP/1.1 403 ")
+        knowing = say(stage.port, *asked, f"{SECRET_HEADER}: {stage.secret}")
+        assert knowing.startswith(b"HTTP/1.1 426 "), knowing[:200]
 
 
 def test_a_near_miss_of_the_secret_is_refused(stage: Viewer) -> None:
-    for given in near_misses(stage.secret):
+    secret, other = stage.secret, "A" if stage.secret[0] != "A" else "B"
+    wrong = ["", "x", secret[:-1], secret + "A", other + secret[1:], secret.swapcase(), "\xff" + secret, f'"{secret}"']
+    for given in [*([text] for text in wrong), [secret, secret], [secret, "x"], ["x", secret]]:
         lines = [f"{SECRET_HEADER}: {text}" for text in given]
         answer = say(stage.port, "GET / HTTP/1.1", "Host: x", *UPGRADE, *lines)
         assert answer.startswith(b"HTTP/1.1 403 "), (given, answer[:200])
 
 
+def enter(stage: Viewer, secret: str) -> ClientConnection:
+    return connect(f"ws://127.0.0.1:{stage.port}/", subprotocols=[PROTOCOL], additional_headers={SECRET_HEADER: secret})
+
+
 def test_who_knows_the_secret_enters_and_each_server_has_its_own(stage: Viewer) -> None:
-    url = f"ws://127.0.0.1:{stage.port}/"
-    with connect(url, subprotocols=[PROTOCOL], additional_headers={SECRET_HEADER: stage.secret}) as talk:
+    with enter(stage, stage.secret) as talk:
         assert talk.recv(timeout=30)
     other, secret = guarded_server()
     other.stop()
     assert secret != stage.secret
     assert len(stage.secret) >= 32 * 4 / 3
-    with (
-        pytest.raises(InvalidStatus),
-        connect(url, subprotocols=[PROTOCOL], additional_headers={SECRET_HEADER: secret}),
-    ):
-        pass
+    with pytest.raises(InvalidStatus):
+        enter(stage, secret)
 
 
 def is_open(connection: socket.socket) -> bool:
@@ -126,9 +112,9 @@ def is_open(connection: socket.socket) -> bool:
 
 def test_those_that_say_nothing_hold_few_descriptors_and_keep_nobody_out(stage: Viewer) -> None:
     with contextlib.ExitStack() as crowd:
-        address, secret = ("127.0.0.1", stage.port), {SECRET_HEADER: stage.secret}
+        address = "127.0.0.1", stage.port
         silent = [crowd.enter_context(socket.create_connection(address)) for _ in range(4 * MOST_SILENT)]
-        with connect(f"ws://127.0.0.1:{stage.port}", subprotocols=[PROTOCOL], additional_headers=secret):
+        with enter(stage, stage.secret):
             assert sum(map(is_open, silent)) <= MOST_SILENT
 
 
@@ -158,41 +144,32 @@ def message(kind: str, **fields: object) -> bytes:
 
 
 def camera(height: float = 9.0) -> bytes:
-    place: dict[str, object] = {
-        "position": (0.0, 0.0, height),
-        "look_at": (0.0, 0.0, 0.0),
-        "up_direction": (0.0, 0.0, 1.0),
-    }
+    place = {"position": (0.0, 0.0, height), "look_at": (0.0, 0.0, 0.0), "up_direction": (0.0, 0.0, 1.0)}
     lens = {"fov": 1.0, "near": 0.1, "far": 900.0, "image_height": 80, "image_width": 120}
     return message("ViewerCameraMessage", wxyz=(1.0, 0.0, 0.0, 0.0), **place, **lens)
 
 
 def test_nothing_that_is_uploaded_through_the_proxy_is_kept(stage: Viewer) -> None:
-    gui, buffer = stage.server.gui, stage.server._websock_server._broadcast_buffer
-    box = "a form that somebody makes up"
+    viser, box = stage.server, "a form that somebody makes up"
+    buffer = viser._websock_server._broadcast_buffer.message_from_id
+    upload = {"source_component_uuid": box, "transfer_uuid": "one"}
+    start = {"filename": "f", "mime_type": "m", "part_count": 1000, "size_bytes": 10**9}
     with house(stage=stage) as server:  # type: ignore[arg-type]
-        with server.client.websocket_connect(
-            f"/viser/ws/{PAGE}", subprotocols=[PROTOCOL], headers=dict(OURS)
-        ) as browser:
+        path, headers = f"/viser/ws/{PAGE}", dict(OURS)
+        with server.client.websocket_connect(path, subprotocols=[PROTOCOL], headers=headers) as browser:
             browser.send_bytes(camera())
-            until(stage.server.get_clients)
-            kept = len(buffer.message_from_id)
-            upload = {"source_component_uuid": box, "transfer_uuid": "one"}
-            start = {"filename": "f", "mime_type": "m", "part_count": 1000, "size_bytes": 10**9}
+            until(viser.get_clients)
+            kept = len(buffer)
             browser.send_bytes(message("FileTransferStartUpload", **upload, **start))
-            for part in range(200):
+            for part in range(100):
                 browser.send_bytes(message("FileTransferPart", **upload, part_index=part, content=b"p" * 50_000))
                 browser.send_bytes(message("GuiFormDirtyMessage", uuid=f"form {part}"))
                 browser.send_bytes(message("ShareUrlRequest"))
             browser.send_bytes(message("GuiUpdateMessage", uuid=box, updates={"value": True}))
             browser.send_bytes(camera(7.0))
-            (client,) = stage.server.get_clients().values()
+            (client,) = viser.get_clients().values()
             until(lambda: client.camera.position[2] == 7.0)  # messages are handled in order: those above are done
-            states = (
-                gui._current_file_upload_states,
-                *(c.gui._current_file_upload_states for c in stage.server.get_clients().values()),
-            )
-            assert states == ({}, {})
-            assert len(buffer.message_from_id) <= kept + 1
-            assert stage.server._share_tunnel is None
-        until(lambda: not stage.server.get_clients())
+            assert [gui._current_file_upload_states for gui in (viser.gui, client.gui)] == [{}, {}]
+            assert len(buffer) <= kept + 1
+            assert viser._share_tunnel is None
+        until(lambda: not viser.get_clients())
