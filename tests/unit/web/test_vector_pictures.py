@@ -100,7 +100,7 @@ def full_of_words() -> Iterator[tuple[PlateName, Snapshot]]:
     yield "map", replace(crowded(), tags=tuple(TaggedPlace(f"{LONG} {k}", 1, 0.1 * k, 0.0) for k in range(5)))
 
 
-@pytest.mark.parametrize(("plate", "snapshot"), full_of_words())
+@pytest.mark.parametrize(("plate", "snapshot"), list(full_of_words()))
 def test_no_words_cover_others_or_are_cut_off(plate: PlateName, snapshot: Snapshot) -> None:
     picture = drawn(plate, snapshot)
     left, top, right, bottom = np.transpose(boxes(picture))

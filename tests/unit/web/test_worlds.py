@@ -74,7 +74,7 @@ def test_a_map_server_pair_becomes_a_world(server: House) -> None:
 def test_worlds_and_vector_maps_are_opened_whatever_path_their_name_has(server: House) -> None:
     for name, text, walls, size_m in (
         ("office.json", WORLD, len(OFFICE.walls), [10.0, 8.0]),
-        ("../a/w.json", SEGMENTS, 4, [5.6, 5.6]),
+        ("../a/w.json", SEGMENTS, 8, [5.6, 5.6]),  # with four around them
     ):
         status, answer = post(server, OPEN, {"files": [{**files(x=text)[0], "name": name}]})
         assert (status, answer["walls"], answer["size_m"]) == (200, walls, size_m)
