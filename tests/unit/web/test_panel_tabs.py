@@ -12,8 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.fake_snapshots import fake_reports, fake_snapshot, fake_walk
+from tests.unit.web.office_moments import living
 from tests.unit.web.panel_page import Page, memory, told
 from web.messages import Belief, Event, Hypothesis, Parameter, Snap, SnapCause
+from web.panel.inspected import LINKS
 from web.panel.senses import RECENT, RecentViews, from_above
 from web.panel.tune import hint, step
 from web.panel.words import clock, number, thousands
@@ -152,6 +154,7 @@ def test_the_memory_tells_how_sure_the_robot_is_and_where_else_it_may_be() -> No
         (sure, "'may be elsewhere', 'nowhere'"),
         (sure, "'found out that it was elsewhere', 'never'"),
         (sure, "12\\xa0345"),
+        (replace(sure, places=5), "'places that are possible', '5'"),
         (doubting, "it does not know"),
         (doubting, "5.0 m away, likely by 12 %"),
         (doubting, "'once'"),
@@ -195,10 +198,21 @@ def test_what_is_inspected_is_told(kind: str) -> None:
 
 
 def test_more_than_there_is_room_for_is_counted() -> None:
-    report = replace(fake_reports()["view"], experiences=tuple(range(10)))  # type: ignore[type-var]
-    inspected, _ = told(replace(SNAPSHOT, inspected=report), "inspected")
+    view, experience = fake_reports()["view"], fake_reports()["experience"]
+    many = replace(view, experiences=tuple(range(10)))  # type: ignore[type-var]
+    inspected, _ = told(replace(SNAPSHOT, inspected=many), "inspected")
     (choices,) = [section["choices"] for section in inspected["sections"] if "choices" in section]
     assert ([number for number, _ in choices["entries"]], choices["more"]) == ([0, 1, 2, 3, 4, 5], 4)
+    many = replace(experience, links=experience.links * LINKS)  # type: ignore[type-var, union-attr]
+    inspected, _ = told(replace(SNAPSHOT, inspected=many), "inspected")
+    (links,) = [section["links"] for section in inspected["sections"] if "links" in section]
+    assert (len(links["rows"]), links["more"]) == (LINKS, LINKS)
+
+
+def test_a_cell_in_which_nothing_is_active_says_so() -> None:
+    cell = fake_reports()["cell"]
+    still = replace(cell, by_heading=0 * cell.by_heading)  # type: ignore[type-var, union-attr]
+    assert told(replace(SNAPSHOT, inspected=still), "inspected")[0]["words"] == "nothing is active here"
 
 
 def test_what_is_active_now_can_be_chosen() -> None:
@@ -239,7 +253,12 @@ def test_the_truth_is_told_in_numbers_and_series() -> None:
     assert "no revisits yet" in str(told(nothing, "numbers"))
 
 
-# ---------------------------------------------------------------- Tune
+# ---------------------------------------------------------------- Office and Tune
+
+
+def test_what_moves_in_the_office_is_counted() -> None:
+    office, _ = told(replace(SNAPSHOT, living=living()), "office")
+    assert "1 of 2 doors not open, 1 of 1 lamps lit" in str(office)
 
 
 def test_every_parameter_explains_itself_and_has_symbol_unit_and_default() -> None:
@@ -247,7 +266,7 @@ def test_every_parameter_explains_itself_and_has_symbol_unit_and_default() -> No
     fixed, live, kind = by_name["pose_cells.cells"], by_name["pilot.speed"], by_name["views.kind"]
     assert "Takes effect at reset." in hint(fixed)
     assert "Takes effect" not in hint(live)
-    assert "Range: 0.05 to 0.5 m/s." in hint(live)
+    assert all(part in hint(live) for part in ("Range: 0.05 to 0.5 m/s.", "Default: 0.3. Source: "))
     assert "Range" not in hint(kind)
     assert "Range: at most 0.5 m/s." in hint(replace(live, low=None))
     assert "One of: a, b." in hint(replace(kind, choices=("a", "b")))

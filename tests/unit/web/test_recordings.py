@@ -166,6 +166,7 @@ def test_no_file_leads_out_of_the_folder(sender: Sender) -> None:
     for name in ("../up", "a/../../up", "/up", "a//up", "a\\..\\..\\up", "/".join("abcdefghi"), "a\x07b"):
         assert "plain names" in why(sender.put(name))
     assert sender.files == []
+    assert sender.put("/".join("abcdefgh")).status_code == 200  # no folder in it is deeper
 
 
 NAMES = [

@@ -73,6 +73,8 @@ LOST: dict[str, Any] = {"lost": True, "goal": "tracking", "mode": "goal"}
         (Facts(mode="recorded"), "playing a recording"),
         (Facts(mode="recorded", running=False, over=True), "the recording has ended"),
         (Facts(goal="tracking"), "exploring"),
+        (Facts(odds=40.4), "believes it is here, 40:1"),
+        (Facts(odds=1e6), "believes it is here, over 1000:1"),
     ],
 )
 def test_what_counts_most_is_said(facts: Facts, words: str) -> None:
