@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import product
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -13,10 +11,8 @@ from hypothesis import strategies as st
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
 from web.messages import KnownPlace, SetGoal, Snapshot
-from web.viewer.camera_views import CELLS_AT, LOW_ASPECT, MAP_AT, OFFICE_AT, VIEWS, camera_for
 from web.viewer.marks.place_names import HEIGHT, REACH
 from web.viewer.marks.robot_model import SMALLEST
-from web.viewer.plates import map_plate, office_plate, pose_cell_plate
 
 KITCHEN = KnownPlace("kitchen", 2.0, 6.0, (1.5, -0.5))
 ATTIC = KnownPlace("attic", 8.0, 2.0, None)
@@ -73,32 +69,3 @@ def test_no_name_leaves_the_plate(shared: Bench, places: list[tuple[float, float
     assert len(names) == len(places)
     for name in names:
         assert abs(nodes[name]["position"][0]) + nodes[name]["render_width"] / 2 <= REACH + 1e-6
-
-
-# ---------------------------------------------------------------- the room of the window
-
-SIDES = tuple(product((-1, 1), repeat=2))
-PLATES = {"office": (office_plate, OFFICE_AT), "map": (map_plate, MAP_AT), "pose": (pose_cell_plate, CELLS_AT)}
-
-
-def test_the_plates_fill_the_window_and_stay_in_it(subtests: pytest.Subtests) -> None:
-    """Every corner of the plates in view is seen, and two opposite sides are reached, whatever the window's shape."""
-    for view, aspect in product(VIEWS, [0.46, 0.75, 1.0, 1.35, 1.63, 2.2, 3.0]):
-        with subtests.test(view=view, aspect=aspect):
-            corners = []
-            for plate, at in (PLATES[name] for name in PLATES if view in ("all", name)):
-                width, depth, centre_y, _ = plate.SHEET
-                assert plate.ORIGIN[:2] == at
-                corners += [(at[0] + a * width / 2, at[1] + centre_y + b * depth / 2, 0.0) for a, b in SIDES]
-            camera = camera_for(view, aspect)
-            ahead = camera.look_at - camera.position
-            ahead /= np.linalg.norm(ahead)
-            right = np.cross(ahead, (0.0, 0.0, 1.0))
-            right /= np.linalg.norm(right)
-            offset, half = np.array(corners) - camera.position, np.tan(camera.fov_rad / 2)
-            x = offset @ right / (offset @ ahead) / half / aspect
-            y = offset @ np.cross(right, ahead) / (offset @ ahead) / half
-            assert np.abs([x, y]).max() < 1
-            filled = max(np.ptp(x), np.ptp(y) if view in ("office", "map") else 2 * abs(y.min()))
-            # of 2; the rest is for buttons above and for what is said below
-            assert filled > (1.5 if aspect > LOW_ASPECT else 1.65)

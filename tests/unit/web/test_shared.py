@@ -2,32 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 
 import pytest
 
-from sim2d.world.world_schema import LISTS
 from web import shared
-from web.http.commands import MODELS
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     monkeypatch.setattr(sys, "argv", ["shared", *arguments])
     return shared.main()
-
-
-def test_commands_and_lists_of_a_world_have_types_and_numbers_the_world_file_s_limits() -> None:
-    types, names = shared.types_text(), shared.names_text()
-    for name, model in MODELS.items():
-        assert f'type {model.__name__} = {{ type: "{name}"' in types
-    for name in LISTS:
-        assert f"\n  {name}: " in types
-    limits = json.loads(names.split("export const LIMITS = ")[1].rstrip(";\n"))
-    assert limits["doors"]["width"] == [0.3, 6]
-    assert limits["doors"]["hinge"] == limits["people"]["path"] == [-10_000, 10_000]
-    assert limits["people"]["wait_s"] == [0, 1e6]
 
 
 def test_a_file_older_than_the_models_is_named_and_written_anew(

@@ -16,11 +16,12 @@ from tests.unit.web.crowded import two_brains
 from tests.unit.web.doubles import house
 from web.messages import GoalMemoryLayer, OccupancyLayer, OccupancyPicture
 from web.switches import NAMES
-from web.viewer.camera_views import CELLS_AT, MAP_AT, OFFICE_AT, VIEWS, Camera, camera_for, seen_by, stands
+from web.viewer.camera_views import CELLS_AT, LOW_ASPECT, MAP_AT, OFFICE_AT, VIEWS, Camera, camera_for, seen_by, stands
 from web.viewer.fits.cell_fit import SIDE
 from web.viewer.fits.map_fit import MapFit, refit
 from web.viewer.fits.office_fit import OfficeFit
 from web.viewer.picture import UNITS, picture
+from web.viewer.plates import map_plate, office_plate, pose_cell_plate
 from web.viewer.primitives.palette import BRAINS, DARK, LIGHT, Rgb, mix
 
 pytestmark = pytest.mark.slow
@@ -28,11 +29,23 @@ pytestmark = pytest.mark.slow
 
 ASPECT = 1.63
 PLAIN = fake_snapshot(430)
+PLATES = {"office": (office_plate, OFFICE_AT), "map": (map_plate, MAP_AT), "pose": (pose_cell_plate, CELLS_AT)}
 
 
 def zoomed(camera: Camera) -> float:
     """Units of the picture for one in the camera's plane of sight."""
     return UNITS / 2 / math.tan(camera.fov_rad / 2) / float(np.linalg.norm(camera.look_at - camera.position))
+
+
+def pinhole(camera: Camera, points: np.ndarray) -> np.ndarray:
+    """Where the plain camera sees places, to the right and upwards, in halves of the picture's height."""
+    ahead = camera.look_at - camera.position
+    ahead /= np.linalg.norm(ahead)
+    right = np.cross(ahead, (0.0, 0.0, 1.0))
+    right /= np.linalg.norm(right)
+    offset = points - camera.position
+    seen = np.stack([offset @ right, offset @ np.cross(right, ahead)], -1)
+    return seen / (offset @ ahead)[..., None] / math.tan(camera.fov_rad / 2)
 
 
 def of_colour(svg: str, colour: Rgb) -> np.ndarray:
@@ -52,20 +65,31 @@ def test_it_is_a_whole_picture_of_what_stands_there(subtests: pytest.Subtests) -
 
 
 def test_the_robot_is_where_the_camera_sees_it() -> None:
-    """Beside the plain pinhole: the circle in the robot's colour lies where the robot's place is projected to."""
-    camera, world, truth = camera_for("all", ASPECT), PLAIN.world, PLAIN.truth
+    world, truth = PLAIN.world, PLAIN.truth
     assert world is not None
     assert truth is not None
     at = OfficeFit(world.bounds).to_plate(np.array([[truth.x, truth.y]]))[0] + OFFICE_AT
-    offset, ahead = np.array([*at, 0.2]) - camera.position, camera.look_at - camera.position
-    ahead /= np.linalg.norm(ahead)
-    right = np.cross(ahead, (0.0, 0.0, 1.0))
-    right /= np.linalg.norm(right)
-    zoom = UNITS / 2 / math.tan(camera.fov_rad / 2) / (offset @ ahead)
+    wanted = pinhole(camera_for("all", ASPECT), np.array([*at, 0.2])) * UNITS / 2 * (1, -1)
     root = ET.fromstring(picture(PLAIN, "all", ASPECT, DARK, NAMES))
     (robot,) = [c for c in root.iter() if c.tag.endswith("circle") and c.get("fill") == f"#{bytes(DARK.robot).hex()}"]
-    wanted = offset @ right * zoom, -(offset @ np.cross(right, ahead)) * zoom
     assert [float(robot.get(name, "nan")) for name in ("cx", "cy")] == pytest.approx(wanted, abs=0.2)
+
+
+def test_the_plates_fill_the_window_and_stay_in_it(subtests: pytest.Subtests) -> None:
+    """Every corner of the plates in view is seen, and two opposite sides are reached, whatever the window's shape."""
+    sides = np.array(list(product((-0.5, 0.5), repeat=2)))
+    for view, aspect in product(VIEWS, [0.46, 0.75, 1.0, 1.35, 1.63, 2.2, 3.0]):
+        with subtests.test(view=view, aspect=aspect):
+            corners = []
+            for plate, at in (PLATES[name] for name in PLATES if view in ("all", name)):
+                width, depth, centre_y, _ = plate.SHEET
+                assert plate.ORIGIN[:2] == at
+                corners += [(*(at + np.array([0.0, centre_y]) + side * (width, depth)), 0.0) for side in sides]
+            x, y = (pinhole(camera_for(view, aspect), np.array(corners)) / (aspect, 1)).T
+            assert np.abs([x, y]).max() < 1
+            filled = max(np.ptp(x), np.ptp(y) if view in ("office", "map") else 2 * abs(y.min()))
+            # of 2; the rest is for buttons above and for what is said below
+            assert filled > (1.5 if aspect > LOW_ASPECT else 1.65)
 
 
 def test_what_lies_on_the_floors_is_where_the_plates_have_it() -> None:

@@ -73,14 +73,6 @@ def test_the_office_fit_inverts_and_any_world_fits(
     assert np.all(np.abs(corners) <= np.array([5.0, 4.0]) + 1e-6)
 
 
-@given(st.floats(-8, 8), st.floats(-8, 8), st.floats(-30, 30), st.floats(-30, 30), st.floats(1, 40))
-def test_a_ray_meets_a_plate_where_it_was_aimed(x: float, y: float, ex: float, ey: float, ez: float) -> None:
-    plate, eye = (5.85, -2.2, 0.0), np.array([ex, ey, ez])
-    aim = np.array([x + plate[0], y + plate[1], 0.05])
-    if ez - 0.05 > 0.1:
-        assert point_on_plane(eye, aim - eye, plate, 0.05) == pytest.approx((x, y), abs=1e-6)
-
-
 def test_a_ray_beside_or_away_from_the_plate_meets_nothing() -> None:
     for beside_or_away in ([1.0, 0, 0], [0, 0, 1.0]):
         assert point_on_plane(np.array([0, 0, 5.0]), np.array(beside_or_away), (0, 0, 0)) is None
@@ -246,11 +238,6 @@ def test_times_run_from_bright_to_deep_and_unknown_is_grey() -> None:
     assert mix(rgb("#000000"), rgb("#FFFFFF"), 0.5) == (128, 128, 128)
 
 
-def test_text_is_one_object_for_the_same_words() -> None:
-    assert images.text("7 s", (0, 0, 0)) is images.text("7 s", (0, 0, 0))
-    assert images.text("", (0, 0, 0)).shape[1] >= 1
-
-
 def test_a_floor_is_darker_beside_a_wall() -> None:
     floor = images.gridded_floor((4, 2), 40, (100, 100, 100), (120, 120, 120))
     wall, desk = np.array([[0.0, 40, 0, 80]]), [np.array([[100.0, 20], [140, 20], [140, 60]])]
@@ -261,3 +248,4 @@ def test_a_floor_is_darker_beside_a_wall() -> None:
     images.paste(canvas, np.full((4, 20, 3), 9, np.uint8), 5, 8)
     assert canvas[9, 9, 0] == 9
     assert images.sky((0, 0, 0), (9, 9, 9)).shape[2] == 3
+    assert images.text("", (0, 0, 0)).shape[1] >= 1
