@@ -10,19 +10,7 @@ import numpy as np
 import pytest
 
 from tests.unit.web.crowded import FRAME, judged, taught, two_brains
-from tests.unit.web.read_pictures import (
-    SVG,
-    Picture,
-    boxes,
-    circles,
-    corners,
-    drawn,
-    filled,
-    ink,
-    on_map,
-    strokes,
-    words,
-)
+from tests.unit.web.pictures import SVG, Picture, boxes, circles, corners, drawn, filled, ink, on_map, strokes, words
 from web.messages import Pose
 from web.viewer.fits.poses import compose, into_map, placed
 from web.viewer.marks.ghost import PALE, PATH_PALE, pale

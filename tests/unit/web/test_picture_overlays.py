@@ -16,18 +16,7 @@ from PIL import Image
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.crowded import judged
 from tests.unit.web.office_moments import living, tried
-from tests.unit.web.read_pictures import (
-    REPORTS,
-    SVG,
-    Picture,
-    circles,
-    corners,
-    drawn,
-    filled,
-    on_map,
-    strokes,
-    words,
-)
+from tests.unit.web.pictures import REPORTS, SVG, Picture, circles, corners, drawn, filled, on_map, strokes, words
 from web.messages import GoalMemoryLayer, MapLayer, OccupancyLayer, OccupancyPicture
 from web.themes import THEMES, Theme
 from web.viewer.marks.actors import LIT, NIGHT

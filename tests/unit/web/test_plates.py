@@ -36,9 +36,7 @@ def fixed_nodes(stage: Bench) -> set[str]:
 # ---------------------------------------------------------------- what is laid over the floors
 
 
-def test_occupancy_lies_under_the_map_while_it_is_switched_on_and_a_picture_that_comes_later_is_dropped(
-    stage: Bench,
-) -> None:
+def test_occupancy_lies_under_the_map_while_it_is_switched_on_and_none_that_comes_late(stage: Bench) -> None:
     for on in (False, True):
         stage.switch("occupancy", on)
         assert stage.visible("/map/occupancy") is on

@@ -54,39 +54,39 @@ def test_a_switch_changes_the_pictures_of_the_plates_that_it_changes(shared: Ben
     assert bool(changed) == (name != "click_inspects")
 
 
-CELLS, LIVING, KNOWN = PLAIN.pose_cells, replace(PLAIN, living=living()), crowded()
+def moment(**changes: Any) -> Snapshot:
+    return replace(PLAIN, **changes)
+
+
+def doubt(*cells: tuple[float, float, float]) -> Belief:
+    return Belief(0.2, (Hypothesis(1.0, 1.0, 0.0, 0.3, *cells),), 0, 0, 0, 0, 0, 0)
+
+
+CELLS, LIVING, KNOWN = PLAIN.pose_cells, moment(living=living()), crowded()
+STILL = replace(CELLS, cells=CELLS.cells[:0], activity=CELLS.activity[:0], packets=())
+DEAF = replace(PLAIN.senses, ranges_m=np.full(8, np.inf, np.float32))
+DARK_LAMP = living(lamps=np.array([(5.0, 4.0, 3.0, 0.0)], np.float32))
 BEFORE = {"daylight": LIVING, "a lamp that is off": LIVING, "no known places": KNOWN}  # PLAIN for all others
 MOMENTS: dict[str, tuple[Snapshot, set[PlateName]]] = {
-    "an experience": (replace(PLAIN, inspected=REPORTS["experience"]), {"pose", "map"}),
-    "a view": (replace(PLAIN, inspected=REPORTS["view"]), {"pose", "map"}),
-    "a cell": (replace(PLAIN, inspected=REPORTS["cell"]), {"pose", "map"}),
-    "why": (replace(PLAIN, inspected=REPORTS["why"]), {"map"}),
-    "no goal": (replace(PLAIN, goal=None, goal_memory=None), {"pose", "map"}),
-    "it has arrived": (replace(PLAIN, goal=replace(PLAIN.goal, eta_s=None, state="arrived")), {"map"}),  # type: ignore[type-var]
-    "no snap": (replace(PLAIN, pose_cells=replace(CELLS, last_snap=None)), {"pose"}),
-    "no activity": (
-        replace(PLAIN, pose_cells=replace(CELLS, cells=CELLS.cells[:0], activity=CELLS.activity[:0], packets=())), {"pose"}
-    ),
-    "no echoes": (
-        replace(PLAIN, senses=replace(PLAIN.senses, ranges_m=np.full(8, np.inf, np.float32))), {"office"}
-    ),
-    "no trail": (replace(PLAIN, trail=PLAIN.trail[:0]), {"office"}),
-    "lamps, doors, boxes, people": (replace(PLAIN, living=living()), {"office"}),
-    "a tag": (replace(PLAIN, tags=(TaggedPlace("tea", 1, 0.0, 0.0),)), {"map"}),
-    "in doubt": (
-        replace(PLAIN, belief=Belief(0.2, (Hypothesis(1.0, 1.0, 0.0, 0.3),), 0, 0, 0, 0, 0, 0)), {"map"}
-    ),
-    "in doubt, and the cells have that place": (
-        replace(PLAIN, belief=Belief(0.2, (Hypothesis(1.0, 1.0, 0.0, 0.3, (9.0, 11.0, 0.5)),), 0, 0, 0, 0, 0, 0)),
-        {"pose", "map"},
-    ),
-    "daylight": (replace(LIVING, living=living(daylight=0.4)), {"office"}),
-    "a lamp that is off": (
-        replace(LIVING, living=living(lamps=np.array([(5.0, 4.0, 3.0, 0.0)], np.float32))), {"office"}
-    ),
+    "an experience": (moment(inspected=REPORTS["experience"]), {"pose", "map"}),
+    "a view": (moment(inspected=REPORTS["view"]), {"pose", "map"}),
+    "a cell": (moment(inspected=REPORTS["cell"]), {"pose", "map"}),
+    "why": (moment(inspected=REPORTS["why"]), {"map"}),
+    "no goal": (moment(goal=None, goal_memory=None), {"pose", "map"}),
+    "it has arrived": (moment(goal=replace(PLAIN.goal, eta_s=None, state="arrived")), {"map"}),  # type: ignore[type-var]
+    "no snap": (moment(pose_cells=replace(CELLS, last_snap=None)), {"pose"}),
+    "no activity": (moment(pose_cells=STILL), {"pose"}),
+    "no echoes": (moment(senses=DEAF), {"office"}),
+    "no trail": (moment(trail=PLAIN.trail[:0]), {"office"}),
+    "lamps, doors, boxes, people": (LIVING, {"office"}),
+    "daylight": (moment(living=living(daylight=0.4)), {"office"}),
+    "a lamp that is off": (moment(living=DARK_LAMP), {"office"}),
+    "a tag": (moment(tags=(TaggedPlace("tea", 1, 0.0, 0.0),)), {"map"}),
     "no known places": (replace(KNOWN, places=()), {"map", "office"}),
-    "a lesson's marks": (replace(PLAIN, lesson=taught().lesson), {"office", "pose", "map"}),
-}  # fmt: skip
+    "in doubt": (moment(belief=doubt()), {"map"}),
+    "in doubt, and the cells have that place": (moment(belief=doubt((9.0, 11.0, 0.5))), {"pose", "map"}),
+    "a lesson's marks": (moment(lesson=taught().lesson), {"office", "pose", "map"}),
+}
 
 
 @pytest.mark.parametrize("what", MOMENTS)

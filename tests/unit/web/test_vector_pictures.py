@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.crowded import crowded, judged, taught, two_brains
 from tests.unit.web.doubles import house
-from tests.unit.web.read_pictures import REPORTS, SVG, Picture, boxes, drawn, ink, words
+from tests.unit.web.pictures import REPORTS, SVG, Picture, boxes, drawn, ink, words
 from web.messages import KnownPlace, Snapshot, TaggedPlace
 from web.themes import THEMES, Theme
 from web.viewer.primitives.palette import DARK, palette_of
