@@ -10,36 +10,42 @@ import numpy as np
 import pytest
 
 from app.pilot import Pilot
+from app.pilot.behaviours import Behaviour, words_of
 from ratslam_core import Odometry
 from sim2d import Simulator
 
 from .pilots import DT, EXPLORING, FAR, STILL, USUAL, Run, a_pilot
 from .worlds import EXACT, HandMadeMap, chain, room
 
+AHEAD = Odometry(0.3, 0.0, DT)
+
+
+def step(pilot: Pilot, map_: HandMadeMap, odometry: Odometry = STILL, seconds: float = DT) -> tuple[float, float]:
+    """Before far walls."""
+    for _ in range(round(seconds / DT)):
+        asked = pilot.step(FAR, False, odometry, map_)  # type: ignore[arg-type]
+    return asked
+
 
 def test_driven_by_hand_until_told_otherwise() -> None:
-    pilot = a_pilot()
-    map_ = HandMadeMap([(0.0, 0.0)], [])
+    pilot, map_, near = a_pilot(), HandMadeMap([(0.0, 0.0)], []), np.full(8, 0.25, np.float32)
     pilot.drive(0.2, -0.5)
     assert pilot.mode == "manual"
-    near = np.full(8, 0.25, np.float32)
     for _ in range(100):  # by hand it neither avoids obstacles nor frees itself
         assert pilot.step(near, True, STILL, map_) == (0.2, -0.5)  # type: ignore[arg-type]
         assert pilot.doing == "driven by hand"
     pilot.drive(0.0, 0.0)
-    assert pilot.step(FAR, False, STILL, map_) == (0.0, 0.0)  # type: ignore[arg-type]
-    assert pilot.doing == "waiting for the hand"
+    assert (step(pilot, map_), pilot.doing) == ((0.0, 0.0), "waiting for the hand")
     pilot.drive(0.2, 0.0)
     pilot.set_mode("explore")
-    pilot.step(FAR, False, STILL, map_)  # type: ignore[arg-type]
+    step(pilot, map_)
     assert pilot.doing in EXPLORING
     pilot.set_mode("manual")
-    assert pilot.step(FAR, False, STILL, map_) == (0.0, 0.0)  # type: ignore[arg-type]
+    assert step(pilot, map_) == (0.0, 0.0)
 
 
 def test_modes_and_goals() -> None:
-    pilot = a_pilot()
-    map_ = HandMadeMap(*chain((0.0, 0.0), (3.0, 0.0)))
+    pilot, map_ = a_pilot(), HandMadeMap(*chain((0.0, 0.0), (3.0, 0.0)))
     with pytest.raises(ValueError, match="there is no goal to go to; set one first"):
         pilot.set_mode("goal")
     assert (pilot.mode, pilot.goal, pilot.goal_state, pilot.progress(map_)) == ("explore", None, None, None)  # type: ignore[arg-type]
@@ -60,19 +66,15 @@ def test_a_route_is_followed_to_the_goal() -> None:
     """Around a wall with a gap: along the links, not as the crow flies."""
     world = room((2.0, 0.0, 2.0, 2.8), start=(1.0, 0.6, 0.0))
     map_ = HandMadeMap(*chain((1.0, 0.6), (1.0, 3.4), (3.0, 3.4), (3.0, 0.6)))
-    run = Run(Simulator(world, EXACT), a_pilot(), map_)
-    goal = len(map_) - 1
+    run, goal = Run(Simulator(world, EXACT), a_pilot(), map_), len(map_) - 1
     run.pilot.set_goal(goal)
-    for _ in range(600):
+    while run.pilot.goal_state != (goal, "arrived"):
         run.tick()
-        if run.pilot.goal_state == (goal, "arrived"):
-            break
-    assert run.pilot.goal_state == (goal, "arrived")
-    assert math.dist(run.truth, (3.0, 0.6)) < 0.35
-    length = sum(math.dist(a, b) for a, b in pairwise(run.track))
-    assert 6.5 < length < 9.0  # the links are 7.6 m long
-    assert run.bumps == 0
+        assert len(run.track) < 600
     here = run.truth
+    assert math.dist(here, (3.0, 0.6)) < 0.35
+    assert 6.5 < sum(math.dist(a, b) for a, b in pairwise(run.track)) < 9.0  # the links are 7.6 m long
+    assert run.bumps == 0
     run.run(3)
     assert run.pilot.doing == "at the goal"
     assert math.dist(here, run.truth) < 0.05
@@ -99,29 +101,22 @@ def test_a_goal_that_was_reached_is_done_with_when_the_robot_goes_elsewhere(leav
 
 def test_an_unreachable_goal_is_explored_for_and_reached_when_a_way_is_found() -> None:
     places, links = chain((0.0, 0.0), (3.0, 0.0))
-    gap = [(i, j) for i, j in links if not 2 <= i < 9]  # too wide to be imagined away
-    map_ = HandMadeMap(places, gap)
+    goal, map_ = len(places) - 1, HandMadeMap(places, [(i, j) for i, j in links if not 2 <= i < 9])  # too wide a gap
     pilot = a_pilot()
-    pilot.set_goal(len(places) - 1)
+    pilot.set_goal(goal)
     for _ in range(round(USUAL.lost_s / DT) + 10):
-        pilot.step(FAR, False, Odometry(0.3, 0.0, DT), map_)  # type: ignore[arg-type]
+        step(pilot, map_, AHEAD)
         assert pilot.doing in EXPLORING
-    assert pilot.goal_state == (len(places) - 1, "unreachable")
-    map_.links = np.array(links)
-    map_.link_times = np.full(len(links), 0.8)
-    for _ in range(round(2 * USUAL.replan_s / DT)):
-        pilot.step(FAR, False, Odometry(0.3, 0.0, DT), map_)  # type: ignore[arg-type]
-    assert pilot.goal_state == (len(places) - 1, "tracking")
-    assert pilot.doing == "following the route"
-
-
-def test_coasting_is_said() -> None:
-    map_ = HandMadeMap(*chain((0.0, 0.0), (6.0, 0.0)))
-    pilot = a_pilot()
-    pilot.set_goal(len(map_) - 1)
-    pilot.step(FAR, False, STILL, map_)  # type: ignore[arg-type]
-    assert pilot.doing == "following the route"
+    assert pilot.goal_state == (goal, "unreachable")
+    map_.links, map_.link_times = np.array(links), np.full(len(links), 0.8)
+    step(pilot, map_, AHEAD, seconds=2 * USUAL.replan_s)
+    assert (pilot.goal_state, pilot.doing) == ((goal, "tracking"), "following the route")
     map_.links, map_.link_times = map_.links[:0], map_.link_times[:0]
-    for _ in range(25):
-        pilot.step(FAR, False, Odometry(0.3, 0.0, DT), map_)  # type: ignore[arg-type]
+    step(pilot, map_, AHEAD, seconds=2.5)
     assert pilot.doing == "coasting on the old route"
+
+
+def test_links_remember_a_behaviour_by_its_number() -> None:
+    assert {behaviour.number for behaviour in Behaviour} == set(range(7))
+    assert words_of(Behaviour.COASTING.number) == "following the route"
+    assert (words_of(0), words_of(6), words_of(9)) == ("standing", "driven by hand", "9")

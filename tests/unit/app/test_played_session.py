@@ -15,15 +15,14 @@ from app.engine.watchdog import Watchdog
 from app.played_session import PlayedSession
 from app.recordings.playing import Player
 from app.recordings.recording import Moment, Wanted, every
-from sim2d import load_world
 from tests.unit.app.engines import an_engine, tell
 from tests.unit.app.made_recordings import MadeRecording, recorded
+from tests.unit.app.sessions import OFFICE
 from web import messages as m
 from web.http.state import page_fields, state, to_json
 from web.panel.truth import numbers
 
 TICKS = 60
-OFFICE = load_world("office")
 
 
 @pytest.fixture(scope="module")
@@ -48,48 +47,48 @@ def playing(player: Player) -> Engine:
     return engine
 
 
-def to_the_end(engine: Engine) -> None:
+def to_the_end(engine: Engine) -> str:
+    """Play on; returns what the session is then."""
     engine.running = True
     while engine.running:
         engine.tick()
+    return engine.run.session.state_hash()
 
 
-def test_it_is_what_the_player_makes_of_the_recording(player: Player) -> None:
+def reset(engine: Engine, **fields: object) -> m.Accepted | m.Refused:
+    return carry_out(engine, m.Reset.model_validate({"type": "reset", **fields}))  # type: ignore[return-value]
+
+
+def test_it_is_what_the_player_makes_of_the_recording_whether_there_is_a_truth_or_not(
+    player: Player, blind: Player
+) -> None:
     session, steps = PlayedSession(player), list(player.steps())
-    seen = [session.estimate]
+    views = [session.estimate.recognition.view]
     while not session.over:
         session.tick()
-        seen.append(session.estimate)
-    assert [e.recognition.view for e in seen] == [step.estimate.recognition.view for step in steps]
-    assert np.array_equal(session.brain.experience_map.poses, steps[-1].brain.experience_map.poses)
+        views.append(session.estimate.recognition.view)
+    *_, unseeing = blind.steps()
+    assert views == [step.estimate.recognition.view for step in steps]
+    for other in (steps[-1], unseeing):
+        assert np.array_equal(session.brain.experience_map.poses, other.brain.experience_map.poses)
 
 
-def test_the_same_again_and_another_seed_is_told(player: Player) -> None:
+def test_it_pauses_at_its_end_says_so_and_comes_out_the_same_again(player: Player) -> None:
     engine = playing(player)
-    to_the_end(engine)
-    first = engine.run.session.state_hash()
-    carry_out(engine, m.Reset(type="reset"))
-    assert engine.run.session.tick_count == 0
-    assert not engine.run.session.over
-    to_the_end(engine)
-    assert engine.run.session.state_hash() == first
-    carry_out(engine, m.Reset(type="reset", seed=9))
-    assert engine.run.session.seed == 9
-    assert player.seed == 1, "the player of others stays as it was"
-
-
-def test_it_pauses_at_its_end_and_says_so(player: Player) -> None:
-    engine = playing(player)
-    to_the_end(engine)
-    session, events = engine.run.session, engine.run.event_log.events
-    assert session.tick_count == TICKS - 1
-    assert [event.text for event in events if event.kind == "recording"] == ["the recording has ended"]
+    first = to_the_end(engine)
+    assert engine.run.session.tick_count == TICKS - 1
+    assert [e.text for e in engine.run.event_log.events if e.kind == "recording"] == ["the recording has ended"]
     assert engine.snapshot().recording is not None
-    before = session.state_hash()
     for kind in ("resume", "step"):
         with pytest.raises(ValueError, match="the recording has ended"):
             tell(engine, type=kind)
-    assert engine.run.session.state_hash() == before
+    assert engine.run.session.state_hash() == first
+    reset(engine)
+    assert (engine.run.session.tick_count, engine.run.session.over) == (0, False)
+    assert to_the_end(engine) == first
+    reset(engine, seed=9)
+    assert engine.run.session.seed == 9
+    assert player.seed == 1, "the player of others stays as it was"
 
 
 def test_steps_beyond_the_end_are_answered_with_the_last_moment(player: Player) -> None:
@@ -101,46 +100,41 @@ def test_steps_beyond_the_end_are_answered_with_the_last_moment(player: Player) 
     engine.steps.add(m.Request(m.Pause(type="pause"), None), 1000)  # type: ignore[arg-type]
     while engine.steps:
         engine.step()
-    assert answers == [TICKS - 1]
-    assert engine.fault is None
+    assert (answers, engine.fault) == ([TICKS - 1], None)
 
 
-@pytest.mark.parametrize(
-    ("fields", "words"),
-    [
-        ({"type": "set_goal", "x": 0.0, "y": 0.0}, "cannot be sent, driven or carried"),
-        ({"type": "go_to_tag", "name": "here"}, "cannot be sent, driven or carried"),
-        ({"type": "cancel_goal"}, "cannot be sent, driven or carried"),
-        ({"type": "set_mode", "mode": "explore"}, "cannot be sent, driven or carried"),
-        ({"type": "drive", "speed": 0.1, "yaw_rate": 0.0}, "cannot be sent, driven or carried"),
-        ({"type": "kidnap"}, "cannot be sent, driven or carried"),
-        ({"type": "set_door", "name": "a", "open": True}, "it has no office"),
-        ({"type": "set_lamp", "name": "a", "on": True}, "it has no office"),
-        ({"type": "put_box", "name": "a", "x": 0, "y": 0, "width": 1, "depth": 1, "height": 1}, "it has no office"),
-        ({"type": "remove_box", "name": "a"}, "it has no office"),
-        ({"type": "undo_edit"}, "it has no office"),
-        ({"type": "redo_edit"}, "it has no office"),
-        ({"type": "set_parameter", "name": "robot.max_speed", "value": 0.3}, "robot.max_speed is for the simulator"),
-        ({"type": "use_preset", "name": "ideal"}, "is for the simulator"),
-    ],
-)
+STAYS, NO_OFFICE = "cannot be sent, driven or carried", "it has no office"
+REFUSED: list[tuple[dict[str, object], str]] = [
+    ({"type": "set_goal", "x": 0.0, "y": 0.0}, STAYS),
+    ({"type": "go_to_tag", "name": "here"}, STAYS),
+    ({"type": "cancel_goal"}, STAYS),
+    ({"type": "set_mode", "mode": "explore"}, STAYS),
+    ({"type": "drive", "speed": 0.1, "yaw_rate": 0.0}, STAYS),
+    ({"type": "kidnap"}, STAYS),
+    ({"type": "set_door", "name": "a", "open": True}, NO_OFFICE),
+    ({"type": "set_lamp", "name": "a", "on": True}, NO_OFFICE),
+    ({"type": "put_box", "name": "a", "x": 0, "y": 0, "width": 1, "depth": 1, "height": 1}, NO_OFFICE),
+    ({"type": "remove_box", "name": "a"}, NO_OFFICE),
+    ({"type": "undo_edit"}, NO_OFFICE),
+    ({"type": "redo_edit"}, NO_OFFICE),
+    ({"type": "set_parameter", "name": "robot.max_speed", "value": 0.3}, "robot.max_speed is for the simulator"),
+    ({"type": "use_preset", "name": "ideal"}, "is for the simulator"),
+]
+
+
 def test_an_order_that_it_cannot_carry_out_is_refused_and_changes_nothing(
-    player: Player, fields: dict[str, object], words: str
+    player: Player, subtests: pytest.Subtests
 ) -> None:
     engine = playing(player)
     before = engine.run.session.state_hash()
-    with pytest.raises(ValueError, match=words):
-        tell(engine, **fields)
-    assert engine.run.session.state_hash() == before
-
-
-def test_the_world_cannot_be_read_and_the_brain_can(player: Player) -> None:
-    engine = playing(player)
+    for fields, words in REFUSED:
+        with subtests.test(str(fields["type"])):
+            with pytest.raises(ValueError, match=words):
+                tell(engine, **fields)
+            assert engine.run.session.state_hash() == before
     refused = carry_out(engine, m.ReadWorld())  # type: ignore[arg-type]
     assert isinstance(refused, m.Refused)
-    assert "it has no office" in refused.reason
-    brain = carry_out(engine, m.ReadBrain())
-    assert isinstance(brain, m.Accepted)
+    assert NO_OFFICE in refused.reason
 
 
 def test_what_concerns_the_brain_works(player: Player) -> None:
@@ -152,6 +146,7 @@ def test_what_concerns_the_brain_works(player: Player) -> None:
     tell(engine, type="tag", name="here")
     tell(engine, type="inject_packet", x=3, y=4)
     assert carry_out(engine, m.Inspect(type="inspect", experience=0)) == m.Accepted(20)
+    assert isinstance(carry_out(engine, m.ReadBrain()), m.Accepted)
     shown = engine.snapshot()
     assert isinstance(shown.inspected, m.ExperienceReport)
     assert [place.name for place in shown.tags] == ["here"]
@@ -162,12 +157,10 @@ def test_with_truth_its_path_and_the_errors_are_shown(player: Player) -> None:
     to_the_end(engine)
     shown = engine.snapshot()
     assert shown.world is not None
-    assert not shown.world.is_office
-    assert len(shown.world.walls) == 0
+    assert (shown.world.is_office, len(shown.world.walls), shown.coverage) == (False, 0, None)
     assert shown.truth is not None
     assert shown.error_map_m is not None
     assert shown.error_map_m < 0.1
-    assert shown.coverage is None
     low_x, low_y, high_x, high_y = shown.world.bounds
     assert (shown.trail >= (low_x, low_y)).all()
     assert (shown.trail <= (high_x, high_y)).all()
@@ -189,37 +182,34 @@ def test_without_truth_nothing_of_it_is_shown(blind: Player) -> None:
     to_json(told | page)
 
 
-def test_truth_never_reaches_the_brain(player: Player, blind: Player) -> None:
-    seeing, not_seeing = PlayedSession(player), PlayedSession(blind)
-    for _ in range(TICKS - 1):
-        seeing.tick()
-        not_seeing.tick()
-    assert np.array_equal(seeing.brain.experience_map.poses, not_seeing.brain.experience_map.poses)
-
-
 def test_back_to_the_office_that_was_open_with_its_parameters(player: Player) -> None:
     engine = an_engine(OFFICE)
     tell(engine, type="set_parameter", name="robot.gyro_bias", value=0.01)
     config = engine.run.session.config
     engine.begin_recording(player)
     assert engine.run.session.config == player.config
-    carry_out(engine, m.Reset(type="reset"))
+    reset(engine)
     assert engine.run.session.recording is not None, "without a world the recording begins again"
-    assert carry_out(engine, m.Reset(type="reset", world="office")) == m.Accepted(0)
-    assert engine.run.session.recording is None
-    assert engine.run.session.config == config
+    assert reset(engine, world="office") == m.Accepted(0)
+    assert (engine.run.session.recording, engine.run.session.config) == (None, config)
     engine.tick()
     assert engine.snapshot().world is not None
 
 
-def test_a_recording_without_a_moment_or_of_another_kind_leaves_the_run_as_it_is(moments: MadeRecording) -> None:
-    class Empty(MadeRecording):
-        def moments(self, wanted: Wanted = every) -> Iterator[Moment]:  # noqa: ARG002
-            return iter(())
+class Empty(MadeRecording):
+    def moments(self, wanted: Wanted = every) -> Iterator[Moment]:  # noqa: ARG002
+        return iter(())
 
-    engine = an_engine(OFFICE)
+
+class Broken(MadeRecording):
+    def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
+        yield from list(super().moments(wanted))[:10]
+        raise ValueError("made: picture 10 cannot be read")
+
+
+def test_a_recording_without_a_moment_or_of_another_kind_leaves_the_run_as_it_is(moments: MadeRecording) -> None:
+    engine, empty = an_engine(OFFICE), Player(moments, 1)
     run = engine.run
-    empty = Player(moments, 1)
     empty.recording = Empty(list(moments.moments()))
     for player, words in ((empty, "made has no moment that can be played"), ("a text", "it is a str")):
         refused = carry_out(engine, m.PlayRecording(player))
@@ -229,16 +219,11 @@ def test_a_recording_without_a_moment_or_of_another_kind_leaves_the_run_as_it_is
 
 
 def test_a_recording_that_breaks_off_is_a_fault_and_can_be_begun_again(moments: MadeRecording) -> None:
-    class Broken(MadeRecording):
-        def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
-            yield from list(super().moments(wanted))[:10]
-            raise ValueError("made: picture 10 cannot be read")
-
     player = Player(moments, 1)
     player.recording = Broken(list(moments.moments()))
     engine = playing(player)
     to_the_end(engine)
     assert engine.fault is not None
     assert "picture 10 cannot be read" in engine.fault
-    carry_out(engine, m.Reset(type="reset"))
+    reset(engine)
     assert engine.fault is None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -38,23 +39,17 @@ def test_what_is_summed_up_between_moments_is_all_that_was_driven(samples: list[
             assert mean is not None
             told += mean * (now - begin)
             begin = now
-    assert told == pytest.approx(way, abs=1e-3 * S * len(samples))
     assert math.isclose(told, way, rel_tol=1e-9, abs_tol=1.0)
 
 
-def test_a_value_is_returned_bit_for_bit_and_holds_for_a_second() -> None:
-    held = Held()
+def test_a_value_is_returned_bit_for_bit_holds_for_a_second_and_counts_by_its_time() -> None:
+    held, ends = Held(), S + round(HELD_S * S)
     assert held.mean(0, S) is None
     held.add(S, 0.1)
-    assert held.mean(0, S) == 0.1
-    assert held.mean(S, S + S // 3) == 0.1
-    assert held.mean(S + S // 3, S + round(HELD_S * S)) == 0.1
-    assert held.mean(S + round(HELD_S * S), 9 * S) is None
+    spans = ((0, S), (S, S + S // 3), (S + S // 3, ends), (ends, 9 * S))
+    assert [held.mean(*span) for span in spans] == [0.1, 0.1, 0.1, None]
     held.add(10 * S, -0.3)
     assert held.mean(9 * S, 10 * S) == -0.3
-
-
-def test_wheels_between_two_pictures_count_by_their_time() -> None:
     held = Held()
     for time, value in ((1, 1.0), (4, 2.0), (6, 5.0)):
         held.add(time * S, value)
@@ -96,14 +91,13 @@ def test_only_the_first_problems_of_a_kind_are_told() -> None:
     assert len(plain("x" * 10_000)) < 400
 
 
-@pytest.mark.parametrize("turn", [-3.0, -0.4, 0.0, 0.7])
-def test_rates_from_poses_lead_from_one_to_the_other(turn: float) -> None:
-    rates, begin = Rates(), Pose2(1.0, 2.0, 3.0)
-    way = -0.3 if turn < 0 else 0.8
-    end = begin.compose(Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn))
-    assert rates.since(0, (begin.x, begin.y, begin.heading_rad)) is None
-    assert rates.since(S // 2, (end.x, end.y, end.heading_rad)) == pytest.approx((way / 0.5, turn / 0.5))
-    assert rates.since(S // 2, (0.0, 0.0, 0.0)) is None
+def test_rates_from_poses_lead_from_one_to_the_other() -> None:
+    for way, turn in ((-0.3, -3.0), (-0.3, -0.4), (0.8, 0.0), (0.8, 0.7)):
+        rates, begin = Rates(), Pose2(1.0, 2.0, 3.0)
+        end = begin.compose(Pose2(way * math.cos(turn / 2), way * math.sin(turn / 2), turn))
+        assert rates.since(0, (begin.x, begin.y, begin.heading_rad)) is None
+        assert rates.since(S // 2, (end.x, end.y, end.heading_rad)) == pytest.approx((way / 0.5, turn / 0.5)), turn
+        assert rates.since(S // 2, (0.0, 0.0, 0.0)) is None
 
 
 def test_times_are_read_to_the_nanosecond() -> None:
@@ -147,12 +141,10 @@ def test_damaged_lines_and_pictures_are_named_and_left_out(tmp_path: Path) -> No
     recording = open_recording(folder)
     moments = list(recording.moments())
     assert [moment.frame for moment in moments] == [0, 3, 5, 6, 7]
-    told = recording.about.problems
-    assert len(told) == 3
-    assert "wheels.csv: line 3" in told[0]
-    assert "line 4" in told[1]
-    assert "'nan' is not a finite number" in told[1]
-    assert "line 6: left out: not a picture" in told[2]
+    outside, odd, broken = recording.about.problems
+    assert "wheels.csv: line 3" in outside
+    assert re.search("line 4.*'nan' is not a finite number", odd)
+    assert "line 6: left out: not a picture" in broken
     assert moments[1].dt == pytest.approx(0.3)
 
 
@@ -189,9 +181,8 @@ def test_a_log_of_carmen_tells_what_was_used_of_it_and_what_was_not(tmp_path: Pa
     recording = open_recording(path)
     assert len(list(recording.moments())) == N
     about = recording.about
-    assert about.uses == ("ranges: RAWLASER1 lines",)
+    assert (about.uses, len(about.problems)) == (("ranges: RAWLASER1 lines",), 1)
     assert [(count.what, count.read, count.there) for count in about.counts] == [("RAWLASER1 lines", N, N + 1)]
-    assert len(about.problems) == 1
     assert set(about.unused) == {
         "PARAM, 1 lines: the robot's parameters are not needed", "FLASER, 1 lines: ranges come from RAWLASER1 lines",
         "SYNC, 1 lines: not read",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -24,22 +25,45 @@ from .worlds import EXACT, HandMadeMap, chain, room
 pytestmark = pytest.mark.slow
 
 
+def a_follower(map_: HandMadeMap) -> RouteFollower:
+    """Of a route to the map's last place."""
+    return RouteFollower(len(map_) - 1)
+
+
+def a_run(
+    *walls: tuple[float, float, float, float], stops: list[tuple[float, float]], seed: int = 0
+) -> Run:
+    """A robot at the first of a chain of places, whatever walls lie across it."""
+    world = room(*walls, start=(*stops[0], 0.0))
+    return Run(Simulator(world, EXACT, seed), a_pilot(seed), HandMadeMap(*chain(*stops)))
+
+
+def to_the_end(run: Run) -> int:
+    """Send it to the last place."""
+    run.pilot.set_goal(len(run.map) - 1)
+    return len(run.map) - 1
+
+
+def until(run: Run, condition: Callable[[], bool], most_s: float) -> None:
+    """most_s: since it began."""
+    while not condition():
+        run.tick()
+        assert len(run.track) < 10 * most_s
+
+
 def test_progress_counts_down_along_the_links() -> None:
     map_ = HandMadeMap(*chain((0.0, 0.0), (4.0, 0.0), (4.0, 2.0)))
-    goal = len(map_) - 1
-    follower = RouteFollower(goal)
-    etas, remaining = [], []
-    for x in (0.0, 1.0, 2.0, 3.0, 4.0):
-        map_.robot = Pose2(x, 0.1, 0.0)
+    follower, told = a_follower(map_), []
+    for x in range(5):
+        map_.robot = Pose2(float(x), 0.1, 0.0)
         for _ in range(11):
             assert follow(follower, map_) is not None
         progress = follower.progress(map_)  # type: ignore[arg-type]
-        assert progress.state == "tracking"
-        assert progress.route[-1] == goal
+        assert (progress.state, progress.route[-1]) == ("tracking", follower.goal)
         assert len(progress.route) == len(progress.arrival_s)
         assert np.all(np.diff(progress.arrival_s) > 0)
-        etas.append(progress.eta_s)
-        remaining.append(progress.remaining_m)
+        told.append((progress.eta_s, progress.remaining_m))
+    etas, remaining = zip(*told, strict=True)
     assert etas == pytest.approx([(6.0 - x) / 0.3 for x in range(5)], abs=2.1)
     assert remaining == pytest.approx([6.1 - x for x in range(5)], abs=0.3)
 
@@ -48,7 +72,7 @@ def test_the_robot_heads_for_a_point_ahead_on_the_route() -> None:
     map_ = HandMadeMap(*chain((0.0, 0.0), (4.0, 0.0)))
     for heading in (0.0, 1.0, -2.5, math.pi):
         map_.robot = Pose2(1.0, 0.2, heading)
-        target = follow(RouteFollower(len(map_) - 1), map_, PilotParams(lookahead_m=0.6))
+        target = follow(a_follower(map_), map_, PilotParams(lookahead_m=0.6))
         assert target is not None
         there = map_.robot.compose(Pose2(*target, 0.0))
         assert there.y == pytest.approx(0.0, abs=1e-9)
@@ -73,14 +97,13 @@ def test_a_brand_new_experience_is_left_by_way_of_a_near_one() -> None:
     map_.robot = Pose2(0.3, 0.34, 0.0)
     assert map_.active == len(places)
     follower = RouteFollower(len(places) - 1)
-    assert follow(follower, map_) is not None
-    assert follower.state == "tracking"
+    assert (follow(follower, map_) is not None, follower.state) == (True, "tracking")
 
 
 def test_a_lost_route_is_coasted_on_then_given_up() -> None:
     map_ = HandMadeMap(*chain((0.0, 0.0), (6.0, 0.0)))
     params = PilotParams(coast_s=4.0)
-    follower = RouteFollower(len(map_) - 1)
+    follower = a_follower(map_)
     states = []
     for tick in range(400):
         if tick == 20:
@@ -101,20 +124,13 @@ def test_a_lost_route_is_coasted_on_then_given_up() -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_a_blocked_way_is_left(seed: int) -> None:
     """The map has a way where there is a wall. The robot looks around instead of pushing for ever."""
-    world = room((2.0, 0.0, 2.0, 3.0), start=(1.0, 0.6, 0.0))
-    map_ = HandMadeMap(*chain((1.0, 0.6), (3.0, 0.6)))
-    run = Run(Simulator(world, EXACT, seed), a_pilot(seed), map_)
-    run.pilot.set_goal(len(map_) - 1)
-    goal = len(map_) - 1
-    while run.pilot.goal_state == (goal, "tracking"):
-        run.tick()
-        assert len(run.track) < 10 * (6 * USUAL.no_headway_s)
+    run = a_run((2.0, 0.0, 2.0, 3.0), stops=[(1.0, 0.6), (3.0, 0.6)], seed=seed)
+    goal = to_the_end(run)
+    until(run, lambda: run.pilot.goal_state != (goal, "tracking"), 6 * USUAL.no_headway_s)
     assert len(run.track) >= 10 * USUAL.no_headway_s
     assert run.pilot.goal_state == (goal, "exploring")
-    before = Counter(run.doing)
-    while run.pilot.goal_state == (goal, "exploring"):
-        run.tick()
-        assert len(run.track) < 10 * (6 * USUAL.no_headway_s + 60)  # it may have to free itself from the corner first
+    before = Counter(run.doing)  # it may have to free itself from the corner first
+    until(run, lambda: run.pilot.goal_state != (goal, "exploring"), 6 * USUAL.no_headway_s + 60)
     looked = run.doing - before
     assert sum(looked[doing] for doing in EXPLORING) > 10 * (USUAL.look_around_s - 4)
     assert run.pilot.goal_state in ((goal, "tracking"), (goal, "arrived"))  # and tries again
@@ -140,33 +156,29 @@ def two_ways() -> tuple[World, list[tuple[float, float]], list[tuple[int, int]]]
 def test_a_door_that_was_shut_is_given_up(seed: int) -> None:
     """As in ACRA 2006: all ways through the door fail together, not one after the other, and the robot goes round."""
     world, places, links = two_ways()
-    map_ = HandMadeMap(places, links)
+    map_, goal = HandMadeMap(places, links), round(2.0 / 0.25)
     map_.patience = 4
-    goal = round(2.0 / 0.25)
     run = Run(Simulator(world, EXACT, seed), a_pilot(seed, bar_fade_s=0.0), map_)
     run.pilot.set_goal(goal)
-    while run.pilot.goal_state != (goal, "arrived"):
-        run.tick()
-        assert len(run.track) < 10 * 120
-    truth = run.simulator.truth
-    assert math.hypot(truth.x - places[goal][0], truth.y - places[goal][1]) < 0.4
+    until(run, lambda: run.pilot.goal_state == (goal, "arrived"), 120)
+    assert math.dist(run.truth, places[goal]) < 0.4
     gone = {tuple(link) for link in links} - {(int(i), int(j)) for i, j in map_.links}
     assert gone
-    for i, j in gone:
-        assert max(places[i][1], places[j][1]) < 1.5  # nothing of the way round
+    assert all(max(places[i][1], places[j][1]) < 1.5 for i, j in gone)  # nothing of the way round
     assert {(i, j) for i, j, well in map_.trials if well} - gone  # and links that were driven have been on trial, too
 
 
-def test_what_was_driven_of_a_route_was_a_trial() -> None:
-    map_ = HandMadeMap(*chain((0.0, 0.0), (6.0, 0.0)))
-    follower = RouteFollower(len(map_) - 1)
-    for tick in range(150):
+def test_what_was_driven_of_a_route_was_a_trial_and_headway_is_no_reason_to_look_around() -> None:
+    map_ = HandMadeMap(*chain((0.0, 0.0), (20.0, 0.0)))
+    follower = a_follower(map_)
+    for tick in range(600):
         map_.robot = Pose2(0.03 * tick, 0.0, 0.0)
         follow(follower, map_)
-    tried = {(i, j) for i, j, _ in map_.trials}
+        assert follower.state == "tracking"
+        if tick == 150:
+            assert len({(i, j) for i, j, _ in map_.trials}) >= 8  # a plan may begin beyond the end of the one before
+            assert {(i, j) for i, j, _ in map_.trials} <= {(k, k + 1) for k in range(18)}
     assert all(well for _, _, well in map_.trials)
-    assert len(tried) >= 8  # of the 18 that were driven; a plan may begin beyond the end of the one before
-    assert tried <= {(k, k + 1) for k in range(18)}
 
 
 @settings(max_examples=200)
@@ -184,50 +196,34 @@ def test_crossing_a_bar_is_what_points_on_both_lines_are(lines, bar) -> None:
             assert bool(answer) is bool(0 < t < 1 and 0 < u < 1)
 
 
-def test_headway_is_no_reason_to_look_around() -> None:
-    map_ = HandMadeMap(*chain((0.0, 0.0), (20.0, 0.0)))
-    follower = RouteFollower(len(map_) - 1)
-    for tick in range(600):
-        map_.robot = Pose2(0.03 * tick, 0.0, 0.0)
-        follow(follower, map_)
-        assert follower.state == "tracking"
-
-
 def test_a_slow_floor_is_not_blocked() -> None:
     """The wheels give a fifth of what is asked for. Nothing is in the way, so no bar is put up."""
-    world = room(start=(1.0, 0.6, 0.0))
-    x, y, right, top = world.bounds
+    run = a_run(stops=[(1.0, 0.6), (3.4, 0.6), (3.4, 3.0)])
+    x, y, right, top = run.simulator.world.bounds
     zone = SlowZone("slippery", ((x, y), (right, y), (right, top), (x, top)), 0.2)
-    map_ = HandMadeMap(*chain((1.0, 0.6), (3.4, 0.6), (3.4, 3.0)))
-    run = Run(Simulator(replace(world, slow_zones=(zone,)), EXACT), a_pilot(), map_)
-    goal = len(map_) - 1
-    run.pilot.set_goal(goal)
-    for _ in range(1500):
-        run.tick()
-        assert run.doing["freeing itself"] == 0
-    assert run.pilot.goal_state == (goal, "arrived")
+    run.simulator.set_world(replace(run.simulator.world, slow_zones=(zone,)))
+    goal = to_the_end(run)
+    run.run(150.0)
+    assert (run.doing["freeing itself"], run.pilot.goal_state) == (0, (goal, "arrived"))
 
 
-@pytest.mark.parametrize("shut_s", [40.0])
-def test_a_door_that_opens_again_is_found_again(shut_s: float) -> None:
+def test_a_door_that_opens_again_is_found_again() -> None:
     """The only way is shut when the robot comes. It never gives the goal up, and is there soon after it has opened."""
-    world, open_ = room((2.0, 0.0, 2.0, 4.0), start=(1.0, 2.0, 0.0)), room(start=(1.0, 2.0, 0.0))
-    map_ = HandMadeMap(*chain((1.0, 2.0), (3.4, 2.0)))
-    run = Run(Simulator(world, EXACT, 1), a_pilot(1), map_)
-    goal = len(map_) - 1
-    run.pilot.set_goal(goal)
-    run.run(shut_s)
+    run = a_run((2.0, 0.0, 2.0, 4.0), stops=[(1.0, 2.0), (3.4, 2.0)], seed=1)
+    goal = to_the_end(run)
+    run.run(40.0)
     assert run.pilot.goal_state != (goal, "arrived")
-    run.simulator.set_world(open_)
+    run.simulator.set_world(room(start=(1.0, 2.0, 0.0)))
     run.run(60.0)
     assert run.pilot.goal_state == (goal, "arrived")
 
 
+ROUND = [(1.0, 0.6), (1.0, 3.4), (3.0, 3.4), (3.0, 0.6)]  # a wall that reaches up to y = 2.8
+
+
 def test_a_goal_is_reached_after_a_kidnap_on_the_way() -> None:
     """Put down in a corner behind a wall, the robot plans anew from there."""
-    world = room((2.0, 0.0, 2.0, 2.8), start=(1.0, 0.6, 0.0))
-    map_ = HandMadeMap(*chain((1.0, 0.6), (1.0, 3.4), (3.0, 3.4), (3.0, 0.6)))
-    run = Run(Simulator(world, EXACT), a_pilot(), map_)
+    run = a_run((2.0, 0.0, 2.0, 2.8), stops=ROUND)
     run.pilot.set_goal(0)
     run.simulator.teleport(3.0, 1.6, 0.0)
     run.run(2.0)
@@ -240,18 +236,16 @@ def test_a_goal_is_reached_after_a_kidnap_on_the_way() -> None:
 def test_carried_away_from_the_goal_it_looks_for_the_way_back() -> None:
     """It stands at its goal when it is put down elsewhere. Once it notices, it is on an island: it does not stand there, as
     if it had arrived, but drives; and it goes on to the goal when the island has become a part of the map again."""
-    world = room((2.0, 0.0, 2.0, 2.8), start=(1.0, 0.6, 0.0))
-    map_ = HandMadeMap(*chain((1.0, 0.6), (1.0, 3.4), (3.0, 3.4), (3.0, 0.6)))
-    run = Run(Simulator(world, EXACT), a_pilot(), map_)
+    run = a_run((2.0, 0.0, 2.0, 2.8), stops=ROUND)
     run.pilot.set_goal(0)
     run.run(5.0)
     assert run.pilot.goal_state == (0, "arrived")
     run.simulator.teleport(3.0, 1.6, 0.0)
-    map_.landed = len(map_) // 2  # the half of the map where it now is
+    run.map.landed = len(run.map) // 2  # the half of the map where it now is
     run.run(10.0)
     assert run.pilot.goal_state == (0, "exploring")
     assert len({(round(x, 1), round(y, 1)) for x, y in run.track[-100:]}) > 5
-    map_.landed = len(map_)
+    run.map.landed = len(run.map)
     run.run(60.0)
     assert run.pilot.goal_state == (0, "arrived")
     assert math.dist(run.truth, (1.0, 0.6)) < 0.2
@@ -260,29 +254,24 @@ def test_carried_away_from_the_goal_it_looks_for_the_way_back() -> None:
 def test_who_is_lost_has_not_arrived() -> None:
     """It only believes to be at its goal: it looks around, and has arrived when it knows where it is. Nor does it say that there
     is no way, as long as it does not know from where."""
-    map_ = HandMadeMap(*chain((1.0, 0.6), (3.0, 0.6)))
-    run = Run(Simulator(room(start=(1.0, 0.6, 0.0)), EXACT), a_pilot(), map_)
+    run = a_run(stops=[(1.0, 0.6), (3.0, 0.6)])
+    map_, told = run.map, set[str]()
     map_.lost = True
-    run.pilot.set_goal(len(map_) - 1)
-    told: set[str] = set()
-    places: set[tuple[float, float]] = set()
+    goal = to_the_end(run)
     for _ in range(600):
         run.tick()
-        assert run.pilot.goal_state is not None
-        told.add(run.pilot.goal_state[1])
-        places.add((round(run.truth[0], 1), round(run.truth[1], 1)))
+        told.add(run.pilot.goal_state[1])  # type: ignore[index]
     assert told == {"tracking", "exploring"}
-    assert len(places) > 20
+    assert len({(round(x, 1), round(y, 1)) for x, y in run.track}) > 20
     map_.lost = False
     run.run(60.0)
-    assert run.pilot.goal_state == (len(map_) - 1, "arrived")
+    assert run.pilot.goal_state == (goal, "arrived")
     map_.lost = True
     run.run(1.0)
-    assert run.pilot.goal_state == (len(map_) - 1, "exploring")
+    assert run.pilot.goal_state == (goal, "exploring")
     map_.landed, map_.robot = 1, Pose2(1.0, 0.6, 0.0)  # it is on an island, the goal is not
-    follower = RouteFollower(len(map_) - 1)
-    for lost, state in ((True, "exploring"), (False, "unreachable")):
-        map_.lost = lost
+    follower = RouteFollower(goal)
+    for map_.lost, state in ((True, "exploring"), (False, "unreachable")):
         for _ in range(600):
             assert follower.carried_away(map_, DT, PilotParams())  # type: ignore[arg-type]
         assert follower.state == state
@@ -291,10 +280,8 @@ def test_who_is_lost_has_not_arrived() -> None:
 def test_the_last_metre_is_driven_straight() -> None:
     """The route comes to the goal by a way round; where the sonars see that nothing lies between, the robot cuts it."""
     map_ = HandMadeMap(*chain((0.0, 0.0), (0.0, 3.0), (0.8, 3.0), (0.8, 0.0)))
-    goal = len(map_) - 1
     for approach, aims_at_goal in ((1.0, True), (0.5, False)):
-        follower = RouteFollower(goal)
-        aim = follow(follower, map_, PilotParams(approach_m=approach))
+        aim = follow(a_follower(map_), map_, PilotParams(approach_m=approach))
         assert (aim == (0.8, 0.0)) is aims_at_goal
 
 
@@ -319,7 +306,7 @@ def test_close_by_and_not_getting_nearer_is_there() -> None:
     """At a goal in a corner where the robot just does not fit."""
     map_ = HandMadeMap(*chain((0.0, 0.0), (3.0, 0.0)))
     for away, arrives in ((0.5, True), (0.7, False)):
-        follower = RouteFollower(len(map_) - 1)
+        follower = a_follower(map_)
         map_.robot = Pose2(3.0 - away, 0.0, 0.0)
         for _ in range(80):
             follow(follower, map_)

@@ -30,19 +30,28 @@ def at_tick(engine: EngineThread, tick: int, command: m.Command) -> list[Answer]
     return answers
 
 
-def test_a_pause_ends_the_rest(start: Start) -> None:
+def test_what_takes_the_run_elsewhere_ends_the_rest(start: Start) -> None:
     engine = start()
-    paused = at_tick(engine, 5, m.Pause(type="pause"))
-    assert do(engine, step(1000)) == m.Accepted(5)
-    assert paused[0].result(PATIENCE_S) == m.Accepted(5)
-    assert snapshot(engine).tick == 5
-    assert accept(engine, step(2)).tick == 7
+    for orders, command, after in (
+        (1000, m.Pause(type="pause"), 6), (1000, m.StepStage(type="step_stage"), 7),
+        (1000, m.Resume(type="resume"), 6), (10, step(4), 14), (1000, m.Reset(type="reset"), 0),
+    ):  # fmt: skip
+        accept(engine, m.Reset(type="reset"))
+        order = at_tick(engine, 6, command)
+        assert do(engine, step(orders)) == m.Accepted(10 if orders == 10 else 6), command
+        assert order[0].result(PATIENCE_S) == m.Accepted(after), command
+        now = snapshot(engine)
+        if isinstance(command, m.Resume):
+            accept(engine, m.Pause(type="pause"))
+        else:
+            assert (now.tick, now.running) == (after, False), command
+            assert (now.walk is not None) is isinstance(command, m.StepStage)
+    assert (now.run, accept(engine, step(2)).tick) == (7, 2)
 
 
 def test_a_command_comes_between_two_ticks_of_a_long_step(start: Start) -> None:
     engine = start()
-    order = m.Kidnap(type="kidnap", x=7.0, y=7.4, heading_rad=1.0)
-    kidnapped = at_tick(engine, 50, order)
+    kidnapped = at_tick(engine, 50, m.Kidnap(type="kidnap", x=7.0, y=7.4, heading_rad=1.0))
     assert do(engine, step(100)) == m.Accepted(100)
     assert kidnapped[0].result(0) == m.Accepted(50)
     alone = Session(OFFICE, 5)
@@ -51,39 +60,6 @@ def test_a_command_comes_between_two_ticks_of_a_long_step(start: Start) -> None:
             alone.kidnap(7.0, 7.4, 1.0)
         alone.tick()
     assert engine.session.state_hash() == alone.state_hash()
-
-
-def test_another_step_comes_after_the_first(start: Start) -> None:
-    engine = start()
-    more = at_tick(engine, 3, step(4))
-    assert do(engine, step(10)) == m.Accepted(10)
-    assert more[0].result(PATIENCE_S) == m.Accepted(14)
-    assert snapshot(engine).tick == 14
-
-
-def test_a_reset_ends_the_rest(start: Start) -> None:
-    engine = start()
-    reset = at_tick(engine, 6, m.Reset(type="reset"))
-    assert do(engine, step(1000)) == m.Accepted(6)
-    assert reset[0].result(PATIENCE_S) == m.Accepted(0)
-    now = snapshot(engine)
-    assert (now.run, now.tick, now.running) == (2, 0, False)
-
-
-def test_playing_on_ends_the_rest(start: Start) -> None:
-    engine = start()
-    resumed = at_tick(engine, 6, m.Resume(type="resume"))
-    assert do(engine, step(1000)) == m.Accepted(6)
-    assert resumed[0].result(PATIENCE_S) == m.Accepted(6)
-    accept(engine, m.Pause(type="pause"))
-
-
-def test_a_stage_that_is_walked_to_ends_the_rest(start: Start) -> None:
-    engine = start()
-    walked = at_tick(engine, 6, m.StepStage(type="step_stage"))
-    assert do(engine, step(1000)) == m.Accepted(6)
-    assert walked[0].result(PATIENCE_S) == m.Accepted(7)
-    assert snapshot(engine).walk is not None
 
 
 def test_a_long_step_is_seen_while_it_lasts(start: Start) -> None:

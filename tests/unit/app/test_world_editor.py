@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -18,10 +19,10 @@ from .offices import ITEMS, RADIUS, SIDE, Taken, office, order
 from .worlds import room
 
 
-def placed(kind: str, item: dict[str, Any], name: str, x: float, y: float) -> dict[str, Any]:
+def placed(kind: str, name: str, x: float, y: float) -> dict[str, Any]:
     if kind == "walls":
-        return {**item, "from": [x, y], "to": [x + 0.3, y + 0.2]}
-    moved = {**item, "name": name}
+        return {**ITEMS[kind], "from": [x, y], "to": [x + 0.3, y + 0.2]}
+    moved = {**ITEMS[kind], "name": name}
     return moved | {"x": x, "y": y} if kind in ("lamps", "boxes", "places") else moved
 
 
@@ -31,10 +32,7 @@ def some_edits(draw: st.DrawFn) -> list[Any]:
     place = st.floats(-1.0, SIDE + 1.0, allow_nan=False)
     step = st.builds(
         lambda do, kind, number, name, x, y: (
-            do,
-            kind,
-            None if do == "add" else number,
-            None if do == "delete" else placed(kind, ITEMS[kind], name, x, y),
+            do, kind, None if do == "add" else number, None if do == "delete" else placed(kind, name, x, y)
         ),
         st.sampled_from(["add", "change", "delete"]), st.sampled_from(list(ITEMS)), st.integers(0, 6),
         st.sampled_from("abcd"), place, place,
@@ -84,37 +82,36 @@ def test_undo_goes_back_to_the_first_world_and_redo_to_the_last(edits: list[Any]
         editor.redo(taken)
 
 
-def drive_to(session: Session, x: float, y: float) -> None:
-    session.simulator.teleport(x, y, 0.0)
+def drawn(editor: WorldEditor, take: Callable[[World], None], *kinds: str) -> None:
+    """Add one thing of each kind."""
+    for kind in kinds:
+        editor.edit(order(("add", kind, None, ITEMS[kind])), RADIUS, take)
 
 
-@pytest.mark.parametrize(
-    ("step", "reason"),
-    [
-        (("add", "walls", None, {"from": [0.5, 1.0], "to": [1.5, 1.0]}), r"walls\[4\] \(wall\) would cover the robot"),
-        (("add", "boxes", None, {**ITEMS["boxes"], "x": 1.0, "y": 1.0}), r"box 'b' would cover the robot"),
-        (("add", "doors", None, {**ITEMS["doors"], "hinge": [0.9, 0.5]}), r"doors\[0\] \(d\) would cover the robot"),
-    ],
-)
-def test_what_would_cover_the_robot_is_refused(step: Any, reason: str) -> None:
+def test_what_would_cover_the_robot_is_refused(subtests: pytest.Subtests) -> None:
     session = Session(office(), 3)
-    drive_to(session, 1.0, 1.0)
+    session.simulator.teleport(1.0, 1.0, 0.0)
     editor, before = WorldEditor(session.world), session.state_hash()
-    with pytest.raises(ValueError, match=reason):
-        editor.edit(order(step), RADIUS, session.edit_world)
-    assert session.state_hash() == before
-    assert session.simulator.world is session.world is editor.world
+    for kind, item, reason in (
+        ("walls", {"from": [0.5, 1.0], "to": [1.5, 1.0]}, r"walls\[4\] \(wall\) would cover the robot"),
+        ("boxes", {**ITEMS["boxes"], "x": 1.0, "y": 1.0}, r"box 'b' would cover the robot"),
+        ("doors", {**ITEMS["doors"], "hinge": [0.9, 0.5]}, r"doors\[0\] \(d\) would cover the robot"),
+    ):
+        with subtests.test(kind):
+            with pytest.raises(ValueError, match=reason):
+                editor.edit(order(("add", kind, None, item)), RADIUS, session.edit_world)
+            assert session.state_hash() == before
+            assert session.simulator.world is session.world is editor.world
 
 
 def test_undo_that_would_cover_the_robot_is_refused_and_can_be_tried_again() -> None:
     walled = room((0.5, 1.0, 1.5, 1.0), side=SIDE, start=(3.0, 3.0, 0.0))
-    session = Session(walled, 3)
-    editor = WorldEditor(walled)
+    session, editor = Session(walled, 3), WorldEditor(walled)
     editor.edit(order(("delete", "walls", 4, None)), RADIUS, session.edit_world)
-    drive_to(session, 1.0, 1.0)
+    session.simulator.teleport(1.0, 1.0, 0.0)
     with pytest.raises(ValueError, match="would cover the robot"):
         editor.undo(session.edit_world)
-    drive_to(session, 3.0, 3.0)
+    session.simulator.teleport(3.0, 3.0, 0.0)
     editor.undo(session.edit_world)
     assert session.world is walled
 
@@ -122,13 +119,10 @@ def test_undo_that_would_cover_the_robot_is_refused_and_can_be_tried_again() -> 
 def test_the_robot_keeps_its_brain_and_the_same_edits_at_the_same_ticks_give_the_same_run() -> None:
     def run() -> tuple[str, int, int]:
         session = Session(office(), 3)
-        editor = WorldEditor(session.world)
-        orders = [
-            order(("add", kind, None, ITEMS[kind])) for kind in ("walls", "doors", "people", "boxes", "slow_zones")
-        ]
+        editor, kinds = WorldEditor(session.world), ["walls", "doors", "people", "boxes", "slow_zones"]
         for k in range(60):
-            if k % 10 == 5 and orders:
-                editor.edit(orders.pop(), RADIUS, session.edit_world)
+            if k % 10 == 5 and kinds:
+                drawn(editor, session.edit_world, kinds.pop())
             if k == 57:
                 editor.undo(session.edit_world)
             session.tick()
@@ -136,8 +130,7 @@ def test_the_robot_keeps_its_brain_and_the_same_edits_at_the_same_ticks_give_the
 
     first = run()
     assert first == run()
-    assert first[1:] == (60, first[2])
-    assert first[2] > 1
+    assert (first[1], first[2] > 1) == (60, True)
 
 
 def test_a_person_drawn_onto_the_robot_waits_until_it_is_gone() -> None:
@@ -159,7 +152,7 @@ def test_an_edit_of_an_older_edition_is_refused() -> None:
 def test_what_others_do_to_the_office_is_a_step_of_its_own() -> None:
     session = Session(office(), 3)
     editor = WorldEditor(session.world)
-    editor.edit(order(("add", "boxes", None, ITEMS["boxes"])), RADIUS, session.edit_world)
+    drawn(editor, session.edit_world, "boxes")
     session.simulator.remove_box("b")
     editor.follow(session.simulator.world)
     assert editor.edition.undo == "box put down or taken away"
@@ -170,7 +163,7 @@ def test_what_others_do_to_the_office_is_a_step_of_its_own() -> None:
 
 def test_a_reset_keeps_the_edits_and_another_world_has_none() -> None:
     editor, taken = WorldEditor(office()), Taken()
-    editor.edit(order(("add", "walls", None, ITEMS["walls"])), RADIUS, taken)
+    drawn(editor, taken, "walls")
     mine = editor.world
     editor.begin(mine)
     assert editor.edition.undo == "wall drawn"
@@ -182,58 +175,45 @@ def test_a_reset_keeps_the_edits_and_another_world_has_none() -> None:
     assert (editor.edition.undo, editor.edition.redo, editor.edition.saved) == ("", "", True)
 
 
-def test_saving_gives_the_world_its_name() -> None:
+def test_a_saved_world_has_its_name_from_then_on() -> None:
     editor, taken = WorldEditor(office()), Taken()
-    editor.edit(order(("add", "places", None, ITEMS["places"])), RADIUS, taken)
-    was = editor.world
-    named = World(**{**{f: getattr(was, f) for f in was.__dataclass_fields__}, "name": "mine", "title": "Mine"})
+    first = editor.world
+    drawn(editor, taken, "places")
+    was, named = editor.world, replace(editor.world, name="mine", title="Mine")
     editor.named(was, named, taken)
     assert editor.edition.saved
     assert taken.world is editor.world is named
     editor.undo(taken)
-    assert not editor.edition.saved
+    assert (editor.world, editor.edition.saved) == (replace(first, name="mine", title="Mine"), False)
+    editor.redo(taken)
+    assert editor.world is named
+    assert editor.edition.saved
+    editor.undo(taken)
     editor.named(was, named, taken)  # it was edited again while it was being written
     assert not editor.edition.saved
-
-
-def test_who_takes_an_edit_back_keeps_the_name() -> None:
-    editor, taken = WorldEditor(office()), Taken()
-    first = editor.world
-    editor.edit(order(("add", "places", None, ITEMS["places"])), RADIUS, taken)
-    editor.named(editor.world, replace(editor.world, name="mine", title="Mine"), taken)
-    saved = editor.world
-    editor.undo(taken)
-    assert editor.world == replace(first, name="mine", title="Mine")
-    editor.redo(taken)
-    assert editor.world is saved
-    assert editor.edition.saved
 
 
 def test_what_is_in_no_file_counts_as_unsaved() -> None:
     editor, taken = WorldEditor(office()), Taken()
     other = room(start=(2.0, 2.0, 0.0))
-    editor.unfiled("room")  # deleted
-    assert not editor.edition.saved
-    editor.filed("room")  # brought back
-    assert editor.edition.saved
-    editor.unfiled("room")
-    editor.begin(replace(other, name="else"))
-    assert editor.edition.saved
-    editor.begin(replace(other, name="room"))
-    assert not editor.edition.saved
-    editor.filed("room")
-    assert not editor.edition.saved  # what came back is another world
-    editor.named(editor.world, editor.world, taken)
-    assert editor.edition.saved
+    for does, saved in (
+        (lambda: editor.unfiled("room"), False),  # deleted
+        (lambda: editor.filed("room"), True),  # brought back
+        (lambda: editor.unfiled("room"), False),
+        (lambda: editor.begin(replace(other, name="else")), True),
+        (lambda: editor.begin(replace(other, name="room")), False),
+        (lambda: editor.filed("room"), False),  # what came back is another world
+        (lambda: editor.named(editor.world, editor.world, taken), True),
+    ):
+        does()
+        assert editor.edition.saved is saved
 
 
 def test_undo_reaches_a_long_way_back_but_not_for_ever() -> None:
     editor, taken = WorldEditor(office()), Taken()
     for k in range(MOST_UNDOS + 5):
-        order_k = order(
-            ("add" if k == 0 else "change", "places", None if k == 0 else 0, {"name": f"p{k}", "x": 1, "y": 1})
-        )
-        editor.edit(order_k, RADIUS, taken)
+        step = ("change", "places", 0) if k else ("add", "places", None)
+        editor.edit(order((*step, {"name": f"p{k}", "x": 1, "y": 1})), RADIUS, taken)
     for _ in range(MOST_UNDOS):
         editor.undo(taken)
     assert editor.world.places == (Place("p4", 1.0, 1.0),)
@@ -241,24 +221,21 @@ def test_undo_reaches_a_long_way_back_but_not_for_ever() -> None:
 
 def test_a_line_of_the_script_is_added_and_fires_in_its_tick_alone() -> None:
     """Of two lines drawn at 1 s, one lies in the past and one in the future. The first waits for a restart."""
+
+    def levels(session: Session, ticks: int) -> list[float]:
+        told = []
+        for _ in range(ticks):
+            session.tick()
+            told.append(session.simulator.actors.daylight)
+        return told
+
     session = Session(office(), 3)
-    for _ in range(10):
-        session.tick()
-    editor, living = WorldEditor(session.world), lambda: session.simulator.actors
+    assert levels(session, 10) == [1.0] * 10
+    editor = WorldEditor(session.world)
     dim, dark = {"at_s": 0.5, "do": "daylight", "level": 0.7}, {"at_s": 1.5, "do": "daylight", "level": 0.2}
     words = editor.edit(order(("add", "script", None, dark), ("add", "script", None, dim)), RADIUS, session.edit_world)
     assert words == "line of the script added and 1 more change"
-    levels = []
-    for _ in range(10):
-        session.tick()
-        levels.append(living().daylight)
-    assert levels == [1.0] * 4 + [0.2] * 6
-    again = Session(editor.world, 3)
-    levels = []
-    for _ in range(20):
-        again.tick()
-        levels.append(again.simulator.actors.daylight)
-    assert levels == [1.0] * 4 + [0.7] * 10 + [0.2] * 6
+    assert levels(session, 10) == [1.0] * 4 + [0.2] * 6
+    assert levels(Session(editor.world, 3), 20) == [1.0] * 4 + [0.7] * 10 + [0.2] * 6
     editor.undo(session.edit_world)  # no line is left that has set it
-    session.tick()
-    assert living().daylight == 1.0
+    assert levels(session, 1) == [1.0]
