@@ -87,7 +87,7 @@ def test_an_ideal_robot_reports_the_truth(engine: Engine, session: Session) -> N
     assert (session.frame.odometry_speed, session.frame.odometry_yaw_rate) == (truth.speed, truth.yaw_rate)
 
 
-def test_presets_are_configs_by_their_names() -> None:
+def test_presets_are_configs() -> None:
     for name in PRESETS:
         config = preset(name, Config())
         assert from_toml(to_toml(config)) == config

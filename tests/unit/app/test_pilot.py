@@ -111,6 +111,13 @@ def test_an_unreachable_goal_is_explored_for_and_reached_when_a_way_is_found() -
     map_.links, map_.link_times = np.array(links), np.full(len(links), 0.8)
     step(pilot, map_, AHEAD, seconds=2 * USUAL.replan_s)
     assert (pilot.goal_state, pilot.doing) == ((goal, "tracking"), "following the route")
+
+
+def test_coasting_is_said() -> None:
+    pilot, map_ = a_pilot(), HandMadeMap(*chain((0.0, 0.0), (6.0, 0.0)))
+    pilot.set_goal(len(map_) - 1)
+    step(pilot, map_)
+    assert pilot.doing == "following the route"
     map_.links, map_.link_times = map_.links[:0], map_.link_times[:0]
     step(pilot, map_, AHEAD, seconds=2.5)
     assert pilot.doing == "coasting on the old route"

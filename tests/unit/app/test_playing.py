@@ -66,10 +66,9 @@ def test_a_run_of_ours_played_with_its_parameters_is_the_same_run(run: tuple[Ses
     assert last.brain.digest() == session.brain.digest()
 
 
-@pytest.mark.parametrize("world", ["office", "living"])
-def test_a_run_of_ours_that_was_exported_comes_out_the_same(world: str, tmp_path: Path) -> None:
+def test_a_run_of_ours_that_was_exported_comes_out_the_same(tmp_path: Path) -> None:
     config = Config().with_values({"local_view.match_threshold": 1.2, "robot.odometry_noise": 0.1})
-    session = Session(load_world(world), 11, config)
+    session = Session(load_world("living"), 11, config)
 
     def played() -> Iterator[Session]:
         yield session
@@ -85,12 +84,6 @@ def test_a_run_of_ours_that_was_exported_comes_out_the_same(world: str, tmp_path
     assert (recording.about.config, recording.about.problems) == (config, ())
     *_, last = Player(recording, 99).steps()
     assert last.brain.digest() == session.brain.digest()
-
-
-def test_it_plays_twice_alike(run: tuple[Session, Held]) -> None:
-    player = Player(run[1])
-    first, second = ([s.estimate for s in player.steps()] for _ in range(2))
-    assert first == second
 
 
 def test_rules_follow_what_was_recorded(run: tuple[Session, Held]) -> None:
@@ -143,9 +136,11 @@ def test_beams_may_be_told_from_either_side() -> None:
         Moment(
             k, float(k), 1.0, speed=0.05 * (k > 0), yaw_rate=0.1 * (k > 0),
             ranges_m=room(0.5 * math.sin(0.1 * k), 0.5 * (1 - math.cos(0.1 * k)), 0.1 * k),
-        ) for k in range(40)
+        ) for k in range(20)
     ]  # fmt: skip
-    about = About("room", "test", 40, 40.0, frozenset({"speed", "yaw rate", "ranges"}), None, tuple(ANGLES.tolist()), 20.0)
+    about = About(
+        "room", "test", 20, 20.0, frozenset({"speed", "yaw rate", "ranges"}), None, tuple(ANGLES.tolist()), 20.0
+    )
     turned = replace(about, beam_angles_rad=about.beam_angles_rad[::-1])
     mirrored = Held(turned, moments).but(lambda m: replace(m, ranges_m=m.ranges_m[::-1]))  # type: ignore[index]
     for step, other in zip(Player(Held(about, moments)).steps(), Player(mirrored).steps(), strict=True):

@@ -76,14 +76,14 @@ def test_at_a_faster_rate_the_engine_does_the_same(world: str, preset: str, fron
     assert fast.map_m == pytest.approx(usual.map_m, abs=0.02)
 
 
-@pytest.mark.parametrize("rate", [1, 2, 5])
-def test_at_a_slower_rate_it_comes_to_the_same_place_with_a_coarser_map(rate: int) -> None:
-    usual, slow = end("office", "ours", "", 10), end("office", "ours", "", rate)
-    metres, turned = apart(usual, slow)
-    assert metres < 0.1
-    assert turned < math.radians(10)
-    assert slow.map_m < usual.map_m + 0.15
-    assert 0.5 * usual.experiences < slow.experiences <= 1.2 * usual.experiences
+def test_at_a_slower_rate_it_comes_to_the_same_place_with_a_coarser_map() -> None:
+    usual = end("office", "ours", "", 10)
+    for slow in (end("office", "ours", "", rate) for rate in (1, 2, 5)):
+        metres, turned = apart(usual, slow)
+        assert metres < 0.1
+        assert turned < math.radians(10)
+        assert slow.map_m < usual.map_m + 0.15
+        assert 0.5 * usual.experiences < slow.experiences <= 1.2 * usual.experiences
 
 
 def test_the_rate_may_change_on_the_way() -> None:

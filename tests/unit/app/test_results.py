@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import replace
 
 import pytest
 
 from app.experiments import results
-from app.experiments.results import (
-    definition_digest,
-    gathered,
-    outdated,
-    read_results,
-    results_markdown,
-    write_results,
-)
+from app.experiments.results import gathered, outdated, read_results, results_markdown, write_results
 from app.trials.experiment import catalogue
 from tests.unit.app.made_trials import experiment, figure, trials
 
@@ -71,11 +63,9 @@ def test_a_change_of_what_is_run_makes_numbers_outdated():
     made = experiment()
     data = gathered([(made, trials(made))])
     assert outdated(data, [made]) == []
-    assert outdated(data, [experiment(seed=11)]) == ["made"]
-    assert outdated(data, [experiment(axes=made.axes[:1])]) == ["made"]
-    assert outdated(data, []) == ["made"]
+    for now in ([experiment(seed=11)], [experiment(axes=made.axes[:1])], []):
+        assert outdated(data, now) == ["made"]
     assert outdated(data, [experiment(figures=[figure("survival", score="after")], asks="Other words?")]) == []
-    assert definition_digest(made) == definition_digest(experiment())
 
 
 def test_a_score_that_nobody_has_is_no_number():
@@ -86,8 +76,6 @@ def test_a_score_that_nobody_has_is_no_number():
     assert values["goals reached"] == [None, 0.0, 1.0, 0]
     assert values["map error"] == [0.5, None, None, 1]
     json.dumps(data, allow_nan=False)
-    cell = results._cell(data["experiments"]["made"]["cells"][0])
-    assert math.isnan(cell.values["map error"].low)
     assert "| - |" in results_markdown(data, [made])
 
 

@@ -31,7 +31,9 @@ def two_sides() -> HandMadeMap:
     return HandMadeMap(*chain((1.0, 1.0), (1.0, 7.0), (7.0, 7.0)))
 
 
-def a_run(map_: HandMadeMap, *walls: Wall, start: tuple[float, float] | None = None, side: float = 8.0, **params: float) -> Run:
+def a_run(
+    map_: HandMadeMap, *walls: Wall, start: tuple[float, float] | None = None, side: float = 8.0, **params: float
+) -> Run:
     """After its first tick, at the map's last place unless told otherwise."""
     x, y = map_.poses[-1, :2] if start is None else start
     run = Run(Simulator(room(*walls, side=side, start=(x, y, 0.0)), EXACT, 1), a_pilot(1, **(OUTWARD | params)), map_)
@@ -116,8 +118,8 @@ def test_far_openings_are_sought_one_after_the_other() -> None:
     assert all(abs(y - 1.5) < 0.5 for x, y in run.track if x > 6.0)
 
 
-def test_of_openings_the_far_one_and_of_those_the_one_near_home_is_preferred() -> None:
-    """There is a near one, too; and of two far ones about as far from the robot, one is nearer to where the map began."""
+def test_the_one_near_home_is_preferred() -> None:
+    """Of two openings that are about as far from the robot, that nearer to where the map began; but a far one to a near one."""
     two = [(slice(4, 8), AHEAD, 5.0), (slice(17, 21), AHEAD, 5.0)]
     for start, openings, home_share, expected in (
         (None, [(slice(4, 8), AHEAD, 2.5), (slice(18, 22), AHEAD, 5.0)], PilotParams().home_share, range(18, 22)),
@@ -179,7 +181,11 @@ def test_on_an_island_it_goes_into_every_opening(search: bool) -> None:
     ground.now_s, ground.new_m = 1000.0, 100.0
     ground._made_s[:] = ground._last_s[:] = 0.0
     ground._last_s[: ground.count] = 990.0
-    for run.map.landed, goes_into in ((30, search), (2, False), (10**9, False)):  # beside a large island, a tiny one, none
+    for run.map.landed, goes_into in (
+        (30, search),
+        (2, False),
+        (10**9, False),
+    ):  # beside a large island, a tiny one, none
         seeker.stop()
         seeker._trips = 0
         chosen(run)

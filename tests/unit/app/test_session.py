@@ -8,7 +8,7 @@ import pytest
 
 from app.config import Config
 from app.pilot.behaviours import Behaviour
-from app.session import PARTS, SECOND, Session, spread_goals
+from app.session import Session, spread_goals
 from app.views.senses import senses_of
 
 from .sessions import OFFICE, a_session
@@ -26,10 +26,6 @@ def test_a_tick_is_a_tenth_of_a_second() -> None:
         session.tick()
         assert (session.tick_count, session.time_s) == (tick, pytest.approx(tick / 10))
     assert session.evaluation.path_m > 0.5
-    timings = session.stopwatch.mean_and_worst_ms
-    assert list(timings) == list(PARTS)
-    assert timings.pop(SECOND) == (0.0, 0.0)  # there is one brain
-    assert all(0 < mean <= worst for mean, worst in timings.values())
 
 
 def test_links_remember_what_the_pilot_was_doing() -> None:
@@ -50,19 +46,6 @@ def test_links_remember_what_the_pilot_was_doing() -> None:
     session.pilot.drive(0.1, 0.0)
     session.tick()
     assert session.pilot.behaviour is Behaviour.DRIVEN_BY_HAND
-
-
-def test_equal_runs_have_equal_hashes_and_others_not() -> None:
-    one, two = a_session(150), a_session(150)
-    assert one.state_hash() == two.state_hash() == one.state_hash() != a_session(150, seed=4).state_hash()
-    two.tick()
-    assert one.state_hash() != two.state_hash()
-    one.tick()
-    assert one.state_hash() == two.state_hash()
-    two.pilot.drive(0.1, 0.0)
-    assert one.state_hash() != two.state_hash()
-    other_config = a_session(151, config=Config().with_value("pose_cells.inhibit", 4e-4))
-    assert one.state_hash() != other_config.state_hash()
 
 
 @pytest.mark.parametrize("front_end", ["complex cells", "hue and saturation", "scene numbers"])
@@ -175,15 +158,6 @@ def test_a_kidnap_or_parameter_that_cannot_be_changes_nothing(subtests: pytest.S
                 assert session.evaluation.kidnaps == []
 
 
-def test_the_mode_goal_needs_a_goal() -> None:
-    session = a_session()
-    with pytest.raises(ValueError, match="there is no goal to go to"):
-        session.set_mode("goal")
-    session.set_mode("manual")
-    session.tick()
-    assert session.pilot.doing == "waiting for the hand"
-
-
 def test_live_parameters_act_at_once_others_wait() -> None:
     session = a_session(10)
     brain = session.brain
@@ -194,7 +168,13 @@ def test_live_parameters_act_at_once_others_wait() -> None:
             session.simulator.params.light, session.pilot.params.cruise_speed,
         ]  # fmt: skip
 
-    names = ("local_view.match_threshold", "experience_map.sweeps", "pose_cells.inhibit", "robot.light", "pilot.cruise_speed")
+    names = (
+        "local_view.match_threshold",
+        "experience_map.sweeps",
+        "pose_cells.inhibit",
+        "robot.light",
+        "pilot.cruise_speed",
+    )
     assert all(session.set_parameter(name, value) for name, value in zip(names, (9, 3, 5e-4, 0.7, 0.2), strict=True))
     assert act() == [9.0, 3, 5e-4, 0.7, 0.2]
     assert not session.set_parameter("pose_cells.n_x", 32)

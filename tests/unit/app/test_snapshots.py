@@ -62,7 +62,9 @@ def test_snapshots_are_immutable_and_their_rows_agree(with_goal: bool) -> None:
     found = arrays(now)
     assert len(found) > 20
     assert [name for name, array in found if array.flags.writeable] == []
-    assert {now.experiences, *map(len, (now.map.ids, now.map.xy, now.map.heading_rad, now.times.seconds))} == {len(map_)}
+    assert {now.experiences, *map(len, (now.map.ids, now.map.xy, now.map.heading_rad, now.times.seconds))} == {
+        len(map_)
+    }
     assert len(now.map.links) == now.links == map_.link_count
     assert now.map.links.max() < len(map_)
     assert now.times.to_goal is with_goal
@@ -165,7 +167,9 @@ def test_what_stands_still_is_shown_as_it_is(monkeypatch: pytest.MonkeyPatch) ->
     engine = an_engine(OFFICE, seed=5)
     first = engine.snapshot()
     engine.running = True
-    for _ in range(1700):  # it has been in the library by then
+    for tick in range(300):
+        if tick == 100:
+            engine.run.session.kidnap(1.0, 7.0)  # into the library
         engine.tick()
     late, session = engine.snapshot(), engine.run.session
     engine.running = False  # as at the end of a recording: no command comes, which would have everything drawn anew

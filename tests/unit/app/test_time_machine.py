@@ -46,9 +46,8 @@ def state_of(session: Session, history: History) -> tuple[object, ...]:
     return session.state_hash(), *counts, history.visits.views.of(0)
 
 
-@pytest.mark.parametrize("world", ["office", "living"])
-def test_any_moment_is_as_it_was(world: str) -> None:
-    session = Session(load_world(world), 3)
+def test_any_moment_is_as_it_was() -> None:
+    session = Session(load_world("living"), 3)
     history = History(session)
     machine = TimeMachine(session, history)
     session.on_order = machine.told
@@ -82,7 +81,7 @@ def test_keyframes_stay_under_their_budget_and_the_first_is_never_dropped() -> N
     machine = TimeMachine(session, history, PastRoom(8_000_000))
     hashes = {}
     for tick in range(2500):
-        if tick % 190 == 7:
+        if tick % 500 == 7:
             hashes[tick] = session.state_hash()
         session.tick()
         history.watch()

@@ -36,7 +36,7 @@ TO_A_GOAL = replace(
     seed=5,
     protocol=(
         Tag(do="tag", places=["printer"]),
-        Explore(do="explore", minutes=4),
+        Explore(do="explore", minutes=3),
         Visit(do="visit", places=["printer"], timeout_s=60),
     ),
 )
@@ -106,7 +106,9 @@ def test_recording_changes_nothing(watched_run: tuple[Course, Recorder]) -> None
     assert watched_run[0].session.state_hash() == run_trial(TO_A_GOAL)[0].state_hash
 
 
-def test_the_chosen_arc_is_free_costs_least_and_leads_the_way_it_then_went(watched_run: tuple[Course, Recorder]) -> None:
+def test_the_chosen_arc_is_free_costs_least_and_leads_the_way_it_then_went(
+    watched_run: tuple[Course, Recorder],
+) -> None:
     session, shown = watched_run[0].session, watched_run[1].movements
     assert shown is not None
     assert shown.free[shown.chosen]

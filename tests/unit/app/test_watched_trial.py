@@ -16,7 +16,7 @@ from app.trials.experiment import find_experiment
 from app.trials.trial import Trial, run_trial
 from web import messages as m
 
-from .engine_threads import accept, do, refuse, snapshot, wait_for
+from .engine_threads import accept, refuse, snapshot, wait_for
 from .engines import an_engine, tell
 from .sessions import OFFICE
 from .trials_to_watch import short_trial, table_trial
@@ -31,7 +31,7 @@ def watching(trial: Trial, moment_s: float | None = None) -> Engine:
     return engine
 
 
-def watch(engine: Engine, experiment: str = "table", **fields: object) -> str:
+def watch(engine: Engine, experiment: str = "table", /, **fields: object) -> str:
     """Give the command; returns the words on the timeline."""
     return tell(engine, type="watch_experiment", experiment=experiment, **fields)
 
@@ -65,7 +65,8 @@ def table_hash() -> str:
 # ---------------------------------------------------------------- the same run
 
 
-def test_it_is_the_trial_by_itself_bit_for_bit_however_one_looks_and_pauses() -> None:
+def test_it_is_the_trial_by_itself_bit_for_bit() -> None:
+    """Looking and pausing change nothing."""
     trial = short_trial()
     result, course = run_trial(trial)
     for disturbed in (False, True):
@@ -135,17 +136,6 @@ def test_in_its_thread_it_is_the_same_run_and_pauses_at_its_end(start: Start, ta
     last = wait_for(engine, lambda now: now.trial is not None and now.trial.state == "over")
     assert not last.running
     assert engine.session.state_hash() == table_hash
-
-
-def test_while_it_is_run_ahead_commands_are_answered_and_it_can_be_broken_off(start: Start) -> None:
-    engine = start()
-    accept(engine, an_order(moment_s=1400.0))
-    wait_for(engine, lambda now: now.trial is not None and (now.trial.ahead or 0) > 0)
-    assert isinstance(do(engine, m.Inspect(type="inspect", experience=0)), m.Accepted)
-    assert shown(snapshot(engine)).ahead is not None  # looking does not break it off
-    now = accept(engine, m.Pause(type="pause"))
-    assert (shown(now).ahead, shown(now).state, now.running) == (None, "running", False)
-    assert now.time_s < 1390.0
 
 
 # ---------------------------------------------------------------- orders of one's own
