@@ -22,6 +22,7 @@ AHEAD = Odometry(0.3, 0.0, DT)
 
 def step(pilot: Pilot, map_: HandMadeMap, odometry: Odometry = STILL, seconds: float = DT) -> tuple[float, float]:
     """Before far walls."""
+    asked = (0.0, 0.0)
     for _ in range(round(seconds / DT)):
         asked = pilot.step(FAR, False, odometry, map_)  # type: ignore[arg-type]
     return asked

@@ -40,7 +40,7 @@ def saved_and_loaded(session: Session) -> Session:
     return read_session(file)
 
 
-def goes_on(session: Session, ticks: int, act: Callable[[Session, int], None] = lambda _session, _tick: None) -> None:
+def goes_on(session: Session, ticks: int, act: Callable[[Session, int], object] = lambda _session, _tick: None) -> None:
     """Run both sessions side by side with the same commands; nothing may differ in any tick."""
     other = saved_and_loaded(session)
     assert other.state_hash() == session.state_hash()

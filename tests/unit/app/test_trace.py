@@ -36,7 +36,7 @@ TO_A_GOAL = replace(
     seed=5,
     protocol=(
         Tag(do="tag", places=["printer"]),
-        Explore(do="explore", minutes=3),
+        Explore(do="explore", minutes=4),
         Visit(do="visit", places=["printer"], timeout_s=60),
     ),
 )
