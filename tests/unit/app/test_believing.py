@@ -7,20 +7,30 @@ import math
 import numpy as np
 import pytest
 
-from app.session import Session, is_lost
+from app.session import is_lost
 from app.views.belief import belief_of, possible_places, state_of
 from app.views.history import History
 from ratslam_core import Pose2
-from sim2d import load_world
+
+from .sessions import a_session
 
 pytestmark = pytest.mark.slow
 
 
 def test_who_believes_is_not_lost_and_what_is_made_is_of_the_submap() -> None:
-    session = Session(load_world("office"), 6)
+    session = a_session(seed=6)
+    map_, cells, apart = session.brain.experience_map, session.brain.pose_cells, list[float]()
     for _ in range(1800):
         session.tick()
-    map_, known = session.brain.experience_map, len(session.brain.experience_map)
+        if (state := state_of(map_, map_.robot, map_.islands.current)) is not None:
+            apart.append(cells.cells_apart(state[0], state[1], cells.winner.x, cells.winner.y))
+    # a place stands for the state that the pose cells have there: the winning packet's, to within an experience's zone
+    assert len(apart) > 1700
+    assert np.median(apart) < 1
+    assert np.quantile(apart, 0.9) < 2 * map_.params.zone_xy
+    assert state_of(map_, map_.robot.compose(Pose2(50.0, 0.0, 0.0)), map_.islands.current) is None
+    assert state_of(map_, map_.robot, 7) is None
+    known = len(map_)
     history, births = History(session), session.evaluation.births(known)
     session.kidnap()
     believed = made = 0
@@ -46,18 +56,3 @@ def test_who_believes_is_not_lost_and_what_is_made_is_of_the_submap() -> None:
     assert np.array_equal(session.evaluation.births(known), births, equal_nan=True)
     assert not is_lost(session)
     assert [event.kind for event in history.log.events].count("lost") == 1  # however often the belief changes
-
-
-def test_a_place_stands_for_the_state_that_the_pose_cells_have_there() -> None:
-    """Where the robot is, that is the winning packet's, to within an experience's zone."""
-    session = Session(load_world("office"), 5)
-    map_, cells, apart = session.brain.experience_map, session.brain.pose_cells, list[float]()
-    for _ in range(1500):
-        session.tick()
-        if (state := state_of(map_, map_.robot, map_.islands.current)) is not None:
-            apart.append(cells.cells_apart(state[0], state[1], cells.winner.x, cells.winner.y))
-    assert len(apart) > 1400
-    assert np.median(apart) < 1
-    assert np.quantile(apart, 0.9) < 2 * map_.params.zone_xy
-    assert state_of(map_, map_.robot.compose(Pose2(50.0, 0.0, 0.0)), map_.islands.current) is None
-    assert state_of(map_, map_.robot, 7) is None

@@ -70,15 +70,12 @@ def test_who_chose_no_arc_in_this_tick_shows_none() -> None:
 
 
 def test_what_was_looked_at_tells_the_same_later() -> None:
-    session = a_session()
-    kept, seen = [], 0
+    session, kept = a_session(), []
     for _ in range(60):
         session.tick()
-        draw = movements_of(session)
-        if draw is not None:
+        if (draw := movements_of(session)) is not None:
             kept.append((draw, draw()))
-            seen += 1
-    assert seen > 20
+    assert len(kept) > 20
     for draw, then in kept:
         now = draw()
         assert np.array_equal(now.paths, then.paths)

@@ -54,23 +54,21 @@ def test_no_experiment_has_a_name_that_the_command_uses() -> None:
     assert not {"all", "check", "open", "results"} & {experiment.name for experiment in catalogue()}
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["nonsense"], "unknown experiment 'nonsense'; expected a file that ends in .toml, or one of: "),
-        (["table", "trial"], "one experiment at a time, got table, trial"),
-        (["open"], "experiment open takes the id of a trial, and one only"),
-        (["check", "a", "b"], "experiment check takes a file, and one only"),
-        (["table", "--trials", "0"], "--trials must be from 1 to 100000, got 0"),
-        (["table", "--workers", "0"], "--workers must be from 1 to 1024, got 0"),
-        (["table", "--workers", "2", "--scheduler", "tcp://127.0.0.1:1"], "the cluster of --scheduler has its own"),
-        (["all", "--parquet", "all.parquet"], "--parquet takes the trials of one experiment; name it"),
-        (["table", "--parquet", "nowhere/x.parquet"], "--parquet nowhere/x.parquet: there is no folder"),
-        (["check", "missing.toml"], "missing.toml: No such file or directory"),
-    ],
-)
-def test_what_is_wrong_is_said(capsys: pytest.CaptureFixture[str], words: list[str], said: str) -> None:
-    assert said in refused(capsys, *words)
+def test_what_is_wrong_is_said(capsys: pytest.CaptureFixture[str], subtests: pytest.Subtests) -> None:
+    for words, said in (
+        ("nonsense", "unknown experiment 'nonsense'; expected a file that ends in .toml, or one of: "),
+        ("table trial", "one experiment at a time, got table, trial"),
+        ("open", "experiment open takes the id of a trial, and one only"),
+        ("check a b", "experiment check takes a file, and one only"),
+        ("table --trials 0", "--trials must be from 1 to 100000, got 0"),
+        ("table --workers 0", "--workers must be from 1 to 1024, got 0"),
+        ("table --workers 2 --scheduler tcp://127.0.0.1:1", "the cluster of --scheduler has its own"),
+        ("all --parquet all.parquet", "--parquet takes the trials of one experiment; name it"),
+        ("table --parquet nowhere/x.parquet", "--parquet nowhere/x.parquet: there is no folder"),
+        ("check missing.toml", "missing.toml: No such file or directory"),
+    ):
+        with subtests.test(msg=words):
+            assert said in refused(capsys, *words.split())
 
 
 def test_a_file_of_ones_own_is_checked(capsys: pytest.CaptureFixture[str], own: Path) -> None:

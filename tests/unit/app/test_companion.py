@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
-import numpy as np
 import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
@@ -93,9 +93,8 @@ def test_it_is_the_brain_that_those_parameters_make_on_the_same_way() -> None:
         run_for(each, 300)
     assert session.companion is not None
     assert encode(session.companion.brain).digest() == encode(other.brain).digest()
-    assert session.companion.evaluation.errors(session.companion.brain.experience_map) == other.evaluation.errors(
-        other.brain.experience_map
-    )
+    errors = [each.evaluation.errors(each.brain.experience_map) for each in (session.companion, other)]
+    assert errors[0] == errors[1]
 
 
 def test_a_copy_differs_from_now_on() -> None:
@@ -111,8 +110,7 @@ def test_a_copy_differs_from_now_on() -> None:
     run_for(session, 50)
     view = companion.parting.view
     assert view is not None
-    assert view[0] == 151
-    assert view[3] == -1
+    assert (view[0], view[3]) == (151, -1)
 
 
 def test_what_is_set_for_the_first_is_set_for_both_but_for_the_difference() -> None:
@@ -128,70 +126,52 @@ def test_what_is_set_for_the_first_is_set_for_both_but_for_the_difference() -> N
 def test_a_goal_of_the_first_is_where_the_other_was_then() -> None:
     session = beside(EIGHT, 400)
     assert session.companion is not None
-    at, own = session.companion.counterpart, session.companion.brain.experience_map
-    assert len(at) == len(session.brain.experience_map)
+    first, other, at = session.brain.experience_map, session.companion, session.companion.counterpart
+    assert len(at) == len(first)
     apart = [
-        np.hypot(
-            *np.subtract(
-                session.evaluation.made_at(k, session.brain.experience_map),
-                session.companion.evaluation.made_at(at[k], own),
-            )
-        )
+        math.dist(session.evaluation.made_at(k, first), other.evaluation.made_at(at[k], other.brain.experience_map))
         for k in range(len(at))
     ]
     assert max(apart) < 1.0  # the two were at one place, whatever they call it
 
 
-@pytest.mark.parametrize(
-    ("values", "anew", "words"),
-    [
-        ({"pilot.seek": False}, True, "pilot.seek cannot differ"),
-        ({"robot.max_speed": 0.1}, False, "robot.max_speed cannot differ"),
-        ({"local_view.nothing": 1}, True, "unknown parameter"),
-        (EIGHT, False, "pose_cells.n_x, pose_cells.n_y cannot change while a brain runs"),
-        (BLIND, True, "begins together with the run"),
-    ],
-)
-def test_what_cannot_be_compared(values: dict[str, Value], anew: bool, words: str) -> None:
-    session = a_session(3)
-    told: list[Order] = []
+def test_what_cannot_be_compared() -> None:
+    session, told = a_session(3), list[Order]()
     session.on_order = told.append
-    with pytest.raises(ValueError, match=words):
-        session.begin_companion("one", "other", values, anew)
+    refused: list[tuple[str, dict[str, Value], bool, str]] = [
+        ("other", {"pilot.seek": False}, True, "pilot.seek cannot differ"),
+        ("other", {"robot.max_speed": 0.1}, False, "robot.max_speed cannot differ"),
+        ("other", {"local_view.nothing": 1}, True, "unknown parameter"),
+        ("other", EIGHT, False, "pose_cells.n_x, pose_cells.n_y cannot change while a brain runs"),
+        ("other", BLIND, True, "begins together with the run"),
+        (" ", {}, False, "needs a name"),
+    ]
+    for name, values, anew, words in refused:
+        with pytest.raises(ValueError, match=words):
+            session.begin_companion("one", name, values, anew)
     with pytest.raises(ValueError, match="no second brain"):
         session.end_companion()
-    with pytest.raises(ValueError, match="needs a name"):
-        session.begin_companion("one", " ", {}, False)
     assert (session.companion, told) == (None, [])
 
 
-def test_as_orders_and_from_a_file_both_go_on_as_they_did() -> None:
+def test_as_orders_and_from_a_file_both_go_on_as_they_did_and_a_spoilt_one_is_refused() -> None:
     session, told = a_session(), list[Order]()
     session.on_order = told.append
     session.begin_companion("64", "8", EIGHT, True)
     run_for(session, 60)
     session.kidnap()
-    kept = restore_session(take_session(session))
-    run_for(session, 60)
-    again = a_session()
+    kept, again = restore_session(take_session(session)), a_session()
     for order in told:
         carry_out(run_for(again, order.tick - again.tick_count), order)
-    run_for(again, 60)
-    run_for(kept, 60)
-    for other in (again, kept):
-        assert session.companion is not None
-        assert other.companion is not None
-        assert other.state_hash() == session.state_hash()
-        assert other.companion.digest() == session.companion.digest()
-        session_laws.check(other, OFFICE)
-
-
-def test_a_spoilt_one_is_refused() -> None:
-    session = beside(EIGHT, 30)
-    assert session.companion is not None
-    session.companion.counterpart.append(99)
+    for each in (session, kept, again):
+        run_for(each, 60)
+        session_laws.check(each, OFFICE)
+    both = [(each.state_hash(), each.companion and each.companion.digest()) for each in (session, kept, again)]
+    assert both == both[:1] * 3
+    assert kept.companion is not None
+    kept.companion.counterpart.append(99)
     with pytest.raises(ValueError, match="counterpart"):
-        restore_session(take_session(session))
+        restore_session(take_session(kept))
 
 
 @pytest.mark.parametrize("truth", [True, False])

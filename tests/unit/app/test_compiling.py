@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType
+from typing import Any
 
 import psutil
 import pytest
@@ -15,6 +14,7 @@ import pytest
 from app.startup import compiling
 from app.startup.compile_part import PARTS
 from app.startup.compiling import Compiling, is_compiled
+from ratslam_live import command_of
 from tests.patience import PATIENCE_S
 
 # Which kernels have been used for which types, and which of their files have been opened: before and after a real run.
@@ -57,71 +57,56 @@ def test_once_it_is_awake_a_run_has_nothing_to_compile_and_no_kernel_to_load() -
     assert done.stdout == "True [] []\n"
 
 
-@pytest.fixture
-def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """A module with a kernel that has not been compiled."""
+def test_a_module_is_compiled_when_a_kernel_of_it_is_kept_that_is_not_older(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.syspath_prepend(tmp_path)
     (tmp_path / "ahead.py").write_text("from numba import njit\n@njit(cache=True)\ndef one():\n    return 1\n")
     monkeypatch.delitem(sys.modules, "ahead", raising=False)
     import ahead  # type: ignore[import-not-found]
 
-    return ahead
-
-
-def test_a_module_is_compiled_when_a_kernel_of_it_is_kept_that_is_not_older(module: ModuleType) -> None:
-    assert not is_compiled(module)
-    assert module.one() == 1
-    assert is_compiled(module)
-    os.utime(str(module.__file__), (2e9, 2e9))  # edited since
-    assert not is_compiled(module)
+    assert not is_compiled(ahead)
+    assert ahead.one() == 1
+    assert is_compiled(ahead)
+    os.utime(str(ahead.__file__), (2e9, 2e9))  # edited since
+    assert not is_compiled(ahead)
 
 
 def test_only_what_is_missing_is_compiled_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    missing = PARTS["cells"][1]
+    missing, really = PARTS["cells"][1], subprocess.Popen
+    commands, told = list[list[str]](), list[str]()
+
+    def begin(command: list[str], **options: Any) -> subprocess.Popen[str]:
+        commands.append(command)
+        return really([sys.executable, "-c", "print(); print()"], **options)
+
     monkeypatch.setattr(compiling, "is_compiled", lambda module: module not in missing)
-    told: list[str] = []
-    began: list[str] = []
-
-    def process(parts: list[str]) -> subprocess.Popen[str]:
-        began.extend(parts)
-        return subprocess.Popen(
-            [sys.executable, "-c", "print(); print()"], stdout=subprocess.PIPE, text=True, process_group=0
-        )
-
-    monkeypatch.setattr(compiling, "_process", process)
+    monkeypatch.setattr(subprocess, "Popen", begin)
     work = Compiling()
     work.wait(told.append)
     work.stop()
-    assert (bool(work), began) == (True, ["cells"])
+    assert work
+    assert commands == [command_of("app.startup.compile_part", "cells")]
     assert told == [f"{compiling.WORDS}: {words} done" for words in ("1 function", "2 functions")]
     monkeypatch.setattr(compiling, "is_compiled", lambda _module: True)
     assert not Compiling()
 
 
-def test_it_can_be_stopped_at_any_moment(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiling, "is_compiled", lambda _module: False)
-    endless = "import time\nwhile True: print(flush=True); time.sleep(0.01)"
-    monkeypatch.setattr(
-        compiling, "_process",
-        lambda _parts: subprocess.Popen(
-            [sys.executable, "-c", endless], stdout=subprocess.PIPE, text=True, process_group=0,
-        ),
-    )  # fmt: skip
-    work = Compiling()
-    work.wait(lambda _words: work.stop())
-
-
 @pytest.mark.slow
-def test_each_part_has_a_process_of_its_own_and_all_end_together(
+def test_each_part_has_a_process_of_its_own_and_all_can_be_stopped_at_any_moment(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    work = compiling._process(list(PARTS))
-    assert work.stdout is not None
-    work.stdout.readline()  # the first kernel of the first part
-    children = psutil.Process(work.pid).children(recursive=True)
-    assert len(children) == len(PARTS)
-    os.killpg(work.pid, signal.SIGKILL)
-    work.wait()
-    _, alive = psutil.wait_procs(children, timeout=PATIENCE_S)
+    monkeypatch.setattr(compiling, "is_compiled", lambda _module: False)
+    before, began = psutil.Process().children(recursive=True), list[psutil.Process]()
+    work = Compiling()
+
+    def stop_at_the_first_kernel(_words: str) -> None:
+        if not began:
+            began.extend(child for child in psutil.Process().children(recursive=True) if child not in before)
+            work.stop()
+
+    work.wait(stop_at_the_first_kernel)
+    assert len(began) == 1 + len(PARTS)
+    _, alive = psutil.wait_procs(began, timeout=PATIENCE_S)
     assert alive == []

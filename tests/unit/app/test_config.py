@@ -53,33 +53,25 @@ def test_toml_explains_every_parameter() -> None:
     assert "# φ: global inhibition taken from every cell; 0 to 0.02; A eq. 11; value ours\ninhibit = 0.0003\n" in text
 
 
-def test_every_parameter_says_what_it_is() -> None:
+def test_every_parameter_says_what_it_is_and_keeps_its_range(subtests: pytest.Subtests) -> None:
     assert len(NAMES) == len(set(NAMES)) > 50
-    for name, item, value in Config().items():
-        about = item.metadata
-        assert set(about) == {"symbol", "unit", "low", "high", "meaning", "source", "choices", "live"}, name
-        assert about["meaning"], name
-        assert about["source"], name
-        if isinstance(value, str):
-            assert value in about["choices"], name
-        elif not isinstance(value, bool):
-            assert about["low"] <= value <= about["high"], name
-
-
-def test_every_range_is_kept(subtests: pytest.Subtests) -> None:
-    for name in NAMES:
+    for name, item, default in Config().items():
         with subtests.test(name=name):
-            item, default = next((item, value) for dotted, item, value in Config().items() if dotted == name)
+            about = item.metadata
+            assert set(about) == {"symbol", "unit", "low", "high", "meaning", "source", "choices", "live"}
+            assert about["meaning"]
+            assert about["source"]
             wrong: list[object] = ["much", None]
             if isinstance(default, bool):
                 wrong += [1, 0.5]
             elif isinstance(default, str):
+                assert default in about["choices"]
                 wrong += [1, True, ""]
             else:
-                low, high = item.metadata["low"], item.metadata["high"]
+                low, high = about["low"], about["high"]
+                assert low <= default <= high
                 wrong += [low - 1, high + 1, math.nan, math.inf, -math.inf, 10**400, True]
-                if isinstance(default, int):
-                    wrong += [default + 0.5]
+                wrong += [default + 0.5] if isinstance(default, int) else []
             for value in wrong:
                 with pytest.raises(ValueError, match=name.replace(".", r"\.")):
                     Config().with_value(name, value)  # type: ignore[arg-type]
@@ -108,40 +100,36 @@ def test_parameters_that_limit_each_other_are_set_together_in_any_order() -> Non
         Config().with_values({"local_view.rest": 0.0, "robot.camera_fov_rad": 9.0})
 
 
-def test_a_whole_number_for_a_float() -> None:
-    value = Config().with_value("local_view.match_threshold", 8).local_view.match_threshold
-    assert (value, type(value)) == (8.0, float)
+WRONG = [
+    ("[robott]\n", "unknown section 'robott'; expected one of: pose_cells, local_view, .*, robot, office, pilot"),
+    ("robot = 3\n", "unknown section 'robot'; expected one of: pose_cells, local_view, .*, robot, office, pilot"),
+    ("[pilot]\ncruise = 1\n", "unknown parameter 'pilot.cruise'; expected one of: cruise_speed, turn_rate"),
+    ("[pilot]\ncruise_speed = 9\n", r"pilot\.cruise_speed must be between 0\.05 and 0\.5 m/s, got 9\.0"),
+    ("[pilot]\ncruise_speed = [1]\n", r"pilot\.cruise_speed must be float, got \[1\]"),
+    ("[pilot\n", "not valid TOML: "),
+    ("a = " + "[" * 3000, "nested too deeply; at most 20 tables or lists"),
+    ("a" + ".a" * 400 + " = 1", "nested too deeply; at most 20 tables or lists"),
+    ("[robot]\nlight." + "a." * 400 + "a = 1", "nested too deeply; at most 20 tables or lists"),
+    ("[robot]\nsensor_rate_hz = 7\n", r"robot\.physics_rate_hz must be a multiple of sensor_rate_hz \(7\), got 240"),
+    ("[robot]\nimage_width = 8\n", r"robot\.image_width must be at least 12"),
+]
+UNKNOWN = [
+    ("local_view.treshold", "local_view.match_threshold"),
+    ("pilot.cruise", "pilot.cruise_speed"),
+    ("inhibit", "pose_cells.inhibit"),
+    ("pose_cells", "pose_cells.n_x"),
+    ("pilot.zzzzzzz", r"pilot.*, \.\.\.$"),
+]
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("[robott]\n", "unknown section 'robott'; expected one of: pose_cells, local_view, .*, robot, office, pilot"),
-        ("robot = 3\n", "unknown section 'robot'; expected one of: pose_cells, local_view, .*, robot, office, pilot"),
-        ("[pilot]\ncruise = 1\n", "unknown parameter 'pilot.cruise'; expected one of: cruise_speed, turn_rate"),
-        ("[pilot]\ncruise_speed = 9\n", r"pilot\.cruise_speed must be between 0\.05 and 0\.5 m/s, got 9\.0"),
-        ("[pilot]\ncruise_speed = [1]\n", r"pilot\.cruise_speed must be float, got \[1\]"),
-        ("[pilot\n", "not valid TOML: "),
-        ("a = " + "[" * 3000, "nested too deeply; at most 20 tables or lists"),
-        ("a" + ".a" * 400 + " = 1", "nested too deeply; at most 20 tables or lists"),
-        ("[robot]\nlight." + "a." * 400 + "a = 1", "nested too deeply; at most 20 tables or lists"),
-        ("[robot]\nsensor_rate_hz = 7\n", r"robot\.physics_rate_hz must be a multiple of sensor_rate_hz \(7\), got 240"),
-        ("[robot]\nimage_width = 8\n", r"robot\.image_width must be at least 12"),
-    ],
-)  # fmt: skip
-def test_what_is_wrong_in_a_file_is_named_with_what_would_be_right(text: str, message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        from_toml(text)
-
-
-@pytest.mark.parametrize(
-    ("name", "right"),
-    [("local_view.treshold", "local_view.match_threshold"), ("pilot.cruise", "pilot.cruise_speed"),
-     ("inhibit", "pose_cells.inhibit"), ("pose_cells", "pose_cells.n_x"), ("pilot.zzzzzzz", r"pilot.*, \.\.\.$")],
-)  # fmt: skip
-def test_an_unknown_name_lists_the_right_ones(name: str, right: str) -> None:
-    with pytest.raises(ValueError, match=f"unknown parameter '{name}'; expected one of: .*{right}"):
-        Config().with_value(name, 1.0)
+def test_what_is_wrong_is_named_with_what_would_be_right(subtests: pytest.Subtests) -> None:
+    for text, message in WRONG:
+        with subtests.test(msg=text[:40]), pytest.raises(ValueError, match=message):
+            from_toml(text)
+    for name, right in UNKNOWN:
+        words = f"unknown parameter '{name}'; expected one of: .*{right}"
+        with subtests.test(msg=name), pytest.raises(ValueError, match=words):
+            Config().with_value(name, 1.0)
 
 
 @given(st.one_of(st.text(max_size=40), st.text(min_size=3000, max_size=4000)))
@@ -152,27 +140,24 @@ def test_a_name_that_is_like_none_is_answered_in_a_sentence(name: str) -> None:
     assert len(str(refused.value)) < 1000
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [("3", 3), ("0.5", 0.5), ("1e-4", 1e-4), ("true", True), ("false", False), ('"a b"', "a b"), ("office", "office"),
-     ("-2", -2), ("inf", math.inf), ("", "")],
-)  # fmt: skip
-def test_a_value_from_the_command_line(text: str, value: object) -> None:
-    got = parse_value(text)
-    assert got == value
-    assert type(got) is type(value)
-
-
-@pytest.mark.parametrize("text", ["[1, 2]", "{a = 1}", "2024-01-01"])
-def test_what_is_not_a_value_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match="is not a number, true, false or a word"):
-        parse_value(text)
-
-
-@pytest.mark.parametrize("text", ["[" * 3000, "{a=" * 500, "[" * 50 + "]" * 50])
-def test_a_value_that_is_nested_too_deeply_gets_a_sentence(text: str) -> None:
-    with pytest.raises(ValueError, match="nested too deeply"):
-        parse_value(text)
+def test_a_value_from_the_command_line(subtests: pytest.Subtests) -> None:
+    values = {
+        "3": 3, "0.5": 0.5, "1e-4": 1e-4, "true": True, "false": False, '"a b"': "a b", "office": "office", "-2": -2,
+        "inf": math.inf, "": "",
+    }  # fmt: skip
+    for text, value in values.items():
+        with subtests.test(msg=text):
+            got = parse_value(text)
+            assert (got, type(got)) == (value, type(value))
+    floated = Config().with_value("local_view.match_threshold", 8).local_view.match_threshold
+    assert (floated, type(floated)) == (8.0, float)
+    for words, texts in (
+        ("is not a number, true, false or a word", ["[1, 2]", "{a = 1}", "2024-01-01"]),
+        ("nested too deeply", ["[" * 3000, "{a=" * 500, "[" * 50 + "]" * 50]),
+    ):
+        for text in texts:
+            with subtests.test(msg=text[:40]), pytest.raises(ValueError, match=words):
+                parse_value(text)
 
 
 def test_a_paper_s_pilot_only_wanders_and_ours_comes_back() -> None:

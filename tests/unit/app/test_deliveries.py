@@ -43,24 +43,18 @@ def test_each_round_visits_every_goal_and_none_twice_in_a_row(goals: int, count:
     assert all(a != b for a, b in pairwise(numbers))
 
 
-def visited(**options: Any) -> Visit:
-    about = {
-        "goal": 7, "began_s": 10.0, "time_s": 20.0, "path_m": 5.0, "shortest_m": 4.0, "miss_m": 0.4, "state": "arrived",
-        "timeout_s": 300.0,
-    }  # fmt: skip
-    return Visit(**(about | options))
-
-
-def test_a_failure_has_a_reason_in_words() -> None:
-    assert visited().reached
-    assert visited().reason == ""
-    assert visited(miss_m=1.0).reached
-    assert visited(miss_m=1.4).reason == "arrived 1.40 m away"
-    assert visited(state="tracking", miss_m=3.0).reason == "not reached in 300 s: it is 3.00 m away"
-    assert visited(state="tracking").reason == "not reached in 300 s: it is 0.40 m away"
-    lost = visited(state="unreachable", miss_m=8.0)
-    assert not lost.reached
-    assert lost.reason == "not reached in 300 s: it is 8.00 m away and says that it knows no way"
+def test_a_failure_has_a_reason_in_words(subtests: pytest.Subtests) -> None:
+    for state, miss_m, reason in (
+        ("arrived", 0.4, ""),
+        ("arrived", 1.0, ""),
+        ("arrived", 1.4, "arrived 1.40 m away"),
+        ("tracking", 3.0, "not reached in 300 s: it is 3.00 m away"),
+        ("tracking", 0.4, "not reached in 300 s: it is 0.40 m away"),
+        ("unreachable", 8.0, "not reached in 300 s: it is 8.00 m away and says that it knows no way"),
+    ):
+        with subtests.test(msg=reason):
+            visit = Visit(7, 10.0, 20.0, 5.0, 4.0, miss_m, state, 300.0)
+            assert (visit.reached, visit.reason) == (reason == "", reason)
 
 
 @pytest.mark.slow
@@ -112,9 +106,8 @@ def test_a_delivery_that_takes_too_long_or_ends_elsewhere_is_a_failure(monkeypat
 
 
 def test_too_few_places_are_a_sentence() -> None:
-    with pytest.raises(
-        ValueError, match=r"--goals 50: after 0.1 minutes the robot knows only \d+ places; let it explore"
-    ):
+    words = r"--goals 50: after 0.1 minutes the robot knows only \d+ places; let it explore"
+    with pytest.raises(ValueError, match=words):
         run(goals=50, minutes=0.1).carry_out()
 
 
@@ -149,21 +142,16 @@ def test_deliver_prints_its_report(capsys: pytest.CaptureFixture[str]) -> None:
     assert json.loads(capsys.readouterr().out)["deliveries"] == 1
 
 
-@pytest.mark.parametrize(
-    ("option", "sentence"),
-    [
-        (["--goals", "1"], "--goals must be from 2 to 1000, got 1; a delivery leads from one place to another"),
-        (["--deliveries", "0"], "--deliveries must be from 1 to 1e+06, got 0; "),
-        (["--minutes", "0"], "--minutes must be from 0.1 to 1e+06, got 0; the robot must have seen the places"),
-        (["--timeout", "nan"], "--timeout must be from 1 to 1e+06, got nan; "),
-        (["--world", "castle"], "no world 'castle'; expected one of: office"),
-        (["--report", "/nowhere/at/all.json"], "there is no folder"),
-    ],
-)
-def test_what_cannot_be_is_a_sentence(option: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["deliver", *option]) == 2
-    captured = capsys.readouterr()
-    assert captured.err.startswith("ratslam: ")
-    assert sentence in captured.err
-    assert len(captured.err.splitlines()) == 1
-    assert captured.out == ""
+def test_what_cannot_be_is_a_sentence(capsys: pytest.CaptureFixture[str], subtests: pytest.Subtests) -> None:
+    for option, value, sentence in (
+        ("--goals", "1", "--goals must be from 2 to 1000, got 1; a delivery leads from one place to another"),
+        ("--deliveries", "0", "--deliveries must be from 1 to 1e+06, got 0; "),
+        ("--minutes", "0", "--minutes must be from 0.1 to 1e+06, got 0; the robot must have seen the places"),
+        ("--timeout", "nan", "--timeout must be from 1 to 1e+06, got nan; "),
+        ("--world", "castle", "no world 'castle'; expected one of: office"),
+        ("--report", "/nowhere/at/all.json", "there is no folder"),
+    ):
+        with subtests.test(msg=sentence):
+            assert cli.main(["deliver", option, value]) == 2
+            out, err = capsys.readouterr()
+            assert (out, err[:9], err.count("\n"), sentence in err) == ("", "ratslam: ", 1, True)

@@ -15,19 +15,19 @@ from ratslam_core import Pose2
 STRAIGHT = np.column_stack([np.arange(0.0, 6.0, 0.03), np.zeros(200), np.zeros(200)])  # 6 m along x
 
 
-def off(passes: np.ndarray, estimated: np.ndarray, here: Pose2, estimate: Pose2) -> tuple[float, float]:
-    return off_earlier_passes(passes, estimated, here, estimate)
+FRAMES = st.builds(Pose2, st.floats(-20, 20), st.floats(-20, 20), st.floats(-3, 3))
 
 
-@given(st.floats(-20, 20), st.floats(-20, 20), st.floats(-3, 3), st.floats(-0.3, 0.3), st.floats(-0.2, 0.2))
-def test_wherever_the_cells_have_it_the_same_state_again_is_right(
-    x: float, y: float, turn: float, aside: float, facing: float
-) -> None:
+def seen_from(frame: Pose2) -> np.ndarray:
+    """The way along x, as cells have it whose plane lies so."""
+    return np.array([[p.x, p.y, p.heading_rad] for p in (frame.compose(Pose2(*row)) for row in STRAIGHT.tolist())])
+
+
+@given(FRAMES, st.floats(-0.3, 0.3), st.floats(-0.2, 0.2))
+def test_wherever_the_cells_have_it_the_same_state_again_is_right(frame: Pose2, aside: float, facing: float) -> None:
     """The cells' plane may lie anywhere and be turned: what counts is that the same place is the same state."""
-    frame = Pose2(x, y, turn)
-    estimated = np.array([[p.x, p.y, p.heading_rad] for p in (frame.compose(Pose2(*row)) for row in STRAIGHT.tolist())])
-    here = Pose2(1.0, aside, facing)
-    metres, radians = off(STRAIGHT, estimated, here, frame.compose(here))
+    estimated, here = seen_from(frame), Pose2(1.0, aside, facing)
+    metres, radians = off_earlier_passes(STRAIGHT, estimated, here, frame.compose(here))
     assert metres == pytest.approx(0.0, abs=1e-9)
     assert radians == pytest.approx(0.0, abs=1e-9)
 
@@ -39,43 +39,29 @@ def test_another_state_is_as_far_off_as_it_is_from_half_of_the_passes(passes_up:
     true = np.concatenate([np.concatenate([STRAIGHT[:100], away.repeat(5, axis=0)]) for _ in passes_up])
     estimated = true.copy()
     estimated[:, 1] += np.repeat(passes_up, 105)
-    metres, radians = off(true, estimated, Pose2(1.05, 0.0, 0.0), Pose2(1.05, 1.0, 0.5))
+    metres, radians = off_earlier_passes(true, estimated, Pose2(1.05, 0.0, 0.0), Pose2(1.05, 1.0, 0.5))
     assert metres == pytest.approx(off_m, abs=1e-9)
     assert radians == pytest.approx(0.5)
 
 
-@pytest.mark.parametrize(
-    "here",
-    [
-        Pose2(1.0, 0.6, 0.0),  # beside the path
-        Pose2(1.0, 0.0, math.pi),  # the other way
-        Pose2(5.5, 0.0, 0.0),  # the pass is still going on
-    ],
-)
-def test_new_ground_and_this_pass_say_nothing(here: Pose2) -> None:
-    assert math.isnan(off(STRAIGHT, STRAIGHT, here, here)[0])
-    assert math.isnan(off(STRAIGHT[:0], STRAIGHT[:0], here, here)[0])
+def test_new_ground_and_this_pass_say_nothing() -> None:
+    beside, the_other_way, still_going_on = Pose2(1.0, 0.6, 0.0), Pose2(1.0, 0.0, math.pi), Pose2(5.5, 0.0, 0.0)
+    for here in (beside, the_other_way, still_going_on):
+        assert math.isnan(off_earlier_passes(STRAIGHT, STRAIGHT, here, here)[0])
+    assert math.isnan(off_earlier_passes(STRAIGHT[:0], STRAIGHT[:0], beside, beside)[0])
 
 
-@given(
-    st.floats(-20, 20),
-    st.floats(-20, 20),
-    st.floats(-3, 3),
-    st.floats(0.2, 5.8),
-    st.floats(-0.4, 0.4),
-    st.floats(-0.5, 0.5),
-)
+@given(FRAMES, st.floats(0.2, 5.8), st.floats(-0.4, 0.4), st.floats(-0.5, 0.5))
 def test_an_estimate_stands_for_where_the_robot_was_when_it_had_it(
-    x: float, y: float, turn: float, ahead: float, aside: float, facing: float
+    frame: Pose2, ahead: float, aside: float, facing: float
 ) -> None:
     """However the cells lie: the robot is where it is, and its estimate is one that it had elsewhere on the way."""
-    frame, here = Pose2(x, y, turn), Pose2(1.0, 2.0, 0.3)
-    estimated = np.array([[p.x, p.y, p.heading_rad] for p in (frame.compose(Pose2(*row)) for row in STRAIGHT.tolist())])
-    metres, radians = off_same_estimate(STRAIGHT, estimated, here, frame.compose(Pose2(ahead, aside, facing)))
+    here, estimate = Pose2(1.0, 2.0, 0.3), frame.compose(Pose2(ahead, aside, facing))
+    metres, radians = off_same_estimate(STRAIGHT, seen_from(frame), here, estimate)
     assert metres == pytest.approx(math.hypot(ahead - 1.0, aside - 2.0), abs=1e-9)
     assert radians == pytest.approx(abs(facing - 0.3), abs=1e-9)
 
 
-@pytest.mark.parametrize("estimate", [Pose2(3.0, 0.6, 0.0), Pose2(3.0, 0.0, 0.7), Pose2(-1.0, 0.0, 0.0)])
-def test_an_estimate_that_it_never_had_stands_for_no_place(estimate: Pose2) -> None:
-    assert math.isnan(off_same_estimate(STRAIGHT, STRAIGHT, Pose2(3.0, 0.0, 0.0), estimate)[0])
+def test_an_estimate_that_it_never_had_stands_for_no_place() -> None:
+    for estimate in (Pose2(3.0, 0.6, 0.0), Pose2(3.0, 0.0, 0.7), Pose2(-1.0, 0.0, 0.0)):
+        assert math.isnan(off_same_estimate(STRAIGHT, STRAIGHT, Pose2(3.0, 0.0, 0.0), estimate)[0])

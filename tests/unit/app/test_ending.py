@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -84,15 +83,12 @@ def test_a_signal_that_a_library_holds_back_ends_it_all_the_same(what: str) -> N
 
 
 @pytest.mark.slow
-def test_a_full_disk_beneath_the_output_is_a_sentence() -> None:
+def test_output_that_nobody_can_take() -> None:
     with open("/dev/full", "w", encoding="utf-8") as full:
         done = ratslam("config", stdout=full)
-    assert done.returncode == 2
-    assert done.stderr == "ratslam: standard output: No space left on device; make room, or choose another place\n"
-
-
-@pytest.mark.slow
-def test_nobody_reads_on() -> None:
+        assert done.returncode == 2
+        assert done.stderr == "ratslam: standard output: No space left on device; make room, or choose another place\n"
+        assert ratslam("headless", "--world", "castle", stderr=full).returncode == 2
     reader, writer = os.pipe()
     os.close(reader)
     done = ratslam("config", stdout=writer)
@@ -100,93 +96,75 @@ def test_nobody_reads_on() -> None:
     assert (done.returncode, done.stderr) == (141, "")
 
 
-@pytest.mark.slow
-def test_nobody_can_be_told() -> None:
-    with open("/dev/full", "w", encoding="utf-8") as full:
-        assert ratslam("headless", "--world", "castle", stderr=full).returncode == 2
-
-
-def report(path: Path) -> list[str]:
-    return ["headless", "--minutes", "0.02", "--report", str(path)]
-
-
-def brain(path: Path) -> list[str]:
-    return ["headless", "--minutes", "0.02", "--save-brain", str(path)]
-
-
-def imported(path: Path) -> list[str]:
-    return ["worlds", "import", OFFICE, "-o", str(path)]
-
-
-def bench(path: Path) -> list[str]:
-    return ["bench", "--json", str(path)]
+COMMANDS = {
+    "report": "headless --minutes 0.02 --report",
+    "brain": "headless --minutes 0.02 --save-brain",
+    "bench": "bench --json",
+    "imported": f"worlds import {OFFICE} -o",
+}
 
 
 @pytest.fixture
 def quick_bench(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        "benchmarks.engine.rows", lambda _quick: iter([{"work": "sweep " * 20, "ms": 0.1, "holds": True}])
-    )
+    row = {"work": "sweep " * 20, "ms": 0.1, "holds": True}
+    monkeypatch.setattr("benchmarks.engine.rows", lambda _quick: iter([row]))
     monkeypatch.setattr("benchmarks.office.rows", lambda _quick: iter([]))
     monkeypatch.setattr("benchmarks.engine.line", lambda row: row["work"])
 
 
 @pytest.mark.usefixtures("quick_bench")
-@pytest.mark.parametrize("command", [report, brain, imported, bench])
+@pytest.mark.parametrize("what", COMMANDS)
 @pytest.mark.slow
-def test_a_full_disk_leaves_no_half_file(
-    command: Callable[[Path], list[str]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_full_disk_leaves_no_half_file(what: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "file"
     file.write_text("old")
     with full_after(64):
-        assert cli.main(command(file)) == 2
+        assert cli.main([*COMMANDS[what].split(), str(file)]) == 2
     captured = capsys.readouterr()
     assert captured.err == f"ratslam: {file}: File too large; make room, or choose another place\n"
     assert (os.listdir(tmp_path), file.read_text()) == (["file"], "old")
-    if command in (report, brain):
+    if what in ("report", "brain"):
         assert '"state_hash"' in captured.out  # the run is over: its report is not lost
 
 
-@pytest.mark.usefixtures("quick_bench")
-@pytest.mark.parametrize("command", [report, brain, bench])
 def test_where_nothing_can_be_written_is_said_before_the_work(
-    command: Callable[[Path], list[str]], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, subtests: pytest.Subtests
 ) -> None:
     monkeypatch.setattr("app.headless.run_headless", lambda *_, **__: pytest.fail("the work was begun"))
     monkeypatch.setattr("benchmarks.engine.rows", lambda _quick: pytest.fail("the work was begun"))
-    assert cli.main(command(tmp_path / "no" / "file")) == 2
-    assert f"there is no folder {tmp_path / 'no'}" in capsys.readouterr().err
-    assert cli.main(command(tmp_path)) == 2
-    assert "this is a folder; name a file in it" in capsys.readouterr().err
-    monkeypatch.setattr(os, "access", lambda *_: False)  # root may write anywhere
-    assert cli.main(command(tmp_path / "file")) == 2
-    assert "choose another place" in capsys.readouterr().err
+    for may_write in (True, False):
+        if not may_write:
+            monkeypatch.setattr(os, "access", lambda *_: False)  # root may write anywhere
+        for what in ("report", "brain", "bench"):
+            places = {
+                tmp_path / "no" / "file": f"there is no folder {tmp_path / 'no'}",
+                tmp_path: "this is a folder; name a file in it",
+            } if may_write else {tmp_path / "file": "choose another place"}  # fmt: skip
+            for place, words in places.items():
+                with subtests.test(msg=f"{what} {words}"):
+                    assert cli.main([*COMMANDS[what].split(), str(place)]) == 2
+                    assert words in capsys.readouterr().err
     assert os.listdir(tmp_path) == []
 
 
-@pytest.mark.parametrize(
-    ("error", "code", "words"),
-    [
-        (PermissionError(13, "Permission denied", "/etc/x"), 2,
-         "ratslam: /etc/x: Permission denied; choose a place where you may write\n"),
+def test_what_it_was_is_told_but_our_own_mistakes_are_not_hidden(
+    capsys: pytest.CaptureFixture[str], subtests: pytest.Subtests
+) -> None:
+    def ends(error: BaseException) -> int:
+        def work() -> int:
+            raise error
+
+        return ended(work)
+
+    denied = PermissionError(13, "Permission denied", "/etc/x")
+    for error, code, words in (
+        (denied, 2, "ratslam: /etc/x: Permission denied; choose a place where you may write\n"),
         (ConnectionResetError(104, "Connection reset by peer"), 2, "ratslam: Connection reset by peer\n"),
         (ValueError("no"), 2, "ratslam: no\n"),
         (KeyboardInterrupt(), 130, "ratslam: stopped\n"),
         (BrokenPipeError(32, "Broken pipe"), 141, ""),
-    ],
-)  # fmt: skip
-def test_what_it_was_is_told(error: BaseException, code: int, words: str, capsys: pytest.CaptureFixture[str]) -> None:
-    def work() -> int:
-        raise error
-
-    assert ended(work) == code
-    assert capsys.readouterr().err == words
-
-
-def test_our_own_mistakes_are_not_hidden() -> None:
-    def work() -> int:
-        raise ZeroDivisionError
-
+    ):
+        with subtests.test(msg=repr(error)):
+            assert (ends(error), capsys.readouterr().err) == (code, words)
     with pytest.raises(ZeroDivisionError):
-        ended(work)
+        ends(ZeroDivisionError())

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,11 +11,13 @@ from evo.core.trajectory import PoseTrajectory3D
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.evaluation import Evaluation, align, alignment, rmse
+from app.evaluation import Coverage, Evaluation, align, alignment, rmse
 from app.evaluation.earlier_passes import EVERY
 from app.evaluation.evaluation import CONSISTENT_WITHIN_S, MOST_TICKS
 from ratslam_core import Odometry, Pose2
-from sim2d import Truth
+from sim2d import FreeSpace, Truth, load_world
+
+from .worlds import room
 
 DT = 0.1
 
@@ -28,12 +31,8 @@ def moved(points: np.ndarray, frame: Pose2) -> np.ndarray:
     return points @ np.array([[c, s], [-s, c]]) + (frame.x, frame.y)
 
 
-seeds = st.integers(0, 2**32 - 1)
-frames = st.builds(Pose2, st.floats(-20, 20), st.floats(-20, 20), st.floats(-3.1, 3.1))
-
-
 @settings(max_examples=80)
-@given(seeds, st.integers(3, 60), st.floats(0.0, 2.0))
+@given(st.integers(0, 2**32 - 1), st.integers(3, 60), st.floats(0.0, 2.0))
 def test_evo_aligns_the_same_way(seed: int, n: int, noise: float) -> None:
     rng = np.random.default_rng(seed)
     truth = walk(rng, n)
@@ -63,34 +62,10 @@ def test_evo_finds_the_same_error(seed: int) -> None:
     assert rmse(estimate, truth) == pytest.approx(ape.get_statistic(metrics.StatisticsType.rmse), rel=1e-6)
 
 
-@settings(max_examples=60)
-@given(seeds, frames)
-def test_the_frame_of_the_estimate_is_no_error(seed: int, frame: Pose2) -> None:
-    truth = walk(np.random.default_rng(seed), 30)
-    assert rmse(moved(truth, frame), truth) < 1e-9
-    back = alignment(moved(truth, frame), truth).compose(frame)
-    assert math.hypot(back.x, back.y) < 1e-7
-    assert abs(back.heading_rad) < 1e-7
-
-
-@settings(max_examples=40)
-@given(seeds, st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3))
-def test_no_other_frame_fits_better(seed: int, dx: float, dy: float, turn: float) -> None:
-    rng = np.random.default_rng(seed)
-    truth = walk(rng, 20)
-    estimate = truth + rng.normal(0, 0.5, truth.shape)
-    other = moved(align(estimate, truth), Pose2(dx, dy, turn))
-    assert rmse(estimate, truth) <= math.sqrt(float(np.mean(np.sum((other - truth) ** 2, 1)))) + 1e-9
-
-
-def test_scale_is_an_error() -> None:
+def test_scale_is_an_error_and_fewer_than_two_points_have_none() -> None:
     truth = np.array([[0.0, 0.0], [2.0, 0.0]])
     assert rmse(2 * truth, truth) == pytest.approx(1.0)
-
-
-def test_fewer_than_two_points_have_no_error() -> None:
-    assert rmse(np.zeros((1, 2)), np.ones((1, 2))) == 0.0
-    assert rmse(np.zeros((0, 2)), np.zeros((0, 2))) == 0.0
+    assert rmse(np.zeros((1, 2)), np.ones((1, 2))) == rmse(np.zeros((0, 2)), np.zeros((0, 2))) == 0.0
 
 
 class Map:
@@ -114,8 +89,17 @@ class Map:
         return Pose2(*self.poses[experience])
 
 
+STILL = Odometry(0.0, 0.0, DT)
+
+
+def driven(ticks: int = 0, *, known: int = 0, start: int = 0) -> tuple[Evaluation, Any]:
+    evaluation, map_ = Evaluation(known), Map()
+    drive(evaluation, map_, ticks, start=start)
+    return evaluation, map_
+
+
 def drive(
-    evaluation: Evaluation, map_: Map, ticks: int, *, wrong_m: float = 0.0, turned_rad: float = 0.0, start: int = 0
+    evaluation: Evaluation, map_: Any, ticks: int, *, wrong_m: float = 0.0, turned_rad: float = 0.0, start: int = 0
 ) -> None:
     """Drive along +y of the office at 0.3 m/s. The map, which lies elsewhere and is turned, is wrong by a given amount."""
     for tick in range(start, start + ticks):
@@ -123,38 +107,38 @@ def drive(
         map_.local_pose = Pose2(x, wrong_m, turned_rad)
         truth = Truth(7.0, 1.0 + x, math.pi / 2, 0.3 if tick else 0.0, 0.0)
         odometry = Odometry(0.33 if tick else 0.0, 0.0, DT)
-        evaluation.record(tick * DT, truth, map_, tick == 0, odometry)  # type: ignore[arg-type]
+        evaluation.record(tick * DT, truth, map_, tick == 0, odometry)
 
 
 def test_paths_and_errors() -> None:
-    evaluation, map_ = Evaluation(), Map()
-    drive(evaluation, map_, 5001)
-    truth, mapped, odometry = evaluation.trajectories(map_)  # type: ignore[arg-type]
+    evaluation, map_ = driven(5001)
+    truth, mapped, odometry = evaluation.trajectories(map_)
     assert len(truth) == len(mapped) == len(odometry) == 5001
     assert truth[-1] == pytest.approx([7.0, 151.0])
     assert mapped[-1] == pytest.approx([150.0, 0.0])
     assert odometry[-1] == pytest.approx([165.0, 0.0])
     assert evaluation.path_m == pytest.approx(150.0)
-    map_error, odometry_error = evaluation.errors(map_)  # type: ignore[arg-type]
+    map_error, odometry_error = evaluation.errors(map_)
     assert map_error == pytest.approx(0.0, abs=1e-9)
     assert odometry_error == pytest.approx(15 / math.sqrt(12), rel=1e-3)  # a tenth too long, evenly
-    assert evaluation.errors(map_, 10)[1] == pytest.approx(odometry_error, rel=0.01)  # type: ignore[arg-type]
-    assert evaluation.made_at(0, map_) == (7.0, 1.0)  # type: ignore[arg-type]
+    assert evaluation.errors(map_, 10)[1] == pytest.approx(odometry_error, rel=0.01)
+    assert evaluation.made_at(0, map_) == (7.0, 1.0)
+    map_.poses[0, 2] = math.pi / 6  # the whole map is turned
+    assert evaluation.trajectories(map_)[1][-1] == pytest.approx([150 * math.cos(math.pi / 6), 75.0])
 
 
 def test_the_map_is_judged_as_it_is_now() -> None:
-    evaluation, map_ = Evaluation(), Map()
+    evaluation, map_ = driven(100)
     map_.poses = np.zeros((2, 3))
-    drive(evaluation, map_, 100)
     map_.active = 1
     drive(evaluation, map_, 100, start=100)
-    assert evaluation.errors(map_)[0] == pytest.approx(0.0, abs=1e-9)  # type: ignore[arg-type]
+    assert evaluation.errors(map_)[0] == pytest.approx(0.0, abs=1e-9)
     map_.poses[1] = 0.0, 2.0, 0.0
-    assert evaluation.errors(map_)[0] > 0.5  # type: ignore[arg-type]
+    assert evaluation.errors(map_)[0] > 0.5
 
 
 def test_consistency_counts_old_experiences_only() -> None:
-    evaluation, map_ = Evaluation(), Map()
+    evaluation, map_ = driven()
     assert evaluation.revisit_consistency is None
     drive(evaluation, map_, 200)
     assert evaluation.revisit_consistency is None
@@ -164,21 +148,22 @@ def test_consistency_counts_old_experiences_only() -> None:
     assert evaluation.revisit_consistency == pytest.approx(0.5, abs=0.01)
 
 
-def kidnapped(*, turned_rad: float = 0.0, wrong_m: float = 0.0, known: bool = True) -> Evaluation:
-    """Ten seconds of driving, a kidnap that the map does not follow, and five seconds after it."""
-    evaluation, map_ = Evaluation(), Map()
-    drive(evaluation, map_, 100)
-    evaluation.kidnapped(9.9, map_)  # type: ignore[arg-type]
-    if not known:
-        map_.poses, map_.active = np.zeros((2, 3)), 1
-    drive(evaluation, map_, 50, start=100, wrong_m=wrong_m, turned_rad=turned_rad)
-    return evaluation
+def kidnapped(*, poses: list[tuple[float, float, float]] | None = None, **wrong: float) -> float | None:
+    """After how many seconds a kidnap is over that the map does not follow, after ten seconds of driving.
+
+    poses: those that the map has then; the last is the active one.
+    """
+    evaluation, map_ = driven(100)
+    evaluation.kidnapped(9.9, map_)
+    if poses:
+        map_.poses, map_.active = np.array(poses), len(poses) - 1
+    drive(evaluation, map_, 50, start=100, **wrong)
+    return evaluation.kidnaps[0].after_s
 
 
 def test_a_kidnap_is_over_when_the_robot_stays_right_for_half_a_second() -> None:
-    evaluation, map_ = Evaluation(), Map()
-    drive(evaluation, map_, 100)
-    evaluation.kidnapped(9.9, map_)  # type: ignore[arg-type]
+    evaluation, map_ = driven(100)
+    evaluation.kidnapped(9.9, map_)
     kidnap = evaluation.kidnaps[0]
     drive(evaluation, map_, 50, start=100, wrong_m=3.0)
     drive(evaluation, map_, 4, start=150)  # right by chance, but not for long
@@ -188,114 +173,103 @@ def test_a_kidnap_is_over_when_the_robot_stays_right_for_half_a_second() -> None
     assert kidnap.at_s == 9.9
     assert kidnap.after_s == pytest.approx(19.0 - 9.9)
     assert kidnap.after_m == pytest.approx(0.03 * 91)
-    evaluation.kidnapped(22.9, map_)  # type: ignore[arg-type]
+    evaluation.kidnapped(22.9, map_)
     drive(evaluation, map_, 30, start=230, wrong_m=4.0)
     assert evaluation.kidnaps[1].after_s is None
     assert kidnap.after_s == pytest.approx(9.1)
 
 
-def test_who_was_turned_on_the_spot_has_not_recovered_while_it_does_not_know_its_heading() -> None:
-    assert kidnapped(turned_rad=0.5).kidnaps[0].after_s == pytest.approx(0.1)
-    for turned_rad in (0.7, -0.7, math.pi):
-        assert kidnapped(turned_rad=turned_rad).kidnaps[0].after_s is None
-    assert kidnapped(wrong_m=1.1).kidnaps[0].after_s is None
+def test_who_has_recovered() -> None:
+    well: list[dict[str, Any]] = [
+        {},
+        {"turned_rad": 0.5},
+        {"poses": [(5.0, -3.0, 1.0)]},  # the active experience is where it was truly made, wherever the map has it now
+    ]
+    badly: list[dict[str, Any]] = [
+        *({"turned_rad": turned} for turned in (0.7, -0.7, math.pi)),  # on the spot: it does not know its heading
+        {"wrong_m": 1.1},
+        {"poses": [(0.0, 0.0, 0.0)] * 2},  # an experience made after the kidnap recovers nothing
+    ]
+    assert [kidnapped(**how) for how in well] == pytest.approx([0.1] * 3)
+    assert [kidnapped(**how) for how in badly] == [None] * 5
 
 
-def test_an_experience_made_after_the_kidnap_recovers_nothing() -> None:
-    assert kidnapped().kidnaps[0].after_s == pytest.approx(0.1)
-    assert kidnapped(known=False).kidnaps[0].after_s is None
-
-
-def test_a_map_that_moves_after_the_kidnap_changes_no_verdict() -> None:
-    """The active experience counts as being where it was truly made, wherever the map has it now."""
-    evaluation, map_ = Evaluation(), Map()
-    drive(evaluation, map_, 100)
-    evaluation.kidnapped(9.9, map_)  # type: ignore[arg-type]
-    map_.poses[0] = 5.0, -3.0, 1.0
-    drive(evaluation, map_, 50, start=100)
-    assert evaluation.kidnaps[0].after_s == pytest.approx(0.1)
-
-
-@pytest.mark.parametrize(("wrong_m", "after_s"), [(0.5, 0.1), (1.5, None)])
-def test_of_what_a_brain_brought_the_map_says_where_it_is(wrong_m: float, after_s: float | None) -> None:
-    evaluation, map_ = Evaluation(known=1), Map()
-    drive(evaluation, map_, 100, start=1)
-    evaluation.kidnapped(10.0, map_)  # type: ignore[arg-type]
-    drive(evaluation, map_, 50, start=101, wrong_m=wrong_m)
-    assert evaluation.kidnaps[0].after_s == (None if after_s is None else pytest.approx(after_s))
+def test_of_what_a_brain_brought_the_map_says_where_it_is() -> None:
+    for wrong_m, after_s in ((0.5, pytest.approx(0.1)), (1.5, None)):
+        evaluation, map_ = driven(100, known=1, start=1)
+        evaluation.kidnapped(10.0, map_)
+        drive(evaluation, map_, 50, start=101, wrong_m=wrong_m)
+        assert evaluation.kidnaps[0].after_s == after_s
 
 
 def test_what_the_robot_believes_is_compared_with_where_it_is() -> None:
-    evaluation, map_ = Evaluation(), Map()
-    drive(evaluation, map_, 10)
+    evaluation, map_ = driven(10)
     truth = Truth(7.0, 1.27, math.pi / 2, 0.3, 0.0)
-    assert evaluation.belief_off(truth, map_) == pytest.approx((0.0, 0.0), abs=1e-9)  # type: ignore[arg-type]
+    assert evaluation.belief_off(truth, map_) == pytest.approx((0.0, 0.0), abs=1e-9)
     map_.local_pose = Pose2(0.27, 0.4, 0.3)
-    assert evaluation.belief_off(truth, map_) == pytest.approx((0.4, 0.3))  # type: ignore[arg-type]
+    assert evaluation.belief_off(truth, map_) == pytest.approx((0.4, 0.3))
     map_.poses, map_.active = np.zeros((2, 3)), 1
-    assert np.isnan(evaluation.belief_off(truth, map_)).all()  # type: ignore[arg-type]
+    assert np.isnan(evaluation.belief_off(truth, map_)).all()
 
 
 def test_the_share_of_the_ticks_on_an_old_experience() -> None:
-    evaluation, map_ = Evaluation(), Map()
+    evaluation, map_ = driven()
     assert evaluation.revisit_share == 0.0
     drive(evaluation, map_, 400)  # the first 20 s do not count
     assert evaluation.revisit_share == pytest.approx(199 / 400)
 
 
 def test_births_are_known_or_not_a_number() -> None:
-    evaluation, map_ = Evaluation(), Map()
-    drive(evaluation, map_, 10)
+    evaluation, map_ = driven(10)
     births = evaluation.births(3000)
     assert births.shape == (3000, 4)
     assert births[0] == pytest.approx([7.0, 1.0, math.pi / 2, 0.0])
     assert np.isnan(births[1:]).all()
-    assert evaluation.path == pytest.approx(evaluation.trajectories(map_)[0])  # type: ignore[arg-type]
+    assert evaluation.path == pytest.approx(evaluation.trajectories(map_)[0])
 
 
 def test_a_robot_that_has_never_driven_is_judged_by_how_it_stood() -> None:
-    evaluation, map_ = Evaluation(), Map()
+    evaluation, map_ = driven()
     stood, turned = Truth(7.0, 1.0, 2.0, 0.0, 0.0), Truth(7.0, 1.0, -1.0, 0.0, 0.0)
     for truth in (stood, turned):
         for tick in range(10):
             made = truth is stood and tick == 0
-            evaluation.record(tick * DT, truth, map_, made, Odometry(0.0, 0.0, DT))  # type: ignore[arg-type]
+            evaluation.record(tick * DT, truth, map_, made, STILL)
         if truth is stood:
-            evaluation.kidnapped(0.9, map_)  # type: ignore[arg-type]
+            evaluation.kidnapped(0.9, map_)
     assert evaluation.kidnaps[0].after_s is None
     for tick in range(20, 30):
-        evaluation.record(tick * DT, stood, map_, False, Odometry(0.0, 0.0, DT))  # type: ignore[arg-type]
+        evaluation.record(tick * DT, stood, map_, False, STILL)
     assert evaluation.kidnaps[0].after_s == pytest.approx(1.1)
 
 
 def test_thousands_of_experiences_keep_where_they_were_made() -> None:
-    evaluation, map_ = Evaluation(), Map()
+    evaluation, map_ = driven()
     map_.poses = np.zeros((2500, 3))
     for i in range(2500):
         map_.active = i
-        evaluation.record(i * DT, Truth(i, -i, 0.0, 0.0, 0.0), map_, True, Odometry(0.0, 0.0, DT))  # type: ignore[arg-type]
+        evaluation.record(i * DT, Truth(i, -i, 0.0, 0.0, 0.0), map_, True, STILL)
     assert evaluation.memory_bytes >= 2500 * 13 * 8
     for i in (0, 1023, 1024, 2499):
         assert evaluation.made_at(i, map_) == (i, -i)
 
 
 def test_experiences_that_a_brain_brought_are_where_the_map_says() -> None:
-    evaluation, map_ = Evaluation(known=2000), Map()
+    evaluation, map_ = driven(known=2000)
     map_.poses = np.zeros((2001, 3))
     map_.poses[:, 0] = np.arange(2001)
     map_.active = 1500  # not made in this run
     drive(evaluation, map_, 300, start=1)
     assert evaluation.revisit_consistency is None
-    x, y = evaluation.made_at(1510, map_)  # type: ignore[arg-type]
-    here = evaluation.trajectories(map_)  # type: ignore[arg-type]
+    x, y = evaluation.made_at(1510, map_)
+    here = evaluation.trajectories(map_)
     assert math.dist((x, y), here[0][0]) == pytest.approx(10.0 - 0.03, abs=1e-6)  # the first place is a tick on
 
 
 def test_what_a_kidnap_asks_of_the_past_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """However long the robot drove before it, and however long it is never consistent."""
-    evaluation, map_, asked = Evaluation(), Map(), list[int]()
-    drive(evaluation, map_, MOST_TICKS + 5000)
-    evaluation.kidnapped(evaluation._count * DT, map_)  # type: ignore[arg-type]
+    (evaluation, map_), asked = driven(MOST_TICKS + 5000), list[int]()
+    evaluation.kidnapped((MOST_TICKS + 5000) * DT, map_)
 
     def passes(true: np.ndarray, *_rest: object) -> tuple[float, float]:
         asked.append(len(true))
@@ -305,3 +279,32 @@ def test_what_a_kidnap_asks_of_the_past_is_bounded(monkeypatch: pytest.MonkeyPat
     drive(evaluation, map_, 3200, start=MOST_TICKS + 5000, wrong_m=9.0)
     assert set(asked) == {MOST_TICKS // EVERY}
     assert len(asked) == pytest.approx(CONSISTENT_WITHIN_S / DT, abs=2)
+
+
+# ------------------------------------------------------------ the share of the floor that a path has covered
+
+PATH = np.stack([np.linspace(0.5, 3.5, 200), np.linspace(0.5, 1.5, 200)], axis=1)
+
+
+HALL = room(start=(1.0, 1.0, 0.0))
+
+
+def test_a_growing_path_covers_what_the_whole_of_it_covers_and_another_begins_anew() -> None:
+    floor, grows = FreeSpace(HALL, 0.2), Coverage()
+    shares = [grows.follow(floor, PATH[:n]) for n in (1, 1, 7, 40, 199, 200)]
+    assert shares == sorted(shares)
+    assert shares[0] == shares[1] > 0
+    assert shares[-1] == Coverage().follow(floor, PATH)
+    assert shares[-1] < 1.0
+    assert grows.follow(floor, PATH[:10]) == Coverage().follow(floor, PATH[:10])
+    divided = FreeSpace(room((2.0, 0.0, 2.0, 4.0), start=(1.0, 1.0, 0.0)), 0.2)
+    assert grows.follow(divided, PATH) == Coverage().follow(divided, PATH)
+
+
+def test_what_lies_behind_a_wall_or_beside_the_floor_is_not_covered() -> None:
+    whole, divided = (FreeSpace(world, 0.2) for world in (HALL, room((2.0, 0.0, 2.0, 3.0), start=(1.0, 1.0, 0.0))))
+    in_sight, behind = (Coverage().follow(floor, np.array([(1.7, 0.5)])) for floor in (whole, divided))
+    assert behind * divided.floor_cells < 0.7 * in_sight * whole.floor_cells
+    office = FreeSpace(load_world("office"), 0.22)
+    assert Coverage().follow(office, np.array([(-50.0, 3.0)])) == 0.0
+    assert Coverage().follow(office, np.zeros((0, 2))) == pytest.approx(0.0)

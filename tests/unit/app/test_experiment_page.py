@@ -20,22 +20,22 @@ from tests.unit.app.made_trials import experiment, figure, material, trace, tria
 COMMAND = "ratslam experiment made --trials 4 && echo '<done>'"
 
 
-class _Reader(HTMLParser):
-    """Every element with its attributes, and the text."""
+class Page(HTMLParser):
+    """Every element of a file with its attributes, and the text."""
 
-    def __init__(self, text):
+    def __init__(self, path):
         super().__init__()
-        self.elements, self.text, self._script = [], [], False
-        self.feed(text)
+        self.source, self.elements, self.text = path.read_text(), [], ""
+        self.feed(self.source)
 
     def handle_starttag(self, tag, attrs):
         self.elements.append((tag, dict(attrs)))
 
     def handle_data(self, data):
-        self.text.append(data)
+        self.text += f"{data} "
 
-    def having(self, name):
-        return [attributes[name] for _, attributes in self.elements if name in attributes]
+    def having(self, name, tag=None):
+        return [about[name] for each, about in self.elements if name in about and tag in (None, each)]
 
 
 @pytest.fixture(scope="module")
@@ -66,6 +66,11 @@ def written(out):
         return write_report_page(made, stored, out, traces, command=COMMAND), stored, asked
 
 
+@pytest.fixture(scope="module")
+def page(written):
+    return Page(written[0].page)
+
+
 def test_the_page_figures_and_index_are_there(written, out):
     made, _, asked = written
     index = write_index([made], out, "ratslam experiment all")
@@ -74,81 +79,57 @@ def test_the_page_figures_and_index_are_there(written, out):
     figures = sorted(f"figures/made-{kind}.{ending}" for kind in kinds for ending in ("png", "svg"))
     assert names == [*figures, "index.html", "made.html"]
     assert [path.relative_to(out).as_posix() for path in sorted(made.figures)] == figures
-    assert "made.html" in _Reader(index.read_text()).having("href")
-    assert len(asked) == 1
-    assert len(asked[0]) == len(set(asked[0])) == 4
+    assert "made.html" in Page(index).having("href")
+    (ids,) = asked
+    assert len(ids) == len(set(ids)) == 4
 
 
-def test_the_page_loads_nothing(written, out):
-    made, *_ = written
-    for path in (made.page, write_index([made], out, "x")):
-        text = path.read_text()
-        page = _Reader(text)
-        assert "default-src 'none'" in text
-        assert not page.having("src")
-        links = [*page.having("href"), *page.having("xlink:href")]
+def test_the_page_loads_nothing_and_its_references_are_met(written, page, out):
+    for each in (page, Page(write_index([written[0]], out, "x"))):
+        assert "default-src 'none'" in each.source
+        assert not each.having("src")
+        links = [*each.having("href"), *each.having("xlink:href")]
         assert all(link.startswith(("#", "data:image/png")) or link == "made.html" for link in links)
-        assert not [tag for tag, _ in page.elements if tag in ("link", "iframe", "img", "object", "embed", "base")]
-        addresses = set(re.findall(r"https?://[^\s\"'<)]+", text))
+        assert not {tag for tag, _ in each.elements} & {"link", "iframe", "img", "object", "embed", "base"}
+        addresses = set(re.findall(r"https?://[^\s\"'<)]+", each.source))
         assert addresses <= {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"}
-        assert "@import" not in text
-        assert all(each.startswith("url(#") for each in re.findall(r"url\([^)]*\)", text))
-
-
-def test_ids_are_unique_and_references_are_met(written):
-    page = _Reader(written[0].page.read_text())
+        assert "@import" not in each.source
+        assert all(url.startswith("url(#") for url in re.findall(r"url\([^)]*\)", each.source))
     ids = page.having("id")
     assert len(ids) == len(set(ids))
-    text = written[0].page.read_text()
-    asked = {link[1:] for link in page.having("xlink:href") if link.startswith("#")} | set(
-        re.findall(r"url\(#([^)]+)\)", text)
-    )
-    assert asked <= set(ids)
+    asked = {link[1:] for link in page.having("xlink:href") if link.startswith("#")}
+    assert asked | set(re.findall(r"url\(#([^)]+)\)", page.source)) <= set(ids)
 
 
-def test_what_people_write_is_escaped(written):
-    made, *_ = written
-    text = made.page.read_text()
-    page = _Reader(text)
-    assert "<up>" not in text
-    assert "<b>this" not in text
-    assert "<room>" not in text
-    assert "<done>" not in text
-    shown = " ".join(page.text)
+def test_what_people_write_is_escaped(page):
+    assert not re.findall("<up>|<b>this|<room>|<done>", page.source)
     for words in ("Made <up> & never run", "Does <b>this</b> work?", 'It "does".', "no <room>", COMMAND):
-        assert words in shown
+        assert words in page.text
 
 
-def test_every_trial_is_listed_with_its_command(written):
-    made, stored, _ = written
-    text = made.page.read_text()
-    page = _Reader(text)
-    told = json.loads(re.search(r'<script type="application/json" id="told">(.*?)</script>', text, re.DOTALL)[1])
-    rows = [
-        attributes["data-trial"] for tag, attributes in page.elements if tag == "button" and "data-trial" in attributes
-    ]
-    good = [trial.id for trial in stored if not trial.error]
-    assert sorted(rows) == sorted(told["trials"]) == sorted(good)
+def test_every_trial_is_listed_with_its_command(written, page):
+    _, stored, _ = written
+    script = re.search(r'<script type="application/json" id="told">(.*?)</script>', page.source, re.DOTALL)
+    told, good = json.loads(script[1]), sorted(trial.id for trial in stored if not trial.error)
+    assert sorted(page.having("data-trial", "button")) == sorted(told["trials"]) == good
     for trial in stored[:-1]:
         facts = told["trials"][trial.id]
         assert facts["command"] == f"ratslam experiment open {trial.id}"
         assert facts["levels"] == f"N_vis {trial.levels[0]}, size {trial.levels[1]}"
         assert facts["moment"] == "kitchen: reached, at 61.5 s"
         assert ["map error", f"{trial.scores['error_m']:.3g} m"] in facts["scores"]
-    assert sorted(each for cell in told["cells"] for each in cell["trials"]) == sorted(good)
-    assert stored[-1].id in text
+    assert sorted(each for cell in told["cells"] for each in cell["trials"]) == good
+    assert stored[-1].id in page.source
 
 
-def test_every_dot_can_be_reached_with_the_keyboard_and_tells_its_command(written):
-    made, stored, _ = written
-    page = _Reader(made.page.read_text())
-    dots = [a for tag, a in page.elements if tag == "g" and "data-trial" in a]
-    assert {dot["data-trial"] for dot in dots} >= {t.id for t in stored if t.levels[0] == "2 %" and not t.error}
+def test_every_dot_can_be_reached_with_the_keyboard_and_tells_its_command(written, page):
+    dots = [about for tag, about in page.elements if tag == "g" and "data-trial" in about]
+    shown = {trial.id for trial in written[1] if trial.levels[0] == "2 %" and not trial.error}
+    assert {dot["data-trial"] for dot in dots} >= shown
     for dot in dots:
-        assert dot["tabindex"] == "0"
-        assert dot["role"] == "button"
+        assert (dot["tabindex"], dot["role"]) == ("0", "button")
         assert dot["aria-label"].startswith(f"ratslam experiment open {dot['data-trial']}\n")
-    assert len([a for tag, a in page.elements if tag == "g" and "data-cell" in a]) == 12
+    assert len(page.having("data-cell", "g")) == 12
 
 
 def test_colours_of_a_figure_become_those_of_the_page():
@@ -171,15 +152,11 @@ def test_sentences_say_the_numbers_of_the_summary():
     assert f"{ours.value:.0%}".replace("%", " %") in says[2]
 
 
-def test_an_experiment_without_trials_has_a_page_that_says_so(tmp_path):
-    made = write_report_page(
-        experiment(figures=[figure("survival", score="after")]), [], tmp_path, lambda _: [], command="x"
-    )
-    assert "Nothing: no trial has been run." in made.page.read_text()
-    assert made.figures == []
-
-
-def test_a_trial_of_another_version_is_not_run_again_unseen(tmp_path):
+def test_without_trials_the_page_says_so_and_none_of_another_version_is_run_again_unseen(tmp_path):
+    made = experiment(figures=[figure("survival", score="after")])
+    report = write_report_page(made, [], tmp_path, lambda _: [], command="x")
+    assert "Nothing: no trial has been run." in report.page.read_text()
+    assert report.figures == []
     made = experiment(figures=[figure("maps", show="path")])
     with pytest.raises(ValueError, match="trial 0000000000000000 of made is of another version"):
         write_report_page(made, trials(made), tmp_path, lambda _: [], command="x")

@@ -61,16 +61,12 @@ def assert_all_right(store: Store, trials: list[Trial]) -> None:
 
 
 def test_every_trial_runs_once_and_what_is_kept_does_not_run_again(client: Any, store: Store) -> None:
-    trials, told = fake_trials.trials(100), list[str]()
-
-    def tell(ended: Any) -> None:
-        told.extend(trial.id for trial, _ in ended)
-
-    run_trials(trials[:40], store, client, run=fake_trials.run, tell=tell)
-    assert sorted(told) == sorted(trial.id for trial in trials[:40])
-    told.clear()
-    run_trials([*trials, *trials], store, client, run=fake_trials.run, expected_s=0.1, tell=tell)
-    assert sorted(told) == sorted(trial.id for trial in trials[40:])
+    trials = fake_trials.trials(100)
+    for asked, new in ((trials[:40], trials[:40]), ([*trials, *trials], trials[40:])):
+        told = list[str]()
+        tell = lambda ended, told=told: told.extend(trial.id for trial, _ in ended)  # noqa: E731
+        run_trials(asked, store, client, run=fake_trials.run, expected_s=0.1, tell=tell)
+        assert sorted(told) == sorted(trial.id for trial in new)
     assert_all_right(store, trials)
 
 
@@ -88,19 +84,6 @@ def test_a_trial_that_fails_or_kills_its_worker_costs_the_others_nothing(client:
     assert failing.error == "ValueError: no such door"
     run_trials(mixed, store, client, run=fake_trials.run, expected_s=0.1)  # mended: the next command runs them again
     assert_all_right(store, mixed)
-
-
-def test_a_worker_that_is_killed_costs_its_batch_and_nothing_else(client: Any, store: Store) -> None:
-    trials, killed = fake_trials.trials(300), list[int]()
-
-    def tell(_: Any) -> None:
-        if not killed:
-            killed.append(next(nanny.pid for nanny in client.cluster.workers.values() if nanny.pid))
-            os.kill(killed[0], signal.SIGKILL)
-
-    run_trials(trials, store, client, run=fake_trials.run, expected_s=0.1, tell=tell)
-    assert len(killed) == 1
-    assert_all_right(store, trials)
 
 
 def test_a_worker_that_dies_before_it_has_begun_is_begun_again() -> None:
@@ -122,10 +105,8 @@ def test_workers_that_never_begin_are_a_sentence(monkeypatch: pytest.MonkeyPatch
         raise RuntimeError("Nanny failed to start.")
 
     monkeypatch.setattr("distributed.LocalCluster", die)
-    with (
-        pytest.raises(ValueError, match=r"3 workers cannot begin: 5 times .*Nanny failed to start.*--workers 1"),
-        connected_to(None, 3),
-    ):
+    words = r"3 workers cannot begin: 5 times .*Nanny failed to start.*--workers 1"
+    with pytest.raises(ValueError, match=words), connected_to(None, 3):
         pass
 
 
@@ -165,22 +146,16 @@ def test_nobody_without_the_keys_of_the_run_is_heard_by_any_process_of_our_clust
                 assert len(plain.recv(4096)) < 100  # an alert of TLS at most, no greeting of Dask
 
 
-def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_schedulers_that_are_refused(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that does not answer, and workers of another version."""
     monkeypatch.setattr("app.experiments.cluster.FIND_S", 0.5)
-    with (
-        pytest.raises(ValueError, match=r"--scheduler tcp://127\.0\.0\.1:9: no Dask scheduler answers"),
-        connected_to("tcp://127.0.0.1:9", None),
-    ):
+    silent = r"--scheduler tcp://127\.0\.0\.1:9: no Dask scheduler answers"
+    with pytest.raises(ValueError, match=silent), connected_to("tcp://127.0.0.1:9", None):
         pass
-
-
-def test_workers_of_another_version_are_refused(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.experiments.cluster.FIND_S", PATIENCE_S)
     monkeypatch.setattr("app.experiments.cluster._here", lambda: "0123456789ab")
-    with (
-        keys_of(client),
-        pytest.raises(ValueError, match=r"runs version .* of this program, not 0123456789ab"),
-        connected_to(client.cluster.scheduler_address, None),
-    ):
+    old, address = r"runs version .* of this program, not 0123456789ab", client.cluster.scheduler_address
+    with keys_of(client), pytest.raises(ValueError, match=old), connected_to(address, None):
         pass
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import sqlite3
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,6 +14,7 @@ from app.experiments.outcome import Outcome
 from app.experiments.store import Store, default_path
 from app.gallery.gallery import StoredGallery
 from app.trials.experiment import catalogue, names
+from app.trials.trial import Trial
 from tests.unit.app.trial_makers import make_outcome, make_trial, score_of
 
 
@@ -33,15 +36,21 @@ def test_what_was_added_is_read_again_by_another(path: Path) -> None:
     assert (first.moment_s, first.moment_words, first.wall_s, first.error) == (0.5, "the end", 0.25, "")
 
 
-def test_no_trial_counts_twice(path: Path) -> None:
-    trial = make_trial(1)
-    other = make_outcome(trial)
-    assert other.result is not None
-    other = Outcome(trial.id, dataclasses.replace(other.result, scores={"mark": -1.0}))
+def scored(trial: Trial, scores: dict[str, float], **changes: Any) -> Outcome:
+    result = make_outcome(trial).result
+    assert result is not None
+    return Outcome(trial.id, dataclasses.replace(result, scores=scores, **changes))
+
+
+def test_no_trial_counts_twice_and_scores_that_are_no_numbers_are_left_out(path: Path) -> None:
+    trial, second = make_trial(1), make_trial(2)
+    other = scored(trial, {"mark": -1.0})
     with Store(path) as store:
         assert store.add([(trial, make_outcome(trial)), (trial, other)]) == 1
         assert store.add([(trial, other)]) == 0
         assert [each.scores for each in store.of_experiment("small")] == [{"mark": score_of(trial)}]
+        store.add([(second, scored(second, {"mark": 1.0, "nan": math.nan, "inf": math.inf}))])
+        assert store.stored([second])[0].scores == {"mark": 1.0}
 
 
 def test_a_failed_trial_is_not_done_and_a_later_success_replaces_it(path: Path) -> None:
@@ -49,8 +58,8 @@ def test_a_failed_trial_is_not_done_and_a_later_success_replaces_it(path: Path) 
     with Store(path) as store:
         store.add([(trial, Outcome(trial.id, error="ValueError: no such door"))])
         assert store.done([trial.id]) == set()
-        assert store.stored([trial])[0].error == "ValueError: no such door"
-        assert store.stored([trial])[0].scores == {}
+        (failed,) = store.stored([trial])
+        assert (failed.error, failed.scores) == ("ValueError: no such door", {})
         assert store.add([(trial, make_outcome(trial))]) == 1
         assert store.done([trial.id]) == {trial.id}
         assert store.add([(trial, Outcome(trial.id, error="too late"))]) == 0
@@ -59,59 +68,31 @@ def test_a_failed_trial_is_not_done_and_a_later_success_replaces_it(path: Path) 
 
 def test_a_batch_is_kept_wholly_or_not_at_all(path: Path) -> None:
     first, second = make_trial(1), make_trial(2)
-    bad = make_outcome(second)
-    assert bad.result is not None
-    bad = Outcome(second.id, dataclasses.replace(bad.result, simulated_s=None))  # type: ignore[arg-type]
     with Store(path) as store:
         with pytest.raises(sqlite3.IntegrityError):
-            store.add([(first, make_outcome(first)), (second, bad)])
+            store.add([(first, make_outcome(first)), (second, scored(second, {}, simulated_s=None))])
         assert store.done([first.id, second.id]) == set()
         assert store.add([(first, make_outcome(first))]) == 1
 
 
-def test_scores_that_are_no_numbers_are_left_out(path: Path) -> None:
-    trial = make_trial(1)
-    outcome = make_outcome(trial)
-    assert outcome.result is not None
-    scores = {"mark": 1.0, "nan": float("nan"), "inf": float("inf")}
-    with Store(path) as store:
-        store.add([(trial, Outcome(trial.id, dataclasses.replace(outcome.result, scores=scores)))])
-        assert store.stored([trial])[0].scores == {"mark": 1.0}
-
-
 def test_a_trial_is_made_again_by_the_beginning_of_its_id(path: Path) -> None:
-    trials = [
-        make_trial(seed, level, engine) for seed in (1, 2) for level in ("large", "small") for engine in ("ours",)
-    ]
-    with Store(path) as store:
-        store.add((trial, make_outcome(trial)) for trial in trials)
-        for trial in trials:
-            again = store.trial(trial.id[:10])
-            assert again == trial
-            assert again.id == trial.id
-            assert store.moment(trial.id) == (0.5, "the end")
-
-
-def test_an_unknown_id_is_refused_with_those_that_are_close(path: Path) -> None:
-    trial = make_trial(1)
+    trials = [make_trial(seed) for seed in range(17)]  # sixteen digits: two of them begin alike
+    trials += [make_trial(seed, "small", "ours") for seed in (1, 2)]
+    known, firsts = trials[0].id, [trial.id[0] for trial in trials]
+    twice = next(first for first in firsts if firsts.count(first) > 1)
     with Store(path) as store:
         with pytest.raises(ValueError, match="is empty; run an experiment first"):
             store.trial("ab")
-        store.add([(trial, make_outcome(trial))])
+        store.add((trial, make_outcome(trial)) for trial in trials)
+        for trial in trials:
+            again = store.trial(trial.id[:10])
+            assert (again, again.id, store.moment(trial.id)) == (trial, trial.id, (0.5, "the end"))
         with pytest.raises(
-            ValueError, match=f"there is no trial '{trial.id[:4]}zz' in .*; expected an id, such as {trial.id}"
+            ValueError, match=f"there is no trial '{known[:4]}zz' in .*; expected an id, such as {known}"
         ):
-            store.trial(trial.id[:4] + "zz")
+            store.trial(known[:4] + "zz")
         with pytest.raises(ValueError, match="there is no trial"):
             store.moment("zz")
-
-
-def test_a_beginning_that_several_share_is_refused(path: Path) -> None:
-    trials = [make_trial(seed) for seed in range(17)]  # sixteen digits: two of them begin alike
-    with Store(path) as store:
-        store.add((trial, make_outcome(trial)) for trial in trials)
-        firsts = [trial.id[0] for trial in trials]
-        twice = next(first for first in firsts if firsts.count(first) > 1)
         with pytest.raises(ValueError, match=f"several trials begin with '{twice}'"):
             store.trial(twice)
 
@@ -141,18 +122,15 @@ def test_a_file_that_is_something_else_is_refused_and_left_alone(tmp_path: Path)
     with pytest.raises(ValueError, match=r"notes\.txt: .*; name a file that"):
         Store(text)
     assert text.read_text().startswith("a shopping list")
-    other = tmp_path / "other.sqlite"
-    with sqlite3.connect(other) as db:
-        db.execute("CREATE TABLE plants (name)")
-    db.close()
-    with pytest.raises(ValueError, match="another program's database"):
-        Store(other)
-    newer = tmp_path / "newer.sqlite"
-    with sqlite3.connect(newer) as db:
-        db.execute("PRAGMA user_version = 99")
-    db.close()
-    with pytest.raises(ValueError, match="its tables have version 99, this program knows 1"):
-        Store(newer)
+    for name, made_by, words in (
+        ("other.sqlite", "CREATE TABLE plants (name)", "another program's database"),
+        ("newer.sqlite", "PRAGMA user_version = 99", "its tables have version 99, this program knows 1"),
+    ):
+        with sqlite3.connect(tmp_path / name) as db:
+            db.execute(made_by)
+        db.close()
+        with pytest.raises(ValueError, match=words):
+            Store(tmp_path / name)
     with pytest.raises(ValueError, match="--store"):
         Store(tmp_path)
 
@@ -170,7 +148,9 @@ def test_a_store_that_is_spoilt_or_locked_says_so_at_once_with_the_way_out(path:
     experiment = next(catalogue())
     with Store(path) as store:
         store.add((trial, make_outcome(trial)) for trial in map(make_trial, range(200)))
-        store._db.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    with sqlite3.connect(path) as db:
+        db.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    db.close()
     whole = path.read_bytes()
     asked = [
         lambda store: store.counts(),
@@ -203,9 +183,10 @@ def test_a_store_that_is_spoilt_or_locked_says_so_at_once_with_the_way_out(path:
 def test_whoever_reads_waits_for_nobody_who_writes(path: Path) -> None:
     with Store(path) as store:
         store.add([(make_trial(1), make_outcome(make_trial(1)))])
-        store._db.execute("BEGIN IMMEDIATE")
+        writing = sqlite3.connect(path, isolation_level=None)
+        writing.execute("BEGIN IMMEDIATE")
         with Store(path, reading=True) as reading:
             assert reading.counts() == {"small": 1}
             with pytest.raises(ValueError, match="readonly"):
                 reading.add([(make_trial(2), make_outcome(make_trial(2)))])
-        store._db.execute("ROLLBACK")
+        writing.close()

@@ -14,17 +14,19 @@ from app.experiments.figures.map_panels import broken_path
 from tests.unit.app.made_trials import RATES, SIZES, figure, loop_times, material
 
 
-def test_maps_ask_for_the_first_seed_of_each_cell():
+def drawn(of, show, **options):
+    """The first panel of maps, and the trace that it shows."""
+    made = draw(figure("maps", show=show, **options), of)
+    return made.figure.axes[0], of.traces[wanted(made.spec, of)[0]]
+
+
+def test_maps_ask_for_the_first_seed_of_each_cell_or_the_median_trial():
     of = material()
     ids = wanted(figure("maps", show="path", each="size"), of)
     chosen = [trial for trial in of.trials if trial.id in ids]
     assert {(t.engine, t.levels) for t in chosen} == {(e, ("0 %", s)) for e in ("paper", "ours") for s in SIZES}
     assert {trial.seed for trial in chosen} == {10}
     assert wanted(figure("curves", score="goals reached", along="N_vis", lines="size"), of) == []
-
-
-def test_the_median_trial_is_one_that_was_run():
-    of = material()
     (first, second) = wanted(figure("series", channels=["views"], pick="median", score="map error"), of)
     for chosen, engine in ((first, "paper"), (second, "ours")):
         errors = sorted(t.scores["error_m"] for t in of.of(engine, {0: "0 %", 1: "8"}))
@@ -32,10 +34,7 @@ def test_the_median_trial_is_one_that_was_run():
 
 
 def test_the_map_is_drawn_with_all_its_links_over_the_plan():
-    of = material(traced=True)
-    drawn = draw(figure("maps", show="experience map", each="size"), of)
-    panel = drawn.figure.axes[0]
-    trace = of.traces[wanted(drawn.spec, of)[0]]
+    panel, trace = drawn(material(traced=True), "experience map", each="size")
     links = np.ma.filled(np.ma.asarray(panel.lines[0].get_xydata()), np.nan).reshape(-1, 3, 2)
     np.testing.assert_array_equal(links[:, :2], trace.map.poses[trace.map.links, :2])
     assert np.isnan(links[:, 2]).all()
@@ -45,10 +44,7 @@ def test_the_map_is_drawn_with_all_its_links_over_the_plan():
 
 
 def test_the_way_to_a_goal_is_drawn_apart_from_the_rest_of_the_path():
-    of = material(traced=True)
-    drawn = draw(figure("maps", show="path", each="seed", most=1), of)
-    panel = drawn.figure.axes[0]
-    trace = of.traces[wanted(drawn.spec, of)[0]]
+    panel, trace = drawn(material(traced=True), "path", each="seed", most=1)
     way = next(line for line in panel.lines if line.get_label() == "truth, sent to a goal").get_xydata()
     sent = (trace.time_s >= 40) & (trace.time_s <= 59)  # two visits, one after the other
     np.testing.assert_array_equal(np.isfinite(way[:, 0]), sent)
@@ -67,9 +63,8 @@ def test_all_panels_show_the_same_stretch_and_odometry_is_cut_off_far_outside():
 
 def test_movements_are_drawn_as_the_trace_has_them():
     of = material(traced=True)
-    drawn = draw(figure("maps", show="movements", each="seed", most=1), of)
-    panel = drawn.figure.axes[0]
-    shown = of.traces[wanted(drawn.spec, of)[0]].movements
+    panel, trace = drawn(of, "movements", each="seed", most=1)
+    shown = trace.movements
     arcs = {e.get_label(): np.array(e.get_segments()) for e in panel.collections if isinstance(e, LineCollection)}
     np.testing.assert_array_equal(arcs["barred arc"], shown.paths[[0]])
     np.testing.assert_array_equal(arcs["free arc"], shown.paths[[1, 2]])  # a turn on the spot has no arc
@@ -79,23 +74,16 @@ def test_movements_are_drawn_as_the_trace_has_them():
     np.testing.assert_array_equal(lines["point it steers towards"], [shown.aim])
     for low, middle, high in zip(panel.viewLim.min, (5.0, 4.0), panel.viewLim.max, strict=True):
         assert (low + high) / 2 == pytest.approx(middle)
-
-
-def test_a_run_without_a_choice_says_so_and_shows_the_plan():
-    of = material(traced=True)
-    spec = figure("maps", show="movements")
     of.traces = {key: replace(trace, movements=None) for key, trace in of.traces.items()}
-    panel = draw(spec, of).figure.axes[0]
+    panel, _ = drawn(of, "movements")
     assert panel.get_xlabel() == "no choice between free and barred arcs"
-    assert len(panel.collections[0].get_segments()) == 4
+    assert len(panel.collections[0].get_segments()) == 4  # the plan
 
 
 def test_the_plateau_is_marked_opposite_the_goal():
-    of = material(traced=True)
-    panel = draw(figure("maps", show="goal memory"), of).figure.axes[0]
-    rings = [line.get_xydata() for line in panel.lines if line.get_label().startswith("plateau")]
-    assert len(rings) == 1
-    assert rings[0] == pytest.approx(np.array([[3.0, 8.0]]), abs=1)
+    panel, _ = drawn(material(traced=True), "goal memory")
+    (ring,) = [line.get_xydata() for line in panel.lines if line.get_label().startswith("plateau")]
+    assert ring == pytest.approx(np.array([[3.0, 8.0]]), abs=1)
 
 
 def test_a_plateau_is_a_watershed_and_not_any_cell_with_two_ways():

@@ -30,18 +30,12 @@ SPECS = [
     *(figure("maps", show=show, each="size") for show in SHOWN),
     figure("maps", show="path", each="seed", most=3),
     figure("series", channels=["packets", "off", "map error", "residual", "views", "experiences"]),
-    figure(
-        "series",
-        channels=["active experience", "x", "heading"],
-        after="kidnapped",
-        seconds=30,
-        pick="median",
-        score="map error",
-    ),
+    figure("series", channels=["active experience", "x", "heading"], after="kidnapped", seconds=30, pick="median",
+           score="map error"),
     figure("series", channels=["residual", "map error"], each="N_vis", log=True),
     figure("survival", score="after"),
     figure("survival", score="after a way of", lines="size", most=30),
-]
+]  # fmt: skip
 NAMES = [f"{n}-{spec.kind}-{spec.options.get('show', '')}" for n, spec in enumerate(SPECS)]
 
 
@@ -61,63 +55,60 @@ def test_a_figure_is_the_same_file_each_time(spec):
 
 
 @pytest.mark.slow
-def test_a_figure_may_be_written_again_and_in_another_format():
+def test_a_figure_may_be_written_again_and_leaves_the_settings_of_matplotlib_alone():
+    before = dict(mpl.rcParams)
     first, again = draw(SPECS[0], material()).figure, draw(SPECS[0], material()).figure
     svg, png = svg_of(first), png_of(again)
     assert (png_of(first), svg_of(again)) == (png, svg)
     assert png.startswith(b"\x89PNG")
+    assert dict(mpl.rcParams) == before
+    with style():
+        colours = {to_hex(each) for each in mpl.rcParams["axes.prop_cycle"].by_key()["color"]}
+    assert colours | set(CYCLE) <= set(THEMED)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("spec", SPECS, ids=NAMES)
-def test_the_caption_says_where_the_numbers_are_from(spec):
-    caption = draw(spec, material(traced=True)).caption
-    assert caption.startswith("D 6, figure 9. ")
-    assert re.search(r"Seeds? 1\d\b", caption)
-    assert "version v1" in caption
-    if spec.options.get("score") == "goals reached":
-        assert "Original: 81 % at 0 %, 8 (D figure 9)" in caption
-        assert "n = 4 in each cell" in caption
-
-
-def test_a_figure_leaves_the_settings_of_matplotlib_alone():
-    before = dict(mpl.rcParams)
-    svg_of(draw(SPECS[0], material()).figure)
-    assert dict(mpl.rcParams) == before
-
-
-def test_the_style_has_the_colours_of_the_palette():
-    with style():
-        colours = [to_hex(each) for each in mpl.rcParams["axes.prop_cycle"].by_key()["color"]]
-        assert set(colours) <= set(THEMED)
-        assert set(CYCLE) <= set(THEMED)
+def test_the_caption_says_where_the_numbers_are_from(subtests):
+    of = material(traced=True)
+    for spec, name in zip(SPECS, NAMES, strict=True):
+        with subtests.test(msg=name):
+            caption = draw(spec, of).caption
+            assert caption.startswith("D 6, figure 9. ")
+            assert re.search(r"Seeds? 1\d\b", caption)
+            assert "version v1" in caption
+            if spec.options.get("score") == "goals reached":
+                assert "Original: 81 % at 0 %, 8 (D figure 9)" in caption
+                assert "n = 4 in each cell" in caption
 
 
 # ------------------------------------------------------------ curves
 
 
+def drawn_lines(panel):
+    return [line for line in panel.lines if line.get_linestyle() == "-" and len(line.get_xdata())]
+
+
+def dots_of(panel):
+    """Those that stand for a trial, by its name."""
+    return {line.get_gid(): line for line in panel.lines if line.get_gid()}
+
+
 def test_curves_go_through_the_summary():
+    """And the paper's value is an open diamond at its level."""
     of = material()
     panels = draw(SPECS[0], of).figure.axes
     assert [panel.get_title() for panel in panels] == ["the paper's rules", "our rules"]
     for panel, engine in zip(panels, ("paper", "ours"), strict=True):
-        lines = [line for line in panel.lines if line.get_linestyle() == "-" and len(line.get_xdata())]
         bars = [each for each in panel.collections if each.get_segments()]
-        assert len(lines) == len(bars) == len(SIZES)
-        for line, bar, size in zip(lines, bars, SIZES, strict=True):
+        for line, bar, size in zip(drawn_lines(panel), bars, SIZES, strict=True):
             cells = [of.cell(engine, {0: rate, 1: size}) for rate in RATES]
             estimates = [cell.values["goals reached"] for cell in cells]
             assert line.get_ydata() == pytest.approx([e.value for e in estimates])
             ends = [[segment[0][1], segment[1][1]] for segment in bar.get_segments()]
             np.testing.assert_allclose(ends, [[e.low, e.high] for e in estimates])
-
-
-def test_the_papers_value_is_an_open_diamond_at_its_level():
-    for panel in draw(SPECS[0], material()).figure.axes:
-        diamonds = [line for line in panel.lines if line.get_marker() == "D" and len(line.get_xdata())]
-        assert [list(d.get_ydata()) for d in diamonds] == [[0.81]]
-        assert diamonds[0].get_markerfacecolor() == "none"
-        assert round(float(diamonds[0].get_xdata()[0])) == RATES.index("0 %")
+        (diamond,) = [line for line in panel.lines if line.get_marker() == "D" and len(line.get_xdata())]
+        assert (list(diamond.get_ydata()), diamond.get_markerfacecolor()) == ([0.81], "none")
+        assert round(float(diamond.get_xdata()[0])) == RATES.index("0 %")
 
 
 def test_levels_stand_where_their_numbers_are():
@@ -137,7 +128,7 @@ def test_levels_with_long_names_lie_one_below_the_other():
     assert [label.get_text() for label in panel.get_yticklabels()] == list(named.values())
     assert panel.yaxis_inverted()
     assert panel.get_xlabel() == "goals reached"
-    points = {line.get_gid(): line for line in panel.lines if line.get_gid()}
+    points = dots_of(panel)
     assert len(points) == 6
     for gid, line in points.items():
         assert list(line.get_xdata()) == [of.cells[int(gid.removeprefix("cell-"))].values["goals reached"].value]
@@ -148,7 +139,7 @@ def test_only_the_levels_asked_for_are_drawn():
     panel = draw(asked, material()).figure.axes[0]
     assert [label.get_text() for label in panel.get_xticklabels()] == ["2", "10"]
     assert panel.get_xlabel() == "N_vis (%)"  # the unit that all share stands beside the axis
-    assert len([line for line in panel.lines if line.get_linestyle() == "-" and len(line.get_xdata())]) == 1
+    assert len(drawn_lines(panel)) == 1
 
 
 # ------------------------------------------------------------ dots
@@ -157,27 +148,22 @@ def test_only_the_levels_asked_for_are_drawn():
 def test_without_an_axis_every_combination_has_its_place():
     of = material()
     panel = draw(figure("dots", score="map error"), of).figure.axes[0]
-    assert len([line for line in panel.lines if line.get_gid()]) == len(of.trials)
+    assert len(dots_of(panel)) == len(of.trials)
     assert len(panel.get_xticklabels()) == len(RATES) * len(SIZES)
 
 
-def test_every_trial_is_a_dot_with_its_id():
+def test_every_trial_is_a_dot_with_its_id_beside_the_interval_of_the_summary():
     of = material()
     panel = draw(SPECS[2], of).figure.axes[0]
-    dots = {line.get_gid(): line for line in panel.lines if (line.get_gid() or "").startswith("trial-")}
+    dots = {name: dot for name, dot in dots_of(panel).items() if name.startswith("trial-")}
     shown = [trial for trial in of.trials if trial.levels[0] == "2 %"]
     assert set(dots) == {f"trial-{trial.id}" for trial in shown}
-    score = of.score("map error")
+    svg = svg_of(panel.figure)
     for trial in shown:
         dot = dots[f"trial-{trial.id}"]
-        assert list(dot.get_ydata()) == [value_of(score, trial)]
+        assert list(dot.get_ydata()) == [value_of(of.score("map error"), trial)]
         assert dot.get_markerfacecolor() == ENGINE_COLOUR[trial.engine]
-    assert all(f'id="trial-{trial.id}"' in svg_of(panel.figure) for trial in shown)
-
-
-def test_the_interval_beside_the_dots_is_that_of_the_summary():
-    of = material()
-    panel = draw(SPECS[2], of).figure.axes[0]
+        assert f'id="trial-{trial.id}"' in svg
     ends = [tuple(segment[:, 1]) for each in panel.collections for segment in each.get_segments()]
     cells = [of.cell(engine, {0: "2 %", 1: size}).values["map error"] for size in SIZES for engine in ("paper", "ours")]
     np.testing.assert_allclose(ends, [(cell.low, cell.high) for cell in cells])
@@ -190,7 +176,7 @@ def test_trials_in_which_it_never_came_count_as_well():
     of = material()
     panel = draw(SPECS[-2], of).figure.axes[0]
     steps = [line for line in panel.lines if line.get_gid() is None]
-    dots = {line.get_gid(): line for line in panel.lines if line.get_gid()}
+    dots = dots_of(panel)
     for line, engine in zip(steps, ("paper", "ours"), strict=True):
         trials = of.of(engine, {0: "0 %", 1: "8"})
         known = until(trials, of.score("after"))
@@ -213,10 +199,8 @@ def test_a_trial_without_a_score_is_left_out():
     of = material()
     for trial in of.trials[:3]:
         del trial.scores["error_m"]
-    panel = draw(SPECS[2], of).figure.axes[0]
-    assert len([line for line in panel.lines if line.get_gid()]) == 16 - sum(
-        t.levels[0] == "2 %" for t in of.trials[:3]
-    )
+    left_out = sum(trial.levels[0] == "2 %" for trial in of.trials[:3])
+    assert len(dots_of(draw(SPECS[2], of).figure.axes[0])) == 16 - left_out
 
 
 @pytest.mark.slow

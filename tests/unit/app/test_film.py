@@ -10,14 +10,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from app.played_session import PlayedSession
 from app.recordings.formats import film
 from app.recordings.opening import open_recording
-from app.recordings.playing import Player
 from app.recordings.recording import Moment, Recording
 from app.recordings.reel import Reel
-from app.time_machine import TimeMachine
-from app.views.history import History
 
 pytestmark = pytest.mark.slow
 
@@ -130,21 +126,3 @@ def test_a_file_that_was_cut_off_meanwhile_is_a_sentence(tmp_path: Path) -> None
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 4])
     with pytest.raises(ValueError, match="could be read before, and cannot be any more"):
         reel.at(FRAMES - 20)
-
-
-def test_going_back_in_a_run_of_a_video(tmp_path: Path) -> None:
-    """By `state_hash`, at random moments, in any order."""
-    session = PlayedSession(Player(open_recording(written(tmp_path / "v.mp4", "mp4v")), 1))
-    session._reel._budget_bytes = 0
-    history = History(session)
-    machine, were, rng = TimeMachine(session, history), dict[int, str](), random.Random(2)
-    chosen = set(rng.sample(range(FRAMES - 5), 20))
-    while not session.over:
-        if session.tick_count in chosen:
-            were[session.tick_count] = session.state_hash()
-        session.tick()
-        history.watch()
-        if session.tick_count % 50 == 0:
-            machine._keep()
-    for tick in rng.sample(sorted(were), 20):
-        assert machine.moment(machine.live, tick).session.state_hash() == were[tick]

@@ -1,4 +1,5 @@
-"""The page's exports: what a copy of the session is enough for, and what a run that keeps itself is played again for."""
+"""Exports that are asked for: by `ratslam export`, and by the page, for which a copy of the session is enough or a run
+that keeps itself is played again."""
 
 from __future__ import annotations
 
@@ -11,6 +12,7 @@ from pathlib import Path
 import networkx as nx
 import pytest
 
+from app.cli import command_line as cli
 from app.export import FORMATS
 from app.export.page import NOT_KEPT, PageExports
 from app.export.pose_graph import g2o_text
@@ -19,7 +21,60 @@ from ratslam_live import command_of
 from web.http.export import Wish
 from web.messages import Accepted, ReadSession, Refused
 
+from .exported import AgainAndAgain
 from .sessions import a_session
+
+# ------------------------------------------------------------ by the command
+
+
+@pytest.fixture
+def folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """Where the command is given. One run is kept, under the name "known"."""
+
+    def open_run(name: str) -> AgainAndAgain:
+        if name != "known":
+            raise ValueError(f"there is no run {name!r}")
+        return AgainAndAgain(30)
+
+    monkeypatch.setattr("app.runs.run_file.open_run", open_run)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_run_is_written_under_its_name(capsys: pytest.CaptureFixture[str], folder: Path) -> None:
+    assert cli.main(["export", "known", "--to", "csv"]) == 0
+    assert capsys.readouterr().out == "2026-01-02-office.csv  0.0 MB\n"
+    assert cli.main(["export", "known", "--to", "tum", "--out", "a.tum", "--from", "1", "--until", "2"]) == 0
+    assert len((folder / "a-truth.tum").read_text().splitlines()) == 11
+    assert cli.main(["export", "known", "--to", "mcap", "--pictures", "none", "--out", "a.mcap"]) == 0
+    assert {file.name for file in folder.iterdir()} == {
+        "2026-01-02-office.csv", "a-truth.tum", "a-estimate.tum", "a-believed.tum", "a.mcap"
+    }  # fmt: skip
+
+
+@pytest.mark.usefixtures("folder")
+def test_what_is_wrong_is_one_line(capsys: pytest.CaptureFixture[str], subtests: pytest.Subtests) -> None:
+    for arguments, words in (
+        ("lost --to csv", "there is no run 'lost'"),
+        ("known --to csv --from 99", "the run is 3 s long, so there is nothing in it from 99 s on"),
+        ("known --to csv --from 2 --until 1", "--until must not be before --from (2 s), got 1"),
+        ("known --to csv --from nan", "--from must be a number of seconds from 0 on, got nan"),
+        ("known --to mp4 --speed -1", "--speed must be from 0.1 to 1000 times, got -1"),
+        ("known --to csv --out no/x.csv", "--out no/x.csv: there is no folder"),
+        ("known --to csv --out /dev/full", "No space left on device"),
+    ):
+        with subtests.test(msg=arguments):
+            assert cli.main(["export", *arguments.split()]) == 2
+            (said,) = capsys.readouterr().err.strip().splitlines()
+            assert words in said
+    with pytest.raises(SystemExit):
+        cli.main(["export", "known", "--to", "avi"])
+    said = capsys.readouterr().err
+    assert "invalid choice: 'avi'" in said
+    assert all(format_ in said.split("invalid choice")[1] for format_ in FORMATS)
+
+
+# ------------------------------------------------------------ by the page
 
 SESSION = a_session(60)
 
