@@ -142,17 +142,20 @@ def test_a_fault_pauses_and_says_why(start: Start, capsys: pytest.CaptureFixture
     assert (anew.fault, anew.run, anew.running) == (None, 2, True)
 
 
-@pytest.mark.parametrize("error", [SystemExit(), KeyboardInterrupt(), MemoryError("no room"), GeneratorExit()])
-def test_whatever_a_tick_throws_is_a_fault(start: Start, error: BaseException) -> None:
+def test_whatever_a_tick_throws_is_a_fault(start: Start, subtests: pytest.Subtests) -> None:
     engine = start(running=True)
-    engine.session.tick = throwing(error)  # type: ignore[method-assign]
-    now = wait_for(engine, lambda now: now.fault is not None)
-    words = "MemoryError: no room" if isinstance(error, MemoryError) else type(error).__name__
-    assert (now.running, now.fault) == (False, words)
-    assert now.events[-1].kind == "fault"
-    anew = accept(engine, RESET)
-    assert (anew.fault, anew.running) == (None, True)
-    assert wait_for(engine, lambda now: now.tick > 3).run == anew.run
+    faults = {
+        "SystemExit": SystemExit(), "KeyboardInterrupt": KeyboardInterrupt(), "MemoryError: no room": MemoryError("no room"),
+        "GeneratorExit": GeneratorExit(),
+    }  # fmt: skip
+    for words, error in faults.items():
+        with subtests.test(msg=words):
+            engine.session.tick = throwing(error)  # type: ignore[method-assign]
+            now = wait_for(engine, lambda now: now.fault is not None)
+            assert (now.running, now.fault, now.events[-1].kind) == (False, words, "fault")
+            anew = accept(engine, RESET)
+            assert (anew.fault, anew.running) == (None, True)
+            assert wait_for(engine, lambda now: now.tick > 3).run == anew.run
 
 
 @pytest.mark.parametrize("error", [RuntimeError("no picture"), SystemExit()])

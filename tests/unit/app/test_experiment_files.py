@@ -64,15 +64,6 @@ def test_every_addition_is_left_out_once() -> None:
     assert axis.levels[0].set == {}
 
 
-def test_the_table_is_that_of_the_paper() -> None:
-    table = find_experiment("table")
-    assert [len(axis.levels) for axis in table.axes] == [6, 4]
-    assert table.trials == 10
-    assert len(table.make_trials(["paper"])) == 240
-    sizes = {trial.values["pose_cells.n_x"] for trial in table.make_trials(["paper"], 1)}
-    assert sizes == {64, 32, 16, 8}
-
-
 def test_the_least_file_is_an_experiment(tmp_path: Path) -> None:
     experiment = read_experiment(written(tmp_path, LEAST))
     trials = experiment.make_trials()
@@ -116,13 +107,12 @@ def test_a_trial_is_named_by_what_decides_it() -> None:
 
 
 def test_levels_go_over_engines_and_these_over_the_experiment() -> None:
-    experiment = find_experiment("table")
-    cell = experiment.cells()[-1]
-    values = experiment.values("paper", cell)
-    assert values["local_view.false_positives"] == 0.1
-    assert values["pose_cells.n_x"] == 8
-    assert values["local_view.front_end"] == "scene numbers"
-    assert values["goal_memory.enabled"] is False
+    table = find_experiment("table")
+    assert len(table.make_trials(["paper"])) == 6 * 4 * 10
+    values = table.values("paper", table.cells()[-1])
+    of_level, of_engine = ("local_view.false_positives", "pose_cells.n_x"), "local_view.front_end"
+    assert [values[name] for name in of_level] == [0.1, 8]
+    assert (values[of_engine], values["goal_memory.enabled"]) == ("scene numbers", False)
     Config().with_values(values)
     with pytest.raises(ValueError, match=r"arbitration has no engine 'paper'; it has: ours"):
         find_experiment("arbitration").values("paper", ())
