@@ -123,6 +123,9 @@ def test_paths_and_errors() -> None:
     assert odometry_error == pytest.approx(15 / math.sqrt(12), rel=1e-3)  # a tenth too long, evenly
     assert evaluation.errors(map_, 10)[1] == pytest.approx(odometry_error, rel=0.01)
     assert evaluation.made_at(0, map_) == (7.0, 1.0)
+    for each in ((evaluation, map_), driven(2)):  # by its whole path or, while that is too short, by its end
+        frame = each[0].map_in_office(each[1])
+        assert (frame.x, frame.y, frame.heading_rad) == pytest.approx((7.0, 1.0, math.pi / 2))
     map_.poses[0, 2] = math.pi / 6  # the whole map is turned
     assert evaluation.trajectories(map_)[1][-1] == pytest.approx([150 * math.cos(math.pi / 6), 75.0])
 
