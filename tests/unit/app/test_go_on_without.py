@@ -4,15 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from app.engine.engine import Engine
-from sim2d import load_world
-from web import messages as m
-
-from .engines import an_engine, tell
+from .engines import an_engine, of_kind, run_for, tell
+from .sessions import OFFICE
 
 pytestmark = pytest.mark.slow
-
-OFFICE = load_world("office")
 
 
 def test_without_the_views_that_led_to_it_there_is_no_such_snap() -> None:
@@ -26,8 +21,7 @@ def test_without_the_views_that_led_to_it_there_is_no_such_snap() -> None:
     end, views, old = engine.run.session.state_hash(), why.without, engine.run
     tell(engine, type="go_on_without", event=snaps[0].number)
     session = engine.run.session
-    assert engine.run is not old
-    assert not engine.running
+    assert (engine.run is old, engine.running) == (False, False)
     assert why.since_s - 0.21 < session.time_s < why.since_s
     assert all(len(session.brain.view_links.of(view)[0]) == 0 for view in views)
     while session.time_s < why.time_s:
@@ -41,29 +35,18 @@ def test_without_the_views_that_led_to_it_there_is_no_such_snap() -> None:
 def test_what_was_not_led_to_by_a_view_is_refused() -> None:
     engine = an_engine(OFFICE)
     run_for(engine, 20)
-    with pytest.raises(
-        ValueError, match="event must be a snap, closure, false look, lost moment or belief of late, got 7"
-    ):
+    words = "event must be a snap, closure, false look, lost moment or belief of late, got 7"
+    with pytest.raises(ValueError, match=words):
         tell(engine, type="go_on_without", event=7)
     assert engine.run.session.tick_count == 20
 
 
 def test_who_inspects_what_is_not_there_yet_at_an_earlier_moment_sees_nothing_of_it() -> None:
     engine = an_engine(OFFICE)
-    run_for(engine, 300)
-    newest = len(engine.run.session.brain.experience_map) - 1
-    tell(engine, type="inspect", experience=newest)
+    run_for(engine, 100)
+    tell(engine, type="inspect", experience=len(engine.run.session.brain.experience_map) - 1)
     assert engine.snapshot().inspected is not None
     tell(engine, type="seek", tick=20)
     assert engine.snapshot().inspected is None
     tell(engine, type="back_to_now")
     assert engine.snapshot().inspected is not None
-
-
-def run_for(engine: Engine, ticks: int) -> None:
-    for _ in range(ticks):
-        engine.tick()
-
-
-def of_kind(engine: Engine, kind: str) -> list[m.Event]:
-    return [event for event in engine.run.event_log.events if event.kind == kind]

@@ -9,20 +9,21 @@ import pytest
 from app.config import Config
 from app.evaluation import Evaluation
 from app.headless import BrainFile, growth, loop, run_headless
-from app.session import Session
 from disk import state_codec
 from ratslam_core import load_brain
 from sim2d import load_world
 
+from .sessions import OFFICE, a_session
+
 pytestmark = pytest.mark.slow
 
-OFFICE = load_world("office")
 KEYS = [
     "world", "seed", "simulated_s", "wall_s", "real_time_factor", "ticks", "metres", "views", "false_positives",
     "experiences", "links", "view_links", "let_go", "relocalisations", "error_m", "revisit_consistency",
     "revisit_share", "looks", "coverage", "loops", "uncertainty", "growth", "real_time_factors", "rss_mb", "goals",
     "kidnaps", "state_hash",
 ]  # fmt: skip
+GOAL_KEYS = ["experience", "reached", "time_s", "path_m", "shortest_m", "miss_m", "reason"]
 
 
 def test_the_report_has_its_shape() -> None:
@@ -31,9 +32,7 @@ def test_the_report_has_its_shape() -> None:
     assert list(report) == KEYS
     assert list(report["error_m"]) == ["map", "odometry"]
     assert list(report["revisit_consistency"]) == ["within_half_metre"]
-    assert [list(goal) for goal in report["goals"]] == [
-        ["experience", "reached", "time_s", "path_m", "shortest_m", "miss_m", "reason"]
-    ] * 2
+    assert [list(goal) for goal in report["goals"]] == [GOAL_KEYS] * 2
     assert [list(kidnap) for kidnap in report["kidnaps"]] == [["at_s", "recovered", "after_s", "after_m"]] * 2
     assert [kidnap["at_s"] for kidnap in report["kidnaps"]] == [5.0, 20.0]
     assert (report["world"], report["seed"]) == ("office", 2)
@@ -48,17 +47,24 @@ def test_the_report_has_its_shape() -> None:
         assert not goal["reached"] or goal["miss_m"] <= 1.0
 
 
-def test_headless_is_the_session_and_nothing_else() -> None:
-    report = run_headless(OFFICE, 4, 0.3)
-    session = Session(OFFICE, 4)
-    for _ in range(180):
-        session.tick()
-    assert report["state_hash"] == session.state_hash()
-    assert report["goals"] == report["kidnaps"] == []
-    assert report["experiences"] == len(session.brain.experience_map)
-    assert report["links"] == session.brain.experience_map.link_count
-    assert report["views"] == len(session.brain.local_view)
+def test_headless_is_the_session_and_nothing_else_and_its_growth_is_sampled_at_regular_times(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(growth, "EVERY_S", 6.0)
+    report, session = run_headless(OFFICE, 4, 0.3), a_session(180, seed=4)
+    map_ = session.brain.experience_map
+    found = {name: report[name] for name in ("state_hash", "goals", "kidnaps", "views", "experiences", "links")}
+    assert found == {
+        "state_hash": session.state_hash(), "goals": [], "kidnaps": [],
+        "views": len(session.brain.local_view), "experiences": len(map_), "links": map_.link_count,
+    }  # fmt: skip
     assert report["false_positives"] == 0
+    assert [row["at_s"] for row in report["growth"]] == [6.0, 12.0, 18.0]
+    assert len(report["rss_mb"]) == len(report["real_time_factors"]) == 3
+    for name in ("views", "experiences", "links", "view_links"):
+        counts = [row[name] for row in report["growth"]]
+        assert counts == sorted(counts)
+        assert name == "view_links" or counts[-1] == report[name]
 
 
 def test_nothing_simulated_is_a_report_too() -> None:
@@ -69,39 +75,24 @@ def test_nothing_simulated_is_a_report_too() -> None:
     json.dumps(report, allow_nan=False)
 
 
-def test_growth_is_sampled_at_regular_times(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(growth, "EVERY_S", 6.0)
-    report = run_headless(OFFICE, 4, 0.3)
-    assert [row["at_s"] for row in report["growth"]] == [6.0, 12.0, 18.0]
-    assert len(report["rss_mb"]) == len(report["real_time_factors"]) == 3
-    for name in ("views", "experiences", "links", "view_links"):
-        counts = [row[name] for row in report["growth"]]
-        assert counts == sorted(counts)
-    for name in ("views", "experiences", "links"):
-        assert report["growth"][-1][name] == report[name]
-
-
 def test_memory_is_that_of_the_process_without_the_judges_record(monkeypatch: pytest.MonkeyPatch) -> None:
-    session = Session(OFFICE, 1)
+    session = a_session()
     before = growth.Growth(session).sample(session).rss_mb
     record = np.ones(30_000_000)  # 240 MB
     during = growth.Growth(session).sample(session).rss_mb
     monkeypatch.setattr(Evaluation, "memory_bytes", record.nbytes)  # as if the judge kept that
     without = growth.Growth(session).sample(session).rss_mb
     if before is not None and during is not None and without is not None:  # on Linux
-        assert during - before == pytest.approx(240, abs=30)
-        assert without - before == pytest.approx(0, abs=30)
+        assert (during - before, without - before) == (pytest.approx(240, abs=30), pytest.approx(0, abs=30))
 
 
 def test_what_is_judged_lies_within_its_bounds() -> None:
     report = run_headless(load_world("loop"), 3, 1.5)
+    looks, sure, loops = report["looks"], report["uncertainty"], report["loops"]
     assert 0.2 < report["coverage"] <= 1.0
-    assert report["loops"]["of"] == 1
-    assert 0 <= report["loops"]["closed"] <= 1
-    looks = report["looks"]
-    assert 0 <= looks["false_believed"] <= looks["false"] <= looks["all"]
     assert 0.0 <= report["revisit_share"] <= 1.0
-    sure = report["uncertainty"]
+    assert 0 <= loops["closed"] <= loops["of"] == 1
+    assert 0 <= looks["false_believed"] <= looks["false"] <= looks["all"]
     assert 0 < sure["median_m"] <= sure["most_m"]
     assert 0 <= sure["within_two_sigma"] <= 1
     assert sure["lost_share"] == 0.0
@@ -114,10 +105,8 @@ def test_a_belief_without_a_sigma_has_no_uncertainty() -> None:
 
 def test_a_goal_that_is_not_reached_in_time_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.headless.run.GOAL_TIMEOUT_S", 2.0)
-    report = run_headless(OFFICE, 2, 0.7, goals=1)
-    goal = report["goals"][0]
-    assert goal["reached"] is False
-    assert goal["time_s"] == pytest.approx(2.0, abs=0.15)
+    (goal,) = run_headless(OFFICE, 2, 0.7, goals=1)["goals"]
+    assert (goal["reached"], goal["time_s"]) == (False, pytest.approx(2.0, abs=0.15))
     assert goal["miss_m"] > 0.3
 
 
@@ -134,14 +123,12 @@ def test_a_brain_that_grows_too_large_for_a_file_is_told_of_in_time(
 
 
 def test_a_saved_brain_finds_its_way_again(tmp_path: Path) -> None:
-    world, file = load_world("office"), tmp_path / "brain.npz"
-    brain_file = BrainFile(file)
-    run_headless(world, 4, 8.0, brain_file=brain_file)
+    brain_file = BrainFile(tmp_path / "brain.npz")
+    run_headless(OFFICE, 4, 8.0, brain_file=brain_file)
     brain_file.save()
-    brain = load_brain(file)
+    brain = load_brain(tmp_path / "brain.npz")
     known = len(brain.experience_map)
-    report = run_headless(world, 11, 2.0, brain=brain, goals=2)
-    goals = report["goals"]
-    assert all(goal["experience"] < known for goal in goals)  # places where this robot has never been
-    assert all(goal["reached"] for goal in goals)
+    report = run_headless(OFFICE, 11, 2.0, brain=brain, goals=2)
+    assert all(goal["experience"] < known for goal in report["goals"])  # places where this robot has never been
+    assert all(goal["reached"] for goal in report["goals"])
     assert report["error_m"]["map"] < 1.0

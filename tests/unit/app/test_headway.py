@@ -12,6 +12,12 @@ from ratslam_core import Odometry
 from .pilots import DT, USUAL
 
 
+def headed(aim: tuple[float, float] = (0.6, 0.0)) -> Headway:
+    headway = Headway()
+    headway.head_for(aim)
+    return headway
+
+
 def moved(headway: Headway, seconds: float, speed: float, yaw_rate: float = 0.0, trying: bool = True) -> None:
     for _ in range(round(seconds / DT)):
         headway.move(Odometry(speed, yaw_rate, DT), trying, USUAL)
@@ -39,25 +45,18 @@ def test_a_robot_that_comes_no_nearer_fails(aim: tuple[float, float], speed: flo
     assert not headway.blocked(USUAL)
 
 
-def test_forwards_and_back_is_no_headway() -> None:
-    headway = Headway()
-    headway.head_for((0.6, 0.0))
+def test_forwards_and_back_is_no_headway_and_backing_out_is_no_standing_still() -> None:
+    headway, backing = headed(), headed()
     for _ in range(4):
         moved(headway, 1.0, 0.2)
         moved(headway, 1.0, -0.2)
     assert headway.blocked(USUAL)
-
-
-def test_backing_out_is_not_counted_as_standing_still() -> None:
-    headway = Headway()
-    headway.head_for((0.6, 0.0))
-    moved(headway, 10.0, 0.0, trying=False)
-    assert not headway.blocked(USUAL)
+    moved(backing, 10.0, 0.0, trying=False)
+    assert not backing.blocked(USUAL)
 
 
 def test_turning_towards_the_way_is_headway_but_not_for_ever() -> None:
-    headway = Headway()
-    headway.head_for((-0.6, 0.01))
+    headway = headed((-0.6, 0.01))
     moved(headway, 10.0, 0.0, yaw_rate=0.3)  # on a slow floor, half a turn
     assert not headway.blocked(USUAL)
     for _ in range(4):

@@ -12,14 +12,17 @@ from app.views.history import History
 from app.views.inspection import inspect
 from app.views.senses import senses_of
 from app.views.visits import Visits
-from sim2d import load_world
 from web.messages import CellReport, ExperienceReport, Inspect, Report, ViewReport
+
+from .sessions import a_session
+
+Watched = tuple[Session, History]
 
 
 @pytest.fixture(scope="module")
-def watched() -> tuple[Session, History]:
+def watched() -> Watched:
     """A minute of exploring, watched."""
-    session = Session(load_world("office"), 5)
+    session = a_session(seed=5)
     history = History(session)
     for _ in range(600):
         session.tick()
@@ -27,34 +30,31 @@ def watched() -> tuple[Session, History]:
     return session, history
 
 
-def look(watched: tuple[Session, History], **wish: int) -> Report | None:
+def look(watched: Watched, **wish: int) -> Report | None:
     session, history = watched
     return inspect(session, history.visits, history.events.reasons, Inspect(type="inspect", **wish))
 
 
-def test_an_experience_is_told_with_its_links_and_times(watched: tuple[Session, History]) -> None:
+def test_an_experience_is_told_with_its_links_and_times(watched: Watched) -> None:
     session, _ = watched
     map_ = session.brain.experience_map
     active = map_.active
-    report = look(watched, experience=active)
+    report, first = look(watched, experience=active), look(watched, experience=0)
     assert isinstance(report, ExperienceReport)
-    assert report.active
+    assert isinstance(first, ExperienceReport)
+    assert (report.active, first.active) == (True, False)
     assert (*report.cell, report.view) == map_.cell_state(active)
     assert (report.pose.x, report.pose.y) == tuple(map_.poses[active, :2])
     assert {(link.start, link.end) for link in report.links} == {
         (i, j) for i, j in map_.links.tolist() if active in (i, j)
     }
     assert all(link.behaviour and 0 <= link.confidence <= 1 for link in report.links)
-    assert report.times.last_s == session.time_s
+    assert (report.times.last_s, first.times.first_s) == (session.time_s, 0)
     assert report.times.first_s is not None
     assert report.times.first_s <= session.time_s
-    first = look(watched, experience=0)
-    assert isinstance(first, ExperienceReport)
-    assert first.times.first_s == 0
-    assert not first.active
 
 
-def test_a_view_is_told_with_what_is_seen_now(watched: tuple[Session, History]) -> None:
+def test_a_view_is_told_with_what_is_seen_now(watched: Watched) -> None:
     session, _ = watched
     seen = session.estimate.recognition
     report = look(watched, view=seen.best_view)
@@ -65,13 +65,12 @@ def test_a_view_is_told_with_what_is_seen_now(watched: tuple[Session, History]) 
     assert report.difference == pytest.approx(seen.difference)  # as the engine itself measured it
     assert all(session.brain.experience_map.views[k] == report.id for k in report.experiences)
     cells, strength = session.brain.view_links.of(report.id)
-    assert report.hebbian.count == len(cells)
-    assert report.hebbian.strength[0] == strength.max()
+    assert (report.hebbian.count, report.hebbian.strength[0]) == (len(cells), strength.max())
 
 
-def test_a_column_of_pose_cells_is_told_with_the_views_that_lead_there(watched: tuple[Session, History]) -> None:
+def test_a_column_of_pose_cells_is_told_with_the_views_that_lead_there(watched: Watched) -> None:
     session, _ = watched
-    brain, winner = session.brain, session.brain.pose_cells.winner
+    brain, winner, map_ = session.brain, session.brain.pose_cells.winner, session.brain.experience_map
     _, n_y, n_x = brain.pose_cells.shape
     x, y = round(winner.x) % n_x, round(winner.y) % n_y
     report = look(watched, x=x, y=y)
@@ -88,42 +87,27 @@ def test_a_column_of_pose_cells_is_told_with_the_views_that_lead_there(watched: 
     assert report.view_count == len(sums)
     assert [view for view, _ in report.views] == sorted(sums, key=lambda v: (-np.float32(sums[v]), v))[:24]
     assert dict(report.views) == pytest.approx({view: sums[view] for view, _ in report.views}, rel=1e-5)
-    map_ = brain.experience_map
     for k in range(len(map_)):
         at = map_.cell_state(k)
         assert (k in report.experiences) == (brain.pose_cells.cells_apart(at[0], at[1], x, y) <= map_.params.zone_xy)
-
-
-def test_where_nothing_is_active_there_is_no_packet(watched: tuple[Session, History]) -> None:
-    session, _ = watched
-    cells, _ = session.brain.pose_cells.active
-    taken = {(x, y) for x, y in cells[:, :2].tolist()}
+    taken = {(x, y) for x, y in brain.pose_cells.active[0][:, :2].tolist()}
     x, y = next((x, y) for x in range(64) for y in range(64) if (x, y) not in taken)
     report = look(watched, x=x, y=y)
     assert isinstance(report, CellReport)
-    assert report.packet is None
-    assert not report.by_heading.any()
+    assert (report.packet, report.by_heading.any()) == (None, False), "where nothing is active there is no packet"
 
 
-@pytest.mark.parametrize(
-    ("wish", "words"),
-    [
+def test_what_is_not_there_is_refused_and_nothing_asked_nothing_shown(watched: Watched) -> None:
+    for wish, words in [
         ({"experience": 10**6}, "experience must be from 0 to"),
         ({"view": 10**6}, "view must be from 0 to"),
         ({"x": 3}, "needs x from 0 to 63 and y from 0 to 63, got 3 and None"),
         ({"x": 64, "y": 0}, "got 64 and 0"),
         ({"experience": 0, "view": 0}, "one of them"),
-    ],
-)
-def test_what_is_not_there_is_refused(watched: tuple[Session, History], wish: dict[str, int], words: str) -> None:
-    with pytest.raises(ValueError, match=words):
-        look(watched, **wish)
-
-
-def test_nothing_asked_nothing_shown(watched: tuple[Session, History]) -> None:
+    ]:
+        with pytest.raises(ValueError, match=words):
+            look(watched, **wish)
     assert look(watched) is None
-    for wish in ({"experience": 0}, {"view": 0}, {"x": 5, "y": 5}):
-        assert look(watched, **wish) is not None
 
 
 def test_visits_are_counted_when_something_becomes_active() -> None:
@@ -131,12 +115,10 @@ def test_visits_are_counted_when_something_becomes_active() -> None:
     for time_s, number in enumerate((2000, 2000, -1, 2000, 3, 2000)):
         visits.note(number, float(time_s))
     assert (visits.of(2000).first_s, visits.of(2000).last_s, visits.of(2000).visits) == (0.0, 5.0, 3)
-    assert visits.of(4).first_s is None
-    assert visits.of(10**6).visits == 0
+    assert (visits.of(4).first_s, visits.of(10**6).visits) == (None, 0)
 
 
 def test_where_the_camera_is_off_no_picture_of_it_is_shown() -> None:
-    session = Session(load_world("office"), 5, Config().with_values({"robot.camera": False}))
-    session.tick()
-    assert senses_of(session).camera.size == 0
-    assert senses_of(Session(load_world("office"), 5)).camera.size > 0
+    blind = a_session(1, config=Config().with_values({"robot.camera": False}))
+    assert senses_of(blind).camera.size == 0
+    assert senses_of(a_session()).camera.size > 0
