@@ -70,7 +70,7 @@ def test_trail_path_and_series_grow(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.all(np.diff(series.views) >= 0)
     assert not series.map_error_m.flags.writeable
     assert series.residual_mm[-1] == pytest.approx(1000 * map_.residual[0], abs=5)
-    go_on(session, history, 150)
+    go_on(session, history, 170)
     assert (len(history.trails.robot), len(history.trails.packet)) == (100, 100)
 
 

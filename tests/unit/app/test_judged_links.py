@@ -47,7 +47,7 @@ def test_a_link_is_off_by_as_much_as_its_end_is_elsewhere(i: int, j: int, x: flo
     assert bool(found.false[0]) == (found.off_m[0] > 1.0)
 
 
-def test_looks_and_odometry_are_judged_apart() -> None:
+def test_looks_and_odometry_are_judged_apart_where_they_hold_and_join_what_is_known() -> None:
     wrong, right = Pose2(1.2, 0.0, 0.0), Pose2(0.3, 0.0, 0.0)
     rows = [(0, 1, right, True), (1, 2, wrong, True), (2, 0, right, False), (3, 0, wrong, False), (4, 0, wrong, False)]
     map_, births = linked(WAY, rows), births_along(WAY)
@@ -55,18 +55,10 @@ def test_looks_and_odometry_are_judged_apart() -> None:
     assert backbone(map_, births).false.tolist() == [False, True]
     assert looks(map_, births).false.tolist() == [False, True, True]
     assert looks(map_, births).believed.tolist() == [True, False, True]
-
-
-def test_links_that_were_dropped_or_join_what_is_not_known_are_not_judged() -> None:
-    map_, births = (
-        linked(WAY, [(2, 0, Pose2(9.0, 0.0, 0.0), False), (3, 1, Pose2(9.0, 0.0, 0.0), False)]),
-        births_along(WAY),
-    )
-    births[3] = np.nan
-    assert looks(map_, births).ends.tolist() == [[2, 0]]
-    map_.transitions.weight[0] = 0.0
-    assert len(looks(map_, births).ends) == 0
-    map_.transitions.weight[0] = (0.01 / 2.0) ** 2  # it says itself that it may be 2 m off
+    births[4] = np.nan
+    map_.transitions.weight[2] = 0.0  # dropped
+    assert looks(map_, births).ends.tolist() == [[3, 0]]
+    map_.transitions.weight[3] = (0.01 / 2.0) ** 2  # it says itself that it may be 2 m off
     assert len(looks(map_, births).ends) == 0
 
 
@@ -81,15 +73,18 @@ def rounds(islands: list[tuple[float, float, float]], steps: int = 100) -> tuple
     return path, np.array([(x, y) for x, y, _ in islands])
 
 
-def closed(path: list[Pose2], islands: NDArray[np.float64], ends: list[tuple[int, int]]) -> int:
-    places = np.array([(p.x, p.y) for p in path])
-    return loops_closed(np.array(ends).reshape(-1, 2), births_along(path), places, islands, TICK_S)
+def closed(
+    path: list[Pose2], islands: NDArray[np.float64], ends: list[tuple[int, int]], born_late_s: float = 0.0
+) -> int:
+    births, places = births_along(path) + (0, 0, 0, born_late_s), np.array([(p.x, p.y) for p in path])
+    return loops_closed(np.array(ends).reshape(-1, 2), births, places, islands, TICK_S)
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_loop_is_closed_by_a_look_from_its_end_to_its_beginning(sense: float) -> None:
     path, islands = rounds([(3.0, 1.0, sense)])
     assert closed(path, islands, [(99, 1)]) == closed(path, islands, [(1, 99)]) == 1
+    assert closed(path, islands, [(99, 1)], born_late_s=0.04) == 1, "also where no tick of the path is at a birth"
     assert closed(path, islands, []) == 0
     assert closed(path, islands, [(20, 18), (60, 50)]) == 0  # a look back along the way closes nothing
     assert closed(path + path[::-1], islands, [(190, 10)]) == 0  # there and back again is not round
@@ -98,16 +93,6 @@ def test_a_loop_is_closed_by_a_look_from_its_end_to_its_beginning(sense: float) 
 def test_loops_count_as_often_as_they_are_independent() -> None:
     path, islands = rounds([(3.0, 0.0, 1.0), (-3.0, 0.0, 1.0), (0.0, 4.0, -1.0)])
     one, two, three = (0, 100), (101, 201), (202, 302)
-    assert closed(path, islands, [one, one]) == 1
-    assert closed(path, islands, [one, (0, 201)]) == 2
-    assert closed(path, islands, [one, two, (0, 201)]) == 2
-    assert closed(path, islands, [one, two, three]) == 3
+    for ends, loops in [([one, one], 1), ([one, (0, 201)], 2), ([one, two, (0, 201)], 2), ([one, two, three], 3)]:
+        assert closed(path, islands, ends) == loops
     assert closed(path, np.zeros((0, 2)), [one, two]) == 0
-
-
-def test_a_path_of_which_no_tick_is_at_a_birth_is_still_read() -> None:
-    path, islands = rounds([(3.0, 1.0, 1.0)])
-    births = births_along(path)
-    births[:, 3] += 0.04
-    places = np.array([(p.x, p.y) for p in path])
-    assert loops_closed(np.array([(99, 1)]), births, places, islands, TICK_S) == 1

@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 
 from app.config import Config
 from app.evaluation import alignment, rmse
-from app.session import Session
 from app.views.ghost import ghost_of
 from app.views.history import History
 from app.views.spread import packet_spread, spread_of
 from ratslam_core import Pose2
-from tests.unit.app.sessions import OFFICE, a_session
 from web.messages import Pose
 from web.viewer.fits.poses import compose, into_map, placed
+
+from .sessions import a_session
 
 TICKS = 150
 
@@ -28,8 +28,13 @@ def shown(pose: Pose2) -> Pose:
     return Pose(pose.x, pose.y, pose.heading_rad)
 
 
+def left_after(frame: Pose, mapped: np.ndarray, truth: np.ndarray) -> float:
+    """The error that remains when this frame lays the map into the office, m."""
+    return math.sqrt(np.mean(np.square(placed(mapped, frame) - truth).sum(1)))
+
+
 def test_the_ghost_is_the_integrated_odometry_from_the_start_pose() -> None:
-    session = Session(OFFICE, 3)
+    session = a_session()
     truth = session.truth
     assert truth is not None
     start = ghost = Pose2(truth.x, truth.y, truth.heading_rad)
@@ -53,22 +58,22 @@ def test_the_ghost_is_the_integrated_odometry_from_the_start_pose() -> None:
     assert path[-1] == pytest.approx(way[-1], abs=1e-5)
 
 
-def test_the_ghost_begins_on_the_map_where_the_robot_believed_itself_to_be() -> None:
-    session = a_session(TICKS)
-    seen = ghost_of(session)
-    assert seen is not None
-    first = session.brain.experience_map.poses[0]
-    assert (seen.map_start.x, seen.map_start.y) == pytest.approx(first[:2].tolist(), abs=0.2)
-
-
-@pytest.mark.parametrize("every", [1, 3])
-def test_the_outline_is_laid_by_the_fit_of_the_map_error(every: int) -> None:
-    session = a_session(600, seed=5)
-    evaluation, map_ = session.evaluation, session.brain.experience_map
-    truth, mapped, _ = evaluation.trajectories(map_, every)
-    fit = evaluation.map_in_office(map_, every)
-    off = placed(mapped, shown(fit)) - truth
-    assert math.sqrt(np.mean(np.square(off).sum(1))) == pytest.approx(evaluation.errors(map_, every)[0], rel=1e-12)
+def test_the_outline_is_laid_by_the_fit_of_the_map_error_and_the_snapshot_shows_it() -> None:
+    session = a_session(seed=5)
+    history, evaluation, map_ = History(session), session.evaluation, session.brain.experience_map
+    for _ in range(300):
+        session.tick()
+        history.watch()
+        if session.tick_count % 10 == 0:  # a sample was taken in this tick
+            truth, mapped, _ = evaluation.trajectories(map_)
+            fit = history.series.map_in_office
+            assert fit is not None
+            if math.sqrt(np.var(truth, axis=0).sum()) >= 0.5:
+                assert left_after(shown(fit), mapped, truth) == pytest.approx(history.series.error_map_m, rel=1e-9)
+    for every in (1, 3):
+        truth, mapped, _ = evaluation.trajectories(map_, every)
+        left = left_after(shown(evaluation.map_in_office(map_, every)), mapped, truth)
+        assert left == pytest.approx(evaluation.errors(map_, every)[0], rel=1e-12)
 
 
 seeds = st.integers(0, 2**32 - 1)
@@ -83,45 +88,25 @@ def test_after_the_fit_what_remains_is_the_error(seed: int, n: int, x: float, y:
     truth = np.cumsum(rng.uniform(-1, 1, (n, 2)), axis=0)
     estimate = placed(truth + rng.normal(0, 0.2, truth.shape), Pose(x, y, turn))
     frame = shown(alignment(estimate, truth))
-    off = placed(estimate, frame) - truth
-    assert math.sqrt(np.mean(np.square(off).sum(1))) == pytest.approx(rmse(estimate, truth), rel=1e-9, abs=1e-12)
+    assert left_after(frame, estimate, truth) == pytest.approx(rmse(estimate, truth), rel=1e-9, abs=1e-12)
     assert into_map(placed(estimate, frame), frame) == pytest.approx(estimate, abs=1e-8)
 
 
-def test_the_snapshot_shows_the_fit_that_its_error_was_measured_after() -> None:
-    session = Session(OFFICE, 5)
-    history = History(session)
-    for _ in range(300):
-        session.tick()
-        history.watch()
-        if session.tick_count % 10 == 0:  # a sample was taken in this tick
-            truth, mapped, _ = session.evaluation.trajectories(session.brain.experience_map)
-            fit = history.series.map_in_office
-            assert fit is not None
-            if math.sqrt(np.var(truth, axis=0).sum()) < 0.5:
-                continue
-            off = placed(mapped, shown(fit)) - truth
-            left = math.sqrt(np.mean(np.square(off).sum(1)))
-            assert left == pytest.approx(history.series.error_map_m, rel=1e-9)
-
-
 def test_doubt_is_the_filters_sigma_and_by_the_papers_rules_the_packets_spread() -> None:
+    """The packet's beside a literal sum over the cells of its activity, over the edge of the torus or not."""
     session = a_session(TICKS)
-    seen = spread_of(session)
-    sigma = session.brain.experience_map.pose_filter.sigma_m
+    seen, sigma = spread_of(session), session.brain.experience_map.pose_filter.sigma_m
     assert seen is not None
     assert (seen.along_m, seen.across_m, seen.by) == (sigma, sigma, "filter")
-    plain = Config().with_value("experience_map.anchor_sigma", 0.0)
-    session = a_session(TICKS, config=plain)
-    seen = spread_of(session)
-    assert seen is not None
+    first, ghost = session.brain.experience_map.poses[0], ghost_of(session)
+    assert ghost is not None
+    assert (ghost.map_start.x, ghost.map_start.y) == pytest.approx(first[:2].tolist(), abs=0.2), "where it began"
+
+    session = a_session(TICKS, config=Config().with_value("experience_map.anchor_sigma", 0.0))
+    seen, cell_m = spread_of(session), session.config.pose_cells.cell_m
+    assert seen == packet_spread(session)
     assert seen.by == "packet"
-    assert 0 < seen.across_m <= seen.along_m < 6 * plain.pose_cells.cell_m
-
-
-def test_the_packets_ellipse_is_that_of_its_activity() -> None:
-    """Beside a literal sum over the cells, in a session whose packet lies over the edge of the torus or not."""
-    session = a_session(TICKS)
+    assert 0 < seen.across_m <= seen.along_m < 6 * cell_m
     cells, values = session.brain.pose_cells.active
     packet, (_, n_y, n_x) = session.brain.pose_cells.winner, session.brain.pose_cells.shape
     rows = [
@@ -132,5 +117,4 @@ def test_the_packets_ellipse_is_that_of_its_activity() -> None:
     mass = sum(v for *_, v in rows)
     mean = [sum(row[k] * row[2] for row in rows) / mass for k in (0, 1)]
     trace = sum(((x - mean[0]) ** 2 + (y - mean[1]) ** 2) * v for x, y, v in rows) / mass
-    seen, cell_m = packet_spread(session), session.config.pose_cells.cell_m
     assert seen.along_m**2 + seen.across_m**2 == pytest.approx(trace * cell_m**2, rel=1e-6)

@@ -17,74 +17,64 @@ from .worlds import HandMadeMap
 USUAL = PilotParams(**OUTWARD)
 
 NEAR = np.full(8, 1.0, np.float32)
+OPEN_LEFT = np.array([4.0, *NEAR[1:]], np.float32)  # a corridor of which one side is open
+Places = list[tuple[float, float]]
 
 
-def driven(places: list[tuple[float, float]], ranges: np.ndarray) -> tuple[KnownGround, HandMadeMap]:
+def along(count: int, y: float = 0.0) -> Places:
+    return [(0.1 * k, y) for k in range(count)]
+
+
+def driven(places: Places, ranges: np.ndarray = OPEN_LEFT) -> tuple[KnownGround, HandMadeMap]:
     """A robot that made experiences at these places, one after the other, and heard these ranges."""
     ground = KnownGround(ANGLES)
     for n in range(1, len(places) + 1):
         map_ = HandMadeMap(places[:n], [])
-        map_.robot = Pose2(*places[-1], 0.0)
         map_.robot = Pose2(*places[n - 1], 0.0)
         ground.step(map_, ranges, 0.3, DT, USUAL)  # type: ignore[arg-type]
     return ground, HandMadeMap(places, [])
 
 
+def openings(ground: KnownGround, map_: HandMadeMap) -> tuple[np.ndarray, np.ndarray]:
+    return ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
+
+
 def test_open_floor_that_was_never_driven_on_is_an_opening() -> None:
-    """Along a corridor with one side open: openings lie on that side only, within reach, and as far as the sonars saw."""
-    ranges = NEAR.copy()
-    ranges[0] = 4.0  # the sonar to the left
-    ground, map_ = driven([(0.1 * k, 0.0) for k in range(30)], ranges)
-    rows, places = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
+    """On the open side only, within reach, and as far as the sonars saw; one that was tried moves with the map."""
+    ground, map_ = driven(along(60))
+    rows, places = openings(ground, map_)
     assert len(rows) == len(places) > 10
     assert places[:, 1] == pytest.approx(USUAL.opening_most_m)
     assert places[:, 0] == pytest.approx(0.1 * rows)
     ground.tried(10, 0.5, USUAL.opening_most_m, map_.poses, USUAL)  # that is at x = 1.5 m
-    _, left = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
-    assert 0 < len(left) < len(places)
-    assert np.hypot(left[:, 0] - 1.5, left[:, 1] - USUAL.opening_most_m).min() > USUAL.thin_m
-
-
-def test_a_tried_opening_moves_with_the_map() -> None:
-    ranges = NEAR.copy()
-    ranges[0] = 4.0
-    ground, map_ = driven([(0.1 * k, 0.0) for k in range(60)], ranges)
-    ground.tried(10, 0.5, USUAL.opening_most_m, map_.poses, USUAL)
-    map_.poses[:, :2] += (7.0, 5.0)
-    _, left = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
-    assert len(left)
-    assert np.hypot(left[:, 0] - 8.5, left[:, 1] - USUAL.opening_most_m - 5.0).min() > USUAL.thin_m
+    for x, y in ((0.0, 0.0), (7.0, 5.0)):
+        map_.poses[:, :2] += (x, y)
+        _, left = openings(ground, map_)
+        assert 0 < len(left) < len(places)
+        assert np.hypot(left[:, 0] - 1.5 - x, left[:, 1] - USUAL.opening_most_m - y).min() > USUAL.thin_m
 
 
 def test_an_opening_is_tried_again_later() -> None:
     """Somebody stood in the way, perhaps. After each trial it is left alone for twice as long."""
-    ranges = NEAR.copy()
-    ranges[0] = 4.0
-    ground, map_ = driven([(0.1 * k, 0.0) for k in range(30)], ranges)
-
-    def seen() -> int:
-        return len(ground.openings(map_, USUAL, 3)[0])  # type: ignore[arg-type]
-
-    before = seen()
+    ground, map_ = driven(along(30))
+    before = len(openings(ground, map_)[0])
     for wait_s in (USUAL.opening_again_s, 2 * USUAL.opening_again_s, 4 * USUAL.opening_again_s):
         ground.tried(10, 0.5, USUAL.opening_most_m, map_.poses, USUAL)
         ground.now_s += wait_s - 1.0
-        assert seen() < before
+        assert len(openings(ground, map_)[0]) < before
         ground.now_s += 2.0
-        assert seen() == before
+        assert len(openings(ground, map_)[0]) == before
 
 
 def test_what_lies_on_another_island_hides_no_opening() -> None:
     """The robot was carried to where, for all it knows, the rest of its map might be."""
-    ranges = NEAR.copy()
-    ranges[0] = 4.0
-    ground, map_ = driven([(0.1 * k, 2.5) for k in range(30)] + [(0.1 * k, 0.0) for k in range(30)], ranges)
+    ground, map_ = driven(along(30, y=2.5) + along(30))
     map_.robot = Pose2(1.0, 0.0, 0.0)
     assert map_.active >= 30
-    rows, _ = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
+    rows, _ = openings(ground, map_)
     assert (rows < 30).all()
     map_.landed = 30
-    rows, _ = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
+    rows, _ = openings(ground, map_)
     assert len(rows)
     assert (rows >= 30).all()
 
@@ -92,9 +82,7 @@ def test_what_lies_on_another_island_hides_no_opening() -> None:
 def test_a_far_opening_is_far_from_all_that_is_known() -> None:
     """Driven along a wall of a hall: what the sonar to the left saw of the hall is far, what it saw of a corridor is not."""
     for reach, is_far in ((5.0, True), (3.0, False)):
-        ranges = NEAR.copy()
-        ranges[0] = reach
-        ground, map_ = driven([(0.1 * k, 0.0) for k in range(60)], ranges)
+        ground, map_ = driven(along(60), np.array([reach, *NEAR[1:]], np.float32))
         rows, places = ground.far_openings(map_, USUAL)  # type: ignore[arg-type]
         assert bool(len(rows)) == is_far
         assert (places[:, 1] > USUAL.far_m).all()
@@ -103,12 +91,12 @@ def test_a_far_opening_is_far_from_all_that_is_known() -> None:
 def test_what_was_driven_on_is_no_opening() -> None:
     square = [(0.4 * i, 0.4 * j) for i in range(15) for j in range(15)]
     ground, map_ = driven(square, FAR)
-    _, places = ground.openings(map_, USUAL, 3)  # type: ignore[arg-type]
+    _, places = openings(ground, map_)
     assert len(places)
     for place in places:  # outside of the square only
         assert min(math.dist(place, known) for known in square) > USUAL.thin_m
     ground, map_ = driven(square, NEAR)
-    assert not len(ground.openings(map_, USUAL, 3)[0])  # type: ignore[arg-type]
+    assert not len(openings(ground, map_)[0])
 
 
 def test_new_ground_is_counted_until_old_ground_is_met() -> None:
@@ -127,7 +115,7 @@ def test_new_ground_is_counted_until_old_ground_is_met() -> None:
 
 
 def test_another_map_is_learnt_afresh() -> None:
-    ground, _ = driven([(0.1 * k, 0.0) for k in range(1500)], FAR)  # more than the first rows hold
+    ground, _ = driven(along(1500), FAR)  # more than the first rows hold
     assert ground.count == 1500
     ground.step(HandMadeMap([(0.0, 0.0)], []), FAR, 0.0, DT, USUAL)  # type: ignore[arg-type]
     assert ground.count == 1

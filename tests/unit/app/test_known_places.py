@@ -3,20 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
-from app.session import Session
 from app.views.places import REACH_M, known_places
-from tests.unit.app.sessions import OFFICE, a_session
+
+from .sessions import OFFICE, a_session
 
 
-@pytest.fixture(scope="module")
-def driven() -> Session:
-    return a_session(1600, seed=5)
-
-
-def test_a_place_is_known_where_an_experience_was_made_near_it(driven: Session) -> None:
-    session = driven
+def test_a_place_is_known_where_an_experience_was_made_near_it_and_the_goal_there_is_one() -> None:
+    session = a_session(1600, seed=5)
     map_, places = session.brain.experience_map, known_places(session)
     births = session.evaluation.births(len(map_.poses))
     assert [place.name for place in places] == [place.name for place in OFFICE.places]
@@ -25,22 +19,15 @@ def test_a_place_is_known_where_an_experience_was_made_near_it(driven: Session) 
         assert (place.map_xy is not None) == bool((away <= REACH_M).any())
         if place.map_xy is not None:
             assert tuple(map_.poses[int(away.argmin()), :2].tolist()) == place.map_xy
+            goal = session.set_goal(*place.map_xy)
+            assert away[goal] <= REACH_M
     assert {place.map_xy is None for place in places} == {True, False}  # some are known after so long, and some are not
 
 
 def test_at_first_no_place_is_known_but_one_where_the_robot_stands() -> None:
-    session = a_session(0)
+    session = a_session()
     truth = session.truth
     assert truth is not None
     for place in known_places(session):
         near = np.hypot(place.x - truth.x, place.y - truth.y) <= REACH_M
         assert near or place.map_xy is None
-
-
-def test_the_goal_at_such_a_place_is_an_experience_of_it(driven: Session) -> None:
-    session = driven
-    known = next(place for place in known_places(session) if place.map_xy is not None)
-    assert known.map_xy is not None
-    goal = session.set_goal(*known.map_xy)
-    x, y, *_ = session.evaluation.births(len(session.brain.experience_map.poses))[goal]
-    assert np.hypot(x - known.x, y - known.y) <= REACH_M

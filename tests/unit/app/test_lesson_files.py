@@ -11,6 +11,7 @@ from app.gallery.lessons import StoredLessons, check_formulas
 from app.lessons.files import ENVIRONMENT, all_lessons, catalogue, check_lesson, find_lesson, read_lesson
 from app.lessons.findings import Finding, told
 from app.lessons.lines import line_of
+from app.lessons.performance import perform
 from app.lessons.report import report_of
 from app.lessons.schema import Formula, Symbol
 from app.lessons.units import MEASURED
@@ -19,7 +20,8 @@ from .lessons_to_give import short_lesson
 
 pytestmark = pytest.mark.slow
 
-FILE = Path(__file__).parents[3] / "app" / "lessons" / "catalogue" / "10-kidnapped.toml"
+ROOT = Path(__file__).parents[3]
+FILE = ROOT / "app" / "lessons" / "catalogue" / "10-kidnapped.toml"
 TEXT = FILE.read_text("utf-8")
 
 
@@ -55,28 +57,20 @@ def test_a_fault_is_told_with_its_line(tmp_path: Path, old: str, new: str, line_
         assert line_with in text.splitlines()[line - 1]
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
+def test_what_does_not_fit_together_is_told_before_it_begins() -> None:
+    for changes, words in (
         ({"scene": {"world": "castle"}}, "castle"),
         ({"show": {"steps": [{"do": "click", "place": "the moon"}]}}, "no place 'the moon'"),
-    ],
-)  # fmt: skip
-def test_what_does_not_fit_together_is_told_before_it_begins(changes: dict[str, object], words: str) -> None:
-    with pytest.raises(ValueError, match=words):
-        check_lesson(short_lesson(**changes))
-
-
-def test_a_round_that_there_is_not() -> None:
-    with pytest.raises(ValueError, match="there is no round 'quick'"):
-        short_lesson(outcome="{path_m of quick}")
+        ({"outcome": "{path_m of quick}"}, "there is no round 'quick'"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            check_lesson(short_lesson(**changes))
 
 
 def test_the_lines_of_nested_tables() -> None:
     text = "a = 1\n[b]\nc = 2\n[[d]]\ne = 3\n[[d]]\n[[d.f]]\ng = 4\n"
-    assert [line_of(text, path) for path in (["a"], ["b", "c"], ["d", 0, "e"], ["d", 1], ["d", 1, "f", 0, "g"])] == [
-        1, 3, 5, 6, 8,
-    ]  # fmt: skip
+    paths = ["a"], ["b", "c"], ["d", 0, "e"], ["d", 1], ["d", 1, "f", 0, "g"]
+    assert [line_of(text, path) for path in paths] == [1, 3, 5, 6, 8]
 
 
 def test_what_was_found_stands_in_the_text() -> None:
@@ -87,16 +81,11 @@ def test_what_was_found_stands_in_the_text() -> None:
 
 
 def test_symbols_are_marked_by_their_parameters_and_only_those() -> None:
+    symbols = {r"\alpha": "experience_map.correction", r"s_{\max}": "local_view.saturation", "x_i": None}
     formula = Formula(
-        latex=r"\alpha + s_{\max} x_i",
-        says="A sum.",
-        source="none",
-        symbols=[
-            Symbol(symbol=r"\alpha", means="a rate", parameter="experience_map.correction"),
-            Symbol(symbol=r"s_{\max}", means="a limit", parameter="local_view.saturation"),
-            Symbol(symbol="x_i", means="a place"),
-        ],
-    )
+        latex=r"\alpha + s_{\max} x_i", says="A sum.", source="none",
+        symbols=[Symbol(symbol=symbol, means="it", parameter=name) for symbol, name in symbols.items()],
+    )  # fmt: skip
     text = formula_text(formula, {"experience_map.correction": "0.5", "local_view.saturation": "0.02"})
     assert text.mathml.count("data-parameter") == 2
     assert '<mi data-parameter="experience_map.correction">' in text.mathml
@@ -122,36 +111,23 @@ def test_a_lesson_of_ones_own_is_listed_and_a_wrong_one_says_why(
 
 
 def test_the_catalogue_is_in_order_and_its_names_are_its_files() -> None:
-    folder = FILE.parent
-    files = sorted(path.stem for path in folder.glob("*.toml"))
+    files = sorted(path.stem for path in FILE.parent.glob("*.toml"))
     lessons = list(catalogue())
     assert [f"{name[:2]}-{lesson.name}" for name, lesson in zip(files, lessons, strict=True)] == files
     assert [lesson.name for lesson in all_lessons()][: len(lessons)] == [lesson.name for lesson in lessons]
 
 
-def test_everything_that_is_said_to_be_measured_is_measured() -> None:
-    from app.lessons.performance import perform
-
+def test_the_document_tells_of_everything_that_is_measured_and_nothing_else_is(tmp_path: Path) -> None:
     values = perform(short_lesson())[0].values
     assert values is not None
     assert set(values) == set(MEASURED)
-
-
-DOCUMENT = Path(__file__).parents[3] / "docs" / "lessons.md"
-
-
-def test_the_lesson_to_copy_is_right_and_keeps_what_it_promises(tmp_path: Path) -> None:
-    text = DOCUMENT.read_text("utf-8").split("```toml\n")[1].split("```")[0]
-    path = tmp_path / "turned.toml"
-    path.write_text(text)
-    lesson = read_lesson(path)
-    check_lesson(lesson)
-    check_formulas(lesson)
-    report = report_of(lesson)
-    assert report.kept, report.lines
-
-
-def test_the_document_tells_of_everything_that_is_measured() -> None:
-    text = DOCUMENT.read_text("utf-8")
+    document = (ROOT / "docs" / "lessons.md").read_text("utf-8")
     for name, measured in MEASURED.items():
-        assert f"| `{name}` | {measured.words} |" in text
+        assert f"| `{name}` | {measured.words} |" in document
+    path = tmp_path / "turned.toml"
+    path.write_text(document.split("```toml\n")[1].split("```")[0])
+    to_copy = read_lesson(path)
+    check_lesson(to_copy)
+    check_formulas(to_copy)
+    report = report_of(to_copy)
+    assert report.kept, report.lines

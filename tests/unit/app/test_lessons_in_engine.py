@@ -11,16 +11,29 @@ from app.lessons.performance import perform, perform_round, set_scene
 from app.lessons.schema import Lesson
 from web import messages as m
 
-from .engines import an_engine, tell
+from .engines import an_engine, run_for, tell
 from .lessons_to_give import drawn_lesson, short_lesson, two_rounds
 from .sessions import OFFICE
 
 pytestmark = pytest.mark.slow
 
 
+@pytest.fixture(scope="module")
+def alone() -> str:
+    """The state hash at the end of the short lesson by itself."""
+    return perform_round(short_lesson(), 0).session.state_hash()
+
+
 def begun(lesson: Lesson) -> Engine:
     engine = an_engine(OFFICE)
     engine.begin_lesson(Teaching(lesson, lesson.scene.seed, engine.next_config))
+    return engine
+
+
+def asked(lesson: Lesson) -> Engine:
+    """Its scene is over, and it asks what will come."""
+    engine = begun(lesson)
+    assert play(engine).state == "predict"
     return engine
 
 
@@ -39,25 +52,34 @@ def view(engine: Engine) -> m.LessonView:
     return found
 
 
+def shown(engine: Engine) -> m.LessonView:
+    tell(engine, type="show_lesson")
+    return play(engine)
+
+
+def vote(engine: Engine, voter: str, choice: int, **more: str) -> None:
+    tell(engine, **{"type": "vote", "lesson": "short", "voter": voter, "choice": choice} | more)
+
+
 def test_its_states_follow_one_another_and_it_pauses_where_somebody_has_to_think() -> None:
     engine = begun(short_lesson())
     assert (view(engine).state, engine.runs_ahead) == ("scene", True)
     assert play(engine).state == "predict"
     assert (engine.runs_ahead, engine.run.session.tick_count) == (False, 10)
+    assert engine.run.session.state_hash() == set_scene(short_lesson()).session.state_hash()
     tell(engine, type="predict", choice=1)
     tell(engine, type="show_lesson")
     assert view(engine).state == "showing"
-    shown = play(engine)
-    assert (shown.state, shown.prediction) == ("compared", m.LessonPrediction(choice=1))
-    assert shown.outcome == m.LessonOutcome("It drove 0.4 m.", "The wheels turned.", True, choice=1)
-    assert {(mark.plate, mark.words, mark.tick) for mark in shown.marks} == {
+    over = play(engine)
+    assert (over.state, over.prediction) == ("compared", m.LessonPrediction(choice=1))
+    assert over.outcome == m.LessonOutcome("It drove 0.4 m.", "The wheels turned.", True, choice=1)
+    assert {(mark.plate, mark.words, mark.tick) for mark in over.marks} == {
         ("office", "it ended here", 30),
         ("map", "it ended here", 30),
     }
     tell(engine, type="resume")
-    engine.tick()
-    assert view(engine).state == "sandbox"
-    assert engine.run.session.pilot.mode == "explore"
+    run_for(engine, 1)
+    assert (view(engine).state, engine.run.session.pilot.mode) == ("sandbox", "explore")
     tell(engine, type="end_lesson")
     assert (engine.snapshot().lesson, engine.run.session.tick_count) == (None, 31)
 
@@ -69,96 +91,62 @@ def test_it_is_the_lesson_by_itself_bit_for_bit(lesson: Lesson) -> None:
         assert play(engine).state == "predict"
         if performance.number == 0:
             engine.snapshot()
-            tell(engine, type="vote", lesson="short", voter="somebody", choice=0)
-        tell(engine, type="show_lesson")
-        play(engine)
+            vote(engine, "somebody", 0)
+        shown(engine)
         assert engine.run.session.state_hash() == performance.session.state_hash()
     assert view(engine).state == "compared"
 
 
-def test_a_right_and_a_wrong_prediction_and_none() -> None:
-    for choice, right in ((0, False), (1, True), (None, None)):
-        engine = begun(short_lesson())
-        play(engine)
+def test_what_was_predicted_is_compared_with_what_came() -> None:
+    for choice, right in ((0, False), (None, None)):
+        engine = asked(short_lesson())
         if choice is not None:
             tell(engine, type="predict", choice=choice)
-        tell(engine, type="show_lesson")
-        outcome = play(engine).outcome
+        outcome = shown(engine).outcome
         assert outcome is not None
         assert (outcome.right, outcome.choice) == (right, 1)
-
-
-def test_a_drawn_prediction_is_told_how_far_off_it_was() -> None:
-    engine = begun(drawn_lesson())
-    play(engine)
-    truth = perform_round(drawn_lesson(), 0).session.simulator.truth
+    engine, truth = asked(drawn_lesson()), perform_round(drawn_lesson(), 0).session.simulator.truth
     tell(engine, type="predict", x=truth.x + 3.0, y=truth.y + 4.0)
-    tell(engine, type="show_lesson")
-    outcome = play(engine).outcome
+    outcome = shown(engine).outcome
     assert outcome is not None
     assert (outcome.right, outcome.x, outcome.y) == (False, truth.x, truth.y)
     assert outcome.distance_m == pytest.approx(5.0)
 
 
 def test_votes_count_once_for_each_voter_and_only_before_it_is_shown() -> None:
-    engine = begun(short_lesson())
-    play(engine)
+    engine = asked(short_lesson())
     for voter, choice in (("voter one", 0), ("voter two", 1), ("voter one", 1)):
-        tell(engine, type="vote", lesson="short", voter=voter, choice=choice)
+        vote(engine, voter, choice)
     assert view(engine).votes.counts == (0, 2)
     with pytest.raises(ValueError, match="the lesson is 'short' now"):
-        tell(engine, type="vote", lesson="loop", voter="voter one", choice=1)
+        vote(engine, "voter one", 1, lesson="loop")
     with pytest.raises(ValueError, match="asks for a choice, from 0 to 1"):
         tell(engine, type="predict", choice=2)
     with pytest.raises(ValueError, match="either a choice or x and y"):
         tell(engine, type="predict", choice=1, x=1.0, y=1.0)
     tell(engine, type="show_lesson")
     with pytest.raises(ValueError, match="predictions come first"):
-        tell(engine, type="vote", lesson="short", voter="voter one", choice=1)
+        vote(engine, "voter one", 1)
 
 
 def test_one_phone_cannot_take_the_places_of_all() -> None:
-    engine = begun(short_lesson())
-    play(engine)
+    engine, phone = asked(short_lesson()), "192.168.1.66"
     for number in range(MOST_FROM_ONE):
-        tell(engine, type="vote", lesson="short", voter=f"made up {number}", sender="192.168.1.66", choice=0)
+        vote(engine, f"made up {number}", 0, sender=phone)
     with pytest.raises(ValueError, match="60 have voted from this address already"):
-        tell(engine, type="vote", lesson="short", voter="made up again", sender="192.168.1.66", choice=0)
-    tell(engine, type="vote", lesson="short", voter="made up 0", sender="192.168.1.66", choice=1)  # it changes its mind
+        vote(engine, "made up again", 0, sender=phone)
+    vote(engine, "made up 0", 1, sender=phone)  # it changes its mind
     for number in range(2, 32):
-        tell(engine, type="vote", lesson="short", voter=f"pupil {number:02}", sender=f"192.168.1.{number}", choice=1)
+        vote(engine, f"pupil {number:02}", 1, sender=f"192.168.1.{number}")
     assert view(engine).votes.counts == (MOST_FROM_ONE - 1, 31)
 
 
-def test_play_lets_it_happen_too() -> None:
-    engine = begun(short_lesson())
-    play(engine)
-    tell(engine, type="resume")
-    engine.tick()
-    assert view(engine).state == "showing"
-    play(engine)
-    assert engine.run.session.state_hash() == perform_round(short_lesson(), 0).session.state_hash()
-
-
-def test_an_order_of_ones_own_breaks_it_off_and_a_setting_alters_it() -> None:
-    engine = begun(short_lesson())
-    play(engine)
-    tell(engine, type="set_parameter", name="pilot.cruise_speed", value=0.2)
-    assert (view(engine).state, view(engine).altered) == ("predict", True)
-    tell(engine, type="show_lesson")
-    engine.tick()
-    tell(engine, type="drive", speed=0.1, yaw_rate=0.0)
-    assert view(engine).state == "sandbox"
-    assert "drove the robot by hand" in view(engine).doing
-    tell(engine, type="lesson_again")
-    assert (play(engine).state, view(engine).altered, view(engine).prediction) == ("predict", False, None)
-
-
-def test_the_rounds_are_runs_of_their_own_and_play_goes_on_to_the_next() -> None:
-    engine = begun(two_rounds())
+def test_play_lets_it_happen_too_and_goes_on_to_the_next_round_which_is_a_run_of_its_own() -> None:
+    engine = asked(two_rounds())
     first = engine.run.number
-    play(engine)
-    tell(engine, type="show_lesson")
+    tell(engine, type="resume")
+    run_for(engine, 1)
+    assert view(engine).state == "showing"
     between = play(engine)
     assert (between.state, between.round, between.label, between.outcome) == ("predict", 1, "slow", None)
     assert between.doing == "slow is over; next: fast"
@@ -170,43 +158,42 @@ def test_the_rounds_are_runs_of_their_own_and_play_goes_on_to_the_next() -> None
     assert after.outcome.words == "0.4 m, then 0.7 m."
 
 
-def test_going_back_in_time_does_not_break_it() -> None:
-    lesson = short_lesson()
-    engine = begun(lesson)
-    play(engine)
+def test_an_order_of_ones_own_breaks_it_off_and_a_setting_alters_it() -> None:
+    engine = asked(short_lesson())
+    tell(engine, type="set_parameter", name="pilot.cruise_speed", value=0.2)
+    assert (view(engine).state, view(engine).altered) == ("predict", True)
+    tell(engine, type="show_lesson")
+    run_for(engine, 1)
+    tell(engine, type="drive", speed=0.1, yaw_rate=0.0)
+    assert view(engine).state == "sandbox"
+    assert "drove the robot by hand" in view(engine).doing
+    tell(engine, type="lesson_again")
+    assert (play(engine).state, view(engine).altered, view(engine).prediction) == ("predict", False, None)
+
+
+def test_going_back_in_time_does_not_break_it_and_a_branch_is_played_freely(alone: str) -> None:
+    engine = asked(short_lesson())
     tell(engine, type="seek", tick=4)
     tell(engine, type="predict", choice=0)
     assert engine.snapshot().tick == 4
     tell(engine, type="show_lesson")  # from the present
-    for _ in range(5):
-        engine.tick()
+    run_for(engine, 5)
     tell(engine, type="seek", tick=7)
     assert view(engine).state == "showing"
-    tell(engine, type="back_to_now")
-    tell(engine, type="resume")
-    play(engine)
-    assert engine.run.session.state_hash() == perform_round(lesson, 0).session.state_hash()
-
-
-def test_a_branch_is_played_freely_and_the_lesson_is_still_there_on_the_old_one() -> None:
-    engine = begun(short_lesson())
-    play(engine)
-    tell(engine, type="show_lesson")
-    for _ in range(5):
-        engine.tick()
-    tell(engine, type="seek", tick=8)
     tell(engine, type="go_on_from_here")
     assert (view(engine).state, view(engine).altered, view(engine).marks) == ("sandbox", True, ())
     tell(engine, type="change_branch", number=1)
-    assert (view(engine).state, view(engine).altered) == ("showing", False)
+    assert (view(engine).state, view(engine).altered) == ("showing", False), "it is still there on the old one"
+    tell(engine, type="seek", tick=7)
+    tell(engine, type="back_to_now")
     tell(engine, type="resume")
     play(engine)
-    assert engine.run.session.state_hash() == perform_round(short_lesson(), 0).session.state_hash()
+    assert engine.run.session.state_hash() == alone
 
 
-def test_a_reset_brings_back_the_parameters_of_before() -> None:
+def test_what_a_lesson_set_goes_with_it_and_what_somebody_set_stays() -> None:
     engine = an_engine(OFFICE)
-    before = engine.run.session.config
+    plain = engine.run.session.config
     lesson = short_lesson(scene={"world": "loop", "set": {"pilot.cruise_speed": 0.2}})
     engine.begin_lesson(Teaching(lesson, 1, engine.next_config))
     play(engine)
@@ -214,60 +201,7 @@ def test_a_reset_brings_back_the_parameters_of_before() -> None:
     play(engine)
     assert engine.run.session.config.pilot.cruise_speed == 0.2
     tell(engine, type="reset", world="office")
-    assert (engine.run.session.config, engine.snapshot().lesson) == (before, None)
-
-
-def test_a_lesson_that_does_not_fit_leaves_the_old_run() -> None:
-    engine = an_engine(OFFICE)
-    with pytest.raises(ValueError, match=r"there is no lesson .castle.; expected one of: .*kidnapped"):
-        tell(engine, type="begin_lesson", name="castle")
-    assert engine.run.number == 1
-    for command in ("show_lesson", "lesson_again", "end_lesson"):
-        with pytest.raises(ValueError, match="no lesson was begun"):
-            tell(engine, type=command)
-
-
-def test_one_of_the_catalogue_begins_by_its_name_with_another_seed() -> None:
-    engine = an_engine(OFFICE)
-    tell(engine, type="begin_lesson", name="packet", seed=7)
-    shown = play(engine)
-    assert (shown.name, shown.seed, shown.state, engine.run.session.seed) == ("packet", 7, "predict", 7)
-
-
-def test_the_scene_alone_is_the_same_as_without_a_page() -> None:
-    engine = begun(short_lesson())
-    play(engine)
-    assert engine.run.session.state_hash() == set_scene(short_lesson()).session.state_hash()
-
-
-def test_when_it_is_over_the_snap_that_it_shows_is_explained() -> None:
-    lesson = find_lesson("snap")
-    engine = begun(lesson)
-    play(engine)
-    tell(engine, type="show_lesson")
-    play(engine)
-    why = engine.snapshot().inspected
-    assert isinstance(why, m.WhyReport)
-    assert (why.kind, view(engine).state) == ("snap", "compared")
-
-
-def test_marks_lie_where_it_happened_and_go_with_the_map() -> None:
-    lesson = find_lesson("loop")
-    performance = perform_round(lesson, 0)
-    assert performance.marks is not None
-    marks = {(mark.plate, mark.words): mark for mark in performance.marks.view()}
-    closure, end = marks["office", "a loop closes"], marks["office", "it ended here"]
-    x, y = performance.session.evaluation.path[closure.tick].tolist()
-    assert (closure.x, closure.y) == pytest.approx((x, y), abs=1e-3)
-    truth, robot = performance.session.simulator.truth, performance.session.brain.experience_map.robot
-    assert (end.x, end.y) == pytest.approx((truth.x, truth.y), abs=1e-3)
-    on_map = marks["map", "it ended here"]
-    assert (on_map.x, on_map.y) == pytest.approx((robot.x, robot.y), abs=1e-3)
-
-
-def test_what_a_lesson_set_goes_with_it_and_what_somebody_set_stays() -> None:
-    engine = an_engine(OFFICE)
-    plain = engine.run.session.config
+    assert (engine.run.session.config, engine.snapshot().lesson) == (plain, None)
     lesson = find_lesson("twins")
     assert lesson.scene.engine == "paper-2005"
     engine.begin_lesson(Teaching(lesson, 1, engine.next_config))
@@ -278,3 +212,24 @@ def test_what_a_lesson_set_goes_with_it_and_what_somebody_set_stays() -> None:
     tell(engine, type="reset", world=OFFICE.name)
     wanted = plain.with_values({"local_view.learning_rate": 0.3, "robot.light": 0.8})
     assert engine.run.session.config == wanted
+
+
+def test_one_of_the_catalogue_begins_by_its_name_with_another_seed_and_what_there_is_not_leaves_the_run() -> None:
+    engine = an_engine(OFFICE)
+    with pytest.raises(ValueError, match=r"there is no lesson .castle.; expected one of: .*kidnapped"):
+        tell(engine, type="begin_lesson", name="castle")
+    for command in ("show_lesson", "lesson_again", "end_lesson"):
+        with pytest.raises(ValueError, match="no lesson was begun"):
+            tell(engine, type=command)
+    assert engine.run.number == 1
+    tell(engine, type="begin_lesson", name="packet", seed=7)
+    asks = play(engine)
+    assert (asks.name, asks.seed, asks.state, engine.run.session.seed) == ("packet", 7, "predict", 7)
+
+
+def test_when_it_is_over_the_snap_that_it_shows_is_explained() -> None:
+    engine = asked(find_lesson("snap"))
+    assert shown(engine).state == "compared"
+    why = engine.snapshot().inspected
+    assert isinstance(why, m.WhyReport)
+    assert why.kind == "snap"

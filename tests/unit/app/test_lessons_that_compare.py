@@ -20,31 +20,30 @@ SCENE, SHOW = SHORT["scene"], SHORT["show"]
 TWO = {**SCENE, "compare": "papers"}
 
 
-def from_the_beginning(**changes: object) -> Lesson:
+def from_the_beginning() -> Lesson:
     words = "{experiences of ours} and {experiences of paper-2006} after {path_m}."
-    return short_lesson(scene={**SCENE, "compare": "papers"}, outcome=words, **changes)
-
-
-def from_now_on() -> Lesson:
-    words = "{views_new of with vision} and {views_new of without vision}."
-    return short_lesson(show={**SHOW, "compare": "vision"}, outcome=words)
+    return short_lesson(scene=TWO, outcome=words)
 
 
 def test_both_begin_with_the_scene_and_the_first_runs_as_without_the_second() -> None:
-    (alone,), (one,) = perform(short_lesson()), perform(from_the_beginning())
-    assert one.session.companion is not None
-    assert (one.session.companion.since_s, one.session.companion.name) == (0.0, "paper-2006")
-    assert one.session.state_hash() == alone.session.state_hash()
-    assert one.values == alone.values
-    (second, measured), (first, values) = rounds_of([one])
-    assert (second, first, values) == ("paper-2006", "ours", one.values)
+    (alone,), report = perform(short_lesson()), report_of(from_the_beginning())
+    (one,) = report.performances
+    second = one.session.companion
+    assert second is not None
+    assert (second.since_s, second.name) == (0.0, "paper-2006")
+    assert (one.session.state_hash(), one.values) == (alone.session.state_hash(), alone.values)
+    (label, measured), (first, values) = rounds_of([one])
+    assert (label, first, values) == ("paper-2006", "ours", one.values)
     assert tuple(measured) == OF_SECOND
     assert set(OF_SECOND) < set(MEASURED)
-    assert measured["experiences"] == len(one.session.companion.brain.experience_map) > 0
+    assert measured["experiences"] == len(second.brain.experience_map) > 0
+    assert report.kept
+    assert [line.split(":")[0] for line in report.lines if "error_m" in line] == ["paper-2006", "ours"]
 
 
 def test_a_copy_begins_when_it_is_shown_and_its_measures_count_from_there() -> None:
-    (one,) = perform(from_now_on())
+    words = "{views_new of with vision} and {views_new of without vision}."
+    (one,) = perform(short_lesson(show={**SHOW, "compare": "vision"}, outcome=words))
     assert one.session.companion is not None
     assert one.session.companion.since_s == pytest.approx(one.scene_ticks * 0.1)
     (_, second), (_, first) = rounds_of([one])
@@ -69,15 +68,8 @@ def test_one_addition_can_be_missing_by_its_name() -> None:
     assert [label for label, _ in rounds_of([one])] == ["without carry", "ours"]
 
 
-def test_it_is_told_what_came_of_both() -> None:
-    report = report_of(from_the_beginning())
-    assert report.kept
-    assert [line.split(":")[0] for line in report.lines if "error_m" in line] == ["paper-2006", "ours"]
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
+def test_what_cannot_be_compared_is_told_in_a_sentence(subtests: pytest.Subtests) -> None:
+    for changes, words in [
         ({"scene": TWO, "outcome": "{error_m of theirs}"}, "there is no brain 'theirs'; it must be one of: ours, paper"),
         ({"scene": TWO, "outcome": "{snaps of paper-2006}"}, "of a second brain only error_m, "),
         ({"scene": {**SCENE, "compare": "cells-64"}}, "nothing would differ"),
@@ -85,11 +77,9 @@ def test_it_is_told_what_came_of_both() -> None:
         ({"show": {**SHOW, "compare": "cells"}}, "'cells' changes pose_cells.n_x, which a running brain cannot"),
         ({"scene": TWO, "show": {**SHOW, "compare": "vision"}}, "give it once"),
         ({"scene": TWO, "rounds": [{"label": "a"}, {"label": "b"}]}, "no rounds beside it"),
-    ],
-)  # fmt: skip
-def test_what_cannot_be_compared_is_told_in_a_sentence(changes: dict[str, object], words: str) -> None:
-    with pytest.raises(ValueError, match=words):
-        short_lesson(**changes)
+    ]:
+        with subtests.test(words=words), pytest.raises(ValueError, match=words):
+            short_lesson(**changes)
 
 
 def test_what_is_compared_from_a_lesson_begins_as_the_lesson_did_and_takes_its_settings_along() -> None:
@@ -117,13 +107,9 @@ def test_on_the_page_both_stand_there_once_more_too_and_who_ends_it_breaks_it_of
     assert engine.run.session.companion is not None
     while engine.run.lesson is not None and engine.run.lesson.state == "scene":
         engine.tick()
-    tell(engine, type="show_lesson")
-    engine.tick()
-    tell(engine, type="end_comparison")
-    engine.tick()
-    lesson = engine.snapshot().lesson
+    for command in ("show_lesson", "end_comparison"):
+        tell(engine, type=command)
+        engine.tick()
+    lesson, words = engine.snapshot().lesson, "broken off: it cannot go on: the second brain is no longer there"
     assert lesson is not None
-    assert (lesson.state, lesson.doing) == (
-        "sandbox",
-        "broken off: it cannot go on: the second brain is no longer there",
-    )
+    assert (lesson.state, lesson.doing) == ("sandbox", words)

@@ -1,4 +1,5 @@
-"""Marks of lessons among the pose cells: a packet put in, where two merged, a snap, how far a packet got."""
+"""Marks of lessons: where it happened in the office and on the map, and among the pose cells a packet put in, where two merged,
+a snap, how far a packet got."""
 
 from __future__ import annotations
 
@@ -11,13 +12,25 @@ from web.messages import LessonMark
 pytestmark = pytest.mark.slow
 
 
-def among_cells(performance: Performance) -> dict[str, LessonMark]:
+def marks_on(plate: str, performance: Performance) -> dict[str, LessonMark]:
     assert performance.marks is not None
-    return {mark.words: mark for mark in performance.marks.view() if mark.plate == "cells"}
+    return {mark.words: mark for mark in performance.marks.view() if mark.plate == plate}
+
+
+def test_they_lie_where_it_happened_and_go_with_the_map() -> None:
+    performance = perform_round(find_lesson("loop"), 0)
+    session, office = performance.session, marks_on("office", performance)
+    closure, end, on_map = office["a loop closes"], office["it ended here"], marks_on("map", performance)["it ended here"]
+    truth, robot = session.simulator.truth, session.brain.experience_map.robot
+    for mark, (x, y) in [
+        (closure, session.evaluation.path[closure.tick].tolist()), (end, (truth.x, truth.y)), (on_map, (robot.x, robot.y)),
+    ]:  # fmt: skip
+        assert (mark.x, mark.y) == pytest.approx((x, y), abs=1e-3)
+    assert marks_on("cells", performance) == {}, "a lesson about something else"
 
 
 def test_a_packet_is_marked_where_it_is_put_and_the_winner_from_where_it_was_to_where_it_ends() -> None:
-    near, far = (among_cells(perform_round(find_lesson("merge"), number)) for number in (0, 1))
+    near, far = (marks_on("cells", perform_round(find_lesson("merge"), number)) for number in (0, 1))
     assert set(far) == {"a packet put in", "it ended here"}
     put, end = far["a packet put in"], far["it ended here"]
     assert end.start is not None
@@ -32,23 +45,18 @@ def test_a_packet_is_marked_where_it_is_put_and_the_winner_from_where_it_was_to_
 @pytest.mark.parametrize("name", ["packet", "carry"])
 def test_the_way_of_a_packet_is_as_long_as_what_is_measured(name: str) -> None:
     performance = perform_round(find_lesson(name), 0)
-    end = among_cells(performance)["it ended here"]
-    cells = performance.session.brain.pose_cells
+    end = marks_on("cells", performance)["it ended here"]
     assert performance.values is not None
     assert end.start is not None
-    way = cells.cells_apart(*end.start[:2], end.x, end.y)
+    way = performance.session.brain.pose_cells.cells_apart(*end.start[:2], end.x, end.y)
     assert way == pytest.approx(performance.values["cells_moved"], abs=0.01)
     assert way > 1
 
 
 def test_a_snap_goes_from_packet_to_packet() -> None:
     performance = perform_round(find_lesson("snap"), 0)
-    snap, last = among_cells(performance)["a snap"], performance.history.events.last_snap
+    snap, last = marks_on("cells", performance)["a snap"], performance.history.events.last_snap
     assert last is not None
     assert (snap.x, snap.y) == pytest.approx((last.end.x, last.end.y), abs=1e-3)
     assert snap.start == pytest.approx((last.start.x, last.start.y, last.start.heading_rad), abs=1e-3)
     assert performance.session.brain.pose_cells.cells_apart(*snap.start[:2], snap.x, snap.y) >= 3  # type: ignore[index]
-
-
-def test_a_lesson_about_something_else_has_none() -> None:
-    assert among_cells(perform_round(find_lesson("believes"), 0)) == {}
