@@ -15,6 +15,14 @@ from tests.unit.ratslam_core import literal
 from .pilots import DT, NEAR, STILL, USUAL
 
 
+@pytest.fixture(params=[False, True], ids=["compiled", "interpreted"])
+def interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> bool:
+    """Each law holds for the machine code and for the Python that it is made of."""
+    if request.param:
+        literal.interpret(local_movement, monkeypatch)
+    return request.param
+
+
 def sensed(*echoes: tuple[float, float]) -> LocalMovement:
     """Obstacles at these places: bearing and distance."""
     local = LocalMovement(np.array([bearing for bearing, _ in echoes]), USUAL.echo_s)
@@ -30,33 +38,21 @@ def arc(speed: float, yaw_rate: float, seconds: float) -> list[tuple[float, floa
     return places
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
-@pytest.mark.parametrize("bearing", [0.0, 0.5, -0.5, 1.2, -1.2, 3.0])
-def test_free_floor_is_crossed_towards_the_target(
-    bearing: float, interpreted: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    if interpreted:
-        literal.interpret(local_movement, monkeypatch)
+@pytest.mark.usefixtures("interpreted")
+def test_free_floor_is_crossed_towards_the_target() -> None:
     local = sensed((0.0, 5.0))
-    x, y = 1.5 * math.cos(bearing), 1.5 * math.sin(bearing)
-    speed, yaw_rate = local.towards(x, y, USUAL)
-    assert 0 <= speed <= 0.36
-    assert abs(yaw_rate) <= 1.0
-    if bearing == 0.0:
-        assert (speed, yaw_rate) == (0.36, 0.0)
-    else:
-        assert math.copysign(1.0, yaw_rate) == math.copysign(1.0, bearing)
-    if bearing == 3.0:
-        assert speed <= 0.11  # to go back, it turns first
+    for bearing in (0.0, 0.5, -0.5, 1.2, -1.2, 3.0):
+        speed, yaw_rate = local.towards(1.5 * math.cos(bearing), 1.5 * math.sin(bearing), USUAL)
+        assert 0 <= speed <= (0.11 if bearing == 3.0 else 0.36), bearing  # to go back, it turns first
+        assert abs(yaw_rate) <= 1.0
+        if bearing == 0.0:
+            assert (speed, yaw_rate) == (0.36, 0.0)
+        else:
+            assert math.copysign(1.0, yaw_rate) == math.copysign(1.0, bearing)
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
 @pytest.mark.parametrize("seed", range(6))
-def test_the_chosen_arc_keeps_clear_of_all_echoes(
-    seed: int, interpreted: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    if interpreted:
-        literal.interpret(local_movement, monkeypatch)
+def test_the_chosen_arc_keeps_clear_of_all_echoes(seed: int, interpreted: bool) -> None:
     rng = np.random.default_rng(seed)
     for _ in range(6 if interpreted else 60):
         echoes = [(float(b), float(d)) for b, d in zip(rng.uniform(-2, 2, 8), rng.uniform(0.3, 1.5, 8), strict=True)]
@@ -74,22 +70,16 @@ def test_a_wall_close_ahead_is_turned_from() -> None:
     assert abs(yaw_rate) >= 0.5
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_the_free_way_is_the_distance_less_the_clearance(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    if interpreted:
-        literal.interpret(local_movement, monkeypatch)
+@pytest.mark.usefixtures("interpreted")
+def test_the_free_way_is_the_distance_less_the_clearance() -> None:
     local = sensed((0.0, 1.0), (math.pi / 2, 0.5), (3.0, 2.0))
-    assert local.free_way(0.0, USUAL) == pytest.approx(0.73)
-    assert local.free_way(math.pi / 2, USUAL) == pytest.approx(0.23)
-    assert local.free_way(-math.pi / 2, USUAL) == pytest.approx(1.6)
-    assert local.free_way(3.0, USUAL) == pytest.approx(1.6)  # farther than it looks
+    for bearing, way in [(0.0, 0.73), (math.pi / 2, 0.23), (-math.pi / 2, 1.6), (3.0, 1.6)]:  # 3: farther than it looks
+        assert local.free_way(bearing, USUAL) == pytest.approx(way)
     assert sensed((0.0, 0.1)).free_way(0.0, USUAL) == 0.0
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_echoes_are_carried_along_and_forgotten(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    if interpreted:
-        literal.interpret(local_movement, monkeypatch)
+@pytest.mark.usefixtures("interpreted")
+def test_echoes_are_carried_along_and_forgotten() -> None:
     local = LocalMovement(np.array([0.0, 0.7]), USUAL.echo_s)
     local.sense(np.array([1.2, 5.0], np.float32), STILL, NEAR)
     nothing = np.array([5.0, 5.0], np.float32)
@@ -123,11 +113,9 @@ def test_echoes_are_remembered_for_as_long_at_every_rate(rate: int) -> None:
     assert known == sorted(known, reverse=True)
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_the_gap_beside_the_point_is_headed_for(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.usefixtures("interpreted")
+def test_the_gap_beside_the_point_is_headed_for() -> None:
     """The map has the point half a metre beside a door: the robot heads for the door, not for the jamb."""
-    if interpreted:
-        literal.interpret(local_movement, monkeypatch)
     jamb = [(math.atan2(y, 0.6), math.hypot(0.6, y)) for y in (-0.3, -0.2, -0.1, 0.0, 0.1, 0.9, 1.0)]
     local = sensed(*jamb)  # the gap is between 0.1 and 0.9
     x, y = local.gap_towards(1.2, 0.0, USUAL)

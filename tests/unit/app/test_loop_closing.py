@@ -32,63 +32,67 @@ def almost_round() -> HandMadeMap:
     return map_
 
 
-def choose(closer: LoopCloser, map_: HandMadeMap, ranges: np.ndarray = FAR, now_s: float = 1000.0) -> bool:
+def chooses(map_: HandMadeMap, closer: LoopCloser, ranges: np.ndarray = FAR, now_s: float = 1000.0) -> bool:
     times = map_.temporal_map.times_to(map_.active)
     return closer.choose(map_, ranges, times, now_s, USUAL)  # type: ignore[arg-type]
 
 
-def test_known_ground_that_is_far_by_the_links_is_driven_along() -> None:
+def closing() -> tuple[HandMadeMap, LoopCloser]:
+    """A robot that has chosen to close its loop."""
     map_, closer = almost_round(), LoopCloser(ANGLES)
-    assert choose(closer, map_)
+    assert chooses(map_, closer)
+    return map_, closer
+
+
+def aim_of(closer: LoopCloser, map_: HandMadeMap) -> tuple[tuple[float, float] | None, bool]:
+    return closer.aim(map_, USUAL)  # type: ignore[arg-type]
+
+
+def test_known_ground_that_is_far_by_the_links_is_driven_along() -> None:
+    map_, closer = closing()
     road = map_.poses[closer.road]
     assert road[0, 0] == 0.0  # the nearest of it
     assert (np.diff(road[:, 0]) > USUAL.far_m).all()
     assert (road[:, 1] == 0.0).all()
     assert road[-1, 0] > 20.0
     while map_.robot.x < road[-1, 0] - USUAL.far_m / 2:
-        aim, _ = closer.aim(map_, USUAL)  # type: ignore[arg-type]
+        aim, _ = aim_of(closer, map_)
         assert aim is not None
         assert abs(math.atan2(aim[1], aim[0])) < 0.01  # straight on
         map_.robot = Pose2(map_.robot.x + 0.5, 0.0, 0.0)
-    assert closer.aim(map_, USUAL) == (None, False)  # type: ignore[arg-type]
+    assert aim_of(closer, map_) == (None, False)
 
 
 def test_along_the_road_the_direction_counts_more_than_the_place() -> None:
     """The map is off by 2 m: the robot drives beside the road, and only leans towards it."""
-    map_, closer = almost_round(), LoopCloser(ANGLES)
-    assert choose(closer, map_)
+    map_, closer = closing()
     map_.robot = Pose2(0.0, 2.0, 0.0)
-    closer.aim(map_, USUAL)  # type: ignore[arg-type]
-    aim, _ = closer.aim(map_, USUAL)  # type: ignore[arg-type]
+    aim_of(closer, map_)
+    aim, _ = aim_of(closer, map_)
     assert aim is not None
     assert aim[0] > 1.0
     assert -USUAL.middle_m - 1e-9 <= aim[1] < 0.0
 
 
 def test_a_closed_loop_ends_it() -> None:
-    map_, closer = almost_round(), LoopCloser(ANGLES)
-    assert choose(closer, map_)
+    map_, closer = closing()
     map_.links = np.concatenate([map_.links, [(0, len(map_) - 1)]])  # recognised
     map_.link_times = np.append(map_.link_times, 15.0)
     map_.robot = Pose2(0.0, 0.0, 0.0)
-    closer.aim(map_, USUAL)  # type: ignore[arg-type]
-    assert closer.aim(map_, USUAL) == (None, False)  # type: ignore[arg-type]
-
-
-def test_known_ground_near_by_the_links_is_no_loop() -> None:
-    map_ = HandMadeMap(*chain((0.0, 0.0), (25.0, 0.0)))
-    map_.robot = Pose2(20.0, 0.0, math.pi)
-    assert not choose(LoopCloser(ANGLES), map_)
+    aim_of(closer, map_)
+    assert aim_of(closer, map_) == (None, False)
 
 
 def test_what_the_sonars_do_not_see_is_no_loop() -> None:
-    """A wall stands between."""
-    assert not choose(LoopCloser(ANGLES), almost_round(), np.full(8, 2.0, np.float32))
+    """A wall stands between. Nor is known ground one that is near by the links."""
+    assert not chooses(almost_round(), LoopCloser(ANGLES), np.full(8, 2.0, np.float32))
+    map_ = HandMadeMap(*chain((0.0, 0.0), (25.0, 0.0)))
+    map_.robot = Pose2(20.0, 0.0, math.pi)
+    assert not chooses(map_, LoopCloser(ANGLES))
 
 
 def test_it_is_not_tried_again_at_once() -> None:
-    map_, closer = almost_round(), LoopCloser(ANGLES)
-    assert choose(closer, map_)
+    map_, closer = closing()
     closer.stop()
-    assert not choose(closer, map_, now_s=1000.0 + USUAL.loop_again_s - 1.0)
-    assert choose(closer, map_, now_s=1000.0 + USUAL.loop_again_s + 1.0)
+    assert not chooses(map_, closer, now_s=1000.0 + USUAL.loop_again_s - 1.0)
+    assert chooses(map_, closer, now_s=1000.0 + USUAL.loop_again_s + 1.0)

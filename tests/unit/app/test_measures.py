@@ -10,7 +10,7 @@ import pytest
 from app.config import Config, Value
 from app.session import Session
 from app.trials.course import Course
-from app.trials.measures import MEASURES, Measure
+from app.trials.measures import MEASURES
 from app.trials.scores import scores_of
 from app.trials.steps import Drive, Explore, Kidnap, Move, Step, Tag, Visit, Wait
 from app.trials.trial import watched
@@ -27,19 +27,21 @@ def measured(
 ) -> tuple[dict[str, float], Course]:
     config = Config().with_values({**IDEAL, **{name.replace("__", "."): value for name, value in values.items()}})
     course = Course(Session(load_world(world), seed, config), steps)
-    measures: list[Measure] = [MEASURES[name](course) for name in names]
+    measures = [MEASURES[name](course) for name in names]
     watched(course, measures)
-    scores: dict[str, float] = {}
-    for measure in measures:
-        scores.update(measure.scores())
-    return scores, course
+    return {name: score for measure in measures for name, score in measure.scores().items()}, course
 
 
-def test_measuring_changes_nothing() -> None:
+def test_measuring_changes_nothing_and_scores_are_those_of_the_judges() -> None:
     steps = Explore(do="explore", minutes=0.5), Kidnap(do="kidnap"), Explore(do="explore", minutes=0.5)
-    _, alone = measured([], *steps)
-    _, with_all = measured(list(MEASURES), *steps)
+    (_, alone), (_, with_all) = measured([], *steps), measured(list(MEASURES), *steps)
     assert alone.session.state_hash() == with_all.session.state_hash()
+    scores, evaluation = scores_of(alone), alone.session.evaluation
+    assert scores["kidnaps"] == 1.0
+    assert scores["recovered"] == float(evaluation.kidnaps[0].after_s is not None)
+    assert scores["error_m"] == evaluation.errors(alone.session.brain.experience_map)[0]
+    assert "goals" not in scores
+    assert all(math.isfinite(value) for value in scores.values())
 
 
 def test_without_errors_the_packet_ends_where_the_moves_lead() -> None:
@@ -60,11 +62,10 @@ def test_the_turn_of_the_cells_is_that_of_the_robot_less_the_bias() -> None:
 
 
 def test_a_robot_that_drove_everywhere_has_covered_the_floor() -> None:
-    none, _ = measured(["covered"], Move(do="move", moves=[(0, 10, 1)]))
-    half, _ = measured(["covered"], Drive(do="drive", path=LAPS[:2]))
-    full, _ = measured(["covered"], Drive(do="drive", path=[*LAPS, "home"]))
-    assert none["covered"] < half["covered"] < full["covered"]
-    assert full["covered"] > 0.95
+    ways = Move(do="move", moves=[(0, 10, 1)]), Drive(do="drive", path=LAPS[:2]), Drive(do="drive", path=[*LAPS, "home"])
+    none, half, full = (measured(["covered"], way)[0]["covered"] for way in ways)
+    assert none < half < full
+    assert full > 0.95
 
 
 def test_ways_out_and_back_lie_together_where_the_map_is_right() -> None:
@@ -84,16 +85,21 @@ def test_ways_out_and_back_lie_together_where_the_map_is_right() -> None:
     assert scores["ways_apart_at_most_m"] == pytest.approx(max(pairs))
 
 
-def test_the_way_taken_is_that_of_the_last_visit() -> None:
-    steps = (
+def test_of_a_visit_the_way_taken_the_arbitration_and_the_routes_of_the_goal_memory_are_measured() -> None:
+    """The way is that of the last visit; the chosen movement ends nearer to the route than the others; and the routes stay when
+    a weight changes by a fifth."""
+    scores, course = measured(
+        ["way taken", "arbitration", "goal memory routes"],
         Tag(do="tag", places=["north-west corner", "north-east corner"]),
         Drive(do="drive", path=[*LAPS, *LAPS, "north-east corner"]),
         Visit(do="visit", places=["north-east corner", "north-west corner"], timeout_s=120),
     )
-    scores, course = measured(["way taken"], *steps)
     path = course.session.evaluation.path[round(course.visits[-1].began_s * 10) :, 1]
     middle = sum(course.session.world.bounds[1::2]) / 2
     assert scores["lower_way"] == pytest.approx(np.mean(path < middle))
+    assert scores["chosen_off_m"] < scores["others_off_m"]
+    assert scores["route_cells"] > 3
+    assert scores["route_off_m"] < 0.5
 
 
 def test_consistency_is_the_longest_time_off() -> None:
@@ -107,28 +113,12 @@ def test_consistency_is_the_longest_time_off() -> None:
     assert wrong["farthest_off_m"] == pytest.approx(4.5, abs=0.4)
 
 
-def test_the_chosen_movement_ends_nearer_to_the_route_than_the_others() -> None:
-    scores, _ = measured(
-        ["arbitration"],
-        Tag(do="tag", places=["north-west corner"]),
-        Drive(do="drive", path=[*LAPS, *LAPS]),
-        Visit(do="visit", places=["north-west corner"], timeout_s=120),
-    )
-    assert scores["chosen_off_m"] < scores["others_off_m"]
-
-
 def test_false_and_true_snaps_are_all_snaps() -> None:
     """Where a single look moves the packet, and it was carried unseen, it jumps often."""
     eager: dict[str, Value] = {"local_view__capped": False, "local_view__rest": 0.0, "local_view__learn_first": True}
-    explore = Explore(do="explore", minutes=3)
+    explore, carried = Explore(do="explore", minutes=3), Kidnap(do="kidnap", least_m=3)
     scores, course = measured(
-        ["false snaps"],
-        explore,
-        Kidnap(do="kidnap", least_m=3),
-        explore,
-        world="office",
-        kidnap__enabled=False,
-        **eager,
+        ["false snaps"], explore, carried, explore, world="office", kidnap__enabled=False, **eager
     )
     assert 1 <= scores["false_snaps"] + scores["true_snaps"] <= course.session.brain.relocalisations
 
@@ -147,24 +137,7 @@ def test_packets_are_counted_while_they_compete() -> None:
     far = np.array([(round(here.y) + n_y // 2) % n_y * n_x + (round(here.x) + n_x // 2) % n_x], np.int32)
     cells.inject(far, np.array([0.5], np.float32))
     cells.settle()
-    packets.note()
-    assert packets.scores() == {"packets_at_most": 2.0, "rival_s": pytest.approx(session.frame.dt)}
-    cells.place(round(here.x) % n_x, round(here.y) % n_y, 0)
-    packets.note()
-    assert packets.scores() == {"packets_at_most": 2.0, "rival_s": pytest.approx(session.frame.dt)}
-
-
-def test_scores_are_those_of_the_judges() -> None:
-    _, course = measured([], Explore(do="explore", minutes=1), Kidnap(do="kidnap"), Explore(do="explore", minutes=1))
-    scores, evaluation = scores_of(course), course.session.evaluation
-    assert scores["kidnaps"] == 1.0
-    assert scores["recovered"] == float(evaluation.kidnaps[0].after_s is not None)
-    assert scores["error_m"] == evaluation.errors(course.session.brain.experience_map)[0]
-    assert "goals" not in scores
-    assert all(math.isfinite(value) for value in scores.values())
-
-
-def test_routes_of_the_goal_memory_stay_when_a_weight_changes_by_a_fifth() -> None:
-    scores, _ = measured(["goal memory routes"], Drive(do="drive", path=[*LAPS, *LAPS[:2]]))
-    assert scores["route_cells"] > 3
-    assert scores["route_off_m"] < 0.5
+    for _ in range(2):
+        packets.note()
+        assert packets.scores() == {"packets_at_most": 2.0, "rival_s": pytest.approx(session.frame.dt)}
+        cells.place(round(here.x) % n_x, round(here.y) % n_y, 0)
