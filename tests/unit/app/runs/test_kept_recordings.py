@@ -13,25 +13,23 @@ from PIL import Image
 from app.cli.command_line import main
 from app.cli.earlier import cut_off_run
 from app.commands import carry_out
-from app.engine.engine import Engine
-from app.engine.pace import Pace
-from app.engine.watchdog import Watchdog
 from app.recordings import fingerprint as prints
 from app.recordings.fingerprint import fingerprint
 from app.recordings.opening import open_recording
 from app.recordings.playing import Player
 from app.runs.folder import LINES, STATE, all_runs
-from app.runs.keeper import RunKeeper
 from app.runs.replay import ReplayError, newest_state, replay, resumed
 from app.runs.run_file import KeptRun, open_run
-from sim2d import load_world
-from tests.unit.app.engines import tell
+from tests.unit.app.engines import run_for, tell
 from tests.unit.app.made_recordings import recorded
+from tests.unit.app.sessions import OFFICE
 from web import messages as m
+
+from .kept import Keeping
 
 pytestmark = pytest.mark.slow
 
-OFFICE, MOMENTS = load_world("office"), 120
+MOMENTS = 120
 
 
 @pytest.fixture(scope="module")
@@ -56,69 +54,69 @@ def copy(drive: Path, tmp_path: Path) -> Path:
 @pytest.fixture(autouse=True)
 def _runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path / "runs"))
+    for module in ("runs", "export"):
+        monkeypatch.setattr(f"app.cli.{module}.compile_first", lambda: None)
 
 
-class Kept:
-    """An engine whose runs keep themselves."""
-
-    def __init__(self) -> None:
-        self.complaints: list[str] = []
-        self.keeper = RunKeeper(self.complaints.append)
-        self.keeper.start()
-        self.engine = Engine(
-            OFFICE, Pace(0.0), Watchdog(1e9, lambda: None), running=False, answer=lambda *_: None, keeper=self.keeper
-        )
-
-    def play(self, path: Path, ticks: int) -> None:
-        self.engine.begin_recording(Player(open_recording(path), 1, path=path))
-        self.run_for(ticks)
-
-    def run_for(self, ticks: int) -> None:
-        for _ in range(ticks):
-            self.engine.tick()
-
-    def stop(self) -> str:
-        """The hash at its end."""
-        self.keeper.stop()
-        return self.engine.run.session.state_hash()
+def playing(path: Path, ticks: int, *, again: bool = True) -> Keeping:
+    """again: it can be opened again, where it lies."""
+    kept = Keeping(begins=False)
+    kept.engine.begin_recording(Player(open_recording(path), 1, path=path if again else None))
+    run_for(kept.engine, ticks)
+    return kept
 
 
 def keep_one(path: Path, ticks: int = 100, told: bool = True) -> tuple[KeptRun, str]:
-    kept = Kept()
-    kept.play(path, ticks // 2)
+    kept = playing(path, ticks // 2)
     if told:
         tell(kept.engine, type="set_parameter", name="pose_cells.inhibit", value=0.0021)
         tell(kept.engine, type="tag", name="here")
-    kept.run_for(ticks - ticks // 2)
+    run_for(kept.engine, ticks - ticks // 2)
     end = kept.stop()
-    assert kept.complaints == []
     return open_run("last"), end
 
 
-def test_it_comes_out_the_same(drive: Path, capsys, monkeypatch: pytest.MonkeyPatch) -> None:
-    run, end = keep_one(drive)
+@pytest.fixture(scope="module")
+def whole(drive: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """A folder of runs with one that saved its state each second, and how that ended."""
+    folder = tmp_path_factory.mktemp("runs")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("RATSLAM_RUNS", str(folder))
+        patch.setattr("app.runs.states.SAVE_EVERY_S", 1.0)
+        patch.setattr("app.runs.states.SAVE_PAUSE_S", 0.0)
+        return folder, keep_one(drive)[1]
+
+
+@pytest.fixture
+def run(whole: tuple[Path, str], tmp_path: Path) -> KeptRun:
+    """That run, in a copy that a test may change."""
+    shutil.copytree(whole[0], tmp_path / "runs")
+    return open_run("last")
+
+
+def test_it_comes_out_the_same_and_says_so_if_not(
+    run: KeptRun, whole: tuple[Path, str], capsys: pytest.CaptureFixture[str]
+) -> None:
     assert (run.last_tick, run.end, run.header.world_name) == (100, "the program ended", "drive")
     assert run.length_s == pytest.approx(10.0)
     assert [(order.tick, order.name) for order in run.orders] == [(50, "set_parameters"), (50, "tag")]
     assert run.hashes
-    assert replay(run).state_hash() == end
-    monkeypatch.setattr("app.cli.runs.compile_first", lambda: None)
+    assert replay(run).state_hash() == whole[1]
     assert main(["runs", "--json"]) == 0
     row = json.loads(capsys.readouterr().out)
     assert (row["world"], row["ticks"], row["state"]) == ("drive", 100, "complete")
     assert main(["replay", run.name]) == 0
     assert capsys.readouterr().out.startswith("same: 100 ticks, 2 orders")
+    run.orders = []
+    with pytest.raises(ReplayError, match="comes out differently from tick 5"):
+        replay(run)
 
 
-def test_it_goes_on_from_its_newest_state(drive: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.runs.states.SAVE_EVERY_S", 1.0)
-    monkeypatch.setattr("app.runs.states.SAVE_PAUSE_S", 0.0)
-    run, end = keep_one(drive)
+def test_it_goes_on_from_its_newest_state(run: KeptRun, whole: tuple[Path, str]) -> None:
     state = newest_state(run)
     assert state is not None
     assert state.tick_count in run.hashes
-    again = resumed(run)
-    assert again.state_hash() == end
+    assert resumed(run).state_hash() == whole[1]
     run.hashes[state.tick_count] = "another"
     assert newest_state(run) is None, "a state that the run does not know is not taken up"
     (run.folder / STATE).write_bytes(b"PK")
@@ -126,52 +124,49 @@ def test_it_goes_on_from_its_newest_state(drive: Path, monkeypatch: pytest.Monke
 
 
 def test_cut_off_it_is_offered_and_goes_on_to_the_same_end(drive: Path) -> None:
-    straight = Kept()
-    straight.play(drive, MOMENTS - 1)
-    end = straight.engine.run.session.state_hash()
-    straight.keeper.stop()
-    run, _ = keep_one(drive, 60, told=False)
-    path = run.folder / LINES
+    straight = playing(drive, MOMENTS - 1, again=False)
+    end = straight.stop()
+    assert all_runs() == [], "what cannot be opened again plays without being kept"
+    first, _ = keep_one(drive, 60, told=False)
+    path = first.folder / LINES
     path.write_bytes(path.read_bytes()[:-10])  # as if it had been killed
     cut_off = cut_off_run()
     assert cut_off is not None
-    assert (cut_off.name, cut_off.last_tick, cut_off.end) == (run.name, 60, "")
-    kept = Kept()
-    kept.engine.begin(OFFICE, 1, straight.engine.next_config)
-    config = kept.engine.run.session.config
-    assert carry_out(kept.engine, m.GoOn(cut_off, resumed(cut_off))) == m.Accepted(60)
-    kept.run_for(MOMENTS - 61)
-    assert kept.engine.run.session.over
-    tell(kept.engine, type="seek", tick=70)
-    tell(kept.engine, type="back_to_now")
+    assert (cut_off.name, cut_off.last_tick, cut_off.end) == (first.name, 60, "")
+    kept = Keeping(begins=False)
+    engine = kept.engine
+    engine.begin(OFFICE, 1, straight.engine.next_config)
+    config = engine.run.session.config
+    assert carry_out(engine, m.GoOn(cut_off, resumed(cut_off))) == m.Accepted(60)
+    run_for(engine, MOMENTS - 61)
+    assert engine.run.session.over
+    tell(engine, type="seek", tick=70)
+    tell(engine, type="back_to_now")
     assert kept.stop() == end
-    whole = open_run(run.folder)
+    whole = open_run(first.folder)
     assert (whole.last_tick, whole.again[0][0]) == (MOMENTS - 1, 60)
-    tell(kept.engine, type="reset", world="office")
-    assert kept.engine.run.session.config == config
+    tell(engine, type="reset", world="office")
+    assert engine.run.session.config == config
 
 
 def test_a_branch_is_a_run_of_its_own(drive: Path) -> None:
-    kept = Kept()
-    kept.play(drive, 80)
-    tell(kept.engine, type="seek", tick=30)
+    kept = playing(drive, 40)
+    tell(kept.engine, type="seek", tick=20)
     tell(kept.engine, type="go_on_from_here")
     tell(kept.engine, type="set_parameter", name="pose_cells.inhibit", value=0.003)
-    kept.run_for(20)
+    run_for(kept.engine, 10)
     end = kept.stop()
-    assert kept.complaints == []
-    assert sorted(open_run(folder).last_tick for folder in all_runs()) == [50, 80]
-    branch = next(run for folder in all_runs() if (run := open_run(folder)).last_tick == 50)
-    assert replay(branch).state_hash() == end
+    runs = {run.last_tick: run for run in map(open_run, all_runs())}
+    assert set(runs) == {30, 40}
+    assert replay(runs[30]).state_hash() == end
 
 
 def test_a_recording_that_has_moved_or_changed_is_a_sentence(copy: Path) -> None:
     run, _ = keep_one(copy, 20)
     elsewhere = copy.with_name("elsewhere")
     copy.rename(elsewhere)
-    with pytest.raises(
-        ValueError, match=f"the run {run.name} plays the recording .*drive, which is not there any more"
-    ):
+    moved = f"the run {run.name} plays the recording .*drive, which is not there any more"
+    with pytest.raises(ValueError, match=moved):
         resumed(run)
     elsewhere.rename(copy)
     assert replay(run).tick_count == 20
@@ -181,64 +176,34 @@ def test_a_recording_that_has_moved_or_changed_is_a_sentence(copy: Path) -> None
         resumed(run)
 
 
-def test_a_run_that_comes_out_differently_says_so(drive: Path) -> None:
-    run, _ = keep_one(drive, 40)
-    run.orders = []
-    with pytest.raises(ReplayError, match="comes out differently from tick 2"):
-        replay(run)
+def test_it_can_be_had_in_the_formats_that_need_no_office(
+    run: KeptRun, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def export(to: str) -> tuple[int, list[str]]:
+        answer = main(["export", run.name, "--to", to, "--out", str(tmp_path / f"out.{to}")])
+        return answer, sorted(path.name for path in tmp_path.glob(f"out*.{to}"))
 
-
-def test_what_cannot_be_opened_again_plays_without_being_kept(drive: Path) -> None:
-    kept = Kept()
-    kept.engine.begin_recording(Player(open_recording(drive), 1))
-    kept.run_for(20)
-    kept.stop()
-    assert kept.complaints == []
-    assert all_runs() == []
-
-
-# ------------------------------------------------------------ exports
-
-
-def test_it_can_be_had_in_the_formats_that_need_no_office(drive: Path, tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr("app.cli.export.compile_first", lambda: None)
-    run, _ = keep_one(drive, 40)
-    for to, files in (
-        ("tum", ["out-believed.tum", "out-estimate.tum"]), ("g2o", ["out.g2o"]), ("graphml", ["out.graphml"]),
-        ("csv", ["out.csv"]),
-    ):  # fmt: skip
-        assert main(["export", run.name, "--to", to, "--out", str(tmp_path / f"out.{to}")]) == 0
-        assert sorted(path.name for path in tmp_path.glob(f"out*.{to}")) == files
+    assert export("tum") == (0, ["out-believed.tum", "out-estimate.tum"])
+    for to in ("g2o", "graphml", "csv"):
+        assert export(to) == (0, [f"out.{to}"])
     table = (tmp_path / "out.csv").read_text().splitlines()
-    assert len(table) == 1 + 41
     row = dict(zip(table[0].split(","), table[-1].split(","), strict=True))
-    assert (row["tick"], row["time_s"], row["true_x"], row["off_m"], row["mode"]) == ("40", "4.0", "", "", "recorded")
+    assert (row["tick"], row["time_s"], row["true_x"], row["off_m"], row["mode"]) == ("100", "10.0", "", "", "recorded")
     assert 'id="drive"' in (tmp_path / "out.graphml").read_text()
-    assert len((tmp_path / "out-estimate.tum").read_text().splitlines()) == 41
+    assert len((tmp_path / "out-estimate.tum").read_text().splitlines()) == len(table) - 1 == 101
+    for to in ("mcap", "png", "mp4"):
+        assert export(to) == (2, [])
+        words = f"{to} is for runs in an office; the run of a recording can be had as tum, g2o"
+        assert words in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("to", ["mcap", "png", "mp4"])
-def test_what_shows_an_office_is_refused(to: str, drive: Path, tmp_path: Path, monkeypatch, capsys) -> None:
-    monkeypatch.setattr("app.cli.export.compile_first", lambda: None)
-    run, _ = keep_one(drive, 20)
-    assert main(["export", run.name, "--to", to, "--out", str(tmp_path / f"out.{to}")]) == 2
-    assert f"{to} is for runs in an office; the run of a recording can be had as tum, g2o" in capsys.readouterr().err
-    assert not list(tmp_path.glob("out*"))
-
-
-# ------------------------------------------------------------ the digest
-
-
-def test_it_is_of_names_and_contents(copy: Path) -> None:
+def test_its_digest_is_of_names_and_contents_also_of_the_table_beside_a_film(copy: Path, tmp_path: Path) -> None:
     first = fingerprint(copy)
     assert fingerprint(copy) == first
     (copy / "new.txt").write_text("")
     second = fingerprint(copy)
     (copy / "new.txt").rename(copy / "other.txt")
     assert len({first, second, fingerprint(copy)}) == 3
-
-
-def test_the_table_beside_a_film_counts(tmp_path: Path) -> None:
     film = tmp_path / "walk.avi"
     film.write_bytes(b"RIFF")
     first = fingerprint(film)

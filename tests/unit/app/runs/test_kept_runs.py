@@ -5,7 +5,9 @@ from __future__ import annotations
 import errno
 import json
 import os
+import shutil
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -20,27 +22,49 @@ from app.runs.replay import ReplayError, newest_state, replay, resumed
 from app.runs.run_file import KeptRun, open_run
 from app.session import Session
 from sim2d import Box, load_world
-from tests.unit.app.runs.kept import TICKS, keep_one
+from tests.unit.disk.full import full_after
+
+from .kept import TICKS, keep_one
 
 pytestmark = pytest.mark.slow
 
 LIVING = load_world("living")
 
 
-def test_it_comes_out_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    run, end = keep_one(tmp_path, monkeypatch)
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """A folder of runs with a short one, and how that ended."""
+    folder = tmp_path_factory.mktemp("runs")
+    with pytest.MonkeyPatch.context() as patch:
+        return folder, keep_one(folder, patch)[1]
+
+
+@pytest.fixture(autouse=True)
+def runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path / "runs"))
+    return tmp_path / "runs"
+
+
+@pytest.fixture
+def run(whole: tuple[Path, str], runs: Path) -> KeptRun:
+    """That run, in a copy that a test may change."""
+    shutil.copytree(whole[0], runs)
+    return open_run("last")
+
+
+def test_it_comes_out_the_same(run: KeptRun, whole: tuple[Path, str]) -> None:
     assert (run.last_tick, run.end, run.damage) == (TICKS, "the program ended", "")
     assert [(order.tick, order.name) for order in run.orders] == [(50, "kidnap"), (75, "drive"), (TICKS, "set_mode")]
     assert 100 in run.hashes
-    assert replay(run).state_hash() == end
+    assert replay(run).state_hash() == whole[1]
     assert (run.folder / STATE).exists() is False, "nothing is saved before a simulated minute"
     assert [session.tick_count for session in run.play(until=7)] == list(range(8))
 
 
-def test_it_goes_on_from_its_newest_state(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_it_goes_on_from_its_newest_state(runs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.runs.states.SAVE_EVERY_S", 1.0)
     monkeypatch.setattr("app.runs.states.SAVE_PAUSE_S", 0.0)
-    run, end = keep_one(tmp_path, monkeypatch)
+    run, end = keep_one(runs, monkeypatch)
     state = newest_state(run)
     assert state is not None
     assert state.tick_count == 100
@@ -50,18 +74,16 @@ def test_it_goes_on_from_its_newest_state(tmp_path: Path, monkeypatch: pytest.Mo
     assert resumed(run).state_hash() == end
 
 
-def test_cut_off_anywhere_it_opens_up_to_its_last_whole_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    run, _ = keep_one(tmp_path / "whole", monkeypatch)
+def test_cut_off_anywhere_it_opens_up_to_its_last_whole_line(run: KeptRun, tmp_path: Path) -> None:
     data = (run.folder / LINES).read_bytes()
     header = data.index(b"\n") + 1
-    (tmp_path / "cut").mkdir()
     for at in [0, 1, header - 1, *range(header, len(data) + 1, 3)]:
-        (tmp_path / "cut" / LINES).write_bytes(data[:at])
+        (run.folder / LINES).write_bytes(data[:at])
         if at < header:
             with pytest.raises(ValueError, match="it does not begin with a whole line"):
-                open_run(tmp_path / "cut")
+                open_run(run.folder)
             continue
-        cut = open_run(tmp_path / "cut")
+        cut = open_run(run.folder)
         assert cut.size == data.rfind(b"\n", 0, at) + 1
         assert bool(cut.damage) == (cut.size < at)
         assert cut.orders == run.orders[: len(cut.orders)]
@@ -69,13 +91,11 @@ def test_cut_off_anywhere_it_opens_up_to_its_last_whole_line(tmp_path: Path, mon
         assert all(order.tick <= cut.last_tick for order in cut.orders)
 
 
-def test_it_goes_on_in_the_same_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    run, _ = keep_one(tmp_path, monkeypatch)
+def test_it_goes_on_in_the_same_file(run: KeptRun) -> None:
     path = run.folder / LINES
     path.write_bytes(path.read_bytes()[:-30])
     cut = open_run(run.folder)
-    assert cut.end == ""
-    assert cut.damage
+    assert (cut.end, bool(cut.damage)) == ("", True)
     journal = Journal(cut.folder, cut.size, cut.check)
     assert is_open(cut.folder)
     with pytest.raises(ValueError, match="is going on in another program"):
@@ -85,121 +105,82 @@ def test_it_goes_on_in_the_same_file(tmp_path: Path, monkeypatch: pytest.MonkeyP
     journal.add({"tick": cut.last_tick, "again": "other"})
     journal.close()
     assert not is_open(cut.folder)
-    whole = open_run(cut.folder)
-    assert whole.again == [(cut.last_tick, "other")]
-    assert (whole.damage, whole.end) == ("", "")
+    again = open_run(cut.folder)
+    assert (again.again, again.damage, again.end) == ([(cut.last_tick, "other")], "", "")
 
 
-def _driving_at(run: KeptRun, speed: float) -> None:
-    """Another version writes this speed into its order, and signs it."""
-    lines = list(Lines(run.folder / LINES))
-    lines[0]["run"]["version"] = "000000000000"
-    order = next(line for line in lines if line.get("order") == "drive")
-    order["values"]["speed"] = speed
-    data, check = b"", 0
-    for value in lines:
-        line, check = line_of(value, check)
-        data += line
-    (run.folder / LINES).write_bytes(data)
-
-
-def test_an_order_that_no_session_can_be_given_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_another_version_drove_differs_and_says_so_or_is_no_order(
+    run: KeptRun, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """By the same laws as in a link."""
-    run, _ = keep_one(tmp_path, monkeypatch)
-    _driving_at(run, 50.0)
+    lines = list(Lines(run.folder / LINES))
+
+    def drives_at(speed: float) -> KeptRun:
+        """Another version writes this speed into its order, and signs it."""
+        lines[0]["run"]["version"] = "000000000000"
+        next(line for line in lines if line.get("order") == "drive")["values"]["speed"] = speed
+        data, check = b"", 0
+        for value in lines:
+            line, check = line_of(value, check)
+            data += line
+        (run.folder / LINES).write_bytes(data)
+        return open_run(run.folder)
+
     with pytest.raises(ValueError, match=r"tick 75: the order drive .* again: drive: speed: input should be less"):
-        replay(open_run(run.folder))
-
-
-def test_a_run_that_differs_says_so_with_its_tick(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
-    run, _ = keep_one(tmp_path, monkeypatch)
-    _driving_at(run, 0.9)
-    with pytest.raises(
-        ReplayError, match=r"comes out differently from tick 76 on .* another version \(000000000000\)"
-    ) as error:
-        replay(open_run(run.folder))
+        replay(drives_at(50.0))
+    words = r"comes out differently from tick 76 on .* another version \(000000000000\)"
+    with pytest.raises(ReplayError, match=words) as error:
+        replay(drives_at(0.9))
     assert error.value.tick == 76
     monkeypatch.setattr("app.cli.runs.compile_first", lambda: None)
     assert main(["replay", run.name]) == 1
     assert "from tick 76 on" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
+def test_a_line_that_no_run_writes_is_refused(run: KeptRun, subtests: pytest.Subtests) -> None:
+    data = (run.folder / LINES).read_bytes()
+    for line, words in [
         ({"tick": 3, "pulses": "AAAA"}, "bytes for the ticks from"),
         ({"tick": 10**18, "pulses": "AAAAAA=="}, "bytes for the ticks from"),
         ({"tick": -1, "order": "kidnap", "values": {}}, "it is of tick -1"),
-        ({"tick": 5, "order": "kidnap", "values": 3}, "line"),
-        ({"tick": 5, "order": "edit_world", "values": {}, "edit": {"from": -1}}, "cannot be made again"),
+        ({"tick": TICKS, "order": "kidnap", "values": 3}, "line"),
+        ({"tick": TICKS, "order": "edit_world", "values": {}, "edit": {"from": -1}}, "cannot be made again"),
         ({"tick": "x", "end": ""}, "a tick must be a whole number"),
         ({"end": ""}, "tick"),
-    ],
-)
-def test_a_line_that_no_run_writes_is_refused(
-    line: dict, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    run, _ = keep_one(tmp_path, monkeypatch, ticks=5)
-    with (run.folder / LINES).open("ab") as file:
-        file.write(line_of(line, run.check)[0])
-    with pytest.raises(ValueError, match=words):
-        open_run(run.folder)
-
-
-class Full:
-    """A disk that takes so many bytes and no more, until it has room again."""
-
-    def __init__(self, file, room: int) -> None:
-        self.file, self.room = file, room
-
-    def write(self, data: bytes) -> int:
-        if self.room <= 0:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        written = self.file.write(data[: self.room])
-        self.room -= written
-        return written
-
-    def __getattr__(self, name: str):
-        return getattr(self.file, name)
+    ]:
+        with subtests.test(line=line):
+            (run.folder / LINES).write_bytes(data + line_of(line, run.check)[0])
+            with pytest.raises(ValueError, match=words):
+                open_run(run.folder)
 
 
 @pytest.mark.parametrize("room", [0, 10, 1000, None])
 def test_a_full_disk_is_told_of_once_and_the_file_opens(
-    room: int | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    room: int | None, run: KeptRun, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """None: room for the header and half of the rest."""
-    begin, enough = Journal.__init__, room is None
-    if room is None:
-        whole = (keep_one(tmp_path / "whole", monkeypatch)[0].folder / LINES).read_bytes()
-        room = (whole.index(b"\n") + len(whole)) // 2
-        tmp_path /= "full"
-
-    def full(self: Journal, *values) -> None:
-        begin(self, *values)
-        self._file = Full(self._file, room)  # type: ignore[assignment]
-
-    monkeypatch.setattr(Journal, "__init__", full)
-    complaints: list[str] = []
-    if not enough:
-        with pytest.raises(ValueError, match="does not begin with a whole line"):
-            keep_one(tmp_path, monkeypatch, complaints=complaints)
-    else:
-        run, _ = keep_one(tmp_path, monkeypatch, complaints=complaints)
-        assert run.last_tick < TICKS
-    assert len(complaints) == 1
-    assert "No space left on device" in complaints[0]
+    data, complaints = (run.folder / LINES).read_bytes(), list[str]()
+    half = (data.index(b"\n") + len(data)) // 2
+    with full_after(half if room is None else room):
+        if room is None:
+            kept, _ = keep_one(tmp_path / "full", monkeypatch, complaints=complaints)
+            assert kept.last_tick < TICKS
+        else:
+            with pytest.raises(ValueError, match="does not begin with a whole line"):
+                keep_one(tmp_path / "full", monkeypatch, complaints=complaints)
+    (complaint,) = complaints
+    assert "File too large" in complaint
 
 
 def test_what_a_full_disk_did_not_take_is_written_when_there_is_room(tmp_path: Path) -> None:
     journal = Journal(tmp_path / "run")
-    full = journal._file = Full(journal._file, 12)  # type: ignore[assignment]
-    for number in range(3):
-        with pytest.raises(OSError, match="No space"):
-            journal.add({"n": number})
+    with full_after(12):
+        for number in range(3):
+            with pytest.raises(OSError, match="File too large"):
+                journal.add({"n": number})
     assert list(Lines(tmp_path / "run" / LINES)) == []
-    full.room = 10**6
     journal.add({"n": 3})
-    assert [value["n"] for value in list(Lines(tmp_path / "run" / LINES))] == [0, 1, 2, 3]
+    assert [value["n"] for value in Lines(tmp_path / "run" / LINES)] == [0, 1, 2, 3]
 
 
 def test_a_folder_that_cannot_be_made_is_told_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -210,72 +191,51 @@ def test_a_folder_that_cannot_be_made_is_told_of(tmp_path: Path, monkeypatch: py
     assert len(complaints) == 1
 
 
-def test_the_oldest_runs_go_first_and_one_that_goes_on_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    import os
-
-    monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path))
+def test_the_oldest_runs_go_first_and_one_that_goes_on_stays(runs: Path) -> None:
     for number in range(6):
-        folder = tmp_path / str(number)
-        folder.mkdir()
-        (folder / LINES).write_bytes(b"x" * 1000)
-        (folder / STATE).write_bytes(b"x" * 1000)
+        folder = runs / str(number)
+        folder.mkdir(parents=True)
+        for name in (LINES, STATE):
+            (folder / name).write_bytes(b"x" * 1000)
         os.utime(folder / LINES, (1000 + number, 1000 + number))
-    journal = Journal(tmp_path / "0", 1000)
-    os.utime(tmp_path / "0" / LINES, (1000, 1000))
+    journal = Journal(runs / "0", 1000)
+    os.utime(runs / "0" / LINES, (1000, 1000))
     assert [folder.name for folder in all_runs()] == ["5", "4", "3", "2", "1", "0"]
     tidy(0.0071)
     assert [folder.name for folder in all_runs()] == ["5", "4", "3", "2", "0"]
-    assert not (tmp_path / "2" / STATE).exists()
+    assert not (runs / "2" / STATE).exists()
     tidy(most=2)
     assert [folder.name for folder in all_runs()] == ["5", "4", "0"]
     journal.close()
 
 
-def test_boxes_and_edits_are_run_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from dataclasses import replace
-
-    from app.runs.header import beginning_of
-    from app.runs.keeper import RunKeeper
-
-    monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path))
-    session = Session(LIVING, 4)
-    keeper = RunKeeper(print)
-    book = keeper.book(session, beginning_of(session))
-    session.on_order = book.order
-    keeper.begin(book)
-    keeper.start()
-    start = session.world.starts[0]
-    for tick in range(40):
-        if tick == 10:
-            session.put_box(Box("crate", start.x + 2, start.y, 0.3, 0.3, 0.4, 0.3))
-        if tick == 20:
-            session.edit_world(replace(session.simulator.world, walls=session.world.walls[:-1]))
-        session.tick()
-        book.tick(session)
-    keeper.stop()
-    run = open_run("last")
+def test_boxes_and_edits_are_run_again(runs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    start = LIVING.starts[0]
+    box = Box("crate", start.x + 2, start.y, 0.3, 0.3, 0.4, 0.3)
+    run, end = keep_one(runs, monkeypatch, seed=4, ticks=40, orders={
+        10: lambda s: s.put_box(box),
+        20: lambda s: s.edit_world(replace(s.simulator.world, walls=s.world.walls[:-1])),
+    })  # fmt: skip
     assert run.size < 40_000
-    assert replay(run).state_hash() == session.state_hash()
+    assert [order.name for order in run.orders] == ["put_box", "edit_world", "set_mode"]
+    assert replay(run).state_hash() == end
 
 
-def test_the_list_and_deleting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
-    run, _ = keep_one(tmp_path, monkeypatch, ticks=5)
-    (tmp_path / "broken").mkdir()
-    (tmp_path / "broken" / LINES).write_bytes(b"nothing")
+def test_the_list_and_deleting(run: KeptRun, runs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (runs / "broken").mkdir()
+    (runs / "broken" / LINES).write_bytes(b"nothing")
     assert main(["runs"]) == 0
     text = capsys.readouterr().out
-    assert f"{run.name:28}" in text
-    assert "complete" in text
-    assert "it does not begin with a whole line" in text
+    for words in (f"{run.name:28}", "complete", "it does not begin with a whole line"):
+        assert words in text
     assert main(["runs", "--json"]) == 0
     rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert {row["id"] for row in rows} == {run.name, "broken"}
-    assert main(["runs", "delete", run.name]) == 0
-    assert main(["runs", "delete", run.name]) == 2
+    assert [main(["runs", "delete", run.name]) for _ in range(2)] == [0, 2]
     assert [folder.name for folder in all_runs()] == ["broken"]
 
 
-def test_without_locks_it_is_kept_and_told_of_by_its_age(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_locks_it_is_kept_and_told_of_by_its_age(runs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As on an NFS without its lock daemon: no error of a lock is taken for another program."""
     said: list[str] = []
 
@@ -283,9 +243,9 @@ def test_without_locks_it_is_kept_and_told_of_by_its_age(tmp_path: Path, monkeyp
         raise OSError(errno.ENOLCK, "No locks available")
 
     monkeypatch.setattr("disk.locks.fcntl.flock", no_locks)
-    run, end = keep_one(tmp_path, monkeypatch, complaints=said)
-    assert len(said) == 1
-    assert said[0].startswith(f"{tmp_path} has no file locks: the run is kept there")
+    run, end = keep_one(runs, monkeypatch, ticks=20, complaints=said)
+    (words,) = said
+    assert words.startswith(f"{runs} has no file locks: the run is kept there")
     assert replay(run).state_hash() == end
     assert is_open(run.folder)
     with pytest.raises(ValueError, match=r"was written less than 60 s ago, and .* has no file locks to tell"):
@@ -299,10 +259,9 @@ def test_without_locks_it_is_kept_and_told_of_by_its_age(tmp_path: Path, monkeyp
 
 
 def test_without_a_home_the_run_goes_on_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    said: list[str] = []
+    said, session = list[str](), Session(LIVING, 3)
     monkeypatch.setenv("HOME", "/")
-    session = Session(LIVING, 3)
-    monkeypatch.delenv("RATSLAM_RUNS", raising=False)
+    monkeypatch.delenv("RATSLAM_RUNS")
     keeper = RunKeeper(said.append)
     keeper.start()
     keeper.begin(keeper.book(session, beginning_of(session)))
