@@ -18,26 +18,52 @@ from app.runs.header import beginning_of, header_of, written
 from app.runs.lines import line_of
 from app.runs.page import Page
 from app.runs.pulse import SIZE
-from app.runs.run_file import open_run
+from app.runs.run_file import KeptRun, open_run
 from app.session import Session
 from app.situations import Situation, file_of, read_situation
 from app.time_machine import TimeMachine
 from app.views.history import History
 from sim2d import load_world
+from tests.unit.app.sessions import a_session
 
 pytestmark = pytest.mark.slow
 
-OFFICE, LIVING = load_world("office"), load_world("living")
+LIVING = load_world("living")
+HEADER = header_of(beginning_of(a_session(seed=1)))
 
 
-def session_with_orders() -> tuple[Session, list[Order]]:
-    session, told = Session(OFFICE, 1), list[Order]()
-    session.on_order = told.append
-    return session, told
+def text_of(orders: str, ticks: int = 0) -> str:
+    """The file of a situation with these orders in it."""
+    return file_of(Situation(HEADER, (), ticks, "0" * 64)).replace('"orders": []', f'"orders": {orders}')
+
+
+class Paper:
+    """A page of the book of a session, which is written whenever a test says so."""
+
+    def __init__(self) -> None:
+        self.complaints: list[str] = []
+        session = a_session(seed=1)
+        self.book = Book(session, beginning_of(session))
+        self.page = Page(self.book, self.complaints.append)
+
+    def tick(self, tick: int) -> None:
+        self.book.told.append((tick, bytes(SIZE)))
+
+    def kept(self) -> KeptRun:
+        self.page.finish()
+        assert self.book.folder is not None
+        return open_run(self.book.folder)
+
+
+@pytest.fixture
+def paper(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Paper:
+    monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path))
+    return Paper()
 
 
 def test_a_key_that_is_held_is_one_order() -> None:
-    session, told = session_with_orders()
+    session, told = a_session(seed=1), list[Order]()
+    session.on_order = told.append
     for _ in range(30):
         for _ in range(6):
             session.drive(0.2, 0.0)
@@ -48,7 +74,7 @@ def test_a_key_that_is_held_is_one_order() -> None:
         (0, {"speed": 0.2, "yaw_rate": 0.0}),
         (30, {"speed": 0.2, "yaw_rate": 0.5}),
     ]
-    again = Session(OFFICE, 1)
+    again = a_session(seed=1)
     while again.tick_count < session.tick_count:
         for order in [order for order in told if order.tick == again.tick_count]:
             carry_out(again, order)
@@ -56,29 +82,25 @@ def test_a_key_that_is_held_is_one_order() -> None:
     assert again.state_hash() == session.state_hash()
 
 
-@pytest.mark.parametrize(
-    "give",
-    [
-        lambda s: s.drive(0.2, 0.1),
-        lambda s: s.cancel_goal(),
-        lambda s: s.set_mode("manual"),
-        lambda s: s.tag("here"),
-        lambda s: s.set_door(LIVING.doors[0].name, False),
-        lambda s: s.set_lamp(LIVING.lamps[0].name, False),
-    ],
-    ids=["drive", "cancel_goal", "set_mode", "tag", "set_door", "set_lamp"],
-)
-def test_an_order_that_is_overtaken_changes_nothing(give: Callable[[Session], object]) -> None:
+ORDERS: dict[str, Callable[[Session], object]] = {
+    "drive": lambda s: s.drive(0.2, 0.1),
+    "cancel_goal": lambda s: s.cancel_goal(),
+    "set_mode": lambda s: s.set_mode("manual"),
+    "tag": lambda s: s.tag("here"),
+    "set_door": lambda s: s.set_door(LIVING.doors[0].name, False),
+    "set_lamp": lambda s: s.set_lamp(LIVING.lamps[0].name, False),
+}
+
+
+@pytest.mark.parametrize("name", ORDERS)
+def test_an_order_that_is_overtaken_changes_nothing(name: str) -> None:
     """What `overtakes` promises: the later of two alone does what both do."""
     states: list[str] = []
     for times in (1, 3):
-        session = Session(LIVING, 1)
-        told = list[Order]()
+        session, told = a_session(10, 1, LIVING), list[Order]()
         session.on_order = told.append
-        for _ in range(20):
-            session.tick()
         for _ in range(times):
-            give(session)
+            ORDERS[name](session)
         assert all(overtakes(later, before) for before, later in pairwise(told))
         for _ in range(5):
             session.tick()
@@ -86,41 +108,22 @@ def test_an_order_that_is_overtaken_changes_nothing(give: Callable[[Session], ob
     assert states[0] == states[1]
 
 
-def test_what_overtakes_is_kept_in_memory_and_in_the_file_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    page, book, complaints = page_in(tmp_path, monkeypatch)
-    session = Session(OFFICE, 1)
+def test_what_overtakes_is_kept_in_memory_and_in_the_file_alone(paper: Paper) -> None:
+    session = a_session(seed=1)
     machine = TimeMachine(session, History(session))
     for tick in range(3):
         for k in range(60):
             order = Order(tick, "drive", {"speed": 0.01 * (k % 7), "yaw_rate": 0.0})
-            book.order(order)
+            paper.book.order(order)
             machine.told(order)
-        book.told.append((tick + 1, bytes(SIZE)))
+        paper.tick(tick + 1)
     for _ in range(1000):
-        book.order(Order(3, "cancel_goal", {}))
-        page.write()
-    page.finish()
-    assert complaints == []
-    kept = open_run(kept_in(book))
-    assert [(order.tick, order.name) for order in kept.orders] == [
-        *((tick, "drive") for tick in range(3)),
-        (3, "cancel_goal"),
-    ]
+        paper.book.order(Order(3, "cancel_goal", {}))
+        paper.page.write()
+    kept = [(order.tick, order.name) for order in paper.kept().orders]
+    assert kept == [(0, "drive"), (1, "drive"), (2, "drive"), (3, "cancel_goal")]
+    assert paper.complaints == []
     assert [order.values["speed"] for order in machine.live.orders] == [0.01 * (59 % 7)] * 3
-
-
-def kept_in(book: Book) -> Path:
-    assert book.folder is not None
-    return book.folder
-
-
-def page_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Page, Book, list[str]]:
-    monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path))
-    session, complaints = Session(OFFICE, 1), list[str]()
-    book = Book(session, beginning_of(session))
-    return Page(book, complaints.append), book, complaints
 
 
 @pytest.mark.parametrize(
@@ -132,27 +135,23 @@ def page_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Page, Book
     ],
 )
 def test_a_run_that_grows_too_large_is_kept_up_to_there_and_opens(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, module: object, limit: str, value: int, why: str
+    paper: Paper, monkeypatch: pytest.MonkeyPatch, module: object, limit: str, value: int, why: str
 ) -> None:
     """It was written on and on, and then refused as "more than 64 MiB, which no run has"."""
     monkeypatch.setattr(module, limit, value)
-    page, book, complaints = page_in(tmp_path, monkeypatch)
     for tick in range(400):
-        book.order(Order(tick, "set_parameters", {"values": {f"x{k}": 1.0 for k in range(2 * tick)}}))
-        book.told.append((tick + 1, bytes(SIZE)))
-        page.write()
-    page.finish()
-    assert len(complaints) == 1
-    assert why in complaints[0]
-    kept = open_run(kept_in(book))
+        paper.book.order(Order(tick, "set_parameters", {"values": {f"x{k}": 1.0 for k in range(2 * tick)}}))
+        paper.tick(tick + 1)
+        paper.page.write()
+    kept, (complaint,) = paper.kept(), paper.complaints
+    assert why in complaint
     assert kept.damage == ""
     assert 30 <= len(kept.orders) < 400
     assert kept.last_tick == kept.orders[-1].tick + 1, "no tick is kept after an order that is missing"
 
 
 def test_a_file_of_an_earlier_program_that_repeats_orders_is_read(tmp_path: Path) -> None:
-    session = Session(OFFICE, 1)
-    data, check = line_of(written(header_of(beginning_of(session))), 0)
+    data, check = line_of(written(HEADER), 0)
     for _ in range(5000):
         line, check = line_of({"tick": 0, "order": "cancel_goal", "values": {}}, check)
         data += line
@@ -162,10 +161,7 @@ def test_a_file_of_an_earlier_program_that_repeats_orders_is_read(tmp_path: Path
 
 def test_reading_a_situation_takes_a_few_times_its_size() -> None:
     """28 MB took 3.2 GB."""
-    session = Session(OFFICE, 1)
-    orders = [Order(tick, "cancel_goal", {}) for tick in range(40_000)]
-    text = file_of(Situation(header_of(beginning_of(session)), tuple(orders), 40_000, "0" * 64))
-    del orders
+    text = text_of(json.dumps([[tick, "cancel_goal", {}] for tick in range(40_000)]), 40_000)
     tracemalloc.start()
     try:
         assert len(read_situation(text).orders) == 40_000
@@ -175,30 +171,22 @@ def test_reading_a_situation_takes_a_few_times_its_size() -> None:
     assert most < 16 * len(text)
 
 
-@pytest.mark.parametrize(
-    ("orders", "why"),
-    [
-        ("[" + "0," * 9_000_000 + "0]", "longer than any run"),
-        ('[[0, "drive", {"speed": ' + "[" * 5000 + "]" * 5000 + "}]]", "damaged"),
-        ("[" + "[" * 100_000 + "]" * 100_001, "damaged"),
-        ('[[0, "drive", {"speed": 0.1}], [0, "drive"]]', "order 1, of tick 0: drive: "),
-        ("{}", "damaged"),
-    ],
-    ids=["numbers", "deep", "deeper", "short", "object"],
-)
-def test_orders_that_are_none_are_refused_by_number(orders: str, why: str) -> None:
-    text = file_of(Situation(header_of(beginning_of(Session(OFFICE, 1))), (), 0, "0" * 64))
-    with pytest.raises(ValueError, match=why):
-        read_situation(text.replace('"orders": []', f'"orders": {orders}'))
+def test_orders_that_are_none_are_refused_by_number(subtests: pytest.Subtests) -> None:
+    for name, orders, why in [
+        ("numbers", "[" + "0," * 9_000_000 + "0]", "longer than any run"),
+        ("deep", '[[0, "drive", {"speed": ' + "[" * 5000 + "]" * 5000 + "}]]", "damaged"),
+        ("deeper", "[" + "[" * 100_000 + "]" * 100_001, "damaged"),
+        ("short", '[[0, "drive", {"speed": 0.1}], [0, "drive"]]', "order 1, of tick 0: drive: "),
+        ("object", "{}", "damaged"),
+    ]:
+        with subtests.test(name), pytest.raises(ValueError, match=why):
+            read_situation(text_of(orders))
 
 
 def test_edits_that_would_fill_the_memory_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each edit of a few bytes makes another text of a whole world."""
     monkeypatch.setattr(world_edits, "EDITED_BYTES", 1_000_000)
-    session = Session(OFFICE, 1)
-    header = header_of(beginning_of(session))
-    edit = {"edit": world_edits.edit_of(header.world, header.world)}
+    edit = {"edit": world_edits.edit_of(HEADER.world, HEADER.world)}
     rows = json.dumps([[tick, "edit_world", edit] for tick in range(100)])
-    text = file_of(Situation(header, (), 100, "0" * 64)).replace('"orders": []', f'"orders": {rows}')
     with pytest.raises(ValueError, match=r"order [0-9]+, of tick .* the worlds of a run"):
-        read_situation(text)
+        read_situation(text_of(rows, 100))
