@@ -12,124 +12,100 @@ from pathlib import Path
 import pytest
 
 from app.commands import carry_out
-from app.engine.engine import Engine
 from app.order_book import Order
 from app.runs.header import beginning_of, header_of
+from app.runs.replay import resumed
 from app.session import Session
-from app.situations import LedHere, Situation, file_of, link_of, read_situation
+from app.situations import Situation, file_of, read_situation
 from app.situations.python_lines import python_lines
+from ratslam_core import load_brain
 from ratslam_core.brain_file import save_brain
 from sim2d import load_world
-from tests.unit.app.engines import an_engine, tell
+from tests.unit.app.engines import an_engine, not_begun, run_for, tell
+from tests.unit.app.runs.kept import keep_one
 from tests.unit.app.sessions import OFFICE, a_session
 from web import messages as m
 
-from .made import a_situation
+from .made import a_situation, again, moment_of, opened, played, view_of
 
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[4]
 
 
-def hash_printed_by(lines: str, folder: Path) -> str:
-    """The state_hash of `session` at the end of these lines, in a fresh interpreter on one core."""
-    script = folder / "lines.py"
-    script.write_text(f"{lines}\nprint(session.state_hash())\n")
-    cores = os.sched_getaffinity(0)
-    done = subprocess.run(
-        [sys.executable, str(script)], cwd=folder, capture_output=True, text=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        preexec_fn=lambda: os.sched_setaffinity(0, {min(cores)}),
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    return done.stdout.strip()
-
-
-def test_the_lines_of_python_make_it_again(tmp_path: Path) -> None:
+def test_the_lines_of_python_make_it_again_in_a_fresh_interpreter_on_one_core(tmp_path: Path) -> None:
     (tmp_path / "app.py").touch()  # as a notebook may have beside it
     situation = a_situation(120)
     lines = python_lines(situation, "unused.json")
     assert "read_situation" not in lines
     assert f'assert session.state_hash() == "{situation.state_hash}"' in lines
-    assert hash_printed_by(lines, tmp_path) == situation.state_hash
-    wrong = lines.replace(situation.state_hash, "0" * 64)
+    script, cores = tmp_path / "lines.py", os.sched_getaffinity(0)
+    script.write_text(f"{lines}\nprint(session.state_hash())\n")
+    done = subprocess.run(
+        [sys.executable, str(script)], cwd=tmp_path, capture_output=True, text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        preexec_fn=lambda: os.sched_setaffinity(0, {min(cores)}),
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == situation.state_hash
     with pytest.raises(AssertionError, match="not the same"):
-        hash_printed_by(wrong, tmp_path)
+        exec(lines.replace(situation.state_hash, "0" * 64), {})
 
 
-def test_with_boxes_the_lines_read_the_file(tmp_path: Path) -> None:
-    (tmp_path / "app.py").touch()
+def test_with_boxes_the_lines_read_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     situation = a_situation(60, boxes=True)
-    lines = python_lines(situation, "it.situation.json")
     (tmp_path / "it.situation.json").write_text(file_of(situation))
-    assert hash_printed_by(lines, tmp_path) == situation.state_hash
+    monkeypatch.chdir(tmp_path)
+    made: dict[str, Session] = {}
+    exec(python_lines(situation, "it.situation.json"), made)
+    assert made["session"].state_hash() == situation.state_hash
 
 
 def test_long_runs_stay_readable() -> None:
-    situation = a_situation(600)
-    lines = python_lines(situation, "unused.json").splitlines()
-    assert len(situation.orders) > 90
-    assert len(lines) < len(situation.orders) + 25
+    orders = tuple(Order(200 + k, "drive", {"speed": 0.1 + k / 1000, "yaw_rate": 0.3}) for k in range(100))
+    lines = python_lines(replace(a_situation(4), orders=orders, tick=600), "unused.json").splitlines()
+    assert len(lines) < len(orders) + 25
     assert max(map(len, lines)) < 140
 
 
 def test_a_brain_of_its_own_is_in_the_file(tmp_path: Path) -> None:
     path = tmp_path / "brain.npz"
     save_brain(a_session(80).brain, path)
-    from ratslam_core import load_brain
-
     session = Session(OFFICE, 4, brain=load_brain(path))
     header = header_of(beginning_of(session, brain=True))
     for _ in range(30):
         session.tick()
     situation = Situation(header, (), 30, session.state_hash(), brain=path.read_bytes())
-    again = read_situation(file_of(situation))
-    assert again.verdict(again.play())[0]
+    assert again(read_situation(file_of(situation)))
 
 
 # ------------------------------------------------------------ from the engine, and in it
 
 
-def moment_of(engine: Engine) -> Situation:
-    """What its page would share, by way of a link."""
-    answer = carry_out(engine, m.ReadSituation())
-    assert isinstance(answer, m.Accepted)
-    assert isinstance(answer.result, LedHere)
-    link, why = link_of(answer.result.situation(m.Look()))
-    assert link is not None, why
-    return read_situation(link)
-
-
-def ticks(engine: Engine, count: int) -> None:
-    for _ in range(count):
-        engine.tick()
-
-
-def again(situation: Situation) -> bool:
-    return situation.verdict(situation.play())[0]
-
-
-def test_of_the_present_with_the_orders_given_just_now() -> None:
-    engine = an_engine(OFFICE)
-    ticks(engine, 40)
-    tell(engine, type="kidnap", x=2.0, y=6.0)
-    here = moment_of(engine)
-    assert (here.tick, len(here.orders)) == (40, 1)
-    assert here.state_hash == engine.run.session.state_hash()
-    assert again(here)
+@pytest.mark.parametrize("world", ["office", "living", "twins"])
+def test_of_the_present_with_the_orders_given_just_now(world: str) -> None:
+    engine = an_engine(load_world(world))
+    run_for(engine, 40)
+    tell(engine, type="kidnap")
+    for ticks in (0, 30):
+        run_for(engine, ticks)
+        here = moment_of(engine)
+        assert (here.tick, len(here.orders)) == (40 + ticks, 1)
+        assert here.state_hash == engine.run.session.state_hash()
+        assert again(here)
 
 
 def test_of_the_past_before_the_orders_and_of_every_branch() -> None:
     engine = an_engine(OFFICE)
-    ticks(engine, 40)
+    run_for(engine, 40)
     tell(engine, type="kidnap", x=2.0, y=6.0)
-    ticks(engine, 40)
+    run_for(engine, 40)
     tell(engine, type="seek", tick=40)
     past = moment_of(engine)
     assert (past.tick, past.orders) == (40, ())
     tell(engine, type="go_on_from_here")
     tell(engine, type="set_mode", mode="manual")
-    ticks(engine, 20)
+    run_for(engine, 20)
     branch = moment_of(engine)
     assert [order.name for order in branch.orders] == ["set_mode"]
     tell(engine, type="seek", tick=20)
@@ -142,77 +118,47 @@ def test_of_the_past_before_the_orders_and_of_every_branch() -> None:
 
 
 def test_of_a_run_that_was_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from app.runs.replay import resumed
-    from tests.unit.app.runs.kept import keep_one
-
     kept, state_hash = keep_one(tmp_path, monkeypatch, ticks=60)
-    engine = an_engine(OFFICE)
+    engine = not_begun(OFFICE)
     engine.go_on(kept, resumed(kept))
     here = moment_of(engine)
     assert (here.tick, here.state_hash) == (60, state_hash)
     assert again(here)
     tell(engine, type="kidnap")
-    ticks(engine, 5)
+    run_for(engine, 5)
     assert again(moment_of(engine))
-
-
-def opened(situation: Situation) -> Engine:
-    engine = an_engine(OFFICE)
-    ticks(engine, 7)
-    answer = carry_out(engine, m.OpenSituation(situation))
-    assert isinstance(answer, m.Accepted), answer
-    return engine
-
-
-def view_of(engine: Engine) -> m.SituationView:
-    view = engine.snapshot().situation
-    assert view is not None
-    return view
 
 
 def test_the_engine_plays_it_and_says_that_it_is_the_same() -> None:
     situation = a_situation(120)
-    engine = opened(situation)
-    assert view_of(engine).state == "playing"
-    while engine.runs_ahead:
-        engine.run_ahead(0.05)
-    view, session = view_of(engine), engine.run.session
+    assert view_of(opened(situation)).state == "playing"
+    engine, view = played(situation)
+    session = engine.run.session
     assert (view.state, view.tick, session.tick_count, engine.running) == ("same", 120, 120, False)
     assert session.state_hash() == situation.state_hash
     assert "kidnap" in {event.kind for event in engine.run.event_log.events}
     tell(engine, type="seek", tick=50)  # its past is there
     tell(engine, type="back_to_now")
-    ticks(engine, 3)
+    run_for(engine, 3)
     assert again(moment_of(engine))  # a link to what became of a link
 
 
-def test_another_hash_is_said_with_the_versions() -> None:
-    situation = replace(a_situation(20), state_hash="0" * 64)
-    engine = opened(situation)
-    while engine.runs_ahead:
-        engine.run_ahead(0.05)
-    view = view_of(engine)
+def test_another_hash_is_said_with_the_versions_and_an_order_that_cannot_be_carried_out_stops_it() -> None:
+    situation = a_situation(20)
+    engine, view = played(replace(situation, state_hash="0" * 64))
     assert view.state == "other"
     assert "the link says 000000000000" in view.words
     assert f"numpy {situation.header.numpy}" in view.words
     assert engine.run.event_log.events[-1].text == view.words
-
-
-def test_an_order_that_cannot_be_carried_out_stops_it() -> None:
-    situation = a_situation(40)
-    wrong = replace(situation, orders=(Order(5, "go_to_tag", {"name": "nowhere"}),))
-    engine = opened(wrong)
-    while engine.runs_ahead:
-        engine.run_ahead(0.05)
-    view = view_of(engine)
+    _, view = played(replace(situation, orders=(Order(5, "go_to_tag", {"name": "nowhere"}),)))
     assert (view.state, view.tick) == ("stopped", 5)
     assert "the order go_to_tag of tick 5 cannot be carried out: there is no tag 'nowhere'" in view.words
 
 
 def test_while_it_plays_nobody_changes_it_and_it_can_be_left() -> None:
-    engine = opened(a_situation(200))
+    engine = opened(a_situation(40))
     engine.run_ahead(0.0)
-    ticks(engine, 3)
+    run_for(engine, 3)
     for command in ({"type": "kidnap"}, {"type": "resume"}, {"type": "seek", "tick": 0}):
         with pytest.raises(ValueError, match="a situation is being played up to its moment"):
             tell(engine, **command)
@@ -225,20 +171,9 @@ def test_while_it_plays_nobody_changes_it_and_it_can_be_left() -> None:
 
 
 def test_what_cannot_begin_leaves_the_run_as_it_is() -> None:
-    engine = an_engine(OFFICE)
-    ticks(engine, 7)
-    situation = a_situation(5)
-    broken = replace(situation, header=replace(situation.header, world="{}"))
-    answer = carry_out(engine, m.OpenSituation(broken))
+    engine, situation = an_engine(OFFICE), a_situation(5)
+    run_for(engine, 7)
+    answer = carry_out(engine, m.OpenSituation(replace(situation, header=replace(situation.header, world="{}"))))
     assert isinstance(answer, m.Refused)
     assert "it cannot be played here" in answer.reason
     assert (engine.run.number, engine.run.session.tick_count) == (1, 7)
-
-
-@pytest.mark.parametrize("world", ["living", "twins"])
-def test_in_other_worlds(world: str) -> None:
-    engine = an_engine(load_world(world))
-    ticks(engine, 50)
-    tell(engine, type="kidnap")
-    ticks(engine, 30)
-    assert again(moment_of(engine))
