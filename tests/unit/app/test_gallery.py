@@ -94,7 +94,7 @@ def test_what_is_not_of_this_program_and_whole_is_shown_only_for_want_of_better(
 ) -> None:
     """First the program's own results, then short trials, then those of an earlier version, then those of this one."""
 
-    def seen() -> tuple[str, float | None, list[tuple[bool, int]]]:
+    def seen() -> tuple[str, float | None, list[tuple[bool, int | None]]]:
         found = results(store.path)
         return found.note, cell(found).shade, [(dot.quick, dot.good) for dot in cell(found).dots]
 

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
-from app.pilot import Pilot
 from app.pilot.goal_place import nearest_to, of_its_place
 from app.pilot.params import PilotParams
 from app.pilot.route_following import RouteFollower
 from ratslam_core import Pose2
-from sim2d import Simulator
 
-from .pilots import ANGLES, USUAL, Run, follow
+from .pilots import follow
 from .sessions import a_session
-from .worlds import EXACT, HandMadeMap, chain, room
+from .worlds import HandMadeMap, chain
 
 
 def twice_along(y: float = 0.65) -> HandMadeMap:
@@ -72,26 +69,13 @@ def test_the_route_leads_to_the_quickest() -> None:
     assert to_one.eta_s > to_either.eta_s + 55
 
 
-@pytest.mark.parametrize("others", [(), (11,)])
-def test_to_come_to_one_of_them_is_to_arrive(others: tuple[int, ...]) -> None:
+def test_to_come_to_one_of_them_is_to_arrive() -> None:
     map_ = HandMadeMap(*chain((0.5, 0.6), (3.5, 0.6)))
     map_.robot = Pose2(3.25, 0.58, 0.0)  # beside experience 11
-    follower = RouteFollower(6, None, others)
-    follow(follower, map_)
-    assert follower.state == ("arrived" if others else "tracking")
-
-
-def test_a_robot_goes_to_the_quickest_and_says_so() -> None:
-    map_ = twice_along()
-    run = Run(Simulator(room(start=(0.5, 0.6, 0.0)), EXACT, 1), Pilot(USUAL, ANGLES, np.random.default_rng(1)), map_)
-    run.pilot.set_goal(24, [11])
-    assert run.pilot.goals == (24, 11)
-    run.run(30.0)
-    assert run.pilot.goal_state == (24, "arrived")
-    run.pilot.set_goal(3)
-    assert run.pilot.goals == (3,)
-    run.pilot.cancel_goal()
-    assert run.pilot.goals == ()
+    for others, state in (((), "tracking"), ((11,), "arrived")):
+        follower = RouteFollower(6, None, others)
+        follow(follower, map_)
+        assert follower.state == state
 
 
 def test_a_click_takes_all_of_the_place_unless_it_is_switched_off() -> None:
@@ -101,3 +85,5 @@ def test_a_click_takes_all_of_the_place_unless_it_is_switched_off() -> None:
     assert len(session.pilot.goals) > 1
     session.set_parameter("pilot.goal_place_m", 0.0)
     assert (session.set_goal(x, y),) == session.pilot.goals
+    session.cancel_goal()
+    assert session.pilot.goals == ()

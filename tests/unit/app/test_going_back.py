@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import random
 
-import numpy as np
 import pytest
 from PIL import Image
 
@@ -20,6 +19,7 @@ from app.views.history import History
 
 from .engines import an_engine, of_kind, run_for, tell
 from .made_recordings import MadeRecording, recorded
+from .made_scans import ANGLES, room
 from .sessions import OFFICE
 
 pytestmark = pytest.mark.slow
@@ -54,19 +54,14 @@ def pictures(made: MadeRecording, tmp_path_factory: pytest.TempPathFactory) -> P
 @pytest.fixture(scope="module")
 def scans() -> Player:
     """A robot with a laser goes round in a room of 8 m x 5 m, once and a half."""
-    angles, moments = np.radians(np.arange(-90.0, 90.0, 2.0)), list[Moment]()
+    moments = list[Moment]()
     for k in range(100):
         heading = 0.1 * k
-        x, y = 0.8 * math.sin(heading), 0.8 * (1 - math.cos(heading))
-        c, s = np.cos(angles + heading), np.sin(angles + heading)
-        with np.errstate(divide="ignore"):
-            ahead = np.where(c > 0, (4.5 - x) / c, (-3.5 - x) / c)
-            aside = np.where(s > 0, (3.0 - y) / s, (-2.0 - y) / s)
-        ranges = np.minimum(np.abs(ahead), np.abs(aside))
+        ranges = room(0.8 * math.sin(heading), 0.8 * (1 - math.cos(heading)), heading)
         moments.append(Moment(k, float(k), 1.0, speed=0.08 * (k > 0), yaw_rate=0.1 * (k > 0), ranges_m=ranges))
     made = MadeRecording(moments, "scans")
     has = frozenset({"speed", "yaw rate", "ranges"})
-    made.about = About("scans", "made", 100, 99.0, has, None, tuple(angles.tolist()), 20.0)
+    made.about = About("scans", "made", 100, 99.0, has, None, tuple(ANGLES.tolist()), 20.0)
     return Player(made, 1)
 
 
@@ -75,9 +70,7 @@ def state_of(session: PlayedSession) -> tuple[object, ...]:
 
 
 @pytest.mark.parametrize("name", ["player", "pictures", "scans"])
-def test_any_moment_is_as_it_was(
-    name: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_any_moment_is_as_it_was(name: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """20 random moments of each, with orders in between, looked at in any order."""
     monkeypatch.setattr(machine, "AGAIN_MS", 0.0)  # as of a recording whose moments take long: each 60th is kept
     monkeypatch.setattr(machine, "LOOK_AFTER", 60)
@@ -190,19 +183,6 @@ def test_a_branch_without_a_change_comes_out_the_same_and_one_with_it_does_not(p
     assert engine.run.session.recording is not None
     tell(engine, type="reset", world="office")
     assert (engine.run.session.recording, engine.run.session.config) == (None, config), "left for the office"
-
-
-def test_the_stages_of_a_moment_are_shown_and_change_nothing(player: Player) -> None:
-    engine = playing(player, 50)
-    tell(engine, type="step_stage")
-    walk = engine.snapshot().walk
-    assert walk is not None
-    assert [stage.name for stage in walk.stages][:2] == ["image", "view match"]
-    assert walk.stages[0].words.startswith("The recording tells of ")
-    for _ in range(len(walk.stages) - 1):
-        tell(engine, type="step_stage")
-    tell(engine, type="step_stage", back=True)
-    assert engine.run.session.state_hash() == playing(player, 51).run.session.state_hash()
 
 
 def test_looping_over_uneven_times(pictures: Player) -> None:

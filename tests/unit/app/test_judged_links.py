@@ -76,7 +76,8 @@ def rounds(islands: list[tuple[float, float, float]], steps: int = 100) -> tuple
 def closed(
     path: list[Pose2], islands: NDArray[np.float64], ends: list[tuple[int, int]], born_late_s: float = 0.0
 ) -> int:
-    births, places = births_along(path) + (0, 0, 0, born_late_s), np.array([(p.x, p.y) for p in path])
+    births, places = births_along(path), np.array([(p.x, p.y) for p in path])
+    births[:, 3] += born_late_s
     return loops_closed(np.array(ends).reshape(-1, 2), births, places, islands, TICK_S)
 
 

@@ -103,8 +103,8 @@ def test_doubt_is_the_filters_sigma_and_by_the_papers_rules_the_packets_spread()
     assert (ghost.map_start.x, ghost.map_start.y) == pytest.approx(first[:2].tolist(), abs=0.2), "where it began"
 
     session = a_session(TICKS, config=Config().with_value("experience_map.anchor_sigma", 0.0))
-    seen, cell_m = spread_of(session), session.config.pose_cells.cell_m
-    assert seen == packet_spread(session)
+    seen, cell_m = packet_spread(session), session.config.pose_cells.cell_m
+    assert spread_of(session) == seen
     assert seen.by == "packet"
     assert 0 < seen.across_m <= seen.along_m < 6 * cell_m
     cells, values = session.brain.pose_cells.active

@@ -20,7 +20,11 @@ def marks_on(plate: str, performance: Performance) -> dict[str, LessonMark]:
 def test_they_lie_where_it_happened_and_go_with_the_map() -> None:
     performance = perform_round(find_lesson("loop"), 0)
     session, office = performance.session, marks_on("office", performance)
-    closure, end, on_map = office["a loop closes"], office["it ended here"], marks_on("map", performance)["it ended here"]
+    closure, end, on_map = (
+        office["a loop closes"],
+        office["it ended here"],
+        marks_on("map", performance)["it ended here"],
+    )
     truth, robot = session.simulator.truth, session.brain.experience_map.robot
     for mark, (x, y) in [
         (closure, session.evaluation.path[closure.tick].tolist()), (end, (truth.x, truth.y)), (on_map, (robot.x, robot.y)),
@@ -51,12 +55,3 @@ def test_the_way_of_a_packet_is_as_long_as_what_is_measured(name: str) -> None:
     way = performance.session.brain.pose_cells.cells_apart(*end.start[:2], end.x, end.y)
     assert way == pytest.approx(performance.values["cells_moved"], abs=0.01)
     assert way > 1
-
-
-def test_a_snap_goes_from_packet_to_packet() -> None:
-    performance = perform_round(find_lesson("snap"), 0)
-    snap, last = marks_on("cells", performance)["a snap"], performance.history.events.last_snap
-    assert last is not None
-    assert (snap.x, snap.y) == pytest.approx((last.end.x, last.end.y), abs=1e-3)
-    assert snap.start == pytest.approx((last.start.x, last.start.y, last.start.heading_rad), abs=1e-3)
-    assert performance.session.brain.pose_cells.cells_apart(*snap.start[:2], snap.x, snap.y) >= 3  # type: ignore[index]

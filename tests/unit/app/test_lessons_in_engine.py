@@ -227,9 +227,14 @@ def test_one_of_the_catalogue_begins_by_its_name_with_another_seed_and_what_ther
     assert (asks.name, asks.seed, asks.state, engine.run.session.seed) == ("packet", 7, "predict", 7)
 
 
-def test_when_it_is_over_the_snap_that_it_shows_is_explained() -> None:
+def test_when_it_is_over_the_snap_that_it_shows_is_explained_and_marked_from_packet_to_packet() -> None:
     engine = asked(find_lesson("snap"))
-    assert shown(engine).state == "compared"
-    why = engine.snapshot().inspected
+    over, last, why = shown(engine), engine.run.history.events.last_snap, engine.snapshot().inspected
     assert isinstance(why, m.WhyReport)
-    assert why.kind == "snap"
+    assert (over.state, why.kind) == ("compared", "snap")
+    (snap,) = (mark for mark in over.marks if (mark.plate, mark.words) == ("cells", "a snap"))
+    assert last is not None
+    assert snap.start is not None
+    assert (snap.x, snap.y) == pytest.approx((last.end.x, last.end.y), abs=1e-3)
+    assert snap.start == pytest.approx((last.start.x, last.start.y, last.start.heading_rad), abs=1e-3)
+    assert engine.run.session.brain.pose_cells.cells_apart(*snap.start[:2], snap.x, snap.y) >= 3

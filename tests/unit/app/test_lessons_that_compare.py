@@ -70,7 +70,10 @@ def test_one_addition_can_be_missing_by_its_name() -> None:
 
 def test_what_cannot_be_compared_is_told_in_a_sentence(subtests: pytest.Subtests) -> None:
     for changes, words in [
-        ({"scene": TWO, "outcome": "{error_m of theirs}"}, "there is no brain 'theirs'; it must be one of: ours, paper"),
+        (
+            {"scene": TWO, "outcome": "{error_m of theirs}"},
+            "there is no brain 'theirs'; it must be one of: ours, paper",
+        ),
         ({"scene": TWO, "outcome": "{snaps of paper-2006}"}, "of a second brain only error_m, "),
         ({"scene": {**SCENE, "compare": "cells-64"}}, "nothing would differ"),
         ({"scene": {**SCENE, "compare": "nobody"}}, "there is no pair 'nobody'; expected one of: papers"),

@@ -33,7 +33,8 @@ def test_without_a_map_the_corners_hold_every_place_of_the_robot_and_little_more
     been, before, fit, steps = [(map_.robot.x, map_.robot.y)], np.zeros((2, 2)), MapFit(), 0
     assert isinstance(map_, CellsOnly)
     whole = np.array(map_.shape[:0:-1]) * map_.cell_m
-    assert np.ptp(map_layer(map_, Evaluation()).extent_xy, axis=0) == pytest.approx(whole), "nobody has followed it"
+    layer = map_layer(map_, Evaluation())
+    assert np.ptp(layer.extent_xy, axis=0) == pytest.approx(whole), "nobody has followed it"
     for _ in range(40):
         for _ in range(20):
             session.tick()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,14 +13,14 @@ from app.session import Session
 from app.trials.course import Course
 from app.trials.measures import MEASURES
 from app.trials.scores import scores_of
-from app.trials.steps import Drive, Explore, Kidnap, Move, Step, Tag, Visit, Wait
+from app.trials.steps import Drive, Explore, Kidnap, Move, Step, Tag, Visit, Wait, Where
 from app.trials.trial import watched
 from sim2d import load_world
 
 pytestmark = pytest.mark.slow
 
 IDEAL: dict[str, Value] = {"robot.odometry_noise": 0.0, "robot.gyro_bias": 0.0, "robot.odometry_scale_error": 0.0}
-LAPS = ["south-east corner", "north-east corner", "north-west corner", "south-west corner"]
+LAPS: list[Where] = ["south-east corner", "north-east corner", "north-west corner", "south-west corner"]
 
 
 def measured(
@@ -62,8 +63,9 @@ def test_the_turn_of_the_cells_is_that_of_the_robot_less_the_bias() -> None:
 
 
 def test_a_robot_that_drove_everywhere_has_covered_the_floor() -> None:
-    ways = Move(do="move", moves=[(0, 10, 1)]), Drive(do="drive", path=LAPS[:2]), Drive(do="drive", path=[*LAPS, "home"])
-    none, half, full = (measured(["covered"], way)[0]["covered"] for way in ways)
+    ways = [Drive(do="drive", path=path) for path in (LAPS[:2], [*LAPS, "home"])]
+    standing = Move(do="move", moves=[(0, 10, 1)])
+    none, half, full = (measured(["covered"], way)[0]["covered"] for way in (standing, *ways))
     assert none < half < full
     assert full > 0.95
 
@@ -115,7 +117,7 @@ def test_consistency_is_the_longest_time_off() -> None:
 
 def test_false_and_true_snaps_are_all_snaps() -> None:
     """Where a single look moves the packet, and it was carried unseen, it jumps often."""
-    eager: dict[str, Value] = {"local_view__capped": False, "local_view__rest": 0.0, "local_view__learn_first": True}
+    eager: dict[str, Any] = {"local_view__capped": False, "local_view__rest": 0.0, "local_view__learn_first": True}
     explore, carried = Explore(do="explore", minutes=3), Kidnap(do="kidnap", least_m=3)
     scores, course = measured(
         ["false snaps"], explore, carried, explore, world="office", kidnap__enabled=False, **eager

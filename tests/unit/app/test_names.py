@@ -126,9 +126,7 @@ def test_labels_are_drawn_and_printed_as_they_are(capsys: pytest.CaptureFixture[
         figure("dots", score="$\\frac{$", by="@axis", log=True),
         figure("curves", score="$\\frac{$", along="@axis", lines="size"),
     ]
-    made = experiment(
-        trials=1, axes=[axis, other], scores=[score], original=[], title="$\\frac{", figures=figures
-    )
+    made = experiment(trials=1, axes=[axis, other], scores=[score], original=[], title="$\\frac{", figures=figures)
     check_drawing(made)
     svg = svg_of(draw(figures[0], made_material(made)).figure)
     assert all(label.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;") in svg for label in odd)

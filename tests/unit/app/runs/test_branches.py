@@ -1,5 +1,5 @@
-"""A branch is kept as a run of its own, which begins with the other's past. Named moments are kept with their run, go with a branch
-as far as it shares them, and are there when the run goes on."""
+"""A branch is kept as a run of its own, which begins with the other's past. Named moments are kept with their run, go with a
+branch as far as it shares them, and are there when the run goes on."""
 
 from __future__ import annotations
 

@@ -149,18 +149,6 @@ def test_cut_off_it_is_offered_and_goes_on_to_the_same_end(drive: Path) -> None:
     assert engine.run.session.config == config
 
 
-def test_a_branch_is_a_run_of_its_own(drive: Path) -> None:
-    kept = playing(drive, 40)
-    tell(kept.engine, type="seek", tick=20)
-    tell(kept.engine, type="go_on_from_here")
-    tell(kept.engine, type="set_parameter", name="pose_cells.inhibit", value=0.003)
-    run_for(kept.engine, 10)
-    end = kept.stop()
-    runs = {run.last_tick: run for run in map(open_run, all_runs())}
-    assert set(runs) == {30, 40}
-    assert replay(runs[30]).state_hash() == end
-
-
 def test_a_recording_that_has_moved_or_changed_is_a_sentence(copy: Path) -> None:
     run, _ = keep_one(copy, 20)
     elsewhere = copy.with_name("elsewhere")

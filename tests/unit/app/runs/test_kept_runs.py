@@ -74,7 +74,7 @@ def test_it_goes_on_from_its_newest_state(runs: Path, monkeypatch: pytest.Monkey
     assert resumed(run).state_hash() == end
 
 
-def test_cut_off_anywhere_it_opens_up_to_its_last_whole_line(run: KeptRun, tmp_path: Path) -> None:
+def test_cut_off_anywhere_it_opens_up_to_its_last_whole_line(run: KeptRun) -> None:
     data = (run.folder / LINES).read_bytes()
     header = data.index(b"\n") + 1
     for at in [0, 1, header - 1, *range(header, len(data) + 1, 3)]:

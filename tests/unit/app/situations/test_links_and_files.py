@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.order_book import Order
@@ -66,6 +66,7 @@ def test_boxes_edits_and_a_world_that_is_none_of_ours_are_in_it() -> None:
     assert len(link_of(situation)[0] or "") > 3 * len(LINK)
 
 
+@settings(max_examples=40)
 @given(st.lists(st.tuples(st.floats(-0.5, 0.5), st.floats(-1.6, 1.6)), max_size=20))
 def test_numbers_are_exact(speeds: list[tuple[float, float]]) -> None:
     orders = tuple(Order(k, "drive", {"speed": speed, "yaw_rate": rate}) for k, (speed, rate) in enumerate(speeds))
