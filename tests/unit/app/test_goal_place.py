@@ -8,10 +8,11 @@ from app.pilot.goal_place import nearest_to, of_its_place
 from app.pilot.params import PilotParams
 from app.pilot.route_following import RouteFollower
 from ratslam_core import Pose2
+from sim2d import Simulator
 
-from .pilots import follow
+from .pilots import Run, a_pilot, follow
 from .sessions import a_session
-from .worlds import HandMadeMap, chain
+from .worlds import EXACT, HandMadeMap, chain, room
 
 
 def twice_along(y: float = 0.65) -> HandMadeMap:
@@ -76,6 +77,14 @@ def test_to_come_to_one_of_them_is_to_arrive() -> None:
         follower = RouteFollower(6, None, others)
         follow(follower, map_)
         assert follower.state == state
+
+
+def test_a_robot_goes_to_the_quickest_and_says_so() -> None:
+    run = Run(Simulator(room(start=(0.5, 0.6, 0.0)), EXACT, 1), a_pilot(1), twice_along())
+    run.pilot.set_goal(24, [11])
+    assert run.pilot.goals == (24, 11)
+    run.run(30.0)
+    assert run.pilot.goal_state == (24, "arrived")
 
 
 def test_a_click_takes_all_of_the_place_unless_it_is_switched_off() -> None:
