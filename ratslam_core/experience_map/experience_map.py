@@ -310,7 +310,7 @@ class ExperienceMap(PoseGraph):
 
     @property
     def _reach_m(self) -> float:
-        """A look may move the robot by so much: that odometry has led it farther astray is less likely than that it was carried."""
+        """A look may move the robot by so much: that odometry led it farther astray is less likely than that it was carried."""
         return max(SNAP * self.cell_m, math.sqrt(2 * self.evidence.params.unnoticed) * self.pose_filter.sigma_m)
 
     def _turns(self, experience: int, packet: Packet, seen: Recognition) -> bool:
