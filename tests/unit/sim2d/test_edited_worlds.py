@@ -10,33 +10,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.ndimage import label
 
-from sim2d import (
-    Drive,
-    FreeSpace,
-    Lamp,
-    OfficeParams,
-    Panel,
-    SensorFrame,
-    SimParams,
-    Simulator,
-    Wall,
-    World,
-    WorldText,
-    load_world,
-    world_from_json,
-    world_to_json,
-)
+from sim2d import Drive, FreeSpace, Lamp, OfficeParams, Panel, SensorFrame, Simulator, Wall, World, load_world
 from sim2d.geometry.connected_cells import connected
 from sim2d.world.world_check import Fault, check_world
+from sim2d.world.world_file import world_from_json
+from sim2d.world.world_writer import WorldText, world_to_json
 
-from .rooms import GREY, room
+from . import rooms
+from .rooms import room, wall
 
 RADIUS = 0.22
 SIDE = 5.0
-EXACT = SimParams(
-    odometry_noise=0.0, odometry_scale_error=0.0, gyro_bias=0.0, image_noise=0.0, sonar_noise_m=0.0, laser_noise_m=0.0,
-    laser_beams=31,
-)  # fmt: skip
+EXACT = replace(rooms.EXACT, laser_beams=31)
 STILL = OfficeParams(people=False)  # after an edit, they draw from another generator
 
 
@@ -46,25 +31,26 @@ def some_wall(draw: st.DrawFn, low: float = 0.05, high: float = SIDE - 0.05) -> 
     x1, y1, x2, y2 = (draw(st.floats(low, high)) for _ in range(4))
     kind = draw(st.sampled_from(["wall", "partition", "desk", "glass"]))
     bottom = draw(st.sampled_from([0.0, 0.0, 0.0, 0.8]))
-    wall = Wall(x1, y1, x2 + (0.1 if (x1, y1) == (x2, y2) else 0.0), y2, kind, 1.6, GREY, bottom=bottom)
-    if wall.length > 0.5 and draw(st.booleans()):
+    x2 += 0.1 if (x1, y1) == (x2, y2) else 0.0
+    drawn = wall(x1, y1, x2, y2, kind=kind, height=1.6, bottom=bottom)
+    if drawn.length > 0.5 and draw(st.booleans()):
         side = draw(st.sampled_from(["left", "right", "both"]))
         return replace(
-            wall, panels=(Panel(0.1, 0.3, bottom, 1.5, "poster", (200, 60, 40), draw(st.integers(0, 9)), side),)
+            drawn, panels=(Panel(0.1, 0.3, bottom, 1.5, "poster", (200, 60, 40), draw(st.integers(0, 9)), side),)
         )
-    return wall
+    return drawn
 
 
-def changed(draw: st.DrawFn, world: World, wall: st.SearchStrategy[Wall]) -> World:
+def changed(draw: st.DrawFn, world: World) -> World:
     """The world with one to three inner walls drawn, changed or removed; all others are the same objects."""
     walls, first = list(world.walls), sum(w.outer for w in world.walls)
     for _ in range(draw(st.integers(1, 3))):
         k = draw(st.integers(first, len(walls)))
         match draw(st.sampled_from(["add", "add", "change", "delete"])):
             case "add":
-                walls.insert(k, draw(wall))
+                walls.insert(k, draw(some_wall()))
             case "change" if k < len(walls):
-                walls[k] = draw(wall)
+                walls[k] = draw(some_wall())
             case "delete" if k < len(walls):
                 del walls[k]
     return replace(world, walls=tuple(walls))
@@ -75,7 +61,7 @@ def some_history(draw: st.DrawFn) -> list[World]:
     worlds = [room(*draw(st.lists(some_wall(), max_size=8)), side=SIDE)]
     for _ in range(draw(st.integers(1, 4))):
         undone = len(worlds) > 1 and draw(st.integers(0, 4)) == 0
-        worlds.append(worlds[-2] if undone else changed(draw, worlds[-1], some_wall()))
+        worlds.append(worlds[-2] if undone else changed(draw, worlds[-1]))
     return worlds
 
 
@@ -85,9 +71,15 @@ def some_history(draw: st.DrawFn) -> list[World]:
 def test_where_the_robot_fits_after_edits(worlds: list[World], cell_m: float) -> None:
     free = None
     for world in worlds:
-        free, anew = FreeSpace(world, RADIUS, cell_m, before=free), FreeSpace(world, RADIUS, cell_m)
-        assert np.array_equal(free._free, anew._free)
-        assert np.array_equal(free._reachable, anew._reachable)
+        free = FreeSpace(world, RADIUS, cell_m, before=free)
+        assert np.array_equal(floor(free, cell_m), floor(FreeSpace(world, RADIUS, cell_m), cell_m))
+
+
+def floor(space: FreeSpace, cell_m: float) -> np.ndarray:
+    """The cells that can be reached: from which one comes to some cell without driving."""
+    covered = np.zeros(space.grid, np.bool_)
+    space.cover(covered, (np.argwhere(~covered)[:, ::-1] + 0.5) * cell_m, 0.0)
+    return covered
 
 
 @settings(max_examples=150)
@@ -143,10 +135,9 @@ def test_the_text_after_edits(worlds: list[World]) -> None:
 @pytest.mark.slow
 def test_all_senses_and_the_drive_after_edits(worlds: list[World], seed: int) -> None:
     lamps = (Lamp("a", 1.2, 1.0, 1.5, 0.6), Lamp("b", 4.0, 4.2, 2.5, 0.4))
-    worlds = [replace(world, lamps=lamps) for world in worlds]
-    edited = Simulator(replace(room(side=SIDE), lamps=lamps), EXACT, 1, STILL)
+    edited = Simulator(room(side=SIDE, lamps=lamps), EXACT, 1, STILL)
     edited.step(Drive(0.0, 0.0))  # its camera has painted what it sees
-    edit_all(edited, worlds)
+    edit_all(edited, [replace(world, lamps=lamps) for world in worlds])
     anew = Simulator(world_from_json(world_to_json(edited.world), "written.json"), EXACT, 1, STILL)
     anew.step(Drive(0.0, 0.0))
     drive_both(edited, anew, seed, 50)
@@ -164,10 +155,8 @@ def test_edits_of_a_large_and_of_a_living_world(name: str) -> None:
         inner = [k for k, wall in enumerate(now.walls) if not wall.outer]
         k, (x, y) = int(rng.choice(inner)), rng.uniform((x0, y0), (x1 - 1, y1 - 1))
         drawn = replace(now.walls[k], x1=x, y1=y, x2=x + now.walls[k].length, y2=y)
-        if rng.random() < 0.5:
-            edit_all(edited, [replace(now, walls=(*now.walls, drawn))])
-        else:
-            edit_all(edited, [replace(now, walls=(*now.walls[:k], drawn, *now.walls[k + 1 :]))])
+        more = (*now.walls, drawn) if rng.random() < 0.5 else (*now.walls[:k], drawn, *now.walls[k + 1 :])
+        edit_all(edited, [replace(now, walls=more)])
         edited.step(Drive(0.1, 0.3))
     assert edited.world.walls != world.walls
     anew = Simulator(world_from_json(world_to_json(edited.world), "written.json"), EXACT, 1, STILL)

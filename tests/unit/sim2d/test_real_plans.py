@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from sim2d import FreeSpace
+from sim2d import FreeSpace, World
 from sim2d.geometry.segments import nearest_segment
 from sim2d.importers import import_file
 from sim2d.importers.floor import choose_floor
@@ -21,47 +21,36 @@ from sim2d.importers.trace import ring_area, trace
 
 OURS = Path(__file__).parents[2] / "data"
 THEIRS = Path(__file__).parents[4] / "shared" / "data" / "worlds"
-
-
-def those_here(*names: str) -> list[Path]:
-    return [path for name in names if (path := THEIRS / name).is_file()]
-
-
-PICTURES: list[tuple[Path, float | None]] = [(OURS / "building.yaml", None), (OURS / "drawing.png", 0.1)]
-PICTURES += [(path, None) for path in those_here("gdc_3ne/3ne.yaml")]
-PICTURES += [(path, 0.1) for path in those_here("willow/willow-full.pgm")]
-VECTORS = [
-    OURS / "building.vectormap.json",
-    *those_here("amrl/AHG2.vectormap.json", "amrl/NSH1.vectormap.json"),
+PICTURES = [
+    (OURS / "building.yaml", None),
+    (OURS / "drawing.png", 0.1),
+    (THEIRS / "gdc_3ne/3ne.yaml", None),
+    (THEIRS / "willow/willow-full.pgm", 0.1),
 ]
+VECTORS = [OURS / "building.vectormap.json", THEIRS / "amrl/AHG2.vectormap.json", THEIRS / "amrl/NSH1.vectormap.json"]
 
 
-def name_of(value: object) -> str | None:
-    return value.name if isinstance(value, Path) else None
-
-
-def meta(path: Path, scale_m: float | None) -> MapYaml:
-    if scale_m is None:
-        return read_map_yaml(path.name, path.read_text("utf-8"))
-    return MapYaml(path.name, scale_m, (0.0, 0.0, 0.0), False, 0.65, 0.196, "trinary")
-
-
-@pytest.mark.parametrize(("path", "scale_m"), [*PICTURES, *((path, None) for path in VECTORS)], ids=name_of)
-@pytest.mark.slow
-def test_it_loads_with_places_to_start_from(path: Path, scale_m: float | None) -> None:
+def there(path: Path, scale_m: float | None = None) -> World:
+    """The world of a plan, with places to start from."""
+    if not path.is_file():
+        pytest.skip(f"{path.name} is not there")
     world = import_file(path, scale_m)
     assert 100 < len(world.walls) <= 4000
-    free = FreeSpace(world, 0.22)
     assert len(world.starts) == 4
-    home = world.starts[0]
+    free, home = FreeSpace(world, 0.22), world.starts[0]
     assert all(20 < free.shortest_m((home.x, home.y), (s.x, s.y)) < 200 for s in world.starts[1:])
+    return world
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("path", "scale_m"), PICTURES, ids=name_of)
+@pytest.mark.parametrize(("path", "scale_m"), PICTURES, ids=lambda value: getattr(value, "name", None))
 def test_walls_are_where_the_picture_has_them(path: Path, scale_m: float | None) -> None:
     """Both ways: every wall within 1.5 pixels of a pixel that is no floor, every border of the floor within 1.5 of a wall."""
-    world, about = import_file(path, scale_m), meta(path, scale_m)
+    world = there(path, scale_m)
+    if scale_m is None:
+        about = read_map_yaml(path.name, path.read_text("utf-8"))
+    else:
+        about = MapYaml(path.name, scale_m, (0.0, 0.0, 0.0), False, 0.65, 0.196, "trinary")
     free = free_pixels(*read_picture(path.name, path.with_name(about.image).read_bytes()), about)[::-1]
     walls = (world.segments() - np.tile(about.origin[:2], 2)) / about.resolution
 
@@ -79,9 +68,10 @@ def test_walls_are_where_the_picture_has_them(path: Path, scale_m: float | None)
     assert max(away) <= 1.5 + 0.03  # walls lie at whole millimetres
 
 
-@pytest.mark.parametrize("path", VECTORS, ids=name_of)
+@pytest.mark.slow
+@pytest.mark.parametrize("path", VECTORS, ids=lambda path: path.name)
 def test_vector_maps_are_taken_as_they_are(path: Path) -> None:
-    world = import_file(path)
+    world = there(path)
     given = json.loads(path.read_text("utf-8"))
     inner = [w for w in world.walls if not w.outer]
     assert len(inner) == len(given)  # none of them without length
