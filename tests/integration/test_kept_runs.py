@@ -12,58 +12,50 @@ import pytest
 
 from app.runs.folder import LINES, all_runs
 from app.runs.replay import replay
-from app.runs.run_file import KeptRun, open_run
+from app.runs.run_file import open_run
 from tests.e2e.program import Program
-from tests.patience import PATIENCE_S
+from tests.patience import PATIENCE_S, until
 
 
-def killed(folder: Path, ticks: int) -> KeptRun:
-    """The run of a program that was killed after so many ticks, when they had been kept."""
-    program = Program("--port", "0", "--seed", "7", "--world", "loop", "--paused", RATSLAM_RUNS=str(folder))
-    try:
-        program.command("step", ticks=ticks)
-        program.command("kidnap")
-        program.command("step", ticks=7)
-        deadline = time.monotonic() + PATIENCE_S
-        while not all_runs() or open_run("last").last_tick < ticks + 7:
-            assert time.monotonic() < deadline
-            time.sleep(0.05)
-    finally:
-        program.process.kill()
-        program.process.wait(timeout=PATIENCE_S)
-    return open_run("last")
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path))
+    return str(tmp_path)
 
 
 @pytest.mark.slow
-def test_after_a_kill_the_run_is_offered_and_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path))
-    run = killed(tmp_path, 120)
+def test_after_a_kill_the_run_is_offered_and_goes_on(home: str) -> None:
+    program = Program("--port", "0", "--seed", "7", "--world", "loop", "--paused", RATSLAM_RUNS=home)
+    try:
+        program.command("step", ticks=120)
+        program.command("kidnap")
+        program.command("step", ticks=7)
+        until(lambda: all_runs() and open_run("last").last_tick >= 127, "tick 127 in its file")
+    finally:
+        program.process.kill()
+        program.stop()
+    run = open_run("last")
     assert (run.last_tick, [order.name for order in run.orders], run.end) == (127, ["kidnap"], "")
     there = replay(run)
     for resume in (("--resume", run.name), ()):
-        program = Program("--port", "0", "--paused", *resume, RATSLAM_RUNS=str(tmp_path))
+        program = Program("--port", "0", "--paused", *resume, RATSLAM_RUNS=home)
         try:
             if not resume:
                 assert any(f"`ratslam run --resume {run.name}`" in line for line in program.said)
                 assert program.state()["world"] == "office"
                 with urllib.request.urlopen(f"{program.url}api/brain/kept", timeout=PATIENCE_S) as answer:
                     assert json.load(answer)["run"] == run.name
-                body = urllib.request.Request(
-                    f"{program.url}api/brain/kept", b'{"use": true}', {"Content-Type": "application/json"}
-                )
-                with urllib.request.urlopen(body, timeout=PATIENCE_S) as answer:
-                    assert json.load(answer) == {"used": True}
+                assert program.post("brain/kept", {"use": True}) == {"used": True}
             state = program.state()
             assert (state["world"], state["seed"], state["tick"]) == ("loop", 7, there.tick_count)
             assert state["experiences"] == len(there.brain.experience_map)
             program.command("step", ticks=5)
             for _ in range(5):
                 there.tick()
-        finally:
             if resume:  # it is killed, too, but only once its ticks are kept
-                deadline = time.monotonic() + PATIENCE_S
-                while open_run(run.name).last_tick < 132 and time.monotonic() < deadline:
-                    time.sleep(0.05)
+                until(lambda: open_run(run.name).last_tick >= 132, "tick 132 in its file")
+        finally:
+            if resume:
                 program.process.kill()
             program.stop()
     whole = open_run(run.name)
@@ -72,16 +64,12 @@ def test_after_a_kill_the_run_is_offered_and_goes_on(tmp_path: Path, monkeypatch
 
 
 @pytest.mark.long
-def test_killed_at_any_moment_it_opens_and_comes_out_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("RATSLAM_RUNS", str(tmp_path))
-    chance = random.Random(5)
-    for _ in range(1):
-        program = Program("--port", "0", "--speed", "0", "--world", "loop", RATSLAM_RUNS=str(tmp_path))
-        time.sleep(chance.uniform(0.5, 3.0))
-        program.process.kill()
-        program.process.wait(timeout=PATIENCE_S)
-        if not all_runs():  # its file was not begun
-            continue
+def test_killed_at_any_moment_it_opens_and_comes_out_the_same(home: str) -> None:
+    program = Program("--port", "0", "--speed", "0", "--world", "loop", RATSLAM_RUNS=home)
+    time.sleep(random.Random(5).uniform(0.5, 3.0))
+    program.process.kill()
+    program.stop()
+    if all_runs():  # else its file was not begun
         run = open_run("last")
         assert (run.folder / LINES).stat().st_size >= run.size
         assert replay(run).tick_count == run.last_tick

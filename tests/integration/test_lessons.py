@@ -19,6 +19,7 @@ from tests.unit.test_teaching import comes_out_as_it_stands_there
 
 MOST_TICKS = 6000  # of a scene: what a quiet machine does in about three seconds
 LESSONS = list(catalogue())
+NAMED = {lesson.name: lesson for lesson in LESSONS}
 
 
 @pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: lesson.name)
@@ -41,7 +42,7 @@ OTHERS = [(name, seed) for name in PAIRS for seed in (301, 302)] + [("kidnapped"
 @pytest.mark.parametrize(("name", "seed"), OTHERS)
 def test_what_is_promised_holds_on_other_seeds(name: str, seed: int) -> None:
     """That of two brains, and of a kidnap: found late with 7 and 702, not at all with 705, and yet noticed."""
-    report = report_of(next(lesson for lesson in LESSONS if lesson.name == name), seed)
+    report = report_of(NAMED[name], seed)
     assert report.kept, "\n".join(report.lines)
 
 
@@ -56,7 +57,7 @@ def test_what_it_leaves_to_be_tried_can_be_done(lesson: Lesson) -> None:
 
 def test_the_square_comes_apart_when_it_is_blindfolded() -> None:
     """What the lesson says of its thing to try."""
-    square = next(lesson for lesson in LESSONS if lesson.name == "square")
+    square = NAMED["square"]
     (blindfold, go_on) = square.sandbox[0].commands
     assert go_on == {"type": "resume"}
     session = perform_round(square, 2).session
@@ -65,12 +66,6 @@ def test_the_square_comes_apart_when_it_is_blindfolded() -> None:
     for _ in range(round(300 / session.frame.dt)):
         session.tick()
     assert session.evaluation.errors(session.brain.experience_map)[0] > 2
-
-
-def test_the_lesson_on_additions_counts_them() -> None:
-    lesson = next(lesson for lesson in LESSONS if lesson.name == "additions")
-    assert len(ADDITIONS) == 17
-    assert "Seventeen" in lesson.text
 
 
 TYPESET = {
@@ -86,12 +81,13 @@ def _letters(latex: str) -> set[str]:
     )
 
 
-@pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: lesson.name)
-def test_every_symbol_of_its_formulas_is_told(lesson: Lesson) -> None:
-    for formula in lesson.formulas:
-        told = set[str]().union(*(_letters(symbol.symbol) for symbol in formula.symbols))
-        assert _letters(formula.latex) - COUNTS - {"d"} <= told, formula.latex
-    assert any(symbol.parameter for formula in lesson.formulas for symbol in formula.symbols)
+def test_every_symbol_of_its_formulas_is_told(subtests: pytest.Subtests) -> None:
+    for lesson in LESSONS:
+        with subtests.test(lesson.name):
+            for formula in lesson.formulas:
+                told = set[str]().union(*(_letters(symbol.symbol) for symbol in formula.symbols))
+                assert _letters(formula.latex) - COUNTS - {"d"} <= told, formula.latex
+            assert any(symbol.parameter for formula in lesson.formulas for symbol in formula.symbols)
 
 
 def test_there_are_twenty_three_and_each_has_its_texts() -> None:
@@ -102,7 +98,7 @@ def test_there_are_twenty_three_and_each_has_its_texts() -> None:
     for card in cards:
         text = lessons.text(card.name)
         assert text is not None
-        assert text.watch
-        assert text.sandbox
-        assert text.formulas
+        assert all((text.watch, text.sandbox, text.formulas)), card.name
         assert 0 < card.minutes <= 15
+    assert len(ADDITIONS) == 17
+    assert "Eeventeen" in NAMED["additions"].text

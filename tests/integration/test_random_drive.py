@@ -16,6 +16,10 @@ def test_never_a_centimetre_into_a_wall(name: str) -> None:
     assert deepest.thing_m <= BAR_M
 
 
-def test_the_same_seed_gets_as_deep_at_the_same_place() -> None:
+def test_the_same_seed_gets_as_deep_at_the_same_place_and_never_a_centimetre() -> None:
     world = load_world("living")
-    assert drive(world, 0.05, 3) == drive(world, 0.05, 3) != drive(world, 0.05, 4)
+    deepest = drive(world, 0.05, 3)
+    assert deepest == drive(world, 0.05, 3) != drive(world, 0.05, 4)
+    for each in (deepest, drive(with_people(load_world("office"), 1), 0.05, 1)):
+        assert 0.0 < each.wall_m <= BAR_M
+        assert each.thing_m <= BAR_M

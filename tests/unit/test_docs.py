@@ -11,7 +11,9 @@ import pytest
 
 from app.config import Config, additions_markdown, to_markdown
 
-DOCS = Path(__file__).parents[2] / "docs"
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = sorted(DOCS.glob("*.md"))
 ROOMS = ("app", "disk", "ratslam_core", "sim2d", "web")
 
 
@@ -36,25 +38,20 @@ def test_the_other_examples_run() -> None:
         exec(example, {"__name__": "a_users_file"})
 
 
-def test_the_table_of_parameters_is_that_of_the_program() -> None:
-    assert (DOCS / "parameters.md").read_text(encoding="utf-8") == to_markdown(Config()), (
-        "docs/parameters.md is old: make it anew with `ratslam config --table > docs/parameters.md`"
-    )
+def test_the_tables_are_those_of_the_program() -> None:
+    for page, table, option in (
+        ("parameters.md", to_markdown(Config()), "--table"),
+        ("additions.md", additions_markdown(), "--additions"),
+    ):
+        assert (DOCS / page).read_text(encoding="utf-8") == table, (
+            f"docs/{page} is old: make it anew with `ratslam config {option} > docs/{page}`"
+        )
 
 
-def test_the_table_of_additions_is_that_of_the_program() -> None:
-    assert (DOCS / "additions.md").read_text(encoding="utf-8") == additions_markdown(), (
-        "docs/additions.md is old: make it anew with `ratslam config --additions > docs/additions.md`"
-    )
-
-
-@pytest.mark.parametrize("page", sorted(p.name for p in DOCS.glob("*.md")))
-def test_links_lead_somewhere(page: str) -> None:
-    for target in re.findall(r"\]\(([^)#\s]+)", (DOCS / page).read_text(encoding="utf-8")):
-        assert target.startswith("http") or (DOCS / target).exists(), f"{page}: {target}"
-
-
-ROOT = DOCS.parent
+def test_links_lead_somewhere() -> None:
+    links = [(page.name, to) for page in PAGES for to in re.findall(r"\]\(([^)#\s]+)", page.read_text("utf-8"))]
+    assert links
+    assert [(page, to) for page, to in links if not (to.startswith("http") or (DOCS / to).exists())] == []
 
 
 def test_every_test_that_is_named_exists() -> None:
@@ -63,26 +60,19 @@ def test_every_test_that_is_named_exists() -> None:
     there = {path.name.split(".")[0] for path in tests} | {"test_x"}
     for path in (path for path in tests if path.suffix == ".py"):
         there |= set(re.findall(r"^ *(?:async )?def (test_\w+)", path.read_text(encoding="utf-8"), re.MULTILINE))
-    files = [*DOCS.glob("*.md"), *(path for room in ROOMS for path in (ROOT / room).rglob("*.py"))]
-    words = {
-        (path.name, word) for path in files for word in re.findall(r"\btest_\w+", path.read_text(encoding="utf-8"))
-    }
-    assert {(name, word) for name, word in words if word not in there} == set()
-    for page in DOCS.glob("*.md"):
-        for name, words_of in re.findall(r"`([\w/]+\.test\.js)::([^`]+)`", page.read_text("utf-8")):
-            assert f'test("{words_of}"' in (ROOT / "tests" / name).read_text("utf-8"), (
-                f"{page.name}: {name}::{words_of}"
-            )
+    files = [*PAGES, *(path for room in ROOMS for path in (ROOT / room).rglob("*.py"))]
+    named = {(path.name, word) for path in files for word in re.findall(r"\btest_\w+", path.read_text("utf-8"))}
+    assert {(name, word) for name, word in named if word not in there} == set()
+    for page in PAGES:
+        for name, words in re.findall(r"`([\w/]+\.test\.js)::([^`]+)`", page.read_text("utf-8")):
+            assert f'test("{words}"' in (ROOT / "tests" / name).read_text("utf-8"), f"{page.name}: {name}::{words}"
 
 
 def test_every_file_that_a_document_names_exists() -> None:
     """By its path, or by its name alone."""
-    paths = [path for room in (*ROOMS, "tests", "benchmarks") for path in (ROOT / room).rglob("*.*")]
-    there = {path.name for path in paths} | {str(path.relative_to(ROOT)) for path in paths}
-    ends = {str(path.relative_to(ROOT)).split("/", 1)[-1] for path in paths}
+    paths = [path.relative_to(ROOT) for room in (*ROOMS, "tests", "benchmarks") for path in (ROOT / room).rglob("*.*")]
+    there = {name for path in paths for name in (path.name, str(path), str(path).split("/", 1)[-1])}
     named = {
-        (page.name, name)
-        for page in DOCS.glob("*.md")
-        for name in re.findall(r"`([\w/.-]+\.(?:py|js))`", page.read_text("utf-8"))
+        (page.name, name) for page in PAGES for name in re.findall(r"`([\w/.-]+\.(?:py|js))`", page.read_text("utf-8"))
     }
-    assert {(page, name) for page, name in named if name not in there | ends} == set()
+    assert {(page, name) for page, name in named if name not in there} == set()

@@ -22,21 +22,11 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 RATSLAM = Path(sys.executable).with_name("ratslam")
-WITHOUT_KERNELS = [
-    *(
-        ["--help"],
-        ["runs"],
-        ["runs", "--json"],
-        ["config"],
-        ["config", "--table"],
-        ["worlds"],
-        ["lessons"],
-        ["experiment"],
-    ),
-    *(["run", "--help"], ["runs", "--help"], ["replay", "--help"], ["headless", "--help"], ["deliver", "--help"]),
-    *(["trial", "--help"], ["experiment", "--help"], ["lessons", "--help"], ["export", "--help"], ["worlds", "--help"]),
-    *(["recording", "check", "--help"], ["config", "--help"], ["bench", "--help"]),
-]
+WITHOUT_KERNELS = """
+--help; runs; runs --json; config; config --table; worlds; lessons; experiment; run --help; runs --help; replay --help;
+headless --help; deliver --help; trial --help; experiment --help; lessons --help; export --help; worlds --help;
+recording check --help; config --help; bench --help
+"""
 HEAVY = ("numba", "viser", "scipy", "distributed", "dask", "matplotlib", "cv2", "pymunk", "fastapi", "PIL")
 LAW = """
 import contextlib, io, json, sys
@@ -55,15 +45,17 @@ for words in json.loads(sys.argv[1]):
 
 def test_commands_that_need_no_kernel_load_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     keep_one(tmp_path, monkeypatch, ticks=20)  # to be listed
-    words = [sys.executable, "-c", LAW, json.dumps(WITHOUT_KERNELS), json.dumps(HEAVY)]
-    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path)
+    commands = [words.split() for words in WITHOUT_KERNELS.split(";")]
+    done = subprocess.run(
+        [sys.executable, "-c", LAW, json.dumps(commands), json.dumps(HEAVY)],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+    )
     assert done.returncode == 0, done.stderr
-    assert {row[0] for row in WITHOUT_KERNELS} > verbs(), "a new command belongs into this list"
-
-
-def verbs() -> set[str]:
-    done = subprocess.run([RATSLAM, "--help"], capture_output=True, text=True, check=True)
-    return set(done.stdout.partition("{")[2].partition("}")[0].split(","))
+    shown = subprocess.run([RATSLAM, "--help"], capture_output=True, text=True, check=True).stdout
+    verbs = set(shown.partition("{")[2].partition("}")[0].split(","))
+    assert {words[0] for words in commands} > verbs, "a new command belongs into this list"
 
 
 # ------------------------------------------------------------ environments
@@ -168,29 +160,28 @@ def test_a_file_is_utf_8_whatever_the_terminal_is(tmp_path: Path) -> None:
 
 def test_the_processes_that_it_starts_are_ours_too(tmp_path: Path) -> None:
     """The reader of recordings is one; foreign packages lie in the folder where it is called, too."""
-    folder = foreign(tmp_path / "foreign")
-    pictures = image_folder(tmp_path / "pictures")
+    folder, pictures = foreign(tmp_path / "foreign"), image_folder(tmp_path / "pictures")
     for here in ({"PYTHONPATH": folder}, {}):
         done = subprocess.run(
-            [RATSLAM, "recording", "check", pictures],
-            capture_output=True,
-            text=True,
-            cwd=folder,
-            env={**os.environ, **here},
+            [RATSLAM, "recording", "check", pictures], capture_output=True, cwd=folder, env={**os.environ, **here}
         )
-        assert (done.returncode, done.stderr) == (0, "")
+        assert (done.returncode, done.stderr) == (0, b"")
 
 
 def test_a_notebook_beside_a_package_of_the_same_name(tmp_path: Path) -> None:
     for name in FOREIGN:
         (tmp_path / f"{name}.py").write_text("raise SystemExit('this is another module')\n")
+
+    def python(lines: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([sys.executable, "-c", lines], cwd=tmp_path, capture_output=True, text=True)
+
     lines = "import ratslam_live\nfrom app.config import Config\nimport disk, sim2d, web, ratslam_core\nprint(disk.__file__)"
-    done = subprocess.run([sys.executable, "-c", lines], cwd=tmp_path, capture_output=True, text=True)
+    done = python(lines)
     assert (done.stdout, done.stderr) == (f"{ROOT / 'disk' / '__init__.py'}\n", "")
     (tmp_path / "app.py").write_text("")
-    late = subprocess.run([sys.executable, "-c", f"import app\n{lines}"], cwd=tmp_path, capture_output=True, text=True)
-    assert "another 'app' is loaded already" in late.stderr
-    assert "write `import ratslam_live` before it" in late.stderr
+    late = python(f"import app\n{lines}").stderr
+    assert "another 'app' is loaded already" in late
+    assert "write `import ratslam_live` before it" in late
 
 
 # ------------------------------------------------------------ kernels

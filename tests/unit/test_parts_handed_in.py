@@ -16,6 +16,8 @@ from sim2d import SONAR_ANGLES_RAD, load_world
 from tests.unit.ratslam_core.drives import Circle
 from tests.unit.test_docs import blocks
 
+PARTS = {"StepsOfGrey": "local_view", "LeastSquares": "optimiser", "DenseCells": "pose_cells"}
+
 
 def made(name: str) -> dict[str, Any]:
     """The names of the example that defines a class. Each file has its own module, as a user's has."""
@@ -25,9 +27,6 @@ def made(name: str) -> dict[str, Any]:
     return names
 
 
-PARTS = {"StepsOfGrey": "local_view", "LeastSquares": "optimiser", "DenseCells": "pose_cells"}
-
-
 def brain_with(name: str, **more: Any) -> RatSlam:
     """The brain as the example makes it, but with sonars."""
     brain = made(name)["brain"]
@@ -35,9 +34,9 @@ def brain_with(name: str, **more: Any) -> RatSlam:
     return RatSlam(brain.params, np.random.default_rng(3), **{PARTS[name]: part}, **more)
 
 
-@pytest.mark.parametrize("name", PARTS)
 @pytest.mark.slow
-def test_it_goes_on_from_its_file_as_if_it_had_never_stopped(name: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", PARTS)
+def test_the_loop_runs_with_it_twice_alike_and_goes_on_from_its_file(name: str, tmp_path: Path) -> None:
     circle, brain = Circle(1), brain_with(name)
     circle.advance(brain, 340)
     assert brain.experience_map.closures > 0
@@ -50,10 +49,6 @@ def test_it_goes_on_from_its_file_as_if_it_had_never_stopped(name: str, tmp_path
     circle.advance(copy, 40)
     assert copy.digest() == brain.digest()
 
-
-@pytest.mark.parametrize("name", PARTS)
-@pytest.mark.slow
-def test_the_closed_loop_runs_with_it_twice_alike(name: str) -> None:
     reports = []
     for _ in range(2):
         brain = brain_with(name, sonar_angles_rad=SONAR_ANGLES_RAD)
@@ -71,21 +66,17 @@ def test_a_part_of_a_class_without_a_kind_is_told_how_it_gets_one() -> None:
         def correct(self, map_: object) -> None:
             """Changes nothing."""
 
-    brain = RatSlam(optimiser=Mine())
     with pytest.raises(TypeError, match=r'must not hold a .*Mine: name its class with @kind\("name/1"\)'):
-        brain.digest()
+        RatSlam(optimiser=Mine()).digest()
 
 
 def test_what_a_part_says_of_itself_is_a_law(tmp_path: Path) -> None:
-    names = made("LeastSquares")
-    brain = names["brain"]
-    save_brain(brain, tmp_path / "brain.npz")
-
     def check(_self: object) -> None:
         raise ValueError("least squares were never solved")
 
+    names = made("LeastSquares")
+    save_brain(names["brain"], tmp_path / "brain.npz")
     names["LeastSquares"].check = check
-    with pytest.raises(
-        ValueError, match=r"brain\.npz is no brain that can be taken back: least squares were never solved"
-    ):
+    said = r"brain\.npz is no brain that can be taken back: least squares were never solved"
+    with pytest.raises(ValueError, match=said):
         load_brain(tmp_path / "brain.npz")

@@ -19,11 +19,6 @@ def log() -> Log:
     return driven(load_world("office"), Drive("office", 0.5, 1, beams=61, every_s=0.2))
 
 
-def _same(a: Log, b: Log) -> None:
-    for name in ("times", "was", "wheels", "ranges", "angles"):
-        np.testing.assert_allclose(getattr(a, name), getattr(b, name), atol=1e-6, err_msg=name)
-
-
 def test_a_log_is_read_as_it_was_written(log: Log) -> None:
     again = log_of(Logged(log, "log"))
     x, y, heading = log.wheels[0].tolist()
@@ -33,26 +28,24 @@ def test_a_log_is_read_as_it_was_written(log: Log) -> None:
     assert np.array_equal(again.ranges, log.ranges)
 
 
-def test_twice_turned_is_as_it_was(log: Log) -> None:
-    _same(mirrored(mirrored(log)), log)
-    _same(backwards(backwards(log)), log)
-
-
-def test_wheels_without_more_errors_are_those_of_before(log: Log) -> None:
+def test_twice_turned_is_as_it_was_and_wheels_without_more_errors_are_those_of_before(log: Log) -> None:
+    for turned in (mirrored, backwards):
+        twice = turned(turned(log))
+        for name in ("times", "was", "wheels", "ranges", "angles"):
+            np.testing.assert_allclose(getattr(twice, name), getattr(log, name), atol=1e-6, err_msg=name)
     np.testing.assert_allclose(with_wheels(log).wheels, log.wheels, atol=0.03)
-    turned = with_wheels(log, turns=2.0).wheels[:, 2]
-    np.testing.assert_allclose(turned - turned[0], 2 * (log.wheels[:, 2] - log.wheels[0, 2]), atol=1e-6)
+    heading = with_wheels(log, turns=2.0).wheels[:, 2]
+    np.testing.assert_allclose(heading - heading[0], 2 * (log.wheels[:, 2] - log.wheels[0, 2]), atol=1e-6)
 
 
 def test_the_laser_is_told_from_the_right(log: Log) -> None:
     """Walls of the office where the scans put them: seen from two places, they lie on one another."""
-    assert log.truth is not None
-    assert log.angles[0] == pytest.approx(-math.pi / 2)
-    assert log.angles[-1] == pytest.approx(math.pi / 2)
+    truth = log.truth
+    assert truth is not None
+    assert (log.angles[0], log.angles[-1]) == pytest.approx((-math.pi / 2, math.pi / 2))
 
     def walls(k: int) -> np.ndarray:
-        x, y, heading = log.truth[k] if log.truth is not None else (0.0, 0.0, 0.0)
-        seen = np.isfinite(log.ranges[k])
+        (x, y, heading), seen = truth[k], np.isfinite(log.ranges[k])
         a, r = log.angles[seen] + heading, log.ranges[k][seen]
         return np.stack([x + r * np.cos(a), y + r * np.sin(a)], axis=1)
 
@@ -61,21 +54,22 @@ def test_the_laser_is_told_from_the_right(log: Log) -> None:
     assert np.median(nearest) < 0.1
 
 
-@pytest.mark.parametrize("name", [*OF_A_LOG, *OF_A_LOG_HELD_OUT])
-def test_who_knows_the_way_makes_no_error(log: Log, name: str, tmp_path: Path) -> None:
+def test_who_knows_the_way_makes_no_error(log: Log, tmp_path: Path, subtests: pytest.Subtests) -> None:
     """Every variant is judged against the log that it was made from: the true path has no error, the wheels have one."""
-    assert log.truth is not None
-    at = log.truth
-    rows = []
+    at, rows = log.truth, []
+    assert at is not None
     for i in range(0, len(at) - 3, 2):
         c, s = math.cos(at[i, 2]), math.sin(at[i, 2])
         dx, dy, turn = at[i + 3] - at[i]
         rows.append([log.was[i], log.was[i + 3], c * dx + s * dy, -s * dx + c * dy, 0, 0, 0, turn])
     relations = np.array(rows) + np.array([INTEL_BEGAN_S] * 2 + [0.0] * 6)
     np.savetxt(tmp_path / "relations", relations, fmt="%.6f")
-    variant = {**OF_A_LOG, **OF_A_LOG_HELD_OUT}[name](log)
-    assert variant.truth is not None
-    true = variant.truth * ((1, -1, -1) if variant.mirrored else 1)
-    assert of_known(variant, true, tmp_path / "relations") < (0.2 if "every" in name and "scan" in name else 1e-3)
-    assert of_truth(variant.truth, variant.truth) < 1e-9
-    assert of_truth(variant.wheels, variant.truth) > 0.0
+    for name, made in {**OF_A_LOG, **OF_A_LOG_HELD_OUT}.items():
+        with subtests.test(name):
+            variant = made(log)
+            assert variant.truth is not None
+            true = variant.truth * ((1, -1, -1) if variant.mirrored else 1)
+            coarse = "every" in name and "scan" in name
+            assert of_known(variant, true, tmp_path / "relations") < (0.2 if coarse else 1e-3)
+            assert of_truth(variant.truth, variant.truth) < 1e-9
+            assert of_truth(variant.wheels, variant.truth) > 0.0

@@ -27,32 +27,30 @@ def test_the_rows_are_the_runs_of_the_table() -> None:
         "office": (10, 20, 5), "twins": (10, 30, 5), "living": (20, 20, 5), "halls": (20, 30, 5), "suburb": (1, 300, 0),
         "kidnaps": (80, 30, 0), "wheels": (5, 20, 0), "deliveries": (1, 20, 11), "long": (1, 600, 0),
     }  # fmt: skip
-    found = {name: {(job.minutes, job.goals) for job in planned(name)} for name in wanted}
-    assert found == {name: {(minutes, goals)} for name, (_, minutes, goals) in wanted.items()}
-    assert {name: len(planned(name)) for name in wanted} == {name: count for name, (count, _, _) in wanted.items()}
+    for name, (count, minutes, goals) in wanted.items():
+        runs = planned(name)
+        assert (name, len(runs), {(job.minutes, job.goals) for job in runs}) == (name, count, {(minutes, goals)})
 
 
 def test_options_choose_seeds_worlds_and_parameters() -> None:
     some = planned("halls", seeds=(3, 4), worlds=("campus",), values={"pilot.cruise_speed": 0.3})
-    assert [(job.name, job.seed) for job in some] == [("campus", 3), ("campus", 4)]
-    assert all(job.values == {"pilot.cruise_speed": 0.3} for job in some)
+    assert [(job.name, job.seed, job.values["pilot.cruise_speed"]) for job in some] == [
+        ("campus", 3, 0.3), ("campus", 4, 0.3),
+    ]  # fmt: skip
     assert planned("deliveries", deliveries=60)[0].deliveries == 60
-    living = planned("living", seeds=(1,), values={"robot.light": 0.5})
-    assert [job.variant for job in living] == ["", "off"]
-    assert living[1].values == {"robot.light": 0.5} | STEADY
+    on, off = planned("living", seeds=(1,), values={"robot.light": 0.5})
+    assert (on.variant, off.variant, off.values) == ("", "off", {"robot.light": 0.5} | STEADY)
     wheels = planned("wheels", seeds=(1,))[0].values
-    assert wheels == pytest.approx(
-        {"robot.odometry_noise": 0.2, "robot.odometry_scale_error": 0.08, "robot.gyro_bias": 0.01396}, abs=1e-4
-    )
+    errors = {"robot.odometry_noise": 0.2, "robot.odometry_scale_error": 0.08, "robot.gyro_bias": 0.01396}
+    assert wheels == pytest.approx(errors, abs=1e-4)
 
 
-@pytest.mark.parametrize("seeds", [(1,), (1, 2, 3), (1, 2, 3, 4)])
-def test_a_hundred_kidnaps_in_ten_worlds_beside_runs_without(seeds: tuple[int, ...]) -> None:
-    runs = planned("kidnaps", seeds=seeds)
-    carried, left = ([job for job in runs if job.variant == variant] for variant in ("", "without"))
-    assert sum(job.kidnaps for job in carried) == 100
-    assert sum(job.kidnaps for job in left) == 0
-    assert [(job.name, job.seed) for job in carried] == [(job.name, job.seed) for job in left]
+def test_a_hundred_kidnaps_in_ten_worlds_beside_runs_without() -> None:
+    for seeds in ((1,), (1, 2, 3), (1, 2, 3, 4)):
+        runs = planned("kidnaps", seeds=seeds)
+        carried, left = ([job for job in runs if job.variant == variant] for variant in ("", "without"))
+        assert [sum(job.kidnaps for job in some) for some in (carried, left)] == [100, 0]
+        assert [(job.name, job.seed) for job in carried] == [(job.name, job.seed) for job in left]
 
 
 def test_plans_that_are_there_are_run(tmp_path: Path) -> None:
@@ -78,14 +76,13 @@ def verdicts(name: str, runs: list[dict[str, Any]]) -> dict[str, Figure]:
 
 
 def test_median_worst_goals_and_miss() -> None:
-    errors = [report(error_m={"map": error}) for error in (0.1, 0.12, 0.3)]
-    found = verdicts("office", errors)
+    found = verdicts("office", [report(error_m={"map": error}) for error in (0.1, 0.12, 0.3)])
     assert [(f.value, f.holds) for f in found.values()] == [(0.12, True), (0.3, False), (15, True), (0.1, True)]
     assert found["goals"].words == "15 of 15"
-    missed = [{"reached": False, "miss_m": 2.0}] + 4 * [{"reached": True, "miss_m": 0.1}]
-    assert not verdicts("office", [report(goals=missed)])["goals"].holds
-    assert verdicts("twins", [report(goals=missed), *[report()] * 9])["goals"].holds  # 49 of 50
-    assert not verdicts("twins", [report(goals=missed)] * 10)["goals"].holds
+    missed = report(goals=[{"reached": False, "miss_m": 2.0}] + 4 * [{"reached": True, "miss_m": 0.1}])
+    assert not verdicts("office", [missed])["goals"].holds
+    assert verdicts("twins", [missed, *[report()] * 9])["goals"].holds  # 49 of 50
+    assert not verdicts("twins", [missed] * 10)["goals"].holds
 
 
 def test_a_run_that_failed_misses_every_bar() -> None:
@@ -109,12 +106,11 @@ def test_a_run_is_told_in_a_line() -> None:
 
 
 def test_living_is_judged_beside_everything_off() -> None:
-    on, off = report(revisit_share=0.2), report(variant="off", revisit_share=0.4, error_m={"map": 9.0})
-    found = verdicts("living", [on, off])
-    assert found["map error, worst"].value == 0.1
-    assert found["goals"].words == "5 of 5"
-    assert found["ticks on an old experience, on / off"].value == 0.5
-    assert not found["ticks on an old experience, on / off"].holds
+    off = report(variant="off", revisit_share=0.4, error_m={"map": 9.0})
+    found = verdicts("living", [report(revisit_share=0.2), off])
+    assert (found["map error, worst"].value, found["goals"].words) == (0.1, "5 of 5")
+    old = found["ticks on an old experience, on / off"]
+    assert (old.value, old.holds) == (0.5, False)
 
 
 def test_the_loop_of_the_corridors_has_to_be_closed_in_every_run() -> None:
@@ -124,14 +120,13 @@ def test_the_loop_of_the_corridors_has_to_be_closed_in_every_run() -> None:
 
 
 def test_kidnaps_and_what_they_cost() -> None:
-    again = {"recovered": True, "after_s": 4.0}
-    runs = [report(kidnaps=[again] * 97 + [{"recovered": False, "after_s": None}] * 3, error_m={"map": 0.11})]
-    found = verdicts("kidnaps", [*runs, report(variant="without")])
+    again, without = {"recovered": True, "after_s": 4.0}, report(variant="without")
+    lost = {"recovered": False, "after_s": None}
+    found = verdicts("kidnaps", [report(kidnaps=[again] * 97 + [lost] * 3, error_m={"map": 0.11}), without])
     assert found["kidnaps recovered"].words == "97 of 100"
     assert all(f.holds for f in found.values() if f.bar)
-    assert not verdicts("kidnaps", [report(kidnaps=[again], error_m={"map": 0.2}), report(variant="without")])[
-        "map error / without, worst"
-    ].holds
+    found = verdicts("kidnaps", [report(kidnaps=[again], error_m={"map": 0.2}), without])
+    assert not found["map error / without, worst"].holds
 
 
 def test_the_last_hour_is_held_against_the_second() -> None:
@@ -139,12 +134,11 @@ def test_the_last_hour_is_held_against_the_second() -> None:
         grown = dict.fromkeys(("views", "experiences", "links", "view_links", "rss_mb"), size)
         return {"at_s": at_s, **grown, "real_time_factor": 200.0}
 
-    rows = [hour(3600.0, 50), hour(7200.0, 100), hour(10800.0, 105), hour(11000.0, 999)]
-    found = list(figures.hours(rows))
-    assert [f.value for f in found] == [1.05] * 5 + [1.0]
-    assert all(f.holds for f in found)
-    assert not next(iter(figures.hours([*rows[:2], hour(10800.0, 120)]))).holds
-    assert [f.holds for f in figures.hours(rows[:2])] == [None]
+    first = [hour(3600.0, 50), hour(7200.0, 100)]
+    found = list(figures.hours([*first, hour(10800.0, 105), hour(11000.0, 999)]))
+    assert [(f.value, f.holds) for f in found] == [(1.05, True)] * 5 + [(1.0, True)]
+    assert not next(iter(figures.hours([*first, hour(10800.0, 120)]))).holds
+    assert [f.holds for f in figures.hours(first)] == [None]
 
 
 def test_speed_is_judged_at_both_ends() -> None:
@@ -155,20 +149,16 @@ def test_speed_is_judged_at_both_ends() -> None:
 
 def test_how_long_it_will_take_is_said_before() -> None:
     assert words_of_time(planned("office"), 2).startswith("10 runs, 3.9 simulated h: about ")
-    assert "with 1 worker" in words_of_time(planned("suburb"), 1)
-    assert (
-        words_of_time(planned("suburb"), 8).split(":")[1].split(" with")[0]
-        == words_of_time(planned("suburb"), 1).split(":")[1].split(" with")[0]
-    )  # one run has one worker
+    one, many = (words_of_time(planned("suburb"), workers) for workers in (1, 8))
+    assert one.partition(" with")[0] == many.partition(" with")[0]  # one run has one worker
+    assert "with 1 worker" in one
 
 
 def test_a_run_is_a_headless_run_or_deliveries() -> None:
-    short = Job(row="office", world="loop", name="loop", seed=2, minutes=1.0, goals=1, kidnaps=1)
-    done = jobs.run(short)
+    done = jobs.run(Job(row="office", world="loop", name="loop", seed=2, minutes=1.0, goals=1, kidnaps=1))
     assert (done["error"], done["seed"], len(done["goals"]), len(done["kidnaps"])) == (None, 2, 1, 1)
-    assert jobs.run(Job(row="x", world="castle", name="castle", seed=1, minutes=1.0))["error"].startswith(
-        "WorldError: no world"
-    )
+    failed = jobs.run(Job(row="x", world="castle", name="castle", seed=1, minutes=1.0))
+    assert failed["error"].startswith("WorldError: no world")
     delivered = jobs.run(Job(row="x", world="loop", name="loop", seed=2, minutes=0.5, goals=2, deliveries=1))
     assert delivered["deliveries"] == 1
 
@@ -206,11 +196,13 @@ def test_figures_are_printed_beside_their_bars_and_written(tmp_path: Path, capsy
 
 
 @pytest.mark.usefixtures("quick")
-def test_plans_that_are_not_there_are_skipped_with_a_sentence(capsys: pytest.CaptureFixture[str]) -> None:
-    assert command.main(["plans", "--data", "/nowhere"]) == 0
-    assert "no floor plans are in /nowhere; give their folder with --data" in capsys.readouterr().out
-    assert command.main(["office", "--worlds", "campus"]) == 0
-    assert "office: skipped, there is nothing to run: it has no world named campus" in capsys.readouterr().out
+def test_what_is_not_there_is_skipped_with_a_sentence(capsys: pytest.CaptureFixture[str]) -> None:
+    for words, sentence in (
+        (["plans", "--data", "/nowhere"], "no floor plans are in /nowhere; give their folder with --data"),
+        (["office", "--worlds", "campus"], "office: skipped, there is nothing to run: it has no world named campus"),
+    ):
+        assert command.main(words) == 0
+        assert sentence in capsys.readouterr().out
 
 
 @pytest.mark.usefixtures("quick")
@@ -230,21 +222,12 @@ def test_control_c_ends_with_the_figures_of_what_was_done(
     assert [(row["row"], row["partial"], len(row["runs"])) for row in told] == [("office", True, 2)]
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        ["castle"],
-        ["office", "--workers", "0"],
-        ["--seeds", "1", "1"],
-        ["--report", "/nowhere/at/all.json"],
-        ["--set", "robot.lihgt=1"],
-        ["--set", "x"],
-        ["--worlds", "x"],
-        ["--deliveries", "0"],
-    ],
-)
-def test_what_cannot_be_is_refused(wrong: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as end:
-        command.main(wrong)
-    assert end.value.code == 2
-    assert "error: " in capsys.readouterr().err
+def test_what_cannot_be_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    for wrong in (
+        "castle", "office --workers 0", "--seeds 1 1", "--report /nowhere/at/all.json", "--set robot.lihgt=1", "--set x",
+        "--worlds x", "--deliveries 0",
+    ):  # fmt: skip
+        with pytest.raises(SystemExit) as end:
+            command.main(wrong.split())
+        assert end.value.code == 2
+        assert "error: " in capsys.readouterr().err, wrong

@@ -29,6 +29,10 @@ def saved(array: Any) -> bytes:
     return out.getvalue()
 
 
+def tree(text: bytes) -> bytes:
+    return archive(json=saved(np.frombuffer(text, np.uint8)))
+
+
 def claiming(words: bytes) -> bytes:
     """An array whose header says something else."""
     header = words.ljust(117) + b"\n"
@@ -43,13 +47,12 @@ def flagged(data: bytes, field: int, value: int) -> bytes:
     return bytes(out)
 
 
-def tree(text: bytes) -> bytes:
-    return archive(json=saved(np.frombuffer(text, np.uint8)))
-
-
-@pytest.mark.parametrize(
-    ("data", "words"),
-    [
+def test_what_is_odd_is_said_in_a_sentence(subtests: pytest.Subtests) -> None:
+    damaged = bytearray(archive(a0=saved(np.arange(5000))))
+    damaged[len(damaged) // 2 : len(damaged) // 2 + 40] = bytes(40)
+    with pytest.raises(BROKEN):
+        unpack(io.BytesIO(bytes(damaged)))
+    for data, words in (
         (b"", "the file is empty"),
         (b"a picture of a cat", "not a zip file"),
         (archive() + b"more", "not a zip file"),
@@ -65,26 +68,17 @@ def tree(text: bytes) -> bytes:
         (archive(a0=claiming(b"{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999,), }")), "a0 claims to be of"),
         (archive(a0=claiming(b"{'descr': '<f8', 'fortran_order': False, 'shape': " + b"(" * 50)), "a0 is not an array"),
         (archive(a0=saved(np.zeros(9))[:-8]), "a0 claims to be of shape"),
+        (bytes(damaged), ""),
         (tree(b"[]"), "its JSON must be an object, got a list"),
         (tree(b"[" * 100_000), "it is nested too deeply"),
         (tree(b'{"digest": ' + b"9" * 5000 + b"}"), "Exceeds the limit"),
         (tree(b"\xff"), "codec can't decode"),
         (tree(json.dumps({"digest": "", "brain": {"dict": 3}}).encode()), "its digest does not fit"),
-    ],
-)  # fmt: skip
-def test_what_is_odd_is_said_in_a_sentence(data: bytes, words: str) -> None:
-    with pytest.raises(ValueError, match=r"^no brain that can be taken back: ") as said:
-        read_brain(io.BytesIO(data))
-    assert words in str(said.value)
-
-
-def test_a_damaged_stream_is_told() -> None:
-    data = bytearray(archive(a0=saved(np.arange(5000))))
-    data[len(data) // 2 : len(data) // 2 + 40] = bytes(40)
-    with pytest.raises(BROKEN):
-        unpack(io.BytesIO(bytes(data)))
-    with pytest.raises(ValueError, match="no brain that can be taken back"):
-        read_brain(io.BytesIO(bytes(data)))
+    ):  # fmt: skip
+        with subtests.test(words):
+            with pytest.raises(ValueError, match=r"^no brain that can be taken back: ") as said:
+                read_brain(io.BytesIO(data))
+            assert words in str(said.value)
 
 
 def test_a_bomb_is_not_unpacked() -> None:

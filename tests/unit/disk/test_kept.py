@@ -23,29 +23,31 @@ def account(home: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pwd, "getpwuid", look_up)
 
 
-@pytest.mark.parametrize("home", [None, ""])
-def test_without_HOME_the_account_tells(  # noqa: N802
-    home: str | None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_without_HOME_the_account_tells(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:  # noqa: N802
     monkeypatch.setenv("HOME", str(tmp_path / "mine"))
     assert kept_folder() == tmp_path / "mine" / ".ratslam"
-    monkeypatch.delenv("HOME") if home is None else monkeypatch.setenv("HOME", home)
-    assert kept_folder() == Path(pwd.getpwuid(os.getuid()).pw_dir) / ".ratslam"
     account(str(tmp_path), monkeypatch)
+    monkeypatch.setenv("HOME", "")
     assert kept_folder() == tmp_path / ".ratslam"
+    monkeypatch.delenv("HOME")
+    assert kept_folder() == tmp_path / ".ratslam"
+    monkeypatch.undo()
+    monkeypatch.delenv("HOME", raising=False)
+    assert kept_folder() == Path(pwd.getpwuid(os.getuid()).pw_dir) / ".ratslam"
 
 
-@pytest.mark.parametrize(("home", "account_home"), [("/", "/root"), ("//", None), ("", "/"), ("", ""), ("", None)])
-def test_the_root_is_no_home(home: str, account_home: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("HOME", home)
+def test_the_root_is_no_home(monkeypatch: pytest.MonkeyPatch, subtests: pytest.Subtests) -> None:
     monkeypatch.delenv("RATSLAM_WORLDS", raising=False)
-    account(account_home, monkeypatch)
-    with pytest.raises(ValueError, match=r"there is no home directory .* set HOME to a folder of yours"):
-        kept_folder()
-    assert own_worlds.names() == ()
-    own_worlds.tidy()
-    assert isinstance(load_world("office"), World)
-    with pytest.raises(WorldError, match="no world 'mine'; expected one of: office"):
-        load_world("mine")
-    with pytest.raises(ValueError, match="there is no home directory"):
-        own_worlds.save("mine", "{}")
+    for home, account_home in (("/", "/root"), ("//", None), ("", "/"), ("", ""), ("", None)):
+        with subtests.test(f"{home!r}, {account_home!r}"):
+            monkeypatch.setenv("HOME", home)
+            account(account_home, monkeypatch)
+            with pytest.raises(ValueError, match=r"there is no home directory .* set HOME to a folder of yours"):
+                kept_folder()
+            assert own_worlds.names() == ()
+            own_worlds.tidy()
+            assert isinstance(load_world("office"), World)
+            with pytest.raises(WorldError, match="no world 'mine'; expected one of: office"):
+                load_world("mine")
+            with pytest.raises(ValueError, match="there is no home directory"):
+                own_worlds.save("mine", "{}")

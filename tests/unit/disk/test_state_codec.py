@@ -53,16 +53,11 @@ TREES = st.recursive(
 )
 
 
-@given(TREES)
+@given(TREES | st.sets(st.integers(), max_size=40))
 def test_plain_values_come_back_as_they_were(value: Any) -> None:
     for back in (there_and_back(value), copy_state(value)):
-        assert repr(back) == repr(value)  # as text, nan equals nan
+        assert back == value if isinstance(value, set) else repr(back) == repr(value)  # as text, nan equals nan
     assert encode(there_and_back(value)).digest() == encode(value).digest()
-
-
-@given(st.sets(st.integers(), max_size=40))
-def test_sets_come_back(value: set[int]) -> None:
-    assert there_and_back(value) == copy_state(value) == value
 
 
 def test_objects_come_back_with_all_but_their_caches() -> None:
@@ -78,39 +73,32 @@ def test_objects_come_back_with_all_but_their_caches() -> None:
     assert there_and_back(walk).rng.random() == copy_state(walk).rng.random() == walk.rng.random()
 
 
-def test_a_state_names_no_module() -> None:
-    tree = encode([Walk(), Step(1.0)]).tree
-    assert __name__ not in json.dumps(tree)
-    assert '"test walk/1"' in json.dumps(tree)
+def test_a_state_names_kinds_and_no_module() -> None:
+    text = json.dumps(encode([Walk(), Step(1.0)]).tree)
+    assert __name__ not in text
+    assert '"test walk/1"' in text
 
 
-def test_a_class_without_a_kind_is_refused_and_told_how_it_gets_one() -> None:
+def test_what_a_state_must_not_hold_is_refused_and_told_how_it_may() -> None:
     class Foreign:
         pass
 
     for use in (encode, copy_state):
         with pytest.raises(TypeError, match=r'must not hold a .*\.Foreign: name its class with @kind\("name/1"\)'):
             use([Foreign()])
+    for array in (np.ones(2, complex), np.array(["a"]), np.array([None])):
+        with pytest.raises(
+            TypeError, match=r"a state must not hold an array of .*: numbers, true or false, nothing else"
+        ):
+            encode([array])
 
 
-@pytest.mark.parametrize("array", [np.ones(2, complex), np.array(["a"]), np.array([None])])
-def test_arrays_are_of_numbers(array: np.ndarray) -> None:
-    with pytest.raises(TypeError, match=r"a state must not hold an array of .*: numbers, true or false, nothing else"):
-        encode([array])
-
-
-@pytest.mark.parametrize("name", ["walk", "walk/0", "Walk/1", "/1", "a" * 99 + "/1", "walk/1/2", "wälk/1"])
-def test_a_kind_has_a_name_and_a_version(name: str) -> None:
-    with pytest.raises(ValueError, match="a kind must be a name and a version"):
-        kind(name)
-
-
-def test_a_kind_is_one_class_and_a_class_may_be_read_again_after_a_reload() -> None:
-    class Other:
-        pass
-
+def test_a_kind_has_a_name_and_a_version_and_is_one_class_which_may_be_read_again_after_a_reload() -> None:
+    for name in ("walk", "walk/0", "Walk/1", "/1", "a" * 99 + "/1", "walk/1/2", "wälk/1"):
+        with pytest.raises(ValueError, match="a kind must be a name and a version"):
+            kind(name)
     with pytest.raises(ValueError, match=r"the kind 'test walk/1' is .*\.Walk; give Other another"):
-        kind("test walk/1")(Other)
+        kind("test walk/1")(type("Other", (), {}))
     again = type("Walk", (Walk,), {"__module__": Walk.__module__, "__qualname__": Walk.__qualname__})
     assert kind("test walk/1")(again) is again
     assert type(there_and_back(Walk())) is again
@@ -123,21 +111,16 @@ def changed(value: Any, **change: Any) -> State:
     return state
 
 
-@pytest.mark.parametrize(
-    ("state", "words"),
-    [
+def test_what_cannot_be_taken_back_is_named(subtests: pytest.Subtests) -> None:
+    wider = {"length_m": 1.0, "width_m": 2.0}
+    for state, words in (
         (changed(Step(1.0), kind="test step/2"), "test step/2 was made by another version .* has test step/1"),
         (changed(Step(1.0), kind="their step/1"), "no class is of the kind 'their step/1': .* import its file first"),
         (changed(Step(1.0), state={"length_m": -1.0}), "length_m must be at least 0"),
-        (
-            changed(Step(1.0), state={"length_m": 1.0, "width_m": 2.0}),
-            "Step differs in width_m: made by another version",
-        ),
+        (changed(Step(1.0), state=wider), "Step differs in width_m: made by another version"),
         (changed(Walk(), state={"_drawn": 3}), r"Walk\._drawn must be left out"),
         (State({"format": 1, "brain": {}}, []), "of format 1, which an unreleased version wrote"),
         (State({}, []), "format must be 3, got None"),
-    ],
-)
-def test_what_cannot_be_taken_back_is_named(state: State, words: str) -> None:
-    with pytest.raises((ValueError, AttributeError), match=words):
-        decode(state)
+    ):
+        with subtests.test(words), pytest.raises((ValueError, AttributeError), match=words):
+            decode(state)
