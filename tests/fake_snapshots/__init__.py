@@ -5,7 +5,6 @@ real session would keep them.
 """
 
 from tests.fake_snapshots.pose_cells import SNAP_EVERY
-from tests.fake_snapshots.reports import fake_reports, fake_walk
-from tests.fake_snapshots.session import fake_snapshot
+from tests.fake_snapshots.session import fake_reports, fake_snapshot, fake_walk
 
 __all__ = ["SNAP_EVERY", "fake_reports", "fake_snapshot", "fake_walk"]

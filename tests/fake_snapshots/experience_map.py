@@ -12,8 +12,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from web.messages import Goal, MapLayer, Pose, TimesLayer
 
-from .frozen import frozen
-from .long_walk import long_walk, truth_at
+from .office import frozen, long_walk, truth_at
 
 NODES = 1500
 SPACING_M = 0.25  # between experiences
@@ -95,14 +94,9 @@ def goal_layer(tick: int, nodes: int, estimate: Pose, lost: bool) -> Goal:
     layer = map_layer(second, nodes)
     route = np.vstack([[estimate.x, estimate.y], layer.xy[chain]]).astype(np.float32)
     arrival = np.r_[0.0, seconds[row] - seconds[chain] + 0.2].astype(np.float32)
+    x, y = layer.xy[target].tolist()
+    way_m = float(np.hypot(*np.diff(route, axis=0).T).sum())
     return Goal(
-        experience=target,
-        x=float(layer.xy[target, 0]),
-        y=float(layer.xy[target, 1]),
-        state="tracking",
-        eta_s=float(arrival[-1]),
-        remaining_m=float(np.hypot(*np.diff(route, axis=0).T).sum()),
-        route_xy=frozen(route),
-        route_arrival_s=frozen(arrival),
-        lost=lost,
-    )
+        experience=target, x=x, y=y, state="tracking", eta_s=float(arrival[-1]), remaining_m=way_m,
+        route_xy=frozen(route), route_arrival_s=frozen(arrival), lost=lost,
+    )  # fmt: skip

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from web.messages import GoalMemoryLayer, OccupancyLayer, OccupancyPicture, Packet, Pose, PoseCellLayer, Snap
 
-from .frozen import frozen
-from .long_walk import truth_at
+from .office import frozen, truth_at
 
 SHAPE = (36, 64, 64)
 CELL_M = 0.25
