@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -84,7 +85,7 @@ def event_log(snaps: int, goal: bool) -> tuple[Event, ...]:
 
 @lru_cache(maxsize=1)
 def parameter_list() -> tuple[Parameter, ...]:
-    rows = (
+    rows: list[tuple[Any, ...]] = [
         ("local_view.threshold", 8.0, "s_m", "grey", 0.0, 64.0, "a view counts as known below", "ACRA 2004", True),
         ("local_view.width", 12, "w", "px", 4, 64, "columns of a stored view", "ACRA 2004", False),
         ("pose_cells.injection", 0.1, "delta", "", 0.0, 1.0, "strength of visual input", "ACRA 2004", True),
@@ -94,7 +95,7 @@ def parameter_list() -> tuple[Parameter, ...]:
         ("pilot.speed", 0.3, "v", "m/s", 0.05, 0.5, "cruising speed", "ours", True),
         ("pilot.wander", True, "", "", None, None, "explore when there is no goal", "ours", True),
         ("views.kind", "sad", "", "", None, None, "how views are compared", "ours", False),
-    )
+    ]
     return tuple(Parameter(name, value, value, *about) for name, value, *about in rows)
 
 

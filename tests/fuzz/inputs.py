@@ -17,8 +17,9 @@ from app.session import Session
 from sim2d import load_world
 from sim2d.importers import import_world
 from sim2d.world.world_file import WORLDS, complaints
-from tests.fuzz import brains, recordings, runs, sessions
+from tests.fuzz import recordings, runs, states
 from tests.fuzz.mutators import bytes_spoilt, text_of, tree_spoilt
+from tests.fuzz.states import BRAINS, SESSIONS
 
 YAML = "image: plan.pgm\nresolution: 0.05\norigin: [0.0, -1.0, 0.1]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
 ROOM = [[0, 0, 8, 0], [8, 0, 8, 6], [8, 6, 0, 6], [0, 6, 0, 0], [3, 0, 3, 2.5],
@@ -48,22 +49,6 @@ COMMANDS: tuple[dict[str, Any], ...] = (
 )  # fmt: skip
 
 
-def brain_file(rng: Random) -> str:
-    return brains.use(brains.file_spoilt(rng))
-
-
-def brain_state(rng: Random) -> str:
-    return brains.use(brains.state_spoilt(rng))
-
-
-def session_file(rng: Random) -> str:
-    return sessions.use(sessions.file_spoilt(rng))
-
-
-def session_state(rng: Random) -> str:
-    return sessions.use(sessions.state_spoilt(rng))
-
-
 def world(rng: Random) -> str:
     tree = _worlds()[rng.randrange(len(_worlds()))]
     data = text_of(tree_spoilt(tree, rng)).encode("utf-8", "surrogatepass")
@@ -74,10 +59,8 @@ def world(rng: Random) -> str:
 
 
 def vector_plan(rng: Random) -> str:
-    data = (
-        text_of(tree_spoilt(ROOM, rng)).encode() if rng.random() < 0.8 else bytes_spoilt(json.dumps(ROOM).encode(), rng)
-    )
-    return _drive_in({"plan.json": data})
+    text = text_of(tree_spoilt(ROOM, rng)).encode() if rng.random() < 0.8 else None
+    return _drive_in({"plan.json": bytes_spoilt(json.dumps(ROOM).encode(), rng) if text is None else text})
 
 
 def picture(rng: Random) -> str:
@@ -112,10 +95,8 @@ def setting(rng: Random) -> str:
     """Some --set NAME=VALUE at once."""
     config, names = Config(), [name for name, _, _ in Config().items()]
     for _ in range(rng.choice((1, 2, 6))):
-        value = (
-            rng.choice(VALUES) if rng.random() < 0.6 else repr(rng.choice((0, 1, 8, 1000, 1e-3, 0.2, 1e308, 640, 480)))
-        )
-        config = config.with_value(rng.choice(names), parse_value(value))
+        number = repr(rng.choice((0, 1, 8, 1000, 1e-3, 0.2, 1e308, 640, 480)))
+        config = config.with_value(rng.choice(names), parse_value(rng.choice(VALUES) if rng.random() < 0.6 else number))
     return _wake(config)
 
 
@@ -139,8 +120,8 @@ def upload(rng: Random) -> dict[str, Any]:
 
 def warm() -> None:
     """Compile whatever a case needs."""
-    brains.warm()
-    sessions.warm()
+    BRAINS.warm()
+    SESSIONS.warm()
     recordings.warm()
     runs.warm()
     for kind in ("pgm", "png", "jpg", "bmp", "ppm"):
@@ -168,22 +149,22 @@ def _picture(kind: str) -> bytes:
 
 
 def _drive_in(files: dict[str, bytes], scale_m: float | None = None) -> str:
-    session = Session(import_world(next(iter(files)), files, scale_m, 1), 1)
-    for _ in range(2):
-        session.tick()
-    return "taken"
+    return _tick(Session(import_world(next(iter(files)), files, scale_m, 1), 1))
 
 
 def _wake(config: Config) -> str:
-    session = Session(load_world("loop"), 1, config, None, brains.before())
+    return _tick(Session(load_world("loop"), 1, config, None, states.before()))
+
+
+def _tick(session: Session) -> str:
     for _ in range(2):
         session.tick()
     return "taken"
 
 
 KINDS: dict[str, tuple[Callable[[Random], str], int]] = {
-    "brain file": (brain_file, 15), "brain state": (brain_state, 30), "session file": (session_file, 5),
-    "session state": (session_state, 20), "world": (world, 15), "vector plan": (vector_plan, 8),
+    "brain file": (BRAINS.file, 15), "brain state": (BRAINS.state, 30), "session file": (SESSIONS.file, 5),
+    "session state": (SESSIONS.state, 20), "world": (world, 15), "vector plan": (vector_plan, 8),
     "picture": (picture, 8), "map_server": (map_server, 7), "parameters": (parameters, 8), "setting": (setting, 4),
     "recording": (recordings.recording, 30), "run": (runs.run_file, 30),
 }  # fmt: skip

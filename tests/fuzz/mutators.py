@@ -84,18 +84,10 @@ def _odd(rng: Random) -> Any:
 
 
 def _number(value: float, rng: Random) -> Any:
-    change: Callable[[float], Any] = rng.choice(
-        (
-            lambda v: -v,
-            lambda v: v + 1,
-            lambda v: v - 1,
-            lambda v: v * 1000,
-            lambda v: v / 3,
-            str,
-            float,
-            lambda v: v * 2,
-        )
-    )
+    changes: tuple[Callable[[float], Any], ...] = (
+        lambda v: -v, lambda v: v + 1, lambda v: v - 1, lambda v: v * 1000, lambda v: v / 3, str, float, lambda v: v * 2,
+    )  # fmt: skip
+    change = rng.choice(changes)
     try:
         return change(value)
     except OverflowError:

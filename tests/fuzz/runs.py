@@ -9,10 +9,10 @@ import json
 import os
 import tempfile
 import zlib
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from random import Random
-from typing import Any
 
 from app.cli.command_line import main
 from app.config import Config
@@ -33,8 +33,8 @@ from app.session_snapshot import read_session, take_session
 from disk import State, encode, write_state
 from ratslam_core.brain_file import read_brain
 from sim2d import Box, load_world, world_to_json
-from tests.fuzz.brains import file_of, state_of
 from tests.fuzz.mutators import bytes_spoilt, text_of, tree_spoilt
+from tests.fuzz.states import file_of, state_of
 
 TICKS = 40
 LONG = 1_000_000  # bytes of a line; to spoil a longer one once more would take more memory than to read it may
@@ -65,8 +65,7 @@ def _kept(with_brain: bool) -> Files:
     for _ in range(60 if with_brain else 0):
         before.tick()
     with tempfile.TemporaryDirectory() as home:
-        folder = Path(home) / "run"
-        brain = None
+        folder, brain = Path(home) / "run", None
         journal = Journal(folder)
         if with_brain:
             with (folder / BRAIN).open("wb") as file:
@@ -84,26 +83,20 @@ def _kept(with_brain: bool) -> Files:
             if tick == 20:
                 with (folder / STATE).open("wb") as file:
                     write_state(take_session(session), file)
-            _give_order(session, tick)
+            ORDERS.get(tick, lambda _: None)(session)
         lines.flush()
         journal.close()
         return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-def _give_order(session: Session, tick: int) -> None:
-    match tick:
-        case 5:
-            session.put_box(Box("crate", 2.0, 2.0, 0.4, 0.4, 0.5, 0.2))
-        case 10:
-            session.kidnap()
-        case 15:
-            session.edit_world(load_world("loop"))
-        case 22:
-            session.set_parameter("pose_cells.inhibit", 0.0003)
-        case 30:
-            session.set_mode("manual")
-        case 31:
-            session.drive(0.2, 0.3)
+ORDERS: dict[int, Callable[[Session], object]] = {
+    5: lambda session: session.put_box(Box("crate", 2.0, 2.0, 0.4, 0.4, 0.5, 0.2)),
+    10: Session.kidnap,
+    15: lambda session: session.edit_world(load_world("loop")),
+    22: lambda session: session.set_parameter("pose_cells.inhibit", 0.0003),
+    30: lambda session: session.set_mode("manual"),
+    31: lambda session: session.drive(0.2, 0.3),
+}
 
 
 def _lines_spoilt(data: bytes, rng: Random) -> bytes:
@@ -129,19 +122,14 @@ def _lines_spoilt(data: bytes, rng: Random) -> bytes:
                 pulses = base64.b64encode(bytes(4 * ticks)).decode()
                 texts[at:at] = [json.dumps({"tick": TICKS + ticks, "pulses": pulses}).encode()]
             case 6:
-                tree = tree_spoilt(json.loads(world_to_json(load_world("loop"))), rng)
-                text = json.dumps(tree, indent=1)
-                texts[at:at] = [json.dumps(_edit(text)).encode()]
+                world = world_to_json(load_world("loop"))
+                edit = edit_of(world, json.dumps(tree_spoilt(json.loads(world), rng), indent=1))
+                order = {"tick": TICKS, "order": "edit_world", "values": {}, "edit": edit}  # the last of the run
+                texts[at:at] = [json.dumps(order).encode()]
             case _ if len(texts[at]) < LONG:
                 with contextlib.suppress(ValueError, RecursionError):  # spoilt before
                     texts[at] = text_of(tree_spoilt(json.loads(texts[at]), rng)).encode("utf-8", "surrogatepass")
     return signed(texts)
-
-
-def _edit(text: str) -> dict[str, Any]:
-    """The last order of a run: an edit that makes the world's text this one."""
-    edit = edit_of(world_to_json(load_world("loop")), text)
-    return {"tick": TICKS, "order": "edit_world", "values": {}, "edit": edit}
 
 
 def signed(texts: list[bytes]) -> bytes:
@@ -188,7 +176,6 @@ def use(files: Files) -> str:
         os.environ["RATSLAM_RUNS"] = home
         _list()
         run = open_run(folder)
-        there: Session | None = None
         refused: ValueError | None = None
         try:
             replay(run)

@@ -1,4 +1,4 @@
-"""Brains that were spoilt and signed again, and what a brain that is accepted all the same is made to do."""
+"""Brains and whole sessions that were spoilt and signed again, and what one that is accepted all the same is made to do."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ import io
 import json
 import struct
 import zipfile
-from functools import cache
+from collections.abc import Callable
+from functools import cache, cached_property
 from random import Random
 from typing import Any
 
 import numpy as np
 
 from app.config import Config
-from app.session import Session
+from app.session import Session, spread_goals
+from app.session_snapshot import read_session, take_session
 from disk import State, write_state
 from ratslam_core import RatSlam, find_places, take_snapshot
 from ratslam_core.brain_file import read_brain
@@ -28,38 +30,54 @@ ROBOTS: tuple[dict[str, Any], ...] = (
 )
 
 
-@cache
-def bases() -> tuple[State, ...]:
+class Files:
+    """Files of states, spoilt, and what is done with one that can be read."""
+
+    def __init__(self, make: Callable[[], tuple[State, ...]], use: Callable[[bytes], str], as_zip: float) -> None:
+        self._make, self.use, self._as_zip = make, use, as_zip
+
+    @cached_property
+    def bases(self) -> tuple[State, ...]:
+        return self._make()
+
+    @cached_property
+    def packed(self) -> tuple[bytes, ...]:
+        return tuple(file_of(base.tree, base.arrays) for base in self.bases)
+
+    def file(self, rng: Random) -> str:
+        """One with other bytes."""
+        data, other = rng.choice(self.packed), rng.choice(self.packed)
+        return self.use(_zip_spoilt(data, rng) if rng.random() < self._as_zip else bytes_spoilt(data, rng, other))
+
+    def state(self, rng: Random) -> str:
+        """One with another state, and a digest that fits."""
+        return self.use(file_of(*state_of(rng.choice(self.bases), rng)))
+
+    def warm(self) -> None:
+        """Compile whatever a case needs, so that later only the case's own time is measured."""
+        for data in self.packed:
+            self.use(data)
+
+
+def _brains() -> tuple[State, ...]:
     """Brains that have driven, been carried off and learnt."""
-    return tuple(_driven(robot) for robot in ROBOTS)
+    return tuple(
+        take_snapshot(_driven(WORLD, Config().with_values(robot), {200: Session.kidnap}, 250).brain) for robot in ROBOTS
+    )
 
 
-def _driven(robot: dict[str, Any]) -> State:
-    config = Config()
-    for name, value in robot.items():
-        config = config.with_value(name, value)
-    session = Session(load_world(WORLD), 2, config)
-    for tick in range(250):
-        if tick == 200:
-            session.kidnap()
+def _sessions() -> tuple[State, ...]:
+    """Sessions that have driven, been carried off, and are on their way to a goal."""
+    orders = {120: Session.kidnap, 180: lambda session: session.pilot.set_goal(spread_goals(session, 1)[0])}
+    return tuple(take_session(_driven(world, Config(), orders, 220)) for world in ("living", WORLD))
+
+
+def _driven(world: str, config: Config, orders: dict[int, Callable[[Session], object]], ticks: int) -> Session:
+    session = Session(load_world(world), 2, config)
+    for tick in range(ticks):
+        orders.get(tick, lambda _: None)(session)
         session.tick()
-    return take_snapshot(session.brain)
-
-
-@cache
-def _packed() -> tuple[bytes, ...]:
-    return tuple(file_of(base.tree, base.arrays) for base in bases())
-
-
-def file_spoilt(rng: Random) -> bytes:
-    """A brain's file with other bytes."""
-    data, other = rng.choice(_packed()), rng.choice(_packed())
-    return _zip_spoilt(data, rng) if rng.random() < 0.3 else bytes_spoilt(data, rng, other)
-
-
-def state_spoilt(rng: Random) -> bytes:
-    """A brain's file with another state, and a digest that fits."""
-    return file_of(*state_of(rng.choice(bases()), rng))
+    return session
 
 
 def state_of(base: State, rng: Random) -> tuple[Any, list[np.ndarray]]:
@@ -75,7 +93,7 @@ def state_of(base: State, rng: Random) -> tuple[Any, list[np.ndarray]]:
     return tree, arrays
 
 
-def use(data: bytes) -> str:
+def _use_brain(data: bytes) -> str:
     """Wake up with the brain, drive a little, and ask it for routes. Returns what became of it."""
     brain = read_brain(io.BytesIO(data))
     session = Session(load_world(WORLD), 1, Config().with_engine(brain.params), brain, before())
@@ -88,10 +106,22 @@ def use(data: bytes) -> str:
     return "taken"
 
 
-def warm() -> None:
-    """Compile whatever a case needs, so that later only the case's own time is measured."""
-    for data in _packed():
-        use(data)
+def _use_session(data: bytes) -> str:
+    """Go on with the session, partly by hand and after a kidnap, and save it again. Returns what became of it."""
+    session = read_session(io.BytesIO(data))
+    for tick in range(12):
+        if tick == 4:
+            session.pilot.drive(0.3, -0.5)
+        if tick == 8:
+            session.kidnap()
+            session.set_mode("explore")
+        session.tick()
+    session.state_hash()
+    write_state(take_session(session), io.BytesIO())
+    return "taken"
+
+
+BRAINS, SESSIONS = Files(_brains, _use_brain, as_zip=0.3), Files(_sessions, _use_session, as_zip=0.0)
 
 
 @cache
