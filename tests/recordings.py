@@ -191,35 +191,40 @@ def ros_messages(ros1: bool, poses_only: bool = False, packed: bool = False) -> 
             bgr = np.ascontiguousarray(row.image[:, :, ::-1]).reshape(-1)
             image = t["sensor_msgs/msg/Image"](h, HEIGHT, WIDTH, "bgr8", 0, WIDTH * 3, bgr)
             yield "/camera/image", "sensor_msgs/msg/Image", row.time_ns, image
-        yield (
-            "/odom",
-            "nav_msgs/msg/Odometry",
-            row.time_ns,
-            t["nav_msgs/msg/Odometry"](h, "base_link", with_pose, with_twist),
-        )
-        beams = t["sensor_msgs/msg/LaserScan"](
-            h, -1.5, 1.5, 0.05, 0.0, 0.1, 0.1, 30.0, row.ranges, np.zeros(0, np.float32)
-        )
+        odometry = t["nav_msgs/msg/Odometry"](h, "base_link", with_pose, with_twist)
+        yield "/odom", "nav_msgs/msg/Odometry", row.time_ns, odometry
+        bare = np.zeros(0, np.float32)
+        beams = t["sensor_msgs/msg/LaserScan"](h, -1.5, 1.5, 0.05, 0.0, 0.1, 0.1, 30.0, row.ranges, bare)
         yield "/scan", "sensor_msgs/msg/LaserScan", row.time_ns, beams
         yield "/truth", "geometry_msgs/msg/PoseStamped", row.time_ns, t["geometry_msgs/msg/PoseStamped"](h, pose)
         yield "/words", "std_msgs/msg/String", row.time_ns, t["std_msgs/msg/String"]("hello")
+
+
+def _tell(
+    ros1: bool, channel: Callable[[str, str], Any], write: Callable[[Any, int, bytes], object], **kind: Any
+) -> None:
+    """Write every message to its channel, which begins with the first."""
+    channels: dict[str, Any] = {}
+    for topic, type_, time_ns, message in ros_messages(ros1, **kind):
+        if topic not in channels:
+            channels[topic] = channel(topic, type_)
+        data = ROS1.serialize_ros1(message, type_) if ros1 else ROS2.serialize_cdr(message, type_)
+        write(channels[topic], time_ns, bytes(data))
 
 
 def mcap(
     path: Path, ros1: bool = False, packing: CompressionType = CompressionType.ZSTD, chunk: int = 2000, **kind: Any
 ) -> Path:
     """Written by the library of MCAP."""
-    store: Any = ROS1 if ros1 else ROS2
+    profile, of_schema, of_data = ("ros1", "ros1msg", "ros1") if ros1 else ("ros2", "ros2msg", "cdr")
     with path.open("wb") as file:
         writer = Writer(file, chunk_size=chunk, compression=packing)
-        writer.start("ros1" if ros1 else "ros2", "tests")
-        channels: dict[str, int] = {}
-        for topic, type_, time_ns, message in ros_messages(ros1, **kind):
-            if topic not in channels:
-                schema = writer.register_schema(type_, "ros1msg" if ros1 else "ros2msg", b"")
-                channels[topic] = writer.register_channel(topic, "ros1" if ros1 else "cdr", schema)
-            data = bytes((store.serialize_ros1 if ros1 else store.serialize_cdr)(message, type_))
-            writer.add_message(channels[topic], time_ns, data, time_ns)
+        writer.start(profile, "tests")
+
+        def channel(topic: str, type_: str) -> int:
+            return writer.register_channel(topic, of_data, writer.register_schema(type_, of_schema, b""))
+
+        _tell(ros1, channel, lambda to, time_ns, data: writer.add_message(to, time_ns, data, time_ns), **kind)
         writer.finish()
     return path
 
@@ -231,22 +236,14 @@ def bag1(path: Path, packing: str = "LZ4", **kind: Any) -> Path:
     if packing:
         bag.set_compression(Bag1.CompressionFormat[packing])
     with bag:
-        connections: dict[str, Any] = {}
-        for topic, type_, time_ns, message in ros_messages(True, **kind):
-            if topic not in connections:
-                connections[topic] = bag.add_connection(topic, type_, typestore=ROS1)
-            bag.write(connections[topic], time_ns, ROS1.serialize_ros1(message, type_))
+        _tell(True, lambda topic, type_: bag.add_connection(topic, type_, typestore=ROS1), bag.write, **kind)
     return path
 
 
 def bag2(folder: Path, plugin: StoragePlugin = StoragePlugin.SQLITE3, **kind: Any) -> Path:
     """Written by rosbags."""
     with Bag2(folder, version=9, storage_plugin=plugin) as bag:
-        connections: dict[str, Any] = {}
-        for topic, type_, time_ns, message in ros_messages(False, **kind):
-            if topic not in connections:
-                connections[topic] = bag.add_connection(topic, type_, typestore=ROS2)
-            bag.write(connections[topic], time_ns, ROS2.serialize_cdr(message, type_))
+        _tell(False, lambda topic, type_: bag.add_connection(topic, type_, typestore=ROS2), bag.write, **kind)
     return folder
 
 
@@ -255,41 +252,37 @@ def db3(path: Path) -> Path:
     base = sqlite3.connect(path)
     base.execute("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT)")
     base.execute("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB)")
-    ids: dict[str, int] = {}
-    for topic, type_, time_ns, message in ros_messages(False):
-        if topic not in ids:
-            ids[topic] = len(ids) + 1
-            base.execute("INSERT INTO topics VALUES(?, ?, ?, 'cdr')", (ids[topic], topic, type_))
-        data = bytes(ROS2.serialize_cdr(message, type_))
-        base.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)", (ids[topic], time_ns, data))
+    topic = "INSERT INTO topics(name, type, serialization_format) VALUES(?, ?, 'cdr')"
+    message = "INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)"
+    _tell(False, lambda *about: base.execute(topic, about).lastrowid, lambda *row: base.execute(message, row))
     base.commit()
     base.close()
     return path
 
 
+WHEELS, ROS = {"speed", "yaw rate"}, {"camera", "ranges", "speed", "yaw rate", "truth"}
 # Of each format: how it is written below a name, and what it has.
 FORMATS: dict[str, tuple[str, Callable[[Path], Path], set[str]]] = {
-    "image folder": ("pictures", image_folder, {"camera", "speed", "yaw rate", "truth"}),
+    "image folder": ("pictures", image_folder, {"camera", "truth"} | WHEELS),
     "plain folder": ("plain", plain_folder, {"camera"}),
     "airsim": ("airsim", airsim, {"camera", "truth"}),
-    "tub": ("tub", tub, {"camera", "speed", "yaw rate", "throttle"}),
-    "old tub": ("old", old_tub, {"camera", "speed", "yaw rate", "throttle"}),
-    "carmen": ("a.log", carmen, {"ranges", "speed", "yaw rate"}),
-    "carmen packed": ("a.log.gz", carmen, {"ranges", "speed", "yaw rate"}),
-    "carmen robot": ("b.log", lambda path: carmen(path, "ROBOTLASER1"), {"ranges", "speed", "yaw rate"}),
-    "carmen raw": ("c.log", lambda path: carmen(path, "RAWLASER1"), {"ranges", "speed", "yaw rate"}),
-    "scans": ("scans.gz", scans, {"ranges", "speed", "yaw rate"}),
-    "avi": ("v.avi", video, {"camera", "speed", "yaw rate"}),
-    "mp4": ("v.mp4", video, {"camera", "speed", "yaw rate"}),
-    "mcap": ("a.mcap", mcap, {"camera", "ranges", "speed", "yaw rate", "truth"}),
-    "mcap lz4": ("b.mcap", lambda path: mcap(path, packing=CompressionType.LZ4, packed=True),
-                 {"camera", "ranges", "speed", "yaw rate", "truth"}),
-    "mcap ros1": ("c.mcap", lambda path: mcap(path, True), {"camera", "ranges", "speed", "yaw rate", "truth"}),
-    "mcap poses": ("d.mcap", lambda path: mcap(path, poses_only=True), {"camera", "ranges", "speed", "yaw rate", "truth"}),
-    "bag": ("a.bag", bag1, {"camera", "ranges", "speed", "yaw rate", "truth"}),
-    "bag bz2": ("b.bag", lambda path: bag1(path, "BZ2"), {"camera", "ranges", "speed", "yaw rate", "truth"}),
-    "bag plain": ("c.bag", lambda path: bag1(path, ""), {"camera", "ranges", "speed", "yaw rate", "truth"}),
-    "bag 2": ("bag2", bag2, {"camera", "ranges", "speed", "yaw rate", "truth"}),
-    "bag 2 mcap": ("bag2m", lambda path: bag2(path, StoragePlugin.MCAP), {"camera", "ranges", "speed", "yaw rate", "truth"}),
-    "db3": ("a.db3", db3, {"camera", "ranges", "speed", "yaw rate", "truth"}),
+    "tub": ("tub", tub, {"camera", "throttle"} | WHEELS),
+    "old tub": ("old", old_tub, {"camera", "throttle"} | WHEELS),
+    "carmen": ("a.log", carmen, {"ranges"} | WHEELS),
+    "carmen packed": ("a.log.gz", carmen, {"ranges"} | WHEELS),
+    "carmen robot": ("b.log", lambda path: carmen(path, "ROBOTLASER1"), {"ranges"} | WHEELS),
+    "carmen raw": ("c.log", lambda path: carmen(path, "RAWLASER1"), {"ranges"} | WHEELS),
+    "scans": ("scans.gz", scans, {"ranges"} | WHEELS),
+    "avi": ("v.avi", video, {"camera"} | WHEELS),
+    "mp4": ("v.mp4", video, {"camera"} | WHEELS),
+    "mcap": ("a.mcap", mcap, ROS),
+    "mcap lz4": ("b.mcap", lambda path: mcap(path, packing=CompressionType.LZ4, packed=True), ROS),
+    "mcap ros1": ("c.mcap", lambda path: mcap(path, True), ROS),
+    "mcap poses": ("d.mcap", lambda path: mcap(path, poses_only=True), ROS),
+    "bag": ("a.bag", bag1, ROS),
+    "bag bz2": ("b.bag", lambda path: bag1(path, "BZ2"), ROS),
+    "bag plain": ("c.bag", lambda path: bag1(path, ""), ROS),
+    "bag 2": ("bag2", bag2, ROS),
+    "bag 2 mcap": ("bag2m", lambda path: bag2(path, StoragePlugin.MCAP), ROS),
+    "db3": ("a.db3", db3, ROS),
 }  # fmt: skip

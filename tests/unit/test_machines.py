@@ -124,22 +124,17 @@ ENVIRONMENTS = {
 @pytest.mark.parametrize("name", ENVIRONMENTS)
 def test_it_starts(name: str, place: Path, tmp_path: Path) -> None:
     row = dict(ENVIRONMENTS[name])
-    before = stranger() if row.pop("user", None) else []
+    before, shell = stranger() if row.pop("user", None) else [], row.pop("shell", "")
     (tmp_path / "file").touch()
     (tmp_path / "read only").mkdir(mode=0o555)
     where = {"place": place, "file": tmp_path / "file", "read_only": tmp_path / "read only"}
-    if "PYTHONPATH" in row:
-        where["foreign"] = foreign(tmp_path / "foreign")
-    if "LD_PRELOAD" in row:
-        where["no_locks"] = without_locks(tmp_path)
-    shell = row.pop("shell", "")
+    where |= {"foreign": foreign(tmp_path / "foreign")} if "PYTHONPATH" in row else {}
+    where |= {"no_locks": without_locks(tmp_path)} if "LD_PRELOAD" in row else {}
     kept = {key: value for key, value in os.environ.items() if not key.startswith(("RATSLAM_", "NUMBA_", "PYTHON"))}
-    environment = {**kept, "HOME": str(place)}
-    for key, value in row.items():
-        if value is None:
-            environment.pop(key)
-        else:
-            environment[key] = value.format(**where)
+    wanted = {"HOME": str(place), **row}
+    environment = kept | {key: value.format(**where) for key, value in wanted.items() if value is not None}
+    if wanted["HOME"] is None:
+        del environment["HOME"]
     commands = " && ".join(f'"{RATSLAM}" {words} {shell}' for words in ("runs", "worlds"))
     done = subprocess.run([*before, "sh", "-c", commands], cwd=place, env=environment, capture_output=True)
     assert (done.returncode, done.stderr) == (0, b"")

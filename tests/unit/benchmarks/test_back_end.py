@@ -20,21 +20,6 @@ from benchmarks.back_end.files import g2o_files, intel, read_g2o
 from benchmarks.back_end.graph import Graph, between, compose, lied_to, measured
 from benchmarks.back_end.rows import line, rows
 from benchmarks.back_end.solving import solve
-from ratslam_core import Pose2
-
-numbers = st.floats(-50, 50)
-poses = st.builds(lambda x, y, t: np.array([x, y, t]), numbers, numbers, st.floats(-3.1, 3.1))
-
-
-@given(poses, poses)
-def test_poses_compose_as_the_engine_says(a: np.ndarray, b: np.ndarray) -> None:
-    expected = Pose2(*a.tolist()).compose(Pose2(*b.tolist()))
-    found = compose(a, b)
-    assert found[:2] == pytest.approx([expected.x, expected.y])
-    assert abs(math.remainder(found[2] - expected.heading_rad, math.tau)) < 1e-9
-    back = between(a, found)
-    assert back[:2] == pytest.approx(b[:2], abs=1e-9)
-    assert abs(math.remainder(back[2] - b[2], math.tau)) < 1e-9
 
 
 def test_a_city_is_driven_metre_by_metre_and_closed_where_it_was_before() -> None:

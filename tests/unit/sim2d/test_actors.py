@@ -97,15 +97,6 @@ def test_a_door_takes_as_long_as_it_is_said_to_and_its_tip_is_no_quicker_than_it
             assert ticks == pytest.approx(max(10 * seconds, DOOR.width * math.pi / 2 / tip), abs=1)
 
 
-def test_a_door_slows_down_while_it_moves() -> None:
-    simulator = Simulator(living(doors=(DOOR,)), EXACT)
-    simulator.set_door("lab", True)
-    for tip in (0.1, 0.02):
-        simulator.office = OfficeParams(door_tip_m=tip)
-        before = simulator.actors.opening[0]
-        assert (openings(simulator, 4)[-1] - before) * DOOR.width * math.pi / 2 / 4 == pytest.approx(tip)
-
-
 def test_the_robot_does_not_start_in_a_shut_door_or_a_box() -> None:
     door = Door("lab", 1.5, 2.0, 0.0, 1.0, open=False)
     for world in (living(doors=(door,)), living(boxes=(Box("b", 2.0, 2.3, 0.4, 0.4),))):
