@@ -81,17 +81,6 @@ def test_a_run_that_failed_misses_every_bar() -> None:
     assert list(ROWS["deliveries"].judge([failed])) == []
 
 
-def test_a_run_is_told_in_a_line() -> None:
-    kidnaps = [{"recovered": True}, {"recovered": False}]
-    assert figures.of_run(report(kidnaps=kidnaps, goals=[], variant="off")) == (
-        "office, seed 1, off: map 0.1 m, 1 of 2 kidnaps recovered; 300 x real time"
-    )
-    assert figures.of_run(report(deliveries=9, succeeded=8, goals=[{"visits": 3}])) == (
-        "office, seed 1: map 0.1 m, 8 of 9 deliveries; 300 x real time"
-    )
-    assert figures.of_run(report(error="ValueError: no")) == "office, seed 1: failed: ValueError: no"
-
-
 def test_living_is_judged_beside_everything_off() -> None:
     off = report(variant="off", revisit_share=0.4, error_m={"map": 9.0})
     found = verdicts("living", [report(revisit_share=0.2), off])

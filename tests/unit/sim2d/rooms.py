@@ -18,9 +18,10 @@ DOOR = Door("lab", 3.0, 1.5, math.pi / 2, 1.0, swing_rad=-math.pi / 2, open=Fals
 
 
 def wall(
-    *ends: float, kind: str = "wall", height: float = 2.6, colour: tuple[int, int, int] = GREY, **more: Any
-) -> Wall:
-    return Wall(*ends, kind, height, colour, **more)
+    x1: float, y1: float, x2: float, y2: float, kind: str = "wall", height: float = 2.6,
+    colour: tuple[int, int, int] = GREY, **more: Any,
+) -> Wall:  # fmt: skip
+    return Wall(x1, y1, x2, y2, kind, height, colour, **more)
 
 
 def room(*inner: Wall, side: float = 4.0, panels: tuple[Panel, ...] = (), **things: Any) -> World:

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import fields, replace
+from typing import Any
 
 import pytest
 
@@ -33,12 +34,13 @@ def test_every_parameter_is_declared_in_full_and_checked(subtests: pytest.Subtes
 
 
 def test_what_does_not_go_together_is_refused() -> None:
-    for kind, values, reason in (
+    rows: list[tuple[Any, dict[str, float], str]] = [
         (SimParams, {"image_width": 64.5}, r"image_width must be a whole number from 8 to 640, got 64\.5"),
         (SimParams, {"sensor_rate_hz": 7}, r"physics_rate_hz must be a multiple of sensor_rate_hz \(7\), got 240"),
         (OfficeParams, {"patience_least_s": 9.0}, r"patience_least_s must be at most patience_most_s \(8\), got 9"),
         (OfficeParams, {"patience_most_s": 2.5}, r"patience_least_s must be at most patience_most_s \(2\.5\), got 3"),
-    ):
+    ]
+    for kind, values, reason in rows:
         with pytest.raises(ValueError, match=reason):
             replace(kind(), **values)
     assert OfficeParams(patience_least_s=8.0).patience_most_s == 8.0
