@@ -154,6 +154,8 @@ def test_a_scripted_box_waits_until_the_robot_has_left() -> None:
         simulator.teleport(2.3, 2.0, 0.0)
     run(simulator, STAY, 35)
     assert not simulator.actors.box_present[0]
+    simulator.remove_box("crate")
+    assert simulator.world.script == ()
 
 
 def test_a_kidnap_by_chance_finds_what_room_boxes_and_people_leave() -> None:
