@@ -101,4 +101,4 @@ def test_there_are_twenty_three_and_each_has_its_texts() -> None:
         assert all((text.watch, text.sandbox, text.formulas)), card.name
         assert 0 < card.minutes <= 15
     assert len(ADDITIONS) == 17
-    assert "Eeventeen" in NAMED["additions"].text
+    assert "Seventeen" in NAMED["additions"].text
