@@ -12,9 +12,14 @@ from ratslam_core.pose_graph.adjacency import Adjacency
 class Lists:
     """The same with plain lists."""
 
-    def __init__(self) -> None:
-        self.halves: list[list[tuple[int, int]]] = []
+    def __init__(self, nodes: int = 0) -> None:
+        self.halves: list[list[tuple[int, int]]] = [[] for _ in range(nodes)]
         self.ends: dict[int, tuple[int, int]] = {}
+
+    def link(self, i: int, j: int, row: int) -> None:
+        self.halves[i].append((2 * row, j))
+        self.halves[j].append((2 * row + 1, i))
+        self.ends[row] = i, j
 
     def check(self, adjacency: Adjacency) -> None:
         for node, expected in enumerate(self.halves):
@@ -40,9 +45,7 @@ def test_links_come_and_go_as_in_lists(data: st.DataObject) -> None:
             i, j = data.draw(st.integers(0, n - 1)), data.draw(st.integers(0, n - 1))
             row = next(k for k in range(len(lists.ends) + 1) if k not in lists.ends)
             adjacency.add_link(i, j, row)
-            lists.halves[i].append((2 * row, j))
-            lists.halves[j].append((2 * row + 1, i))
-            lists.ends[row] = i, j
+            lists.link(i, j, row)
         elif lists.ends:
             row = data.draw(st.sampled_from(sorted(lists.ends)))
             i, j = lists.ends.pop(row)
@@ -56,46 +59,37 @@ def test_links_come_and_go_as_in_lists(data: st.DataObject) -> None:
 
 
 def test_thousands_of_links_grow_the_arena() -> None:
-    adjacency, lists = Adjacency(), Lists()
     n = 2500
+    adjacency, lists = Adjacency(), Lists(n)
     for _ in range(n):
         adjacency.add_node()
-        lists.halves.append([])
     links = [(k, k + 1) for k in range(n - 1)] + [(k + 2, k) for k in range(n - 2)] + [(7, k) for k in range(300)]
     for row, (i, j) in enumerate(links):
         adjacency.add_link(i, j, row)
-        lists.halves[i].append((2 * row, j))
-        lists.halves[j].append((2 * row + 1, i))
+        lists.link(i, j, row)
     lists.check(adjacency)
     assert len(adjacency.half) < 8 * 4 * n
 
 
-@pytest.mark.parametrize("bad", [(-1, 0), (0, 2), (2, 0)])
-def test_a_link_joins_nodes_that_there_are(bad: tuple[int, int]) -> None:
+def test_a_link_joins_nodes_that_there_are_and_only_one_that_is_there_can_be_removed() -> None:
     adjacency = Adjacency()
-    adjacency.add_node()
-    adjacency.add_node()
-    with pytest.raises(ValueError, match="a link must join nodes from 0 to 1, got"):
-        adjacency.add_link(*bad, 0)
-
-
-@pytest.mark.parametrize("bad", [(0, 1, 1), (1, 0, 0), (0, 5, 0), (-1, 1, 0)])
-def test_only_a_link_that_is_there_can_be_removed(bad: tuple[int, int, int]) -> None:
-    adjacency = Adjacency()
-    adjacency.add_node()
-    adjacency.add_node()
-    adjacency.add_link(0, 1, 0)
-    with pytest.raises(ValueError, match=rf"row {bad[2]} must link {bad[0]} to {bad[1]} to be removed"):
-        adjacency.remove_link(*bad)
-    assert adjacency.at(0)[0].tolist() == [0]
-    assert adjacency.at(1)[0].tolist() == [1]
-
-
-@pytest.mark.parametrize("nodes", [1024, 1025, 1026, 2049])
-def test_the_last_node_has_room_in_the_arena(nodes: int) -> None:
-    adjacency = Adjacency()
-    for _ in range(nodes):
+    for _ in range(2):
         adjacency.add_node()
-    for row in range(4):
-        adjacency.add_link(row, nodes - 1, row)
-    assert adjacency.at(nodes - 1)[1].tolist() == [0, 1, 2, 3]
+    for ends in ((-1, 0), (0, 2), (2, 0)):
+        with pytest.raises(ValueError, match="a link must join nodes from 0 to 1, got"):
+            adjacency.add_link(*ends, 0)
+    adjacency.add_link(0, 1, 0)
+    for i, j, row in ((0, 1, 1), (1, 0, 0), (0, 5, 0), (-1, 1, 0)):
+        with pytest.raises(ValueError, match=rf"row {row} must link {i} to {j} to be removed"):
+            adjacency.remove_link(i, j, row)
+        assert [adjacency.at(node)[0].tolist() for node in (0, 1)] == [[0], [1]]
+
+
+def test_the_last_node_has_room_in_the_arena() -> None:
+    for nodes in (1024, 1025, 1026, 2049):
+        adjacency = Adjacency()
+        for _ in range(nodes):
+            adjacency.add_node()
+        for row in range(4):
+            adjacency.add_link(row, nodes - 1, row)
+        assert adjacency.at(nodes - 1)[1].tolist() == [0, 1, 2, 3]

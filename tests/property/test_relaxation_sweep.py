@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from ratslam_core.pose_graph import pose_graph, relaxation
 from ratslam_core.pose_graph.adjacency import Adjacency
 from ratslam_core.pose_graph.relaxation import sweep
-from tests.unit.ratslam_core import literal
+from tests.unit.ratslam_core.literal import also_interpreted
 
 from .pose_graphs import EXAMPLES, Graph, disturb, graphs, turned, wrap
 
@@ -89,26 +89,18 @@ def literal_sweep(graph: Graph, alpha: float) -> np.ndarray:
     return poses
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_a_sweep_is_that_of_the_papers(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    if interpreted:
-        literal.interpret(relaxation, monkeypatch)
-
-    @settings(max_examples=25)
-    @given(graphs(), st.floats(0.0, 1.0))
-    def agrees(graph: Graph, alpha: float) -> None:
-        disturb(graph, 1.0, 0.5)
-        swept, expected = graph.swept(1, alpha), literal_sweep(graph, alpha)
-        assert np.abs(wrap(swept[:, 2] - expected[:, 2])).max() < 1e-9
-        assert np.abs(swept[:, :2] - expected[:, :2]).max() < 1e-9
-
-    agrees()
+@also_interpreted(relaxation)
+@settings(max_examples=25)
+@given(graphs(), st.floats(0.0, 1.0))
+def test_a_sweep_is_that_of_the_papers(graph: Graph, alpha: float) -> None:
+    disturb(graph, 1.0, 0.5)
+    swept, expected = graph.swept(1, alpha), literal_sweep(graph, alpha)
+    assert np.abs(wrap(swept[:, 2] - expected[:, 2])).max() < 1e-9
+    assert np.abs(swept[:, :2] - expected[:, :2]).max() < 1e-9
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_an_experience_without_links_stays(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    if interpreted:
-        literal.interpret(relaxation, monkeypatch)
+@also_interpreted(relaxation)
+def test_an_experience_without_links_stays() -> None:
     poses = np.array([[0.0, 0.0, 0.0], [5.0, 5.0, 1.0], [2.0, 0.0, 0.0]])
     adjacency = Adjacency()
     for _ in poses:
@@ -118,14 +110,9 @@ def test_an_experience_without_links_stays(interpreted: bool, monkeypatch: pytes
     assert poses.tolist() == [[0, 0, 0], [5, 5, 1], [1, 0, 0.5]]
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_headings_are_wrapped_and_faced_exactly(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    if interpreted:
-        literal.interpret(relaxation, monkeypatch)
-    assert pose_graph.wrapped(-math.pi) == math.pi
-    assert pose_graph.wrapped(math.pi) == math.pi
-    for angle in np.linspace(-math.pi, math.pi, 1001):
-        c, s = relaxation._facing(angle)
-        assert (c, s) == pytest.approx((math.cos(angle), math.sin(angle)), abs=2e-14, rel=0)
+@also_interpreted(pose_graph)
+def test_headings_are_wrapped() -> None:
+    assert pose_graph.wrapped(-math.pi) == pose_graph.wrapped(math.pi) == math.pi
+    for angle in np.linspace(-math.pi, math.pi, 101):
         for turns in (-2, -1, 1, 3):
             assert abs(wrap(pose_graph.wrapped(angle + 2 * math.pi * turns) - angle)) < 1e-12

@@ -11,7 +11,7 @@ from ratslam_core.extensions import robust_weights
 from ratslam_core.pose_graph import relaxation
 from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS
 from ratslam_core.pose_graph.relaxation import solve
-from tests.unit.ratslam_core import literal
+from tests.unit.ratslam_core.literal import also_interpreted
 
 from .pose_graphs import EXAMPLES
 
@@ -39,10 +39,8 @@ def carried_chain(looks: int) -> tuple[np.ndarray, np.ndarray]:
     return poses[:, 0] - true_x, trust
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_many_looks_tear_the_link_of_a_kidnap(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    if interpreted:
-        literal.interpret(relaxation, monkeypatch)
+@also_interpreted(relaxation)
+def test_many_looks_tear_the_link_of_a_kidnap() -> None:
     off, trust = carried_chain(looks=20)
     torn = np.flatnonzero(trust[:39] < 0.5)
     assert len(torn) >= 1
@@ -55,19 +53,6 @@ def test_a_single_look_tears_nothing() -> None:
     assert trust[:39].min() > 0.5
     assert trust[39] < 0.5
     assert off[39] > 4.0
-
-
-@EXAMPLES
-@given(st.floats(0.001, 10), st.floats(0.001, 10), st.floats(-3, 3), st.booleans())
-def test_trust_falls_with_contradiction(near: float, far: float, turn: float, chain: bool) -> None:
-    near, far = sorted((near, far))
-    links, weights = np.array([[0, 1]]), np.array([0.5])
-    poses = np.zeros((2, 3))
-    trusts = [
-        robust_weights.trust(poses, links, np.array([[d, 0.0, turn]]), weights, np.array([chain]), 0.25)[0]
-        for d in (near, far)
-    ]
-    assert 0 < trusts[1] <= trusts[0] <= 1
 
 
 @EXAMPLES

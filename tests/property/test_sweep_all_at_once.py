@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core.pose_graph import relaxation
 from ratslam_core.pose_graph.relaxation import has_diverged, sweep_all_at_once
-from tests.unit.ratslam_core import literal
+from tests.unit.ratslam_core.literal import also_interpreted
 
 from .pose_graphs import EXAMPLES, Graph, disturb, graphs, turned, wrap
 
@@ -53,21 +52,15 @@ def literal_sweep(graph: Graph, alpha: float) -> np.ndarray:
     return new
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_a_sweep_is_that_of_the_literal_sums(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    if interpreted:
-        literal.interpret(relaxation, monkeypatch)
-
-    @settings(max_examples=40)
-    @given(graphs(), st.floats(0.0, 0.95))
-    def agrees(graph: Graph, alpha: float) -> None:
-        disturb(graph, 1.0, 0.5)
-        new, expected = swept(graph, 1, alpha), literal_sweep(graph, alpha)
-        assert np.array_equal(new[0], graph.poses[0])
-        assert np.abs(wrap(new[:, 2] - expected[:, 2])).max() < 1e-9
-        assert np.abs(new[:, :2] - expected[:, :2]).max() < 1e-9
-
-    agrees()
+@also_interpreted(relaxation)
+@settings(max_examples=40)
+@given(graphs(), st.floats(0.0, 0.95))
+def test_a_sweep_is_that_of_the_literal_sums(graph: Graph, alpha: float) -> None:
+    disturb(graph, 1.0, 0.5)
+    new, expected = swept(graph, 1, alpha), literal_sweep(graph, alpha)
+    assert np.array_equal(new[0], graph.poses[0])
+    assert np.abs(wrap(new[:, 2] - expected[:, 2])).max() < 1e-9
+    assert np.abs(new[:, :2] - expected[:, :2]).max() < 1e-9
 
 
 @EXAMPLES

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import wraps
 from types import ModuleType
+from typing import ParamSpec
 
 import numpy as np
 import pytest
@@ -12,6 +15,7 @@ from numpy.typing import NDArray
 from ratslam_core import PoseCells
 
 Array = NDArray[np.float64]
+Given = ParamSpec("Given")
 
 
 def interpret(module: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -20,6 +24,23 @@ def interpret(module: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
         if hasattr(function, "py_func"):
             quiet = np.errstate(all="ignore")  # as compiled code is
             monkeypatch.setattr(module, name, quiet(function.py_func))
+
+
+def also_interpreted(*modules: ModuleType) -> Callable[[Callable[Given, None]], Callable[Given, None]]:
+    """A test that runs twice: with the compiled functions of these modules, and interpreted."""
+
+    def twice(test: Callable[Given, None]) -> Callable[Given, None]:
+        @wraps(test)
+        def both(*args: Given.args, **named: Given.kwargs) -> None:
+            test(*args, **named)
+            with pytest.MonkeyPatch.context() as patch:
+                for module in modules:
+                    interpret(module, patch)
+                test(*args, **named)
+
+        return both
+
+    return twice
 
 
 def fill(pose_cells: PoseCells, dense: Array) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,7 +10,7 @@ from ratslam_core import Odometry
 from ratslam_core.beats import MOST, Beats, shared, weight
 
 
-@pytest.mark.parametrize("rate", [1, 2, 3, 5, 6, 7, 8, 10, 12, 15, 16, 20, 24, 30, 40, 48, 60, 100])
+@pytest.mark.parametrize("rate", [1, 3, 7, 8, 10, 12, 15, 16, 24, 30, 48, 60, 100])
 def test_there_are_ten_in_a_second_at_every_rate(rate: int) -> None:
     beats, counted = Beats(), []
     for _ in range(100 * rate + 1):
@@ -52,15 +50,10 @@ def test_no_movement_and_no_time_is_lost(ticks: list[tuple[float, float, float]]
             assert told[1] - given_back[1] == pytest.approx(beats.turned_by(Odometry(0.0, 0.0, 1.0)), abs=1e-9)
 
 
-def test_a_tick_a_little_early_is_still_on_the_beat() -> None:
+def test_a_tick_a_little_early_is_on_the_beat_and_after_a_long_pause_the_count_begins_anew() -> None:
     beats = Beats()
     for k in range(1000):
         assert beats.take(Odometry(0.0, 0.0, 0.095 if k % 2 else 0.105)).beats == 1
-
-
-def test_after_a_long_pause_the_count_begins_anew() -> None:
-    beats = Beats()
-    beats.take(Odometry(0.0, 0.0, 0.1))
     tick = beats.take(Odometry(0.3, 0.0, 3600.0))
     assert tick.beats == MOST
     assert tick.moved.dt == pytest.approx(3600.0 / MOST)
@@ -74,18 +67,15 @@ def test_a_bias_is_taken_off_while_the_wheels_turn() -> None:
     assert still.without(0.05) == still
 
 
-@pytest.mark.parametrize("beats", [1, 2, 7])
-def test_the_weight_is_that_of_so_many_steps(beats: int) -> None:
+def test_the_weight_is_that_of_so_many_steps() -> None:
     mean = 0.0
-    for _ in range(beats):
+    for beats in range(1, 8):
         mean += 0.05 * (1.0 - mean)
-    assert weight(0.05, beats) == pytest.approx(mean, abs=1e-15)
-    assert weight(0.05, 1) == 0.05
+        assert weight(0.05, beats) == pytest.approx(mean, abs=1e-15)
 
 
 def test_a_movement_is_cut_into_equal_pieces() -> None:
     whole = Odometry(0.4, -0.2, 0.6)
     piece = shared(whole, 3)
-    assert (piece.speed, piece.yaw_rate) == (0.4, -0.2)
-    assert math.isclose(3 * piece.dt, 0.6)
+    assert (piece.speed, piece.yaw_rate, 3 * piece.dt) == (0.4, -0.2, pytest.approx(0.6))
     assert shared(whole, 1) is whole

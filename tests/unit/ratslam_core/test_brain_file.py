@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import json
-import os
-import threading
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +11,6 @@ import pytest
 
 from disk import State, archive, state_codec
 from ratslam_core import RatSlam, load_brain, save_brain, take_snapshot
-from ratslam_core.brain_file import read_brain
 from tests.unit.disk.full import full_after
 from tests.unit.ratslam_core.drives import driven
 
@@ -80,21 +76,9 @@ def at(tree: Any, path: str) -> Any:
     return node["state"], last
 
 
-def array_of(tree: Any, arrays: list[np.ndarray], path: str) -> np.ndarray:
-    holder, name = at(tree, path)
-    return arrays[holder[name]["array"]]
-
-
-def put(path: str, place: Any, value: Any) -> Any:
-    """A change of one number of an array, or of the whole array."""
-
-    def change(tree: Any, arrays: list[np.ndarray]) -> None:
-        array_of(tree, arrays, path)[place] = value
-
-    return change
-
-
 def write(path: str, value: Any) -> Any:
+    """A change of what is written there."""
+
     def change(tree: Any, _arrays: list[np.ndarray]) -> None:
         holder, name = at(tree, path)
         holder[name] = value
@@ -103,12 +87,24 @@ def write(path: str, value: Any) -> Any:
 
 
 def reshape(path: str, how: Any) -> Any:
+    """A change of the array that is written there."""
+
     def change(tree: Any, arrays: list[np.ndarray]) -> None:
         holder, name = at(tree, path)
         number = holder[name]["array"]
         arrays[number] = how(arrays[number])
 
     return change
+
+
+def put(path: str, place: Any, value: Any) -> Any:
+    """A change of one number of an array."""
+
+    def changed(array: np.ndarray) -> np.ndarray:
+        array[place] = value
+        return array
+
+    return reshape(path, changed)
 
 
 MAP, GRAPH, KNOWN = "experience_map", "experience_map.transitions.graph", "experience_map._experiences"
@@ -194,19 +190,6 @@ def test_saving_replaces_only_what_is_complete(file: Path, tmp_path: Path) -> No
     assert caught.value.filename == str(path)
     assert path.read_bytes() == file.read_bytes()
     assert list(tmp_path.iterdir()) == [path]
-
-
-def test_a_pipe_is_written_to_and_stays(tmp_path: Path) -> None:
-    """A pipe is not replaced by a file, and neither is a device."""
-    pipe, brain, read = tmp_path / "pipe", RatSlam(), list[bytes]()
-    os.mkfifo(pipe)
-    reader = threading.Thread(target=lambda: read.append(pipe.read_bytes()), daemon=True)
-    reader.start()
-    save_brain(brain, pipe)
-    reader.join()
-    assert pipe.is_fifo()
-    assert list(tmp_path.iterdir()) == [pipe]
-    assert read_brain(io.BytesIO(read[0])).digest() == brain.digest()
 
 
 def test_what_could_not_be_read_again_is_not_written(

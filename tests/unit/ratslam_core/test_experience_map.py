@@ -8,20 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ratslam_core import Packet, Pose2
+from ratslam_core import ExperienceMap, Pose2
+from ratslam_core.types import wrap_angle
 
-from .drives import EXACT, Robot
-
-
-def test_energy_is_two_at_the_middle_and_nothing_beyond_the_zone() -> None:
-    robot = Robot()
-    robot.see(0, new=True)
-    assert robot.map.energy(0, robot.packet(), 0) == pytest.approx(2.0)
-    at = robot.packet()
-    assert robot.map.energy(0, replace(at, x=at.x + 2.01), 0) == 0.0
-    assert robot.map.energy(0, replace(at, heading_rad=math.radians(20.1)), 0) == 0.0
-    assert robot.map.energy(0, replace(at, x=at.x + 1.0, heading_rad=math.radians(10)), 0) == pytest.approx(1.0)
-    assert robot.map.energy(0, at, 1) == 0.0
+from .drives import CELL_M, EXACT, SHAPE, Robot
 
 
 def test_the_first_experience_is_the_origin_of_the_map() -> None:
@@ -42,28 +32,6 @@ def test_a_new_experience_outside_the_zone_or_of_another_view() -> None:
     assert not robot.see(0)
     assert robot.map.active == 2
     assert len(robot.map) == 3
-
-
-def test_the_most_energetic_of_several_experiences_is_taken() -> None:
-    robot = Robot(EXACT)
-    robot.see(0, new=True)
-    robot.see(1, new=True)
-    robot.go(0.6, 0.0, 0)
-    assert len(robot.map) == 3
-    first, third = (Packet(*robot.map.cell_state(i)[:2], 0.0, 1.0) for i in (0, 2))
-    for share, expected in ((0.3, 0), (0.45, 0), (0.55, 2), (0.9, 2)):
-        between = Packet(first.x + share * (third.x - first.x), first.y, 0.0, 1.0)
-        robot.see(1, packet=first)  # elsewhere first
-        robot.see(0, packet=between)
-        assert robot.map.active == expected
-
-
-def test_a_threshold_makes_more_experiences() -> None:
-    for threshold, created in ((0.0, False), (1.5, True)):
-        robot = Robot(replace(EXACT, threshold=threshold))
-        robot.see(0, new=True)
-        robot.go(0.25, 0.0, 1, new=True)
-        assert robot.see(0) is created  # one cell beside the first: energy 1.5
 
 
 def test_a_robot_put_back_where_it_was_goes_on() -> None:
@@ -92,14 +60,60 @@ def test_maps_of_thousands_of_experiences_keep_everything() -> None:
     assert np.abs(map_.poses - before).max() < 1e-9
 
 
-@pytest.mark.parametrize(("view", "closes"), [(-1, False), (5, True)])
-def test_seeing_nothing_closes_no_loop(view: int, closes: bool) -> None:
+def test_seeing_nothing_closes_no_loop() -> None:
     """After sixteen metres the torus uses the same pose cells again. Only a scene may then close a loop."""
-    robot = Robot(EXACT)
-    robot.see(7, new=True)
-    assert robot.see(view, new=True)
-    assert not robot.see(view)  # near in the map
-    robot.see(7)
-    robot.go(16.0, 0.0, 3, new=True)
-    assert robot.see(view) is not closes
-    assert (robot.map.active == 1) is closes
+    for view, closes in ((-1, False), (5, True)):
+        robot = Robot(EXACT)
+        robot.see(7, new=True)
+        assert robot.see(view, new=True)
+        assert not robot.see(view)  # near in the map
+        robot.see(7)
+        robot.go(16.0, 0.0, 3, new=True)
+        assert robot.see(view) is not closes
+        assert (robot.map.active == 1) is closes
+
+
+# ---------------------------------------------------------------- how a map is read
+
+
+def test_what_each_experience_stands_for_can_be_read_as_arrays() -> None:
+    robot = Robot(start=Pose2(1.0, 0.0, 0.3))
+    robot.see(4, new=True)
+    robot.go(1.0, 0.2, 9, new=True)
+    map_ = robot.map
+    assert map_.views.tolist() == [4, 9]
+    for i in range(2):
+        assert map_.cell_state(i) == (*map_.cell_states[i], map_.views[i])
+        assert map_.pose(i) == Pose2(*map_.poses[i])
+    for experience in (-1, 2, 100):
+        for ask in (map_.pose, map_.cell_state, lambda i: map_.energy(i, robot.packet(), 0)):
+            with pytest.raises(ValueError, match=f"experience must be from 0 to 1, got {experience}"):
+                ask(experience)
+    empty = ExperienceMap(SHAPE, CELL_M)
+    assert (len(empty), empty.link_count, empty.active) == (0, 0, -1)
+    with pytest.raises(ValueError, match="there is no experience yet"):
+        empty.robot  # noqa: B018
+
+
+def test_the_residual_is_how_far_links_and_map_disagree() -> None:
+    robot = Robot(start=Pose2(1.0, 0.0, 0.3))
+    robot.see(4, new=True)
+    assert robot.map.residual == (0.0, 0.0)
+    for view, turn in ((9, 0.2), (11, -0.4), (12, 1.0)):
+        robot.go(1.0, turn, view, new=True)
+    map_ = robot.map
+    assert map_.residual == pytest.approx((0.0, 0.0), abs=1e-9)
+    map_.poses[2] += (0.3, -0.4, 0.1)
+    t = map_.transitions
+    squares = angles = weights = 0.0
+    for row in range(t.count):
+        if not t.travelled[row]:
+            continue
+        i, j = t.ends[row].tolist()
+        said = map_.pose(i).compose(Pose2(*t.move[row].tolist()))
+        has, weight = map_.pose(j), float(t.believed[row])
+        squares += weight * ((said.x - has.x) ** 2 + (said.y - has.y) ** 2)
+        angles += weight * wrap_angle(said.heading_rad - has.heading_rad) ** 2
+        weights += weight
+    assert map_.residual == pytest.approx((math.sqrt(squares / weights), math.sqrt(angles / weights)))
+    assert map_.residual[0] > 0.1

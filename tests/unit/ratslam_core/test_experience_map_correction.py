@@ -14,6 +14,8 @@ from ratslam_core.pose_graph import relaxation
 
 from .drives import Robot
 
+PLACES: dict[int, Pose2] = {}
+
 
 def lap(robot: Robot, reads: float, bias: float = 0.0) -> None:
     """A square of 16 views, driven exactly, while the wheels report `reads` times the distance and a biased yaw rate."""
@@ -35,9 +37,6 @@ def lap(robot: Robot, reads: float, bias: float = 0.0) -> None:
                     PLACES[now] = robot.pose
                 robot.map.step(packet, Recognition(now, not known, now, 0.1), odometry)
             robot.map.correct()
-
-
-PLACES: dict[int, Pose2] = {}
 
 
 def loop(params: ExperienceMapParams, reads: float, bias: float, laps: int, bias_sigma: float = 10.0) -> Robot:
@@ -85,56 +84,44 @@ def test_the_bias_is_taken_off_the_links_that_told_it() -> None:
         assert robot.map.yaw_bias == pytest.approx(bias if calibrate else 0.0, abs=1e-6)
 
 
-@pytest.mark.parametrize(("a_step", "rested"), [(1e5, False), (2e2, True)])
-def test_a_correction_that_was_hard_is_followed_by_a_long_rest(
-    a_step: float, rested: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_correction_that_was_hard_is_followed_by_a_long_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     """A loop that closes in every step. Corrections are due in every step, but rest after one in proportion to its cost."""
-    robot = loop(ExperienceMapParams(solve_every=1), 1.0, 0.0, 1)
-    monkeypatch.setattr(exact_solver, "WORK_A_STEP", a_step)
-    solve, solved = relaxation.solve, []
-    monkeypatch.setattr(relaxation, "solve", lambda *given: solved.append(solve(*given)) or solved[-1])
-    for _ in range(60):
-        robot.map.closures += 1
-        robot.map.correct()
-    rests = max(1, math.ceil(solved[0].work / a_step))
-    assert (rests > 4) is rested
-    assert len(solved) == pytest.approx(60 / rests, abs=1)
+    solve = relaxation.solve
+    for a_step, rested in ((1e5, False), (2e2, True)):
+        robot, solved = loop(ExperienceMapParams(solve_every=1), 1.0, 0.0, 1), []
+        monkeypatch.setattr(exact_solver, "WORK_A_STEP", a_step)
+        monkeypatch.setattr(
+            relaxation, "solve", lambda *given, solved=solved: solved.append(solve(*given)) or solved[-1]
+        )
+        for _ in range(60):
+            robot.map.closures += 1
+            robot.map.correct()
+        rests = max(1, math.ceil(solved[0].work / a_step))
+        assert (rests > 4) is rested
+        assert len(solved) == pytest.approx(60 / rests, abs=1)
 
 
-@pytest.mark.parametrize(("most", "every"), [(1000, 1), (16, 2), (5, 4)])
-def test_a_very_large_map_is_swept_in_some_beats_only(most: int, every: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_very_large_map_is_swept_in_some_beats_only(monkeypatch: pytest.MonkeyPatch) -> None:
     """So that a beat costs no more than one with a map of `most` experiences, on average."""
     robot = loop(ExperienceMapParams(solve_every=0), 1.0, 0.0, 1)
     assert len(robot.map) == 16
-    monkeypatch.setattr(exact_solver, "MOST_SWEPT", most)
-    swept = []
-    monkeypatch.setattr(relaxation, "sweep", lambda *_: swept.append(robot.map.steps))
-    robot.map.correct(beats=12)
-    assert len(swept) == 12 // every
-
-
-def test_without_calibration_no_bias_is_learnt() -> None:
-    robot = loop(ExperienceMapParams(solve_every=5, calibrate=False), 1.0, 0.02, 3)
-    assert robot.map.yaw_bias == 0.0
-    assert robot.map.closures > 0
+    for most, every in ((1000, 1), (16, 2), (5, 4)):
+        monkeypatch.setattr(exact_solver, "MOST_SWEPT", most)
+        swept = []
+        monkeypatch.setattr(relaxation, "sweep", lambda *_, swept=swept: swept.append(robot.map.steps))
+        robot.map.correct(beats=12)
+        assert len(swept) == 12 // every
 
 
 def test_the_exact_solution_is_asked_for_only_after_closures() -> None:
-    robot = Robot(ExperienceMapParams(solve_every=1, sweeps=0))
-    robot.see(0, new=True)
-    robot.go(1.0, 0.5, 1, new=True)
-    robot.map.poses[1, 0] += 0.5  # bent by hand
-    bent = robot.map.poses.copy()
-    robot.map.correct()
-    assert np.array_equal(robot.map.poses, bent)
-    robot.see(0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)))
-    robot.map.correct()
-    assert not np.array_equal(robot.map.poses, bent)
-    never = Robot(ExperienceMapParams(solve_every=0, sweeps=0))
-    never.see(0, new=True)
-    never.go(1.0, 0.5, 1, new=True)
-    never.see(0, packet=never.packet(Pose2(0.0, 0.0, 0.0)))
-    before = never.map.poses.copy()
-    never.map.correct()
-    assert np.array_equal(never.map.poses, before)
+    for solve_every in (1, 0):
+        robot = Robot(ExperienceMapParams(solve_every=solve_every, sweeps=0))
+        robot.see(0, new=True)
+        robot.go(1.0, 0.5, 1, new=True)
+        robot.map.poses[1, 0] += 0.5  # bent by hand
+        bent = robot.map.poses.copy()
+        robot.map.correct()
+        assert np.array_equal(robot.map.poses, bent)
+        robot.see(0, packet=robot.packet(Pose2(0.0, 0.0, 0.0)))
+        robot.map.correct()
+        assert np.array_equal(robot.map.poses, bent) is (solve_every == 0)

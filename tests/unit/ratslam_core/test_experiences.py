@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import product
 
 import pytest
 from hypothesis import given, settings
@@ -14,7 +15,7 @@ from ratslam_core.laws.experiences import experiences as law
 from ratslam_core.pose_graph import experiences
 from ratslam_core.pose_graph.experiences import Experiences
 
-from .literal import interpret
+from .literal import also_interpreted
 
 SHAPES = [(36, 64, 64), (36, 8, 8), (10, 9, 21)]
 STILL = Odometry(0.0, 0.0, 0.1)
@@ -51,17 +52,19 @@ params = st.builds(
 )
 
 
+@also_interpreted(experiences)
 @settings(max_examples=300)
 @given(st.sampled_from(SHAPES), params, states, states)
 @pytest.mark.slow
 def test_energy_is_that_of_the_papers(shape, p: ExperienceMapParams, made, now) -> None:
     known = Experiences(shape)
-    known.add(Packet(*made[:3], 1.0), made[3], Pose2(0.0, 0.0, 0.0))
+    known.add(Packet(*made[:3], 1.0), made[3], START)
     packet = Packet(now[0] % shape[2], now[1] % shape[1], now[2], 1.0)
     expected = literal_energy(known, 0, packet, now[3], p)
     assert known.energy(0, packet, now[3], p) == pytest.approx(expected, abs=1e-9)
 
 
+@also_interpreted(experiences)
 @settings(max_examples=300)
 @given(st.sampled_from(SHAPES), params, st.lists(states, max_size=40), states)
 @pytest.mark.slow
@@ -81,94 +84,49 @@ def test_the_choice_is_that_of_a_loop_over_all(shape, p: ExperienceMapParams, ma
     assert known.most_energetic(packet, view, p, robot, BLIND_M) == best
 
 
-@pytest.mark.parametrize(
-    "choice",
-    [{}, {"match_view": False}, {"match_view": False, "energy": "2005"}, {"match_view": False, "zone_theta": 20.0}],
-)
-@pytest.mark.slow
-def test_the_interpreted_choice_is_the_compiled_one(choice, monkeypatch: pytest.MonkeyPatch) -> None:
-    p = ExperienceMapParams(**choice)
-    known = Experiences((36, 64, 64))
-    for k in range(60):
-        known.add(Packet(30 + k % 7, 30 + k % 5, k % 4 / 5, 1.0), k % 3 - 1, Pose2(float(k), 0.0, 0.0))
-    questions = [(Packet(31 + k / 3, 30 + k / 4, k / 30, 1.0), k % 3 - 1) for k in range(20)]
-    compiled = [known.most_energetic(*question, p, START, BLIND_M) for question in questions]
-    interpret(experiences, monkeypatch)
-    assert [known.most_energetic(*question, p, START, BLIND_M) for question in questions] == compiled
-    assert [known.energy(3, *question, p) for question in questions] == pytest.approx(
-        [literal_energy(known, 3, *question, p) for question in questions]
-    )
-    assert max(compiled) >= 0
+def test_by_the_choice_of_energy_and_scene_a_map_makes_an_experience_or_none() -> None:
+    """In 2005 the right place with a wrong heading still counts; without the scene the same cells are the same place."""
+    turned, other = (Packet(20.0, 20.0, 2.0, 1.0), 0), (Packet(20.0, 20.0, 0.0, 1.0), 5)
+    for (packet, view), params, energy in (
+        (turned, ExperienceMapParams(energy="2005"), 1.0),
+        (turned, ExperienceMapParams(energy="2006"), 0.0),
+        (other, ExperienceMapParams(match_view=False), 2.0),
+        (other, ExperienceMapParams(match_view=True), 0.0),
+    ):
+        made = ExperienceMap((36, 64, 64), 0.25, params)
+        made.step(Packet(20.0, 20.0, 0.0, 1.0), Recognition(0, True, -1, math.inf), STILL)
+        assert made.energy(0, packet, view) == pytest.approx(energy)
+        assert made.step(packet, Recognition(view, view > 0, 0, 0.0), STILL) is (energy == 0.0)
 
 
-def a_map(**choice: object) -> ExperienceMap:
-    made = ExperienceMap((36, 64, 64), 0.25, replace(ExperienceMapParams(), **choice))  # type: ignore[arg-type]
-    made.step(Packet(20.0, 20.0, 0.0, 1.0), Recognition(0, True, -1, math.inf), STILL)
-    return made
-
-
-def test_in_2005_the_right_place_with_a_wrong_heading_still_counts() -> None:
-    turned = Packet(20.0, 20.0, 2.0, 1.0)
-    assert a_map(energy="2005").energy(0, turned, 0) == pytest.approx(1.0)
-    assert a_map(energy="2006").energy(0, turned, 0) == 0.0
-    for energy, created in (("2005", False), ("2006", True)):
-        assert a_map(energy=energy).step(turned, Recognition(0, False, 0, 0.0), STILL) is created
-
-
-def test_in_2005_the_right_heading_at_a_wrong_place_still_counts() -> None:
-    known, elsewhere = Experiences((36, 64, 64)), Packet(50.0, 40.0, 0.0, 1.0)
-    known.add(Packet(20.0, 20.0, 0.0, 1.0), 0, Pose2(0.0, 0.0, 0.0))
-    for match_view in (True, False):
-        for threshold, found in ((0.9, 0), (1.0, -1)):
-            p = ExperienceMapParams(energy="2005", match_view=match_view, threshold=threshold)
-            assert known.most_energetic(elsewhere, 0, p, START, BLIND_M) == found
-
-
-def test_without_the_scene_the_same_cells_are_the_same_place() -> None:
-    for match_view, created in ((True, True), (False, False)):
-        made = a_map(match_view=match_view)
-        assert made.energy(0, Packet(20.0, 20.0, 0.0, 1.0), 5) == (0.0 if match_view else 2.0)
-        assert made.step(Packet(20.0, 20.0, 0.0, 1.0), Recognition(5, True, -1, math.inf), STILL) is created
+def test_limits_are_reached_just_as_they_are() -> None:
+    """The edge of a zone belongs to it, energy has to be above the threshold, the oldest of equals is taken, and nothing to
+    see is known again as near as `blind_m`."""
+    known, here = Experiences((36, 64, 64)), Packet(20.0, 20.0, 0.0, 1.0)
+    for _ in range(3):
+        known.add(here, 0, START)
+    known.add(here, -1, Pose2(3.0, 1.0, 0.0))
+    zones = ExperienceMapParams(zone_xy=2.0, zone_theta=9.0)
+    for beside in (replace(here, x=22.0), replace(here, y=18.0), replace(here, heading_rad=math.pi / 2)):  # nine layers
+        assert known.energy(0, beside, 0, zones) == 1.0
+    assert known.energy(0, replace(here, heading_rad=math.pi / 2 + 1e-6), 0, zones) == 0.0
+    for match_view, energy in product((True, False), ("2005", "2006")):
+        for threshold, found in ((1.5, -1), (1.4375, 0)):  # one and a half at one cell from the middle
+            p = replace(zones, match_view=match_view, energy=energy, threshold=threshold)
+            assert known.most_energetic(replace(here, x=21.0), 0, p, START, BLIND_M) == found
+    for apart_m, found in ((2.0, 3), (2.001, -1)):
+        for robot in (Pose2(3.0 + apart_m, 1.0, 0.0), Pose2(3.0, 1.0 - apart_m, 0.0)):
+            assert known.most_energetic(here, -1, ExperienceMapParams(), robot, 2.0) == found
 
 
 @pytest.mark.slow
 def test_thousands_of_experiences_keep_their_chains() -> None:
     known = Experiences((36, 64, 64))
     for k in range(3000):
-        known.add(Packet(k % 64, k // 64, 0.0, 1.0), k % 7, Pose2(0.0, 0.0, 0.0))
-    for match_view in (True, False):
+        known.add(Packet(k % 64, k // 64, 0.0, 1.0), k % 7, START)
+    for match_view, k in product((True, False), (0, 1, 1023, 1024, 2999)):
         p = ExperienceMapParams(match_view=match_view)
-        for k in (0, 1, 1023, 1024, 2999):
-            assert known.most_energetic(Packet(k % 64, k // 64, 0.0, 1.0), k % 7, p, START, BLIND_M) == k
-
-
-@pytest.mark.parametrize("beside", [Packet(22.0, 20.0, 0.0, 1.0), Packet(20.0, 18.0, 0.0, 1.0)])
-def test_the_edge_of_a_zone_belongs_to_it(beside: Packet) -> None:
-    made = a_map(zone_xy=2.0, zone_theta=9.0)
-    assert made.energy(0, beside, 0) == 1.0
-    assert made.energy(0, Packet(20.0, 20.0, math.pi / 2, 1.0), 0) == 1.0  # nine layers
-    assert made.energy(0, Packet(20.0, 20.0, math.pi / 2 + 1e-6, 1.0), 0) == 0.0
-
-
-@pytest.mark.parametrize(("apart_m", "found"), [(2.0, 0), (2.001, -1)])
-def test_nothing_to_see_is_known_again_as_near_as_the_limit(apart_m: float, found: int) -> None:
-    known, here = Experiences((36, 64, 64)), Packet(20.0, 20.0, 0.0, 1.0)
-    known.add(here, -1, Pose2(3.0, 1.0, 0.0))
-    p = ExperienceMapParams()
-    assert known.most_energetic(here, -1, p, Pose2(3.0 + apart_m, 1.0, 0.0), 2.0) == found
-    assert known.most_energetic(here, -1, p, Pose2(3.0, 1.0 - apart_m, 0.0), 2.0) == found
-
-
-@pytest.mark.parametrize("energy", ["2005", "2006"])
-@pytest.mark.parametrize("match_view", [True, False])
-def test_energy_has_to_be_above_the_threshold(match_view: bool, energy: str) -> None:
-    """One and a half at one cell from the middle; of equals the oldest is taken."""
-    known, beside = Experiences((36, 64, 64)), Packet(21.0, 20.0, 0.0, 1.0)
-    for _ in range(3):
-        known.add(Packet(20.0, 20.0, 0.0, 1.0), 0, Pose2(0.0, 0.0, 0.0))
-    for threshold, found in ((1.5, -1), (1.4375, 0)):
-        p = ExperienceMapParams(match_view=match_view, energy=energy, threshold=threshold, zone_xy=2.0)  # type: ignore[arg-type]
-        assert known.most_energetic(beside, 0, p, START, BLIND_M) == found
+        assert known.most_energetic(Packet(k % 64, k // 64, 0.0, 1.0), k % 7, p, START, BLIND_M) == k
 
 
 @given(st.lists(st.tuples(st.booleans(), st.integers(-1, 4)), max_size=60))
@@ -180,7 +138,7 @@ def test_a_view_that_is_no_more_leaves_blind_experiences(steps: list[tuple[bool,
             known.forget_view(view)
             expected = [-1 if one == view else one for one in expected]
         else:
-            known.add(Packet(3.0, 4.0, 0.1, 1.0), view, Pose2(0.0, 0.0, 0.0))
+            known.add(Packet(3.0, 4.0, 0.1, 1.0), view, START)
             expected.append(view)
         assert known.view[: known.count].tolist() == expected
         law(known, 5)
@@ -190,5 +148,5 @@ def test_a_view_that_is_no_more_leaves_blind_experiences(steps: list[tuple[bool,
 def test_the_experiences_of_a_view_are_found_newest_first(views: list[int], asked: int) -> None:
     known = Experiences((36, 64, 64))
     for view in views:
-        known.add(Packet(1.0, 2.0, 0.0, 1.0), view, Pose2(0.0, 0.0, 0.0))
+        known.add(Packet(1.0, 2.0, 0.0, 1.0), view, START)
     assert known.of_view(asked).tolist() == [i for i in reversed(range(len(views))) if views[i] == asked]

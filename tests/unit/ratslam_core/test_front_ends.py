@@ -15,13 +15,13 @@ from .scenes import office, view_of
 
 KINDS = ("template", "complex cells", "hue and saturation", "image and sonars", "scene numbers")
 SEEING = KINDS[:4]
+each_that_sees = pytest.mark.parametrize("kind", SEEING)
 
 
-@pytest.mark.parametrize("kind", SEEING)
+@each_that_sees
 def test_scenes_are_recruited_and_known_again(kind: str) -> None:
     local_view = view_of(kind)
-    for seed in range(6):
-        assert local_view.observe(office(seed)).recruited
+    assert all(local_view.observe(office(seed)).recruited for seed in range(6))
     for seed in range(6):
         seen = local_view.observe(office(seed))
         doubt = local_view.front_end.doubt(local_view.features)
@@ -29,19 +29,19 @@ def test_scenes_are_recruited_and_known_again(kind: str) -> None:
         assert (seen.facing_rad is None) == (kind == "hue and saturation")
 
 
-@pytest.mark.parametrize("light", [0.6, 0.8, 1.3])
 @pytest.mark.parametrize("kind", SEEING[:3])
-def test_light_changes_templates_and_nothing_else(kind: str, light: float) -> None:
+def test_light_changes_templates_and_nothing_else(kind: str) -> None:
     for seed in range(6):
         local_view = view_of(kind)
         local_view.observe(office(seed))
-        assert (local_view.observe(office(seed, light)).view == 0) == (kind != "template")
+        for light in (0.6, 0.8, 1.3):
+            assert (local_view.observe(office(seed, light)).view == 0) == (kind != "template")
 
 
 @pytest.mark.parametrize("kind", ["template", "complex cells"])
 def test_the_shift_tells_the_heading(kind: str) -> None:
     column = LocalViewParams().field_of_view / 12
-    for columns in (-2, -1, 1, 2):
+    for columns in (-2, 1):
         read = []
         for seed in range(12):
             local_view = view_of(kind, match_threshold=10.0)
@@ -50,25 +50,23 @@ def test_the_shift_tells_the_heading(kind: str) -> None:
         assert float(np.median(read)) == pytest.approx(columns * column, abs=0.2 * column)
 
 
-@pytest.mark.parametrize("kind", SEEING)
+@each_that_sees
 def test_surprise_is_a_jump_that_no_turn_explains(kind: str) -> None:
     local_view = view_of(kind, surprise=0.5)
-    surprised, before = [], 0
+    before = 0
     for turned in (0, 4, 8, 4):
         local_view.observe(office(3, turned=turned), turned_rad=(turned - before) * math.radians(50) / 64)
         before = turned
-        surprised.append(local_view.image_change > 1)
-    assert surprised == [False] * 4
+        assert local_view.image_change <= 1
     for seed in range(10, 20):
         for surprised_now in (True, False):
             local_view.observe(office(seed))
             assert (local_view.image_change > 1) is surprised_now
 
 
-@pytest.mark.parametrize("kind", SEEING)
+@each_that_sees
 def test_a_bare_wall_shows_nothing_to_the_front_end_that_is_ours(kind: str) -> None:
-    rng = np.random.default_rng(0)
-    wall = np.clip(rng.normal(128, 1, (48, 64, 3)), 0, 255).astype(np.uint8)
+    wall = np.clip(np.random.default_rng(0).normal(128, 1, (48, 64, 3)), 0, 255).astype(np.uint8)
     local_view = view_of(kind)
     nothing = kind == "image and sonars"
     assert local_view.observe(wall).view == (-1 if nothing else 0)
@@ -88,21 +86,26 @@ def test_features_are_bytes_with_a_picture_and_words(kind: str) -> None:
     assert len(end.words(features)) > 5
 
 
-@pytest.mark.parametrize("kind", SEEING)
-@pytest.mark.parametrize(
-    ("bad", "message"),
-    [
-        (np.zeros((48, 64, 3)), "image must be an array of uint8, got float64"),
-        (np.full((48, 64, 3), math.nan, np.float32), "image must be an array of uint8, got float32"),
-        (None, "image must be an array of uint8, got NoneType"),
-        (np.zeros((48, 64, 4), np.uint8), r"image must have shape \(h, w\) or \(h, w, 3\), got \(48, 64, 4\)"),
-        (np.zeros((7, 64, 3), np.uint8), r"image must be at least 8 x 12 pixels, got \(7, 64\)"),
-    ],
-)
-def test_what_is_no_image_is_refused(kind: str, bad: Any, message: str) -> None:
+TYPE, SHAPE = "image must be an array of uint8, got ", r"image must have shape \(h, w\) or \(h, w, 3\), got "
+LEAST = "image must be at least 8 x 12 pixels, got "
+NO_IMAGES: list[tuple[Any, str]] = [
+    (np.zeros((48, 64, 3)), TYPE + "float64"),
+    (np.full((48, 64), math.nan, np.float32), TYPE + "float32"),
+    ([[1, 2], [3, 4]], TYPE + "list"),
+    (None, TYPE + "NoneType"),
+    (np.zeros(64, np.uint8), SHAPE + r"\(64,\)"),
+    (np.zeros((48, 64, 4), np.uint8), SHAPE + r"\(48, 64, 4\)"),
+    (np.zeros((7, 64, 3), np.uint8), LEAST + r"\(7, 64\)"),
+    (np.zeros((8, 11, 3), np.uint8), LEAST + r"\(8, 11\)"),
+]
+
+
+@each_that_sees
+def test_what_is_no_image_is_refused(kind: str, subtests: pytest.Subtests) -> None:
     local_view = view_of(kind)
-    with pytest.raises(ValueError, match=message):
-        local_view.observe(bad)
+    for bad, message in NO_IMAGES:
+        with subtests.test(message), pytest.raises(ValueError, match=message):
+            local_view.observe(bad)
     assert len(local_view) == 0
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -44,10 +45,9 @@ def test_levels_are_logarithms_less_a_share_of_their_columns_mean(seed: int) -> 
     assert np.abs(got - np.clip(expected, 0, 255)).max() <= 0.51
 
 
-@pytest.mark.parametrize("light", [0.6, 0.8, 1.3])
-def test_light_is_mostly_taken_off(light: float) -> None:
+def test_light_is_mostly_taken_off() -> None:
     """It changes the levels by less than half as much as it changes logarithms of which nothing is taken off."""
-    for seed in range(6):
+    for seed, light in product(range(6), (0.6, 0.8, 1.3)):
         taken = np.abs(features(office(seed, light)) - features(office(seed)) * 1.0)[:96].mean()
         left = np.abs(LEVELS[grey_template(office(seed, light))] - LEVELS[grey_template(office(seed))]).mean()
         assert taken < 0.5 * left
@@ -63,30 +63,25 @@ def test_a_lamp_over_a_part_of_the_picture_is_taken_off_too() -> None:
 
 
 def test_sonars_tell_look_alikes_apart() -> None:
+    """Without them the picture alone counts. They change no image: the kidnap detector counts them by itself."""
     local_view = view_of(KIND)
     assert local_view.observe(office(1), None, NEAR).view == 0
     assert local_view.observe(office(1), None, NEAR + 0.02).view == 0
     seen = local_view.observe(office(1), None, 3 * NEAR)
-    assert (seen.view, seen.recruited) == (1, True)
-
-
-def test_without_sonars_the_picture_alone_counts() -> None:
-    local_view = view_of(KIND)
-    local_view.observe(office(1), None, NEAR)
+    assert (seen.view, seen.recruited, local_view.image_change) == (1, True, 0.0)
     seen = local_view.observe(office(1))
     assert (seen.view, seen.recruited) == (0, False)
     assert local_view.observe(office(2)).recruited
     assert local_view.observe(office(1), None, NEAR).difference == pytest.approx(0.0, abs=PLAIN_DOUBT)
 
 
-@pytest.mark.parametrize("count", [1, 3, 8, 11, 16, 180])
-def test_any_number_of_sonars_is_heard(count: int) -> None:
+def test_any_number_of_sonars_is_heard() -> None:
     """Of more than eight the nearest of each group counts; of fewer, those that there are."""
-    ranges = np.linspace(0.5, 3.0, count)
-    heard = features(office(1), ranges)[96:].astype(int)
-    assert np.count_nonzero(heard) == min(count, 8)
-    assert (np.diff(heard[: min(count, 8)]) > 0).all()
-    assert heard[0] == round(1 + 254 * math.log(0.5 / 0.2) / math.log(4.0 / 0.2))
+    for count in (1, 3, 8, 11, 16, 180):
+        heard = features(office(1), np.linspace(0.5, 3.0, count))[96:].astype(int)
+        assert np.count_nonzero(heard) == min(count, 8)
+        assert (np.diff(heard[: min(count, 8)]) > 0).all()
+        assert heard[0] == round(1 + 254 * math.log(0.5 / 0.2) / math.log(4.0 / 0.2))
 
 
 def test_what_tells_little_is_doubted() -> None:
@@ -104,7 +99,7 @@ def test_what_tells_little_is_doubted() -> None:
     assert end.doubt(end.look(checks, None, NEAR)) == 0.0
 
 
-def test_doubt_is_part_of_the_difference() -> None:
+def test_doubt_and_echoes_are_parts_of_the_difference() -> None:
     sure, unsure = view_of(KIND), view_of(KIND)
     for local_view, ranges in ((sure, NEAR), (unsure, FAR)):
         local_view.observe(office(1), None, ranges)
@@ -112,32 +107,20 @@ def test_doubt_is_part_of_the_difference() -> None:
     assert unsure.recognition.difference == pytest.approx(sure.recognition.difference + SILENT_DOUBT)
     assert unsure.difference_to(0) == unsure.recognition.difference
     assert unsure.strength(unsure.recognition) < sure.strength(sure.recognition)
-
-
-def test_sonars_change_no_image() -> None:
-    """The kidnap detector counts the sonars by itself."""
-    local_view = view_of(KIND)
-    local_view.observe(office(1), None, NEAR)
-    local_view.observe(office(1), None, FAR)
-    assert local_view.image_change == 0.0
+    near, far = features(office(1), NEAR), features(office(1), FAR)
+    expected = ECHO_WEIGHT * np.abs(far[96:] * 1.0 - near[96:]).mean() + ImageAndSonars().doubt(far)
+    assert sure.observe(office(1), None, FAR).difference == pytest.approx(expected)
 
 
 def test_the_picture_has_a_strip_of_echoes() -> None:
     end = ImageAndSonars()
-    near_left = end.picture(end.look(office(1), None, np.array([0.3, 4, 4, 4, 4, 4, 4, 4])))
-    assert near_left.shape == (9, 12)
-    assert near_left[8, 0] > 200
-    assert not near_left[8, 2:].any()
-    assert "and 1 echoes" in end.words(end.look(office(1), None, np.array([0.3, 4, 4, 4, 4, 4, 4, 4])))
+    near_left = end.look(office(1), None, np.array([0.3, 4, 4, 4, 4, 4, 4, 4]))
+    picture = end.picture(near_left)
+    assert picture.shape == (9, 12)
+    assert picture[8, 0] > 200
+    assert not picture[8, 2:].any()
+    assert "and 1 echoes" in end.words(near_left)
     assert not end.picture(end.look(office(1)))[8].any()
-
-
-def test_the_weight_of_the_echoes() -> None:
-    local_view = view_of(KIND)
-    local_view.observe(office(1), None, NEAR)
-    near, far = features(office(1), NEAR), features(office(1), FAR)
-    expected = ECHO_WEIGHT * np.abs(far[96:] * 1.0 - near[96:]).mean() + ImageAndSonars().doubt(far)
-    assert local_view.observe(office(1), None, FAR).difference == pytest.approx(expected)
 
 
 def test_the_ranges_of_a_step_reach_the_local_view() -> None:

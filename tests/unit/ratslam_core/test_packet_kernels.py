@@ -46,11 +46,12 @@ def ids(pose_cells: PoseCells) -> list[int]:
 
 
 def test_a_packet_keeps_its_id_while_it_moves_wraps_and_turns() -> None:
+    """Also where it is so fast that its layers drift apart: those that lag behind are no packet of their own."""
     pose_cells = PoseCells()
-    assert ids(pose_cells) == [1]
-    for _ in range(150):  # 135 cells and 90 layers: around the torus in every direction
-        drive(pose_cells, 0.9, 0.6, 1)
-        assert ids(pose_cells) == [1]
+    for cells, layers, steps in ((0.9, 0.6, 80), (1.0, 0.0, 40)):  # around the torus in every direction
+        for _ in range(steps):
+            drive(pose_cells, cells, layers, 1)
+            assert ids(pose_cells) == [1]
     pose_cells.place(3, 4, 5)
     assert ids(pose_cells) == [1]
 
@@ -87,32 +88,6 @@ def test_a_merged_packet_keeps_the_heavier_one_s_id(share: float) -> None:
     pose_cells.attract()
     assert ids(pose_cells) == [left.id if share > 0.5 else right.id]
     assert pose_cells.winner.x == pytest.approx(36, abs=1)
-
-
-def test_the_least_free_number_is_used_again() -> None:
-    pose_cells = two_packets(20, 0.6)
-    pose_cells.attract()
-    first, second = ids(pose_cells)
-    for _ in range(5):
-        rest(pose_cells, 400)
-        assert ids(pose_cells) == [first]
-        pose_cells.inject(np.array([7], np.int32), np.array([0.3], np.float32))
-        pose_cells.attract()
-        assert ids(pose_cells) == [first, second]
-    assert {first, second} == {1, 2}
-
-
-def test_a_packet_does_not_get_the_number_of_one_that_has_just_gone() -> None:
-    pose_cells = PoseCells()
-    pose_cells.place(3, 4, 5)
-    pose_cells.attract()
-    before = pose_cells.winner.id
-    flats = np.flatnonzero(np.roll(pose_cells.activity, (18, 30), (0, 2))).astype(np.int32)
-    pose_cells.inject(flats, np.full(flats.size, 1e5, np.float32))  # nothing of the old one is left
-    pose_cells.attract()
-    assert ids(pose_cells) != [before]
-    rest(pose_cells, 3)
-    assert len(ids(pose_cells)) == 1
 
 
 def test_what_was_injected_is_a_packet_at_once() -> None:

@@ -54,8 +54,7 @@ def in_step(params: RatSlamParams, ticks: int, seed: int) -> tuple[RatSlam, Pape
     return brain, twin
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-@pytest.mark.parametrize("energy", ["2006", "2005"])
+@pytest.mark.parametrize(("energy", "seed"), [("2006", 0), ("2005", 1)])
 @pytest.mark.slow
 def test_a_run_is_that_of_the_literal_twin(energy: str, seed: int) -> None:
     params = with_values(preset("paper-2006"), {**SMALL, "experience_map.energy": energy})

@@ -13,7 +13,7 @@ from ratslam_core import ExperienceMap, ExperienceMapParams, Packet, Pose2, find
 from ratslam_core.experience_map import places
 from ratslam_core.experience_map.places import HashCollision, MultipleRepresentation, Places
 
-from .literal import interpret
+from .literal import also_interpreted
 
 SHAPES = [(36, 64, 64), (36, 8, 8), (10, 9, 21)]
 CELL_M = 0.25
@@ -94,6 +94,7 @@ cell = st.one_of(st.floats(0, 63.9), st.sampled_from([0.0, 8.0, 63.9, 20.0]))
 rows = st.lists(st.tuples(metre, metre, angle, cell, cell, angle), max_size=30)
 
 
+@also_interpreted(places)
 @settings(max_examples=300)
 @given(rows, st.sampled_from(SHAPES), st.sampled_from([0.3, 0.5, 1.5]), st.sampled_from([0.5, 2.0, 20.0]))
 @pytest.mark.slow
@@ -102,33 +103,15 @@ def test_places_are_those_of_a_loop_over_all(made, shape, radius: float, zone: f
     agree(find_places(known, radius), literal_places(known, radius))
 
 
-def test_the_interpreted_places_are_the_compiled_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+@also_interpreted(places)
+def test_places_that_are_both_in_two_and_two_in_one_are_found() -> None:
     rng = np.random.default_rng(5)
-    columns = [rng.uniform(-2, 2, 60), rng.uniform(-2, 2, 60), rng.uniform(-3, 3, 60)]
-    columns += [rng.uniform(0, 12, 60), rng.uniform(0, 12, 60), rng.uniform(-3, 3, 60)]
-    known = a_map(np.column_stack(columns).tolist(), zone_theta=9.0)
-    interpret(places, monkeypatch)
+    lows, highs = (-2, -2, -3, 0, 0, -3), (2, 2, 3, 12, 12, 3)
+    known = a_map(rng.uniform(lows, highs, (60, 6)).tolist(), zone_theta=9.0)
     found = find_places(known, 0.5)
     agree(found, literal_places(known, 0.5))
     assert found.multiple_representations
     assert found.hash_collisions
-
-
-@settings(max_examples=50)
-@given(rows, st.floats(0.1, 3.0))
-def test_every_experience_is_near_the_first_of_its_place(made, radius: float) -> None:
-    known = a_map(made)
-    found = find_places(known, radius)
-    assert len(found.place_of) == len(made)
-    xy = known.poses[:, :2]
-    for i, place in enumerate(found.place_of):
-        first = found.first[place]
-        assert first <= i
-        assert np.hypot(*(xy[i] - xy[first])) <= radius
-        assert i in found.together_with(int(first))
-    for a in found.first:
-        for b in found.first[found.first > a]:
-            assert np.hypot(*(xy[a] - xy[b])) > radius
 
 
 def test_a_corridor_with_two_paths_through_the_cells_has_two_representations() -> None:
@@ -158,56 +141,40 @@ def test_cells_that_stand_for_two_places_collide() -> None:
         assert collision.y == 20.0
 
 
-def test_a_map_that_does_not_wrap_or_snap_has_neither() -> None:
-    walk = [(0.25 * k, 0.0, 0.0, 5.0 + k, 5.0, 0.0) for k in range(40)]
-    found = find_places(a_map(walk), 0.5)
-    assert len(found.first) == 14
-    assert (found.multiple_representations, found.hash_collisions) == ((), ())
-
-
-@pytest.mark.parametrize("radius", [0.0, -1.0, math.nan, math.inf])
-def test_a_radius_that_is_none_is_refused(radius: float) -> None:
-    with pytest.raises(ValueError, match="radius_m must be a positive number of metres, got"):
-        find_places(a_map([]), radius)
-
-
-def test_an_experience_that_is_none_has_no_place() -> None:
+def test_what_is_no_radius_and_no_experience_is_refused() -> None:
     found = find_places(a_map([(0.0, 0.0, 0.0, 1.0, 1.0, 0.0)]))
     for experience in (-1, 1):
         with pytest.raises(ValueError, match=f"experience must be from 0 to 0, got {experience}"):
             found.together_with(experience)
+    for radius in (0.0, -1.0, math.nan, math.inf):
+        with pytest.raises(ValueError, match="radius_m must be a positive number of metres, got"):
+            find_places(a_map([]), radius)
 
 
 FACING = math.pi / 2  # 9 layers of 36
 
 
-@pytest.mark.parametrize(
-    ("zones", "second", "beyond", "found"),
-    [
-        ({}, {"x": 0.5}, {"x": 0.51}, (1, 0, 0)),
-        ({}, {"y": -0.5}, {"y": -0.51}, (1, 0, 0)),
-        ({}, {"cell_x": 26.0}, {"cell_x": 26.1}, (1, 0, 0)),  # the width of a place, 4 cells, and a zone of 2
-        ({}, {"cell_y": 26.0}, {"cell_y": 26.1}, (1, 0, 0)),
-        ({"zone_theta": 4.5}, {"heading": FACING}, {"heading": FACING + 0.1}, (1, 0, 0)),
-        ({"zone_theta": 9.0}, {"facing": FACING, "cell_x": 40.0}, {"facing": FACING + 0.1, "cell_x": 40.0}, (1, 1, 0)),
-        ({}, {"x": 9.0, "cell_x": 22.0}, {"x": 9.0, "cell_x": 22.1}, (2, 0, 1)),
-        ({}, {"x": 9.0, "cell_y": 18.0}, {"x": 9.0, "cell_y": 17.9}, (2, 0, 1)),
-        ({"zone_theta": 9.0}, {"x": 9.0, "heading": FACING}, {"x": 9.0, "heading": FACING + 0.1}, (2, 0, 1)),
-        ({}, {"y": 2.0}, {"y": 2.1}, (2, 0, 0)),  # the widths of a place, 1 m, and of a zone, 1 m
-    ],
-)
-def test_what_is_just_as_far_as_a_limit_is_within_it(zones, second, beyond, found) -> None:
+def test_what_is_just_as_far_as_a_limit_is_within_it(subtests: pytest.Subtests) -> None:
     """Places, states, facings and distances in the map; a little beyond, the answer is another."""
 
-    def counts(changed: dict[str, float]) -> tuple[int, int, int]:
+    def counts(zones: dict[str, float], changed: dict[str, float]) -> tuple[int, int, int]:
         first = {"x": 0.0, "y": 0.0, "facing": 0.0, "cell_x": 20.0, "cell_y": 20.0, "heading": 0.0}
         made = find_places(a_map([tuple(first.values()), tuple((first | changed).values())], **zones), 0.5)
         return len(made.first), len(made.multiple_representations), len(made.hash_collisions)
 
-    assert counts(second) == found
-    assert counts(beyond) != found
-
-
-def test_the_same_state_facing_just_within_the_limit_is_one() -> None:
-    rows = [(0.0, 0.0, facing, 20.0, 20.0, 0.0) for facing in (0.0, FACING)]
-    assert find_places(a_map(rows, zone_theta=9.0), 0.5).multiple_representations == ()
+    for zone_theta, other, what, at, beyond, found in (
+        (2.0, {}, "x", 0.5, 0.51, (1, 0, 0)),
+        (2.0, {}, "y", -0.5, -0.51, (1, 0, 0)),
+        (2.0, {}, "cell_x", 26.0, 26.1, (1, 0, 0)),  # the width of a place, 4 cells, and a zone of 2
+        (2.0, {}, "cell_y", 26.0, 26.1, (1, 0, 0)),
+        (4.5, {}, "heading", FACING, FACING + 0.1, (1, 0, 0)),
+        (9.0, {"cell_x": 40.0}, "facing", FACING, FACING + 0.1, (1, 1, 0)),
+        (2.0, {"x": 9.0}, "cell_x", 22.0, 22.1, (2, 0, 1)),
+        (2.0, {"x": 9.0}, "cell_y", 18.0, 17.9, (2, 0, 1)),
+        (9.0, {"x": 9.0}, "heading", FACING, FACING + 0.1, (2, 0, 1)),
+        (2.0, {}, "y", 2.0, 2.1, (2, 0, 0)),  # the widths of a place, 1 m, and of a zone, 1 m
+    ):
+        with subtests.test(what, at=at, **other):
+            assert counts({"zone_theta": zone_theta}, other | {what: at}) == found
+            assert counts({"zone_theta": zone_theta}, other | {what: beyond}) != found
+    assert counts({"zone_theta": 9.0}, {"facing": FACING}) == (1, 0, 0)  # one state, facing just within the limit

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -15,6 +16,9 @@ from ratslam_core.local_view.front_ends import FrontEnd
 from ratslam_core.local_view.recogniser import MOST_SHIFT
 
 FOV = math.radians(50)
+COLUMN = FOV / 12
+RAMP = 50 + 10 * np.arange(12)
+SCENE = np.random.default_rng(1).integers(60, 200, 50).astype(np.uint8)
 Bytes = NDArray[np.uint8]
 
 
@@ -45,135 +49,109 @@ def even(level: float) -> Bytes:
     return np.full(12, level, np.uint8)
 
 
-@pytest.mark.parametrize(
-    ("level", "difference", "strength"),
-    [(100, 3, 1.0), (101, 3, 1.0), (102, 4, 7 / 8), (97, 6, 5 / 8), (105.5, 10, 1 / 8)],
-)
-def test_strength_falls_from_the_vague_to_the_threshold(level: float, difference: float, strength: float) -> None:
-    local_view = LocalView(front_end=AsItIs())
-    assert local_view.strength(local_view.observe(even(100))) == 1.0
-    seen = local_view.observe(even(level))
-    assert (seen.view, seen.recruited, seen.difference) == (0, False, difference)
-    assert local_view.difference_to(0) == difference
-    assert local_view.strength(seen) == pytest.approx(strength)
+def seeing(params: LocalViewParams | None = None, rng: np.random.Generator | None = None, **end: float) -> LocalView:
+    return LocalView(params, rng, AsItIs(**end))
+
+
+def test_strength_falls_from_the_vague_to_the_threshold() -> None:
+    for level, difference, strength in (
+        (100, 3, 1.0),
+        (101, 3, 1.0),
+        (102, 4, 7 / 8),
+        (97, 6, 5 / 8),
+        (105.5, 10, 1 / 8),
+    ):
+        local_view = seeing()
+        assert local_view.strength(local_view.observe(even(100))) == 1.0
+        seen = local_view.observe(even(level))
+        assert (seen.view, seen.recruited, seen.difference) == (0, False, difference)
+        assert local_view.difference_to(0) == difference
+        assert local_view.strength(seen) == pytest.approx(strength)
+    assert local_view.observe(even(0)) == Recognition(-1, False, 0, 200.0)  # bland, but with a nearest view
+    assert len(local_view) == 1
+    only_the_same = seeing(limit=3.0)  # who only knows same or other is always sure
+    only_the_same.observe(even(100))
+    seen = only_the_same.observe(even(100))
+    assert (seen.difference, only_the_same.strength(seen)) == (3.0, 1.0)
 
 
 def test_a_view_at_the_threshold_is_recognised_and_hardly_sure() -> None:
     one = even(100)
     one[:6] = 111  # a mean difference of 5.5
-    local_view = LocalView(LocalViewParams(shift=0), front_end=AsItIs())
+    local_view = seeing(LocalViewParams(shift=0))
     local_view.observe(even(100))
     seen = local_view.observe(one)
-    assert (seen.view, seen.difference) == (0, 11.0)
-    assert local_view.strength(seen) == 0.0
+    assert (seen.view, seen.difference, local_view.strength(seen)) == (0, 11.0, 0.0)
     one[0] += 1
     seen = local_view.observe(one)
     assert (seen.view, seen.recruited, local_view.strength(seen)) == (1, True, 1.0)
 
 
-def test_a_front_end_that_only_knows_same_or_other_is_always_sure() -> None:
-    local_view = LocalView(front_end=AsItIs(limit=3.0))
-    local_view.observe(even(100))
-    seen = local_view.observe(even(100))
-    assert (seen.difference, local_view.strength(seen)) == (3.0, 1.0)
+def test_a_ramp_tells_the_fraction_of_a_shift_exactly() -> None:
+    for columns in (-2.4, -2.0, -1.3, -0.4, 0.0, 0.3, 1.0, 1.2, 2.3):
+        local_view = seeing(LocalViewParams(shift=2), limit=99.0)
+        local_view.observe(RAMP.astype(np.uint8))
+        seen = local_view.observe(np.rint(RAMP - 10 * columns).astype(np.uint8))
+        assert seen.facing_rad == pytest.approx(columns * COLUMN, abs=1e-9)
+    blind = seeing(LocalViewParams(shift=2, facing=False), limit=99.0)
+    blind.observe(RAMP.astype(np.uint8))
+    seen = blind.observe(RAMP.astype(np.uint8))
+    assert (seen.view, seen.recruited, seen.facing_rad) == (0, False, None)
 
 
-@pytest.mark.parametrize("columns", [-2.4, -2.0, -1.3, -0.4, 0.0, 0.3, 1.0, 1.2, 2.3])
-def test_a_ramp_tells_the_fraction_of_a_shift_exactly(columns: float) -> None:
-    local_view = LocalView(LocalViewParams(shift=2), front_end=AsItIs(limit=99.0))
-    ramp = 50 + 10 * np.arange(12)
-    local_view.observe(ramp.astype(np.uint8))
-    seen = local_view.observe(np.rint(ramp - 10 * columns).astype(np.uint8))
-    assert seen.facing_rad == pytest.approx(columns * FOV / 12, abs=1e-9)
-
-
-@pytest.mark.parametrize("turn", [0, 1, 2, 11, -2, -3])
-@pytest.mark.parametrize(("told", "explained"), [(0, False), (1, True), (-1, False)])
-def test_a_turn_that_the_wheels_tell_of_is_no_jump(turn: int, told: int, explained: bool) -> None:
-    """turn: by so many columns to the right; the wheels tell of none, of it, or of the opposite."""
-    scene = np.random.default_rng(1).integers(60, 200, 50).astype(np.uint8)
-    local_view = LocalView(LocalViewParams(), front_end=AsItIs())
-    local_view.observe(scene[20:32])
-    assert local_view.image_change == 0.0
-    local_view.observe(scene[20 + turn : 32 + turn] + np.uint8(3), turned_rad=-told * turn * FOV / 12)
-    if explained or turn == 0:
-        assert local_view.image_change == pytest.approx(2 * 3 / 4)
-    else:
-        assert local_view.image_change > 4
+def test_a_turn_that_the_wheels_tell_of_is_no_jump() -> None:
+    """turn: by so many columns to the right; the wheels tell of none, of it, or of the opposite. They may be wrong by a
+    share of it: the right turn is tried, what they tell, and what they tell give or take a share."""
+    for turn, told in product((0, 1, 2, 11, -2, -3), (0, 1, -1)):
+        local_view = seeing()
+        local_view.observe(SCENE[20:32])
+        assert local_view.image_change == 0.0
+        local_view.observe(SCENE[20 + turn : 32 + turn] + np.uint8(3), turned_rad=-told * turn * COLUMN)
+        if told == 1 or turn == 0:
+            assert local_view.image_change == pytest.approx(2 * 3 / 4)
+        else:
+            assert local_view.image_change > 4
+    for error, explained in ((-0.3, True), (-0.15, False), (0.3, True), (0.6, False)):
+        local_view = seeing()
+        local_view.observe(SCENE[20:32])
+        local_view.observe(SCENE[22:34], turned_rad=-2 * COLUMN / (1 + error))
+        assert (local_view.image_change < 0.1) is explained
 
 
 @given(st.floats(-1.0, 1.0))
 def test_a_turn_of_a_part_of_a_column_is_no_jump(columns: float) -> None:
-    local_view = LocalView(LocalViewParams(), front_end=AsItIs())
-    ramp = 50 + 10 * np.arange(12)
-    local_view.observe(ramp.astype(np.uint8))
-    local_view.observe(np.rint(ramp - 10 * columns).astype(np.uint8), turned_rad=columns * FOV / 12)
+    local_view = seeing()
+    local_view.observe(RAMP.astype(np.uint8))
+    local_view.observe(np.rint(RAMP - 10 * columns).astype(np.uint8), turned_rad=columns * COLUMN)
     assert local_view.image_change <= 2 * 0.5 / 4 + 1e-9  # the rounding
 
 
-@pytest.mark.parametrize(("error", "explained"), [(-0.3, True), (-0.15, False), (0.3, True), (0.6, False)])
-def test_wheels_may_be_wrong_by_a_share_of_the_turn(error: float, explained: bool) -> None:
-    """The right turn is tried, what they tell, and what they tell give or take a share."""
-    scene = np.random.default_rng(1).integers(60, 200, 50).astype(np.uint8)
-    local_view = LocalView(LocalViewParams(), front_end=AsItIs())
-    local_view.observe(scene[20:32])
-    local_view.observe(scene[22:34], turned_rad=-2 * FOV / 12 / (1 + error))
-    assert (local_view.image_change < 0.1) is explained
-
-
-def test_wheels_that_slip_make_no_jump() -> None:
-    scene = np.random.default_rng(1).integers(60, 200, 12).astype(np.uint8)
-    local_view = LocalView(LocalViewParams(), front_end=AsItIs())
+def test_where_nothing_can_be_compared_there_is_no_jump() -> None:
+    """Wheels that slip, a turn that leaves nothing in common, no limit, and no vision."""
+    slipping, turning = seeing(), seeing()
     for _ in range(3):
-        local_view.observe(scene, turned_rad=2 * FOV / 12)
-        assert local_view.image_change == 0.0
-
-
-def test_after_a_turn_that_leaves_nothing_in_common_there_is_nothing_to_compare() -> None:
-    scene = np.random.default_rng(1).integers(60, 200, 24).astype(np.uint8)
-    local_view = LocalView(LocalViewParams(), front_end=AsItIs())
-    local_view.observe(scene[:12])
-    local_view.observe(scene[12:], turned_rad=-FOV)
-    assert local_view.image_change == 0.0
-
-
-@pytest.mark.parametrize(("jump", "enabled"), [(math.inf, True), (4.0, False)])
-def test_without_a_limit_or_without_vision_no_jump_is_told(jump: float, enabled: bool) -> None:
-    local_view = LocalView(LocalViewParams(enabled=enabled), front_end=AsItIs(jump=jump))
-    for level in (100, 10):
-        assert local_view.observe(even(level)).recruited is enabled
-        assert local_view.image_change == 0.0
-
-
-def test_what_is_bland_still_has_a_nearest_view() -> None:
-    local_view = LocalView(front_end=AsItIs())
-    local_view.observe(even(40))
-    assert local_view.observe(even(0)) == Recognition(-1, False, 0, 80.0)
-    assert len(local_view) == 1
+        slipping.observe(SCENE[:12], turned_rad=2 * COLUMN)
+        assert slipping.image_change == 0.0
+    turning.observe(SCENE[:12])
+    turning.observe(SCENE[12:24], turned_rad=-FOV)
+    assert turning.image_change == 0.0
+    for jump, enabled in ((math.inf, True), (4.0, False)):
+        local_view = seeing(LocalViewParams(enabled=enabled), jump=jump)
+        for level in (100, 10):
+            assert local_view.observe(even(level)).recruited is enabled
+            assert local_view.image_change == 0.0
 
 
 def test_false_positives_come_from_the_generator_handed_in_or_the_same_one_always() -> None:
-    def seen(rng: np.random.Generator | None) -> list[int]:
-        local_view = LocalView(LocalViewParams(false_positives=0.5), rng, AsItIs())
+    def seen(rng: np.random.Generator | None, share: float = 0.5) -> list[int]:
+        local_view = seeing(LocalViewParams(false_positives=share), rng)
         return [local_view.observe(even(20 * (1 + k % 8))).view for k in range(60)]
 
     assert seen(None) == seen(None)
     assert seen(np.random.default_rng(1)) == seen(np.random.default_rng(1)) != seen(np.random.default_rng(2))
-
-
-def test_without_false_positives_nothing_is_drawn() -> None:
-    rng = np.random.default_rng(1)
-    local_view = LocalView(LocalViewParams(false_positives=0.0), rng, AsItIs())
-    for k in range(9):
-        local_view.observe(even(20 * (1 + k % 3)))
-    assert rng.bit_generator.state == np.random.default_rng(1).bit_generator.state
-
-
-def test_without_facing_a_shift_tells_no_heading() -> None:
-    local_view = LocalView(LocalViewParams(facing=False), front_end=AsItIs())
-    local_view.observe(even(100))
-    seen = local_view.observe(even(100))
-    assert (seen.view, seen.recruited, seen.facing_rad) == (0, False, None)
+    undrawn = np.random.default_rng(1)
+    seen(undrawn, 0.0)
+    assert undrawn.bit_generator.state == np.random.default_rng(1).bit_generator.state
 
 
 @given(st.integers(-9, 9), st.integers(0, 2), st.integers(0, 2**32 - 1))
@@ -182,7 +160,7 @@ def test_a_view_is_compared_under_the_turn_that_is_asked_for(shift: int, slack: 
     local_view = LocalView(LocalViewParams(match_threshold=0.0, surprise=100.0))
     rng = np.random.default_rng(seed)
     for _ in range(3):
-        local_view._recruit(rng.integers(0, 256, local_view.features.size, np.uint8), faded=-1)
+        local_view.observe(rng.integers(0, 256, (48, 64), np.uint8), None, rng.uniform(0.2, 4.0, 8))
     local_view.features = rng.integers(0, 256, local_view.features.size, np.uint8)
     apart, by = local_view.apart_at(np.array([2, 0]), np.array([shift, shift]), slack)
     asked = int(np.clip(shift, -MOST_SHIFT, MOST_SHIFT))

@@ -25,38 +25,26 @@ def a_backbone(experiences: int, closures: list[tuple[int, int]]) -> Transitions
     return t
 
 
-@pytest.mark.parametrize(
-    ("closures", "first", "last", "found"),
-    [
-        ([], 0, 9, list(range(9))),
+def test_an_unnoticed_kidnap_is_found_in_the_backbone(subtests: pytest.Subtests) -> None:
+    """The way is open where no closure bridges it."""
+    for closures, first, last, found in (
+        ([], 0, 9, [*range(9)]),
         ([], 3, 6, [3, 4, 5]),
         ([(5, 0)], 0, 9, [5, 6, 7, 8]),
         ([(5, 0), (9, 6)], 0, 9, [5]),  # between two loops
         ([(0, 5), (4, 9)], 0, 9, []),  # each is bridged
         ([(4, 2), (8, 6)], 0, 9, [8]),  # the last stretch alone
-    ],
-)
-def test_an_unnoticed_kidnap_is_found_in_the_backbone(
-    closures: list[tuple[int, int]], first: int, last: int, found: list[int]
-) -> None:
-    assert torn(a_backbone(10, closures), first, last).tolist() == found
-
-
-@pytest.mark.parametrize(
-    ("closures", "first", "last", "way_m"),
-    [([], 0, 9, 9.0), ([], 3, 6, 3.0), ([(5, 0)], 0, 9, 4.0), ([(4, 2), (8, 6)], 0, 9, 5.0), ([(9, 0)], 0, 9, 0.0)],
-)
-def test_the_way_is_open_where_no_closure_bridges_it(
-    closures: list[tuple[int, int]], first: int, last: int, way_m: float
-) -> None:
-    assert open_way_m(a_backbone(10, closures), first, last) == pytest.approx(way_m)
-
-
-def test_a_closure_that_is_not_believed_bridges_nothing() -> None:
+        ([(9, 0)], 0, 9, []),
+    ):
+        with subtests.test(closures=closures, first=first):
+            assert torn(a_backbone(10, closures), first, last).tolist() == found
+    for closures, first, last, way_m in (
+        ([], 0, 9, 9.0), ([], 3, 6, 3.0), ([(5, 0)], 0, 9, 4.0), ([(4, 2), (8, 6)], 0, 9, 5.0), ([(9, 0)], 0, 9, 0.0)
+    ):  # fmt: skip
+        assert open_way_m(a_backbone(10, closures), first, last) == pytest.approx(way_m)
     t = a_backbone(10, [(9, 0)])
-    assert torn(t, 0, 9).tolist() == []
-    t.believed[9] = 0.0
-    assert torn(t, 0, 9).tolist() == list(range(9))
+    t.believed[9] = 0.0  # a closure that is not believed bridges nothing
+    assert torn(t, 0, 9).tolist() == [*range(9)]
 
 
 def test_the_torn_rows_are_together_as_uncertain_as_they_were_wrong() -> None:

@@ -59,12 +59,6 @@ def test_a_link_is_read_as_the_paper_writes_it(forwards: float, turn: float, beh
         link.time_s = 0.0  # type: ignore[misc]
 
 
-def test_there_is_no_link_where_none_was_driven() -> None:
-    robot = two_places()
-    with pytest.raises(ValueError, match="there is no link from experience 1 to 7"):
-        robot.map.link(1, 7)
-
-
 def test_a_link_remembers_the_behaviour_under_which_it_was_learnt() -> None:
     robot = two_places()
     drive_there_and_back(robot, behaviour=3)
@@ -72,21 +66,19 @@ def test_a_link_remembers_the_behaviour_under_which_it_was_learnt() -> None:
     robot.go(1.0, 0.5, 2, new=True)
     assert robot.map.link(0, 2).behaviour == 3
     assert robot.map.link(0, 1).passages == 2
+    with pytest.raises(ValueError, match="there is no link from experience 1 to 7"):
+        robot.map.link(1, 7)
 
 
-@pytest.mark.parametrize("behaviour", [-1, 16, 1.0, True, None])
-def test_a_behaviour_that_is_none_changes_nothing(behaviour: object) -> None:
+def test_a_behaviour_or_a_packet_that_is_none_changes_nothing() -> None:
     robot = two_places()
-    with pytest.raises(ValueError, match=r"behaviour must be a whole number from 0 to 15, got"):
-        robot.map.step(robot.packet(), Recognition(0, False, 0, 0.0), Odometry(1.0, 0.0, 0.1), behaviour)  # type: ignore[arg-type]
-    assert (robot.map.active, robot.map.robot) == (0, Pose2(0.0, 0.0, 0.0))
-
-
-def test_a_packet_that_is_nowhere_changes_nothing() -> None:
-    robot = two_places()
+    seen, ahead = Recognition(0, False, 0, 0.0), Odometry(1.0, 0.0, 0.1)
+    for behaviour in (-1, 16, 1.0, True, None):
+        with pytest.raises(ValueError, match=r"behaviour must be a whole number from 0 to 15, got"):
+            robot.map.step(robot.packet(), seen, ahead, behaviour)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"packet\.x must be a finite number"):
-        robot.see(0, packet=Packet(math.nan, 0.0, 0.0, 1.0))
-    assert (len(robot.map), robot.map.active) == (2, 0)
+        robot.map.step(Packet(math.nan, 0.0, 0.0, 1.0), seen, ahead)
+    assert (len(robot.map), robot.map.active, robot.map.robot) == (2, 0, HOME)
 
 
 def test_links_turn_with_their_experience() -> None:
@@ -94,14 +86,11 @@ def test_links_turn_with_their_experience() -> None:
     robot = Robot(EXACT)
     robot.see(0, new=True)
     robot.go(1.0, 0.7, 1, new=True)
-    map_ = robot.map
+    map_, turn = robot.map, 0.6
     before = map_.moves[0].copy()
     expected = map_.pose(0).compose(Pose2(*map(float, before)))
-    turn = 0.6
     map_.poses[0, 2] += turn
-    c, s = math.cos(turn), math.sin(turn)
-    in_map = np.array([expected.x, expected.y])  # dp of the paper, in the map's axes; experience 0 is at its origin
-    literal = np.array([[c, -s], [s, c]]) @ in_map
+    c, s = math.cos(turn), math.sin(turn)  # turns dp of the paper, in the map's axes; experience 0 is at its origin
     turned = map_.pose(0).compose(Pose2(*map(float, map_.moves[0])))
-    assert (turned.x, turned.y) == pytest.approx(tuple(literal))
+    assert (turned.x, turned.y) == pytest.approx((c * expected.x - s * expected.y, s * expected.x + c * expected.y))
     assert np.array_equal(map_.moves[0], before)

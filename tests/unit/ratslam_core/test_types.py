@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,12 +23,8 @@ def same(a: Pose2, b: Pose2) -> bool:
 
 @given(st.floats(-1000, 1000))
 def test_wrapping_keeps_the_direction_in_half_open_range(angle: float) -> None:
-    wrapped = wrap_angle(angle)
-    assert -math.pi < wrapped <= math.pi
-    assert math.cos(wrapped - angle) == pytest.approx(1.0, abs=1e-9)
-
-
-def test_half_a_turn_has_one_name() -> None:
+    assert -math.pi < wrap_angle(angle) <= math.pi
+    assert math.cos(wrap_angle(angle) - angle) == pytest.approx(1.0, abs=1e-9)
     assert wrap_angle(-math.pi) == math.pi == wrap_angle(math.pi) == wrap_angle(3 * math.pi)
 
 
@@ -45,62 +42,52 @@ def test_composing_goes_along_the_own_heading() -> None:
     assert same(Pose2(1, 2, math.pi / 2).compose(Pose2(3, 1, 0.1)), Pose2(0, 5, math.pi / 2 + 0.1))
 
 
-@pytest.mark.parametrize("bad", [math.nan, math.inf])
-def test_odometry_is_checked(bad: float) -> None:
-    with pytest.raises(ValueError, match=r"odometry\.speed must be a finite number"):
-        Odometry(bad, 0.0, 0.1)
-    with pytest.raises(ValueError, match=r"odometry\.yaw_rate must be a finite number"):
-        Odometry(0.0, bad, 0.1)
-    for dt in (bad, 0.0, -1.0):
-        with pytest.raises(ValueError, match=r"odometry\.dt must be a positive number of seconds"):
-            Odometry(0.0, 0.0, dt)
+def test_odometry_is_checked() -> None:
+    for bad in (math.nan, math.inf):
+        for speed, yaw_rate, dt, message in (
+            (bad, 0.0, 0.1, r"odometry\.speed must be a finite number"),
+            (0.0, bad, 0.1, r"odometry\.yaw_rate must be a finite number"),
+            *((0.0, 0.0, dt, r"odometry\.dt must be a positive number of seconds") for dt in (bad, 0.0, -1.0)),
+        ):
+            with pytest.raises(ValueError, match=message):
+                Odometry(speed, yaw_rate, dt)
+
+
+@dataclass(frozen=True)
+class Mixed:
+    size: int = param(5, low=1, high=9, meaning="a size", source="test")
+    way: str = param("left", choices=("left", "right"), meaning="a way", source="test")
+    note: str = "free text"
+
+    def __post_init__(self) -> None:
+        check_ranges(self)
 
 
 @pytest.mark.parametrize(
-    ("make", "message"),
+    ("of", "values", "message"),
     [
-        (lambda: PoseCellParams(n_x=7), r"n_x must be between 8 and 1000 cells, got 7"),
-        (lambda: PoseCellParams(n_x=20.0), r"n_x must be int, got 20\.0"),  # type: ignore[arg-type]
-        (lambda: PoseCellParams(n_x=True), r"n_x must be int, got True"),
-        (lambda: PoseCellParams(n_x=1000, n_y=1000, n_theta=68), r"at most 67108864 cells together, got 68000000"),
-        (lambda: PoseCellParams(inhibit=math.nan), r"inhibit must be between 0\.0 and 0\.02, got nan"),
-        (lambda: PoseCellParams(carry=1), r"carry must be bool, got 1"),  # type: ignore[arg-type]
-        (lambda: LocalViewParams(shift=6), r"shift must be between 0 and 5 columns, got 6"),
-        (lambda: LocalViewParams(match_threshold="8"), r"match_threshold must be float, got '8'"),  # type: ignore[arg-type]
-        (lambda: ExperienceMapParams(correction=-0.1), r"correction must be between 0\.0 and 0\.95, got -0\.1"),
-        (lambda: ExperienceMapParams(zone_xy=math.inf), r"zone_xy must be between 0\.5 and 20\.0 cells, got inf"),
+        (PoseCellParams, {"n_x": 7}, r"n_x must be between 8 and 1000 cells, got 7"),
+        (PoseCellParams, {"n_x": 20.0}, r"n_x must be int, got 20\.0"),
+        (PoseCellParams, {"n_x": True}, r"n_x must be int, got True"),
+        (PoseCellParams, {"n_x": 1000, "n_y": 1000, "n_theta": 68}, r"at most 67108864 cells together, got 68000000"),
+        (PoseCellParams, {"inhibit": math.nan}, r"inhibit must be between 0\.0 and 0\.02, got nan"),
+        (PoseCellParams, {"carry": 1}, r"carry must be bool, got 1"),
+        (
+            PoseCellParams,
+            {"carry": np.zeros((60, 60))},
+            r"^carry must be bool, got array\(\[\[.*\]\], shape=\(60, 60\)\)$",
+        ),
+        (LocalViewParams, {"shift": 6}, r"shift must be between 0 and 5 columns, got 6"),
+        (LocalViewParams, {"match_threshold": "8"}, r"match_threshold must be float, got '8'"),
+        (ExperienceMapParams, {"correction": -0.1}, r"correction must be between 0\.0 and 0\.95, got -0\.1"),
+        (ExperienceMapParams, {"zone_xy": math.inf}, r"zone_xy must be between 0\.5 and 20\.0 cells, got inf"),
+        (Mixed, {"size": 10}, "size must be between 1 and 9, got 10"),
+        (Mixed, {"way": "up"}, "way must be one of 'left', 'right', got 'up'"),
     ],
 )
-def test_a_parameter_out_of_range_is_named_with_its_range(make, message: str) -> None:
+def test_a_parameter_out_of_range_is_named_with_its_range(of: Any, values: dict[str, Any], message: str) -> None:
+    """In one line, whatever a wrong value is; only declared parameters are checked, and a whole number serves as a float."""
     with pytest.raises(ValueError, match=message):
-        make()
-
-
-def test_a_whole_number_serves_as_a_float() -> None:
+        of(**values)
+    assert Mixed(way="right", note="").note == ""
     assert PoseCellParams(excite_sigma=1).excite_sigma == 1
-
-
-def test_only_declared_numbers_are_checked() -> None:
-    @dataclass(frozen=True)
-    class Mixed:
-        size: int = param(5, low=1, high=9, meaning="a size", source="test")
-        note: str = "free text"
-
-    check_ranges(Mixed(note=""))
-    with pytest.raises(ValueError, match="size must be between 1 and 9, got 10"):
-        check_ranges(Mixed(size=10))
-
-
-def test_text_is_one_of_its_choices() -> None:
-    @dataclass(frozen=True)
-    class Chosen:
-        way: str = param("left", choices=("left", "right"), meaning="a way", source="test")
-
-    check_ranges(Chosen(way="right"))
-    with pytest.raises(ValueError, match="way must be one of 'left', 'right', got 'up'"):
-        check_ranges(Chosen(way="up"))
-
-
-def test_whatever_a_wrong_value_is_the_error_is_one_line() -> None:
-    with pytest.raises(ValueError, match=r"^carry must be bool, got array\(\[\[.*\]\], shape=\(60, 60\)\)$"):
-        PoseCellParams(carry=np.zeros((60, 60)))  # type: ignore[arg-type]

@@ -1,12 +1,14 @@
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 
 from ratslam_core import LocalViewParams, PoseCells, ViewLinks
 from ratslam_core.local_view import view_links
 
-from . import literal
+from .literal import also_interpreted
 
 
 def learn(links: ViewLinks, view: int, pose_cells: PoseCells) -> None:
@@ -23,11 +25,9 @@ def dense(links: ViewLinks, view: int, size: int) -> np.ndarray:
     return beta
 
 
-@pytest.mark.parametrize("interpreted", [False, True])
 @pytest.mark.parametrize("decay", [0.0, 0.1, 1.0])
-def test_learning_is_hebbian(decay: float, interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    if interpreted:
-        literal.interpret(view_links, monkeypatch)
+@also_interpreted(view_links)
+def test_learning_is_hebbian(decay: float) -> None:
     links = ViewLinks(LocalViewParams(learning_rate=0.3, decay=decay, most_links=0))
     pose_cells = PoseCells()
     beta = np.zeros((3, pose_cells.slot.size))
@@ -39,14 +39,6 @@ def test_learning_is_hebbian(decay: float, interpreted: bool, monkeypatch: pytes
         beta[view] = (1 - decay) * beta[view] + 0.3 * pose_cells.activity.ravel()
         for each in range(3):
             assert np.abs(dense(links, each, beta.shape[1]) - beta[each]).max() < 1e-6
-
-
-def test_a_view_never_seen_is_linked_to_nothing() -> None:
-    links = ViewLinks()
-    for view in (0, 7, 1023, 1024, 5000):
-        cells, values = links.recall(view)
-        assert len(cells) == len(values) == 0
-        assert len(links.recall(view, lost=True)[0]) == 0
 
 
 def test_one_link_injects_no_more_than_its_saturation() -> None:
@@ -63,53 +55,30 @@ def test_one_link_injects_no_more_than_its_saturation() -> None:
 
 
 def test_injection_is_capped_in_sum() -> None:
-    """However strong its links, a view injects 0.14 in all, in proportion to its links; a weak view injects what it has."""
-    links, pose_cells = ViewLinks(), PoseCells()
+    """However strong its links, a view injects 0.14 in all, in proportion to its links, or 0.5 into a robot that is lost;
+    one of weak links injects what it has, and one never seen nothing. None of it changes the links."""
+    pose_cells = PoseCells()
     for _ in range(30):
         pose_cells.attract()
-    learn(links, 0, pose_cells)
-    weak = links.recall(0)[1]
-    before = links.of(0)[1].copy()
+    strong, weak = ViewLinks(), ViewLinks(LocalViewParams(learning_rate=0.05))
     for _ in range(200):
-        learn(links, 0, pose_cells)
-    cells, values = links.recall(0)
-    assert values.sum(dtype=np.float64) == pytest.approx(0.14, rel=1e-5)
-    saturated = np.minimum(links.of(0)[1], 0.02)
-    assert saturated.sum() > 0.14
-    assert values / values.sum() == pytest.approx(saturated / saturated.sum(), rel=1e-4)
-    assert len(cells) == len(before)
-    weak_links = ViewLinks(LocalViewParams(learning_rate=0.05))
-    learn(weak_links, 0, pose_cells)
-    assert weak_links.recall(0)[1].sum(dtype=np.float64) == pytest.approx(0.05, rel=0.01)
-    assert weak.sum(dtype=np.float64) <= 0.14 * (1 + 1e-5)
+        learn(strong, 0, pose_cells)
+    learn(weak, 0, pose_cells)
+    for links, cap, lost in ((strong, 0.14, False), (strong, 0.5, True), (weak, 0.05, False), (weak, 0.5, True)):
+        known = links.of(0)[1].copy()
+        cells, values = links.recall(0, lost=lost)
+        saturated = np.minimum(known, 0.02)
+        assert links is weak or saturated.sum() > 0.14
+        assert values.sum(dtype=np.float64) == pytest.approx(cap, rel=0.01 if links is weak else 1e-5)
+        assert values / values.sum() == pytest.approx(saturated / saturated.sum(), rel=1e-4)
+        assert np.array_equal(cells, links.of(0)[0])
+        assert np.array_equal(known, links.of(0)[1])
+        for view in (7, 1023, 1024, 5000):
+            assert [len(part) for part in links.recall(view, lost=lost)] == [0, 0]
 
 
-def test_a_lost_robot_lets_its_views_inject_more() -> None:
-    links, pose_cells = ViewLinks(LocalViewParams(learning_rate=0.01)), PoseCells()
-    pose_cells.attract()
-    learn(links, 0, pose_cells)
-    cells, values = links.recall(0)
-    lost_cells, lost_values = links.recall(0, lost=True)
-    assert np.array_equal(cells, lost_cells)
-    assert values.sum(dtype=np.float64) == pytest.approx(0.01, rel=0.01)
-    assert lost_values.sum(dtype=np.float64) == pytest.approx(0.5, rel=1e-5)
-    assert lost_values / lost_values.sum() == pytest.approx(values / values.sum(), rel=1e-4)
-
-
-def test_recalling_changes_nothing() -> None:
-    links, pose_cells = ViewLinks(), PoseCells()
-    for _ in range(20):
-        learn(links, 0, pose_cells)
-    before = links.of(0)[1].copy()
-    links.recall(0)
-    links.recall(0, lost=True)
-    assert np.array_equal(links.of(0)[1], before)
-
-
-@pytest.mark.parametrize("interpreted", [False, True])
-def test_the_views_at_a_column_are_those_linked_there(interpreted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    if interpreted:
-        literal.interpret(view_links, monkeypatch)
+@also_interpreted(view_links)
+def test_the_views_at_a_column_are_those_linked_there() -> None:
     links, pose_cells = ViewLinks(), PoseCells()
     _, n_y, n_x = pose_cells.shape
     for view in range(3):
@@ -124,23 +93,6 @@ def test_the_views_at_a_column_are_those_linked_there(interpreted: bool, monkeyp
         assert len(links.views_at(y * n_x + x, n_y * n_x, 0)[0]) == 0
 
 
-def test_the_arena_takes_hardly_more_room_than_the_links() -> None:
-    """Over hours of views, blocks that moved leave no gaps for long, and the spare room is a fraction, not a doubling."""
-    links, rng = ViewLinks(), np.random.default_rng(4)
-    slot = np.zeros(147_456, np.int32)
-    for turn in range(3):
-        for view in range(400 * (turn + 1)):
-            flats = 100 * view + turn * 40 + np.arange(int(rng.integers(200, 600)))
-            slot[:] = 0
-            slot[flats] = np.arange(len(flats)) + 1
-            cells = np.zeros((len(flats), 4), np.int32)
-            cells[:, 3] = flats
-            links.learn(view, cells, np.ones(len(flats), np.float32), slot)
-            if view % 40 == 39 and (turn or view > 200):
-                used = sum(len(links.of(k)[0]) for k in range(400 * (turn + 1)))
-                assert links.room <= 2 * used
-
-
 def active_cells(flats: np.ndarray, value: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Cells, activities and slot as `learn` takes them."""
     slot = np.zeros(147_456, np.int32)
@@ -150,19 +102,27 @@ def active_cells(flats: np.ndarray, value: float) -> tuple[np.ndarray, np.ndarra
     return cells, np.full(len(flats), value, np.float32), slot
 
 
+def test_the_arena_takes_hardly_more_room_than_the_links() -> None:
+    """Over hours of views, blocks that moved leave no gaps for long, and the spare room is a fraction, not a doubling."""
+    links, rng = ViewLinks(), np.random.default_rng(4)
+    for turn in range(3):
+        for view in range(400 * (turn + 1)):
+            links.learn(view, *active_cells(100 * view + turn * 40 + np.arange(int(rng.integers(200, 600))), 1.0))
+            if view % 40 == 39 and (turn or view > 200):
+                used = sum(len(links.of(k)[0]) for k in range(400 * (turn + 1)))
+                assert links.room <= 2 * used
+
+
 def test_links_are_kept_when_the_arena_is_full() -> None:
     """Every view gets new links again and again, so that all blocks move, and the arena several times."""
     links, rooms = ViewLinks(LocalViewParams(learning_rate=1.0, decay=0.0, most_links=0)), set()
-    for turn in range(4):
-        for view in range(60):
-            flats = 1000 * view + 600 * turn + np.arange(600)
-            links.learn(view, *active_cells(flats, 1.0 + view + 0.1 * turn))
-            rooms.add(links.room)
+    for turn, view in product(range(4), range(60)):
+        links.learn(view, *active_cells(1000 * view + 600 * turn + np.arange(600), 1.0 + view + 0.1 * turn))
+        rooms.add(links.room)
     assert len(rooms) > 2
     for view in range(60):
-        at = 1000 * view + np.arange(2400)
         expected = np.zeros(147_456)
-        expected[at] = 1.0 + view + 0.1 * (np.arange(2400) // 600)
+        expected[1000 * view + np.arange(2400)] = 1.0 + view + 0.1 * (np.arange(2400) // 600)
         assert np.abs(dense(links, view, 147_456) - expected).max() < 1e-5
 
 
