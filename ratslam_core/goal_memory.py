@@ -81,7 +81,7 @@ class GoalMemory:
         """The temporal map T: s from every cell to this one, shape (n_y, n_x); 0 there, inf where no way is known.
 
         T_i <- min(T_i, min_j (T_j + tau_ji)) until nothing decreases, IROS 2005 eq. 6. That ends at the shortest times,
-        which Dijkstra's algorithm finds at once. test_goal_memory.py::test_times_are_the_fixed_point_of_equation_6.
+        which Dijkstra's algorithm finds at once. test_goal_memory.py::test_it_is_the_equations.
         """
         n_y, n_x = self.shape[1:]
         for name, value, size in (("x", x, n_x), ("y", y, n_y)):

@@ -49,7 +49,7 @@ class EchoMatcher(Matcher):
     """As `Matcher`, for features with echoes behind the columns. They do not shift.
 
     [ours] The search is exact: a view is passed over only if its echoes alone are farther off than the best view so far.
-    test_echo_matcher.py::test_the_nearest_view_is_that_of_the_loops_bit_for_bit.
+    test_matchers.py::test_the_nearest_view_is_that_of_the_loops_bit_for_bit.
     """
 
     __slots__ = ("_heard",)  # no attribute, and so no part of the state: it is made from the views

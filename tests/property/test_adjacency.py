@@ -28,7 +28,7 @@ class Lists:
             assert adjacency.degree(node) == len(expected)
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(st.data())
 @pytest.mark.slow
 def test_links_come_and_go_as_in_lists(data: st.DataObject) -> None:

@@ -74,7 +74,7 @@ def histories(draw: st.DrawFn) -> tuple[int, int, list[tuple[float, Iteration]]]
 weights = st.sampled_from([0.0, 0.1, 0.25, 1.0])
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(histories(), weights, weights, weights, st.sampled_from([0.05, 0.2, 1.0]), st.sampled_from([0.05, 0.5, 0.9]))
 @pytest.mark.slow
 def test_it_is_the_equations(

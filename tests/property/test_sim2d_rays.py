@@ -82,12 +82,6 @@ def test_a_ray_never_passes_a_wall(walls: np.ndarray, x: float, y: float, angle:
         assert nearest_segment(walls, x + length * math.cos(angle), y + length * math.sin(angle))[1] < 1e-6
 
 
-@given(segments, coordinate, coordinate)
-@settings(max_examples=100)
-def test_python_and_compiled_agree(walls: np.ndarray, x: float, y: float) -> None:
-    assert nearest_segment(walls, x, y) == nearest_segment.py_func(walls, x, y)
-
-
 @given(segments, coordinate, coordinate, heading, st.floats(0.1, 20))
 @settings(max_examples=150)
 def test_the_index_finds_what_looking_at_all_finds(

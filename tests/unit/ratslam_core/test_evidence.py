@@ -61,30 +61,17 @@ class Known:
     """A map of a corridor along x: a view each 0.4 m, facing along it."""
 
     count: int = 30
-    y: float = 0.0
-
-    @property
-    def poses(self) -> np.ndarray:
-        return np.array([[0.4 * k, self.y, 0.0] for k in range(self.count)])
-
-    @property
-    def views(self) -> np.ndarray:
-        return np.arange(self.count)
-
-    @property
-    def island_of(self) -> np.ndarray:
-        return np.zeros(self.count, np.int32)
-
     robot_here: Pose2 = Pose2(0.0, 0.0, 0.0)
     prior: float = PRIOR
     cell_m: float = CELL_M
 
+    def __post_init__(self) -> None:
+        self.poses = np.array([[0.4 * k, 0.0, 0.0] for k in range(self.count)])
+        self.views, self.island_of = np.arange(self.count), np.zeros(self.count, np.int32)
+        self.taken = [Pose2(*row) for row in self.poses.tolist()]
+
     def log_prior(self, _experience: int, _pose: Pose2) -> float:
         return self.prior
-
-    @property
-    def taken(self) -> list[Pose2]:
-        return [Pose2(*row) for row in self.poses.tolist()]
 
 
 def carried(known: Known, expected: Pose2 | None = None, *, sure: bool = True) -> Evidence:
@@ -105,12 +92,12 @@ def drive(evidence: Evidence, known: Known, sights: Sights, ticks: int, odometry
         evidence.observe(known, sights, 0 if evidence.in_doubt else 1)
 
 
-@pytest.mark.parametrize("ring", range(len(NATS)))
-def test_the_less_alike_the_less_it_says_and_never_too_much(ring: int) -> None:
-    said = [nats(likeness, ring) for likeness in np.linspace(0, 3, 200)]
-    assert np.all(np.diff(said) <= 0)
-    assert AGAINST <= min(said) < 0 < max(said) <= FOR
-    assert nats(float(LIKENESS[3]), ring) == pytest.approx(NATS[ring][3])
+def test_the_less_alike_the_less_it_says_and_never_too_much() -> None:
+    for ring in range(len(NATS)):
+        said = [nats(likeness, ring) for likeness in np.linspace(0, 3, 200)]
+        assert np.all(np.diff(said) <= 0)
+        assert AGAINST <= min(said) < 0 < max(said) <= FOR
+        assert nats(float(LIKENESS[3]), ring) == pytest.approx(NATS[ring][3])
 
 
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(-2, 2), st.floats(0.01, 0.5)), max_size=20), poses)
@@ -165,7 +152,6 @@ def test_on_new_ground_it_believes_nothing(yaw_rate: float) -> None:
 def test_of_two_places_that_look_the_same_neither_is_believed() -> None:
     """In a twin corridor the same can be seen, metre by metre."""
     known = Known(60)
-    rows = known.poses
     evidence = carried(known)
     sights = Sights(known.taken, Pose2(2.0, 0.0, 0.0), Pose2(14.0, 0.0, 0.0))
     for _ in range(12):
@@ -173,16 +159,9 @@ def test_of_two_places_that_look_the_same_neither_is_believed() -> None:
         assert evidence.belief is None
     odds = np.sort(evidence.hypotheses[:, law.ODDS])[-2:]
     assert odds[0] == pytest.approx(odds[1], abs=0.5)
-    assert np.array_equal(rows, known.poses)
 
 
-def test_who_was_perhaps_not_carried_is_as_likely_where_odometry_leads_as_at_a_new_place() -> None:
-    for sure, odds in ((True, PRIOR), (False, 0.0)):
-        evidence = carried(Known(), Pose2(2.0, 0.0, 0.0), sure=sure)
-        assert evidence.hypotheses[0, law.ODDS] == odds
-
-
-def test_the_likeliest_of_those_that_meet_stays() -> None:
+def test_the_likeliest_of_those_that_meet_stays_and_what_was_gathered_fades_with_the_way() -> None:
     rows = np.zeros((law.MOST, 7))
     rows[:4, :4] = [[0, 0, 0, 1.0], [0.2, 0, 0.1, 3.0], [5, 0, 0, 2.0], [9, 9, 0, law.FORGOTTEN - 1]]
     assert law._merge(rows, 4, law.FORGOTTEN, CELL_M) == 2
@@ -190,13 +169,9 @@ def test_the_likeliest_of_those_that_meet_stays() -> None:
     rows[:2, law.SUBMAP] = [0, 1]
     rows[1, :3] = rows[0, :3]
     assert law._merge(rows, 2, law.FORGOTTEN, CELL_M) == 2  # on two submaps, the same numbers are two places
-
-
-def test_what_was_gathered_fades_with_the_way_and_no_doubt_does() -> None:
-    rows = np.zeros((2, 7))
-    rows[:, law.ODDS] = 4.0, -3.0
-    law._weigh(rows, np.full(2, -1), np.full(2, np.inf), 0.5)
-    assert rows[:, law.ODDS].tolist() == pytest.approx([4.0 * (1 - 0.5 * law.LEAK), -3.0])
+    rows[:2, law.ODDS] = 4.0, -3.0  # no doubt fades
+    law._weigh(rows[:2], np.full(2, -1), np.full(2, np.inf), 0.5)
+    assert rows[:2, law.ODDS].tolist() == pytest.approx([4.0 * (1 - 0.5 * law.LEAK), -3.0])
 
 
 # ---------------------------------------------------------------- submaps
@@ -213,59 +188,68 @@ def test_what_is_moved_keeps_its_shape(robot: Pose2, claimed: Pose2, made: list[
         assert (now.x, now.y) == pytest.approx((was.x, was.y), abs=1e-9)
 
 
-@pytest.mark.parametrize(("at", "other"), [(2, 1), (1, 2)])
-def test_the_younger_submap_becomes_part_of_the_older(at: int, other: int) -> None:
-    islands, of = Islands(), np.array([0, 0, 1, 2, 2], np.int32)
-    rows = np.zeros((5, 3))
-    for _ in range(2):
-        islands.begin()
-    islands.current = at
-    islands.join(other, of, rows, Pose2(0.0, 0.0, 0.0), Pose2(1.0, 2.0, 0.0))
-    assert of.tolist() == [0, 0, 1, 1, 1]
-    moved = [1.0, 2.0] if at == 2 else [-1.0, -2.0]
-    assert rows[:, :2].tolist() == [[0.0, 0.0]] * 3 + [moved] * 2
-    assert (islands.current, islands.begun, islands.joined) == (1, 2, 1)
+def test_the_younger_submap_becomes_part_of_the_older() -> None:
+    for at, other, moved in ((2, 1, [1.0, 2.0]), (1, 2, [-1.0, -2.0])):
+        islands, of, rows = Islands(), np.array([0, 0, 1, 2, 2], np.int32), np.zeros((5, 3))
+        for _ in range(2):
+            islands.begin()
+        islands.current = at
+        islands.join(other, of, rows, Pose2(0.0, 0.0, 0.0), Pose2(1.0, 2.0, 0.0))
+        assert of.tolist() == [0, 0, 1, 1, 1]
+        assert rows[:, :2].tolist() == [[0.0, 0.0]] * 3 + [moved] * 2
+        assert (islands.current, islands.begun, islands.joined) == (1, 2, 1)
 
 
 class Robot:
     """Maps a corridor, is carried, and drives on. Its packet is where odometry has it, and each of its views is new at first."""
 
-    def __init__(self) -> None:
-        params = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0)
-        self.map = ExperienceMap(SHAPE, CELL_M, params)
+    def __init__(self, ticks: int = 400, *, recognises: bool = False, **params: bool) -> None:
+        """It has driven so many ticks; recognises: from now on, views that it took before."""
+        known = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0, **params)
+        self.map = ExperienceMap(SHAPE, CELL_M, known)
         self.pose = Pose2(0.0, 0.0, 0.0)
         self.sights = Sights([])
-        self.confirmed: Pose2 | None = Pose2(0.0, 0.0, 0.0)
-        self.recognises = False  # views that it took before
+        self.confirmed = True
+        self.recognises = False
+        self.drive(ticks)
+        self.recognises = recognises
 
-    def see(self, *, new: bool) -> None:
-        self.sights.robot = self.pose
-        alike = [view for view in range(len(self.sights.taken)) if self.sights.difference_to(view) < 5]
-        known = self.recognises and bool(alike)
-        if new and not known:
-            self.sights.taken.append(self.pose)
-        new, view = new and not known, alike[0] if known else len(self.sights.taken) - 1
-        packet = Packet(32 + 4 * self.pose.x % 64, 32 + self.pose.y % 64, self.pose.heading_rad, 1.0)
-        seen = Recognition(view, new, view, 1.0, 0.0)
-        self.map.step(packet, seen, DRIVE, views=self.sights, witness=self)  # type: ignore[arg-type]
-
-    def drive(self, ticks: int, every: int = 13) -> None:
+    def drive(self, ticks: int) -> None:
         for tick in range(ticks):
             self.pose = self.pose.compose(Pose2(0.03, 0.0, 0.0))
-            self.see(new=tick % every == 0)
+            self.sights.robot = self.pose
+            alike = [view for view in range(len(self.sights.taken)) if self.sights.difference_to(view) < 5]
+            known = self.recognises and bool(alike)
+            new = tick % 13 == 0 and not known
+            if new:
+                self.sights.taken.append(self.pose)
+            view = alike[0] if known else len(self.sights.taken) - 1
+            packet = Packet(32 + 4 * self.pose.x % 64, 32 + self.pose.y % 64, self.pose.heading_rad, 1.0)
+            self.step(packet, Recognition(view, new, view, 1.0, 0.0))
+
+    def look_alike(self, view: int) -> None:
+        """See a view where the pose cells were when it was taken."""
+        self.step(Packet(*self.map.cell_state(view)[:3], 1.0), Recognition(view, False, view, 1.0, 0.0))
+
+    def step(self, packet: Packet, seen: Recognition) -> None:
+        self.map.step(packet, seen, DRIVE, views=self.sights, witness=self)  # type: ignore[arg-type]
 
     def confirms(self, _map: object, _experience: int, look: Pose2) -> tuple[Pose2, float] | None:
-        return (look, math.inf) if self.confirmed is not None else None
+        return (look, math.inf) if self.confirmed else None
 
     def carry(self, to: Pose2, *, noticed: bool = True) -> None:
         if noticed:
             self.map.declare_kidnapped()
         self.pose = to
 
+    @property
+    def off_m(self) -> float:
+        """How far from the truth it believes to be, on the map."""
+        return math.hypot(self.map.robot.x - self.pose.x, self.map.robot.y - self.pose.y)
+
 
 def test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole() -> None:
     robot = Robot()
-    robot.drive(400)
     map_, known = robot.map, len(robot.map)
     before = map_.poses.copy()
     robot.carry(Pose2(2.0, 0.1, 0.0))
@@ -278,7 +262,7 @@ def test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole() -> 
             believed += 1
             assert not map_.lost
             assert map_.active < known <= map_.here  # it acts on the map, and learns beside it
-            assert math.hypot(map_.robot.x - robot.pose.x, map_.robot.y - robot.pose.y) < 0.5
+            assert robot.off_m < 0.5
             assert not any(min(ends) < known <= max(ends) for ends in map_.transitions.row_of)
     assert believed > 5
     assert not map_.carried
@@ -293,35 +277,32 @@ def test_what_is_believed_changes_no_map_and_a_submap_is_merged_as_a_whole() -> 
 
 def test_a_submap_is_not_merged_where_a_witness_does_not_confirm_it() -> None:
     robot = Robot()
-    robot.drive(400)
     robot.carry(Pose2(2.0, 0.1, 0.0))
-    robot.confirmed = None
+    robot.confirmed = False
     sure = 0
     while sure < 5:
         robot.drive(1)
         belief = robot.map.evidence.belief
         sure += belief is not None and belief.log_odds > robot.map.evidence.params.merge
         assert robot.map.islands.joined == 0
-    robot.confirmed = Pose2(0.0, 0.0, 0.0)
+    robot.confirmed = True
     robot.drive(1)
     assert robot.map.islands.joined == 1
 
 
 def test_without_submaps_the_first_look_is_believed() -> None:
-    robot = Robot()
-    robot.map.params = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0, islands=False)
-    robot.drive(400)
+    robot = Robot(islands=False)
     robot.carry(Pose2(2.0, 0.1, 0.0))
-    seen = Recognition(4, False, 4, 1.0, 0.0)
-    x, y, theta, _ = robot.map.cell_state(4)
-    robot.map.step(Packet(x, y, theta, 1.0), seen, DRIVE, views=robot.sights)  # type: ignore[arg-type]
+    robot.look_alike(4)
     assert robot.map.active == 4
     assert robot.map.evidence.known == 0
 
 
 def test_a_doubtful_jump_after_a_sure_one_makes_nothing_doubtful() -> None:
-    robot = Robot()
-    robot.drive(50)
+    """Who was perhaps not carried is as likely where odometry leads as at a new place."""
+    for sure, odds in ((True, PRIOR), (False, 0.0)):
+        assert carried(Known(), Pose2(2.0, 0.0, 0.0), sure=sure).hypotheses[0, law.ODDS] == odds
+    robot = Robot(50)
     robot.map.declare_kidnapped()
     robot.map.declare_kidnapped(sure=False)
     assert robot.map.evidence.sure
@@ -397,25 +378,16 @@ def test_a_doubt_ends_when_nothing_speaks_for_it() -> None:
     assert not evidence.idle
 
 
-def explored(ticks: int = 400) -> Robot:
-    robot = Robot()
-    robot.drive(ticks)
-    robot.recognises = True
-    return robot
-
-
 def test_one_look_alike_closes_no_loop() -> None:
-    robot = explored()
-    x, y, theta, _ = robot.map.cell_state(3)
-    seen = Recognition(3, False, 3, 1.0, 0.0)
-    robot.map.step(Packet(x, y, theta, 1.0), seen, DRIVE, views=robot.sights)  # type: ignore[arg-type]
+    robot = Robot(recognises=True)
+    robot.look_alike(3)
     assert robot.map.evidence.in_doubt
     assert robot.map.active == len(robot.map) - 1  # it is taken for a new place
     assert (robot.map.closures, robot.map.belief) == (0, None)
 
 
 def test_who_was_carried_unnoticed_gives_way_and_its_odometry_with_it() -> None:
-    robot = explored()
+    robot = Robot(recognises=True)
     map_, known, weights = robot.map, len(robot.map), robot.map.transitions.weight.copy()
     before = map_.poses[:known].copy()
     robot.carry(Pose2(6.0, 0.0, 0.0), noticed=False)
@@ -427,7 +399,7 @@ def test_who_was_carried_unnoticed_gives_way_and_its_odometry_with_it() -> None:
             assert np.array_equal(map_.poses[:known], before)
             assert map_.evidence.known == known  # what is made in doubt is no witness
     assert map_.corrected == 1
-    assert math.hypot(map_.robot.x - robot.pose.x, map_.robot.y - robot.pose.y) < 0.5
+    assert robot.off_m < 0.5
     softer = map_.transitions.weight[: map_.transitions.count] < weights[: map_.transitions.count]
     assert softer.any()
 
@@ -452,7 +424,7 @@ def merged_wrongly(robot: Robot, sure: float) -> int:
 
 
 def test_a_merge_that_proves_wrong_is_undone() -> None:
-    robot = explored()
+    robot = Robot(recognises=True)
     map_ = robot.map
     known = merged_wrongly(robot, sure=7.0)
     t = map_.transitions
@@ -461,7 +433,7 @@ def test_a_merge_that_proves_wrong_is_undone() -> None:
     while map_.corrected == 0:
         robot.drive(1)
         assert robot.pose.x < 8.0
-    assert math.hypot(map_.robot.x - robot.pose.x, map_.robot.y - robot.pose.y) < 0.5
+    assert robot.off_m < 0.5
     made = np.array([[p.x, p.y] for p in robot.sights.taken[known : known + 3]])
     assert map_.poses[known : known + 3, :2] == pytest.approx(made, abs=0.5)
     assert np.array_equal(map_.poses[:known], before)
@@ -491,7 +463,7 @@ def test_who_drives_on_unchallenged_need_not_undo_its_merge() -> None:
 
 def test_a_long_loop_closes_and_odometry_is_not_to_blame() -> None:
     """Where it is puts the robot within what twelve metres without a closure may drift."""
-    robot = explored()
+    robot = Robot(recognises=True)
     map_ = robot.map
     robot.carry(Pose2(1.0, 0.0, 0.0), noticed=False)
     map_.params = replace(map_.params, odometry_drift=0.6)
@@ -505,8 +477,7 @@ def test_a_long_loop_closes_and_odometry_is_not_to_blame() -> None:
 
 @given(st.floats(0.0, 20.0), st.floats(0.01, 0.2))
 def test_the_prior_is_what_odometry_can_have_drifted(off: float, drift: float) -> None:
-    robot = Robot()
-    robot.drive(60)
+    robot = Robot(60)
     map_ = robot.map
     map_.params = replace(map_.params, odometry_drift=drift)
     map_.evidence.doubt(len(map_))
@@ -519,14 +490,14 @@ def test_the_prior_is_what_odometry_can_have_drifted(off: float, drift: float) -
     assert map_.log_prior(0, here) == PRIOR
 
 
-@pytest.mark.parametrize(("gate_rad", "held"), [(3.2, False), (0.8, True)])
-def test_a_look_that_turns_the_robot_is_held_back(gate_rad: float, held: bool) -> None:
+def test_a_look_that_turns_the_robot_is_held_back() -> None:
     """As near as it puts the robot: one whose heading is sure is not turned by a look-alike. 3.2 is the plain twin."""
-    map_ = ExperienceMap(SHAPE, CELL_M, ExperienceMapParams(sweeps=0), evidence=EvidenceParams(gate_rad=gate_rad))
     packet = Packet(32.0, 32.0, 0.0, 1.0)
-    for view in (0, 1):
-        map_.step(packet, Recognition(view, True, view, 1.0, 0.0), DRIVE)
-    map_.step(packet, Recognition(0, False, 0, 1.0, 1.5), DRIVE)
-    assert map_.evidence.in_doubt is held
-    assert (map_.active == 0) is not held
-    assert map_.robot.heading_rad == pytest.approx(0.0 if held else 1.5)
+    for gate_rad, held in ((3.2, False), (0.8, True)):
+        map_ = ExperienceMap(SHAPE, CELL_M, ExperienceMapParams(sweeps=0), evidence=EvidenceParams(gate_rad=gate_rad))
+        for view in (0, 1):
+            map_.step(packet, Recognition(view, True, view, 1.0, 0.0), DRIVE)
+        map_.step(packet, Recognition(0, False, 0, 1.0, 1.5), DRIVE)
+        assert map_.evidence.in_doubt is held
+        assert (map_.active == 0) is not held
+        assert map_.robot.heading_rad == pytest.approx(0.0 if held else 1.5)

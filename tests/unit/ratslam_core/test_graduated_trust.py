@@ -57,8 +57,7 @@ def correct(map_: ExperienceMap, times: int) -> None:
         map_.correct()
 
 
-@pytest.mark.parametrize("false", [0, 10, 100, 400])
-@pytest.mark.parametrize("seed", [3, 4])
+@pytest.mark.parametrize(("false", "seed"), [(0, 3), (10, 4), (100, 3), (400, 4)])
 def test_false_closures_are_found_out(false: int, seed: int) -> None:
     clean = city(800, 20, seed)
     map_ = corrected(clean.with_false(false, seed))

@@ -53,15 +53,6 @@ def test_light_is_mostly_taken_off() -> None:
         assert taken < 0.5 * left
 
 
-def test_a_lamp_over_a_part_of_the_picture_is_taken_off_too() -> None:
-    lit = office(3).astype(float)
-    lit[:, 30:] *= 1.4
-    local_view = view_of(KIND, match_threshold=8 / 7)
-    local_view.observe(office(3), None, NEAR)
-    seen = local_view.observe(np.minimum(lit, 255).astype(np.uint8), None, NEAR)
-    assert (seen.view, seen.recruited) == (0, False)
-
-
 def test_sonars_tell_look_alikes_apart() -> None:
     """Without them the picture alone counts. They change no image: the kidnap detector counts them by itself."""
     local_view = view_of(KIND)

@@ -94,8 +94,7 @@ cell = st.one_of(st.floats(0, 63.9), st.sampled_from([0.0, 8.0, 63.9, 20.0]))
 rows = st.lists(st.tuples(metre, metre, angle, cell, cell, angle), max_size=30)
 
 
-@also_interpreted(places)
-@settings(max_examples=300)
+@settings(max_examples=200)
 @given(rows, st.sampled_from(SHAPES), st.sampled_from([0.3, 0.5, 1.5]), st.sampled_from([0.5, 2.0, 20.0]))
 @pytest.mark.slow
 def test_places_are_those_of_a_loop_over_all(made, shape, radius: float, zone: float) -> None:

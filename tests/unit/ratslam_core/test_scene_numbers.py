@@ -41,11 +41,14 @@ def test_what_is_no_scene_number_is_refused() -> None:
         assert brain.digest() == before
 
 
-def test_a_view_takes_no_more_than_150_bytes() -> None:
+def test_thousands_of_views_are_all_kept_and_take_no_more_than_150_bytes_each() -> None:
     local_view = view_of("scene numbers")
     for scene in range(4000):
         local_view.observe(None, scene)
         assert local_view.memory_bytes <= max(150 * (scene + 1), 1024 * 96)
+    for scene in (0, 1023, 1024, 2048, 3999):
+        assert local_view.observe(None, scene).view == scene
+    assert len(local_view) == 4000
 
 
 @pytest.mark.parametrize("scene", [0, 42, 1234567, LARGEST])

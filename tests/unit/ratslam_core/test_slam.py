@@ -45,17 +45,6 @@ def test_a_forgotten_view_leads_nowhere() -> None:
     laws.check(brain)
 
 
-def test_equal_inputs_give_equal_runs() -> None:
-    runs = []
-    for _ in range(2):
-        circle, brain = start()
-        estimates = circle.advance(brain, LAP + 60)
-        runs.append((estimates, brain.pose_cells.activity, brain.experience_map.poses.copy()))
-    assert runs[0][0] == runs[1][0]
-    assert np.array_equal(runs[0][1], runs[1][1])
-    assert np.array_equal(runs[0][2], runs[1][2])
-
-
 def test_new_parameters_reach_every_part_and_the_size_is_refused() -> None:
     circle, brain = start()
     new = RatSlamParams(
@@ -121,23 +110,6 @@ def test_an_image_or_a_scan_that_cannot_be_changes_nothing(subtests: pytest.Subt
             assert brain.digest() == before
 
 
-def test_goal_memory_learns_the_way_round() -> None:
-    circle, brain = start()
-    circle.advance(brain, LAP)
-    packet = brain.pose_cells.winner
-    goal = round(packet.x) % 64, round(packet.y) % 64
-    circle.advance(brain, LAP // 2)
-    here = brain.pose_cells.winner
-    times = brain.goal_memory.times_to(*goal)
-    taken = times[round(here.y) % 64, round(here.x) % 64]
-    assert 0.4 < taken / (LAP / 2 * 0.1) < 2.5  # each link adds its share of activity and distance
-    assert brain.goal_memory.direction(times, here) is not None
-    before = len(brain.goal_memory)
-    for _ in range(50):
-        brain.step(circle.image, Odometry(0.0, 0.0, 0.1))
-    assert len(brain.goal_memory) == before  # waiting is no way
-
-
 def test_the_goal_memory_learns_whenever_the_wheels_turn() -> None:
     """Straight ahead, too; and the time in which the robot turns on the spot is part of the way."""
     still, ahead, left, right = (Odometry(*way, 0.1) for way in ((0.0, 0.0), (0.5, 0.0), (0.0, 1.0), (0.0, -1.0)))
@@ -180,7 +152,7 @@ def test_a_step_allocates_no_more_with_time() -> None:
     tracemalloc.start()
     try:
         held, needed = [], []
-        for _ in range(8):
+        for _ in range(6):
             tracemalloc.reset_peak()
             before = tracemalloc.get_traced_memory()[0]
             circle.advance(brain, LAP)
@@ -189,5 +161,5 @@ def test_a_step_allocates_no_more_with_time() -> None:
             needed.append(peak - before)
     finally:
         tracemalloc.stop()
-    assert min(needed[4:]) < 1.2 * min(needed[:4])  # of laps in which no array grew
+    assert min(needed[3:]) < 1.2 * min(needed[:3])  # of laps in which no array grew
     assert held[-1] < 1_000_000 + 8 * brain.view_links.room  # it moved meanwhile, arrays that grew included

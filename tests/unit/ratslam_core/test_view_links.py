@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-from itertools import product
-
 import numpy as np
 import pytest
 
@@ -111,19 +109,6 @@ def test_the_arena_takes_hardly_more_room_than_the_links() -> None:
             if view % 40 == 39 and (turn or view > 200):
                 used = sum(len(links.of(k)[0]) for k in range(400 * (turn + 1)))
                 assert links.room <= 2 * used
-
-
-def test_links_are_kept_when_the_arena_is_full() -> None:
-    """Every view gets new links again and again, so that all blocks move, and the arena several times."""
-    links, rooms = ViewLinks(LocalViewParams(learning_rate=1.0, decay=0.0, most_links=0)), set()
-    for turn, view in product(range(4), range(60)):
-        links.learn(view, *active_cells(1000 * view + 600 * turn + np.arange(600), 1.0 + view + 0.1 * turn))
-        rooms.add(links.room)
-    assert len(rooms) > 2
-    for view in range(60):
-        expected = np.zeros(147_456)
-        expected[1000 * view + np.arange(2400)] = 1.0 + view + 0.1 * (np.arange(2400) // 600)
-        assert np.abs(dense(links, view, 147_456) - expected).max() < 1e-5
 
 
 def test_the_arena_grows_when_it_is_full_and_not_before() -> None:

@@ -39,24 +39,6 @@ def test_a_young_view_does_not_hold_the_packet_back() -> None:
         assert a.packet == b.packet
 
 
-def test_the_adaptive_rate_follows_vision_and_confidence() -> None:
-    params = RatSlamParams(local_view=LocalViewParams(adaptive=True))
-    circle, brain = start(params=params)
-    eta = params.local_view.learning_rate
-    rates = []
-    for _ in range(LAP + 60):
-        circle.advance(brain, 1)
-        rates.append(brain.association.learning_rate)
-    assert 0 <= min(rates) < max(rates) <= 2 * eta
-    one = circle.advance(brain, 1)[0]
-    strength = 1 - one.recognition.difference / brain.local_view.threshold
-    assert brain.association.learning_rate == pytest.approx(2 * eta * strength * brain.pose_cells.winner.mass, rel=0.05)
-    circle.angle += 2.6
-    circle.advance(brain, 1)
-    assert brain.lost
-    assert brain.association.learning_rate == 0.0
-
-
 def seen(view: int, recruited: bool = False) -> Recognition:
     return Recognition(view, recruited, view, 1.0)
 
@@ -107,8 +89,8 @@ def test_what_is_injected_was_learnt_before_unless_learning_comes_first() -> Non
             assert injected(association, seen(0), pose_cells) == pytest.approx(0.01 * (sight + learn_first), abs=1e-6)
 
 
-def test_the_adaptive_rate_is_twice_the_rate_times_strength_times_confidence() -> None:
-    """Unless the robot is lost. Else the rate is the same whatever is seen."""
+def test_the_adaptive_rate_follows_vision_and_confidence() -> None:
+    """It is twice the rate times strength times confidence, and none while the robot is lost. The fixed rate is fixed."""
     two = np.zeros(PoseCells().shape)
     two[3, 10, 10], two[20, 40, 40] = 0.6, 0.4
     for adaptive, strength, lost, rate in (
