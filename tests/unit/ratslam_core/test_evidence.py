@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -203,7 +204,7 @@ def test_the_younger_submap_becomes_part_of_the_older() -> None:
 class Robot:
     """Maps a corridor, is carried, and drives on. Its packet is where odometry has it, and each of its views is new at first."""
 
-    def __init__(self, ticks: int = 400, *, recognises: bool = False, **params: bool) -> None:
+    def __init__(self, ticks: int = 400, *, recognises: bool = False, **params: Any) -> None:
         """It has driven so many ticks; recognises: from now on, views that it took before."""
         known = ExperienceMapParams(odometry_drift=0.03, sweeps=0, solve_every=0, **params)
         self.map = ExperienceMap(SHAPE, CELL_M, known)

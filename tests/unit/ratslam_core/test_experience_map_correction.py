@@ -14,51 +14,32 @@ from ratslam_core.pose_graph import relaxation
 
 from .drives import Robot
 
-PLACES: dict[int, Pose2] = {}
 
-
-def lap(robot: Robot, bias: float) -> None:
-    """A square of 16 views, driven exactly, while the wheels report a biased yaw rate."""
-    for side in range(4):
-        for part in range(4):
-            view = (4 * side + part + 1) % 16
-            turn = math.pi / 2 if part == 3 else 0.0
-            steps = 5
-            for step in range(steps):
-                middle = turn / steps / 2
-                robot.pose = robot.pose.compose(
-                    Pose2(0.75 / steps * math.cos(middle), 0.75 / steps * math.sin(middle), turn / steps)
-                )
-                odometry = Odometry(0.75 / steps / 0.1, turn / steps / 0.1 + bias, 0.1)
-                now = view if step == steps - 1 else (view - 1) % 16
-                known = any(robot.map.cell_state(i)[3] == now for i in range(len(robot.map)))
-                packet = robot.packet(PLACES[now]) if known else robot.packet()
-                if now not in PLACES:
-                    PLACES[now] = robot.pose
-                robot.map.step(packet, Recognition(now, not known, now, 0.1), odometry)
-            robot.map.correct()
-
-
-def loop(params: ExperienceMapParams, bias: float, laps: int) -> Robot:
-    PLACES.clear()
-    PLACES[0] = Pose2(0.0, 0.0, 0.0)
+def loop(params: ExperienceMapParams, bias: float, laps: int) -> tuple[Robot, dict[int, Pose2]]:
+    """A square of 16 views, driven exactly, while the wheels report a biased yaw rate; and where each view was first seen."""
     robot = Robot(replace(params, bias_sigma=10.0))  # as good as no doubt of the bias
+    places = {0: robot.pose}
     robot.see(0, new=True)
-    for _ in range(laps):
-        lap(robot, bias)
-    return robot
+    for side in range(16 * laps):
+        length, turn = 0.75 / 5, math.pi / 2 / 5 if side % 4 == 3 else 0.0
+        for step in range(5):
+            move = Pose2(length * math.cos(turn / 2), length * math.sin(turn / 2), turn)
+            robot.pose, view = robot.pose.compose(move), (side + (step == 4)) % 16
+            new, odometry = view not in places, Odometry(length / 0.1, turn / 0.1 + bias, 0.1)
+            at = places.setdefault(view, robot.pose)
+            robot.map.step(robot.packet(at), Recognition(view, new, view, 0.1), odometry)
+        robot.map.correct()
+    return robot, places
 
 
 def test_a_closed_loop_straightens_the_map_and_finds_the_bias() -> None:
     bias = math.radians(1.0)
-    learnt = loop(ExperienceMapParams(solve_every=5), bias, 6)
-    assert learnt.map.yaw_bias == pytest.approx(bias, rel=0.15)
-    assert len(learnt.map) == 16
-    true = [PLACES[learnt.map.cell_state(i)[3]] for i in range(16)]
-    for i in range(16):
-        d_map = np.hypot(*(learnt.map.poses[i, :2] - learnt.map.poses[(i + 8) % 16, :2]))
-        d_true = math.hypot(true[i].x - true[(i + 8) % 16].x, true[i].y - true[(i + 8) % 16].y)
-        assert d_map == pytest.approx(d_true, rel=0.1)
+    robot, places = loop(ExperienceMapParams(solve_every=5), bias, 6)
+    assert robot.map.yaw_bias == pytest.approx(bias, rel=0.15)
+    true = np.array([[places[view].x, places[view].y] for view in robot.map.views.tolist()])
+    across = [np.hypot(*(at - np.roll(at, 8, axis=0)).T) for at in (robot.map.poses[:, :2], true)]
+    assert len(robot.map) == 16
+    assert across[0] == pytest.approx(across[1], rel=0.1)
 
 
 def test_the_bias_is_taken_off_the_links_that_told_it() -> None:
@@ -66,7 +47,7 @@ def test_the_bias_is_taken_off_the_links_that_told_it() -> None:
     bias = math.radians(1.0)
     params = ExperienceMapParams(solve_every=1, sweeps=0, robust=False, anchor_sigma=0.0, odometry_drift=0.0)
     for calibrate in (False, True):
-        robot = loop(replace(params, calibrate=calibrate), bias, 1)
+        robot, _ = loop(replace(params, calibrate=calibrate), bias, 1)
         assert robot.map.links.tolist() == [[i, (i + 1) % 16] for i in range(16)]
         too_far = math.remainder(float(robot.map.moves[:, 2].sum()), 2 * math.pi)
         assert too_far == pytest.approx(0.0 if calibrate else 8.0 * bias, abs=1e-6)
@@ -77,7 +58,7 @@ def test_a_correction_that_was_hard_is_followed_by_a_long_rest(monkeypatch: pyte
     """A loop that closes in every step. Corrections are due in every step, but rest after one in proportion to its cost."""
     solve = relaxation.solve
     for a_step, rested in ((1e5, False), (2e2, True)):
-        robot, solved = loop(ExperienceMapParams(solve_every=1), 0.0, 1), []
+        (robot, _), solved = loop(ExperienceMapParams(solve_every=1), 0.0, 1), []
         monkeypatch.setattr(exact_solver, "WORK_A_STEP", a_step)
         monkeypatch.setattr(
             relaxation, "solve", lambda *given, solved=solved: solved.append(solve(*given)) or solved[-1]
@@ -92,7 +73,7 @@ def test_a_correction_that_was_hard_is_followed_by_a_long_rest(monkeypatch: pyte
 
 def test_a_very_large_map_is_swept_in_some_beats_only(monkeypatch: pytest.MonkeyPatch) -> None:
     """So that a beat costs no more than one with a map of `most` experiences, on average."""
-    robot = loop(ExperienceMapParams(solve_every=0), 0.0, 1)
+    robot, _ = loop(ExperienceMapParams(solve_every=0), 0.0, 1)
     assert len(robot.map) == 16
     for most, every in ((1000, 1), (16, 2), (5, 4)):
         monkeypatch.setattr(exact_solver, "MOST_SWEPT", most)

@@ -102,7 +102,7 @@ def test_sonars_help_to_notice_a_kidnap(subtests: pytest.Subtests) -> None:
     ):  # fmt: skip
         with subtests.test(alike=alike, others_m=others_m):
             brain = RatSlam(sonar_angles_rad=np.linspace(-1.5, 1.5, 8).tolist())
-            assert brain.kidnap_detector is not None
+            assert isinstance(brain.kidnap_detector, KidnapDetector)
             used_to_little(brain.kidnap_detector)
             params = brain.params.local_view
             changed = replace(params, surprise=params.surprise * fresh.local_view.image_change / alike)

@@ -10,21 +10,7 @@ import pytest
 from ratslam_core import PoseCellParams, PoseCells
 
 from . import literal
-from .packets import drive, rest, settled, two_packets, where
-
-
-def test_nothing_is_carried_over_when_another_packet_wins() -> None:
-    """A jump of the winner is not a motion that the attractor swallowed."""
-    pose_cells = settled()
-    other = np.roll(pose_cells.activity, 20, 2)
-    drive(pose_cells, 0.37, 0.0, 3)
-    flats = np.flatnonzero(other)
-    pose_cells.inject(flats.astype(np.int32), (3 * other.flat[flats]).astype(np.float32))
-    pose_cells.attract()
-    before = where(pose_cells)
-    assert before[0] == pytest.approx(52, abs=0.01)
-    rest(pose_cells, 1)
-    assert np.abs(where(pose_cells) - before).max() < 0.005
+from .packets import drive, two_packets
 
 
 def test_more_packets_than_can_be_reported() -> None:
@@ -74,20 +60,6 @@ def test_ids_stay_when_packets_swap_rank() -> None:
         assert set(ids(pose_cells)) == both
         led.append(pose_cells.winner.id)
     assert set(led) == both
-
-
-@pytest.mark.parametrize("share", [0.4, 0.6])
-def test_a_merged_packet_keeps_the_heavier_one_s_id(share: float) -> None:
-    """The injection says that the robot is between the two."""
-    pose_cells = two_packets(8, share)
-    pose_cells.attract()
-    left, right = sorted(pose_cells.packets, key=lambda p: p.x)
-    between = np.roll(settled().activity, 4, 2)
-    flats = np.flatnonzero(between).astype(np.int32)
-    pose_cells.inject(flats, between.flat[flats])
-    pose_cells.attract()
-    assert ids(pose_cells) == [left.id if share > 0.5 else right.id]
-    assert pose_cells.winner.x == pytest.approx(36, abs=1)
 
 
 def test_what_was_injected_is_a_packet_at_once() -> None:

@@ -106,7 +106,7 @@ def test_an_image_or_a_scan_that_cannot_be_changes_nothing(subtests: pytest.Subt
             brain = RatSlam(sonar_angles_rad=sonars)
             before, image = brain.digest(), Circle().image
             with pytest.raises(ValueError, match=message):
-                brain.step(image if ranges is not None else image * 1.0, Odometry(1.0, 0.0, 0.1), ranges_m=ranges)
+                brain.step(image if ranges is not None else image * 1.0, Odometry(1.0, 0.0, 0.1), ranges_m=ranges)  # type: ignore[arg-type]
             assert brain.digest() == before
 
 
