@@ -159,9 +159,10 @@ def test_a_view_is_compared_under_the_turn_that_is_asked_for(shift: int, slack: 
     """As the sum of absolute differences over the columns that overlap says, byte by byte, echoes beside them."""
     local_view = LocalView(LocalViewParams(match_threshold=0.0, surprise=100.0))
     rng = np.random.default_rng(seed)
-    for _ in range(3):
-        local_view.observe(rng.integers(0, 256, (48, 64), np.uint8), None, rng.uniform(0.2, 4.0, 8))
+    for view in range(3):  # the first is seen without sonars
+        local_view.observe(rng.integers(0, 256, (48, 64), np.uint8), None, rng.uniform(0.2, 4.0, 8) if view else None)
     local_view.features = rng.integers(0, 256, local_view.features.size, np.uint8)
+    local_view.features[97] = 0  # and one of them hears nothing now
     apart, by = local_view.apart_at(np.array([2, 0]), np.array([shift, shift]), slack)
     asked = int(np.clip(shift, -MOST_SHIFT, MOST_SHIFT))
     tried = [s for s in range(asked - slack, asked + slack + 1) if abs(s) <= MOST_SHIFT]
