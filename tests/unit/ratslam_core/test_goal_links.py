@@ -14,16 +14,6 @@ from .goal_drives import CELL_M, SHAPE, packet_cells
 from .literal import also_interpreted
 
 
-def test_a_leap_of_the_packet_is_linked_but_is_no_direction() -> None:
-    """C V.E: the same place in two parts of the pose cells. There is a time between them, but no direction to drive."""
-    memory = GoalMemory(None, SHAPE, CELL_M)
-    memory.learn(*packet_cells(10, 10), 1.0)
-    memory.learn(*packet_cells(40, 40), 1.1)
-    T = memory.times_to(40, 40)
-    assert T[10, 10] == pytest.approx(0.1 + 0.1 * math.hypot(30, 30), rel=1e-5)
-    assert memory.direction(T, Packet(10.0, 10.0, 0.0, 1.0)) is None
-
-
 @also_interpreted(goal_links)
 def test_a_weaker_packet_takes_part_but_does_not_say_where_the_robot_is() -> None:
     memory = GoalMemory(None, SHAPE, CELL_M)
@@ -35,17 +25,6 @@ def test_a_weaker_packet_takes_part_but_does_not_say_where_the_robot_is() -> Non
         assert (len(memory) > 0) == (k == 2)  # a stride is reached after two cells, however far the rival packet moved
     link = 2 + 0.25 * (1 - 0.4 / 0.6) + 0.1 * math.hypot(13, 30)
     assert memory.times_to(12, 10)[40, 63] == pytest.approx(link, rel=1e-3)
-
-
-def test_a_robot_that_stands_learns_nothing_until_it_moves() -> None:
-    memory = GoalMemory(None, SHAPE, CELL_M)
-    for k in range(50):
-        memory.learn(*packet_cells(10, 10), 0.1 * (k + 1))
-    assert len(memory) == 0
-    memory.learn(*packet_cells(12, 10), 5.1)
-    back = math.exp(-(2**2) / 1.8**2)  # the same link the other way: both ends active, but weakly
-    expected = 5.0 + 0.2 + 0.2 * 0.25 * (1 - back)
-    assert memory.times_to(12, 10)[10, 10] == pytest.approx(expected, rel=1e-3)
 
 
 @also_interpreted(goal_links)

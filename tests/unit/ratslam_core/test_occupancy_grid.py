@@ -161,6 +161,10 @@ def test_a_scan_near_the_newest_takes_its_place(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(occupancy_grid, "SAME_RAD", 0.5)
     for just in ((0.125, 0.0, 0.0), (0.0, 0.0, -0.5), (0.125, 0.0, 0.5)):
         assert kept((0.0, 0.0, 0.0), just) == 1
+    grid = MapGrid([0.0])
+    for x, count in ((0.0, 1), (0.5, 2), (0.52, 2), (0.02, 3)):  # near an older one does not count
+        grid.add(0, Pose2(x, 0.0, 0.0), np.array([1.0]))
+        assert len(grid) == count
 
 
 def test_memory_is_that_of_the_scans_and_doubles_when_it_is_full() -> None:
