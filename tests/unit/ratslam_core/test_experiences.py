@@ -99,6 +99,7 @@ def test_by_the_choice_of_energy_and_scene_a_map_makes_an_experience_or_none() -
         assert made.step(packet, Recognition(view, view > 0, 0, 0.0), STILL) is (energy == 0.0)
 
 
+@also_interpreted(experiences)
 def test_limits_are_reached_just_as_they_are() -> None:
     """The edge of a zone belongs to it, energy has to be above the threshold, the oldest of equals is taken, and nothing to
     see is known again as near as `blind_m`."""

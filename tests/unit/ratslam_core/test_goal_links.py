@@ -70,6 +70,7 @@ def test_the_centre_is_that_of_what_is_near_the_strongest() -> None:
             assert goal_links.centre(flats, values, SHAPE, 3) == pytest.approx(expected)
 
 
+@also_interpreted(goal_links)
 def test_a_link_takes_twelve_bytes_and_is_never_more_than_half_of_the_room(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(goal_memory, "ROOM", 4)
     memory, plane = GoalMemory(None, SHAPE, CELL_M), 4 * SHAPE[1] * SHAPE[2]
