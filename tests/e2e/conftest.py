@@ -7,6 +7,7 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 from tests.e2e.browser import launch
+from tests.e2e.fake_engine import FakeEngine, fake_program
 from tests.e2e.program import Program
 
 
@@ -48,3 +49,10 @@ def program(one_program: Program) -> Program:
     one_program.command("pause")
     assert one_program.post("situation", {})["state_hash"] == one_program.begun, "the tests before left a parameter"
     return one_program
+
+
+@pytest.fixture(scope="module")
+def fake() -> Iterator[tuple[FakeEngine, str]]:
+    """The real page on made-up snapshots: the engine, and the page's address."""
+    with fake_program() as made:
+        yield made

@@ -71,9 +71,15 @@ FOR_FINGERS = """() => [...document.querySelectorAll("button, select, summary, [
     .filter(([part, { width, height }]) => Math.min(width, height) < 43.5 || part.scrollWidth > part.clientWidth + 1
         && getComputedStyle(part).overflow !== "visible" && getComputedStyle(part).textOverflow !== "ellipsis")
     .map(([part, { width, height }]) => `${part.id || part.textContent || part.ariaLabel}: ${width} x ${height}`)"""
+CONTROLS = """() => [...document.querySelectorAll("button, select, summary")]
+    .filter((part) => part.checkVisibility() && !part.closest(".toast")) // which comes and goes; Escape takes it away
+    .filter((part) => part.tabIndex >= 0) // the other tabs of the panel: arrows reach them
+    .map((part) => part.id || part.getAttribute("aria-label") || part.textContent)"""
+FOCUSED = """() => { const part = document.activeElement;
+    return part.id || part.getAttribute("aria-label") || part.textContent; }"""
 AXE = importlib.resources.files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8")
 # Asked for violations alone, axe does half the work: it keeps one node for each rule that is kept.
-RUN = """async () => (await axe.run(document, {iframes: false, resultTypes: ["violations"]})).violations.map(
+RUN = """async (part) => (await axe.run(part, {iframes: false, resultTypes: ["violations"]})).violations.map(
     (found) => `${found.impact}: ${found.help}: ${found.nodes.map((node) => node.html.slice(0, 120)).join(" ")}`)"""
 
 
@@ -83,9 +89,21 @@ def boxes(page: Page, fingers: bool = False) -> list[str]:
     return page.evaluate(BOXES, [PARTS, 44 if fingers else 24]) + (page.evaluate(FOR_FINGERS) if fingers else [])
 
 
-def findings(page: Page) -> list[str]:
-    """What axe finds."""
+def findings(page: Page, part: str = "html") -> list[str]:
+    """What axe finds in a part of it."""
     calm(page)  # what is half transparent while it appears has no contrast
     if not page.evaluate("() => 'axe' in window"):
         page.evaluate(AXE)
-    return page.evaluate(RUN)
+    return page.evaluate(RUN, part)
+
+
+def unreached(page: Page) -> set[str]:
+    """The controls to which Tab does not come."""
+    wanted, reached = set(page.evaluate(CONTROLS)), set[str]()
+    for _ in range(2 * len(wanted)):
+        page.keyboard.press("Tab")
+        reached.add(page.evaluate(FOCUSED))
+        if wanted <= reached:
+            break
+    page.evaluate("() => document.activeElement.blur()")
+    return (wanted - reached) & set(page.evaluate(CONTROLS))  # a list of views may still be drawn anew

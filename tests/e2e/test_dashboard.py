@@ -1,260 +1,383 @@
-"""The real program in a real browser: what a person does on the page has its effect in the office."""
+"""The real program in a real browser: what a person does on the page has its effect in the office, and the plates show it.
+
+One page serves all of these tests, in turn: its stage is most of what a page costs."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import cv2
 import numpy as np
 import pytest
+from playwright.sync_api import Browser, Page, expect
 
 from sim2d import load_world
 from tests import patience
-from tests.e2e.browser import box_of, eye_of, on_screen, open_page, show, told, until
+from tests.e2e.browser import box_of, eye_of, on_screen, open_page, show, told, turn_theme, until
 from tests.e2e.program import Program
+from web.messages import Packet
+from web.viewer.camera_views import camera_for
+from web.viewer.fits.cell_fit import CellFit
 from web.viewer.fits.map_fit import MapFit, refit
 from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.marks import place_names
+from web.viewer.plates import office_plate
 from web.viewer.plates.map_plate import NODE_Z
 from web.viewer.plates.map_plate import ORIGIN as MAP_ORIGIN
-from web.viewer.plates.office_plate import ORIGIN as OFFICE_ORIGIN
+from web.viewer.plates.pose_cell_plate import ORIGIN as CELLS_ORIGIN
+from web.viewer.pointer import DOOR_Z
+
+Place = tuple[float, float, float]
 
 
 @pytest.fixture(scope="module")
-def explored(program):
-    """Seven minutes of exploring without a page. Where the settled map lies in the office is kept as pairs of places."""
+def opened(program: Program, browser: Browser) -> Iterator[Page]:
+    with open_page(browser, program.url) as page:
+        yield page
+
+
+@pytest.fixture
+def page(opened: Page, program: Program) -> Page:
+    """The page as it is at first, dark and without a toast; its robot has just begun, and waits."""
     program.command("pause")
-    program.command("reset", seed=5)
-    program.command("step", ticks=1000)
-    pairs = []  # collected only now, since closing loops bends the map
-    for _ in range(120):
-        program.command("step", ticks=25)
-        state = program.state()
-        pairs.append([[state["estimate"]["x"], state["estimate"]["y"]], [state["robot"]["x"], state["robot"]["y"]]])
-    program.pairs = np.array(pairs)
-    return program
+    program.command("set_speed", factor=1)
+    program.command("reset", world="office", seed=5)
+    until(opened, "() => document.getElementById('clock').textContent === '0:00'")
+    if opened.get_attribute("html", "data-theme") != "dark":
+        turn_theme(opened)
+    opened.get_by_role("tab", name="Senses").click()
+    opened.evaluate(
+        "() => { toasted.clear(); document.querySelectorAll('.toast').forEach((toast) => toast.remove()); }"
+    )
+    return opened
 
 
-def in_office(pairs: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """A place of the map in the office, by the rigid motion that fits the pairs best."""
-    on_map, true = pairs[:, 0], pairs[:, 1]
-    a, b = on_map - on_map.mean(0), true - true.mean(0)
-    angle = math.atan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())
-    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-    return turn @ (place - on_map.mean(0)) + true.mean(0)
-
-
-def node_on_stage(program, node: np.ndarray, nodes: np.ndarray) -> tuple[float, float, float]:
+def node_on_stage(program: Program, node: np.ndarray, nodes: np.ndarray) -> Place:
     fit = refit(MapFit(), nodes, program.state(full=True)["map"]["turn_rad"])
     x, y = fit.to_plate(node)[0]
     return MAP_ORIGIN[0] + x, MAP_ORIGIN[1] + y, MAP_ORIGIN[2] + NODE_Z
 
 
-def robot_on_stage(state: dict, x: float, y: float) -> tuple[float, float, float]:
-    fit = OfficeFit(load_world(state["world"]).bounds)
-    plate_x, plate_y = fit.to_plate(np.array([[x, y]]))[0]
-    return OFFICE_ORIGIN[0] + plate_x, OFFICE_ORIGIN[1] + plate_y, OFFICE_ORIGIN[2] + 0.15
+def on_office(world: str, x: float, y: float, z: float = 0.15) -> Place:
+    """A place of a world on its plate."""
+    plate_x, plate_y = OfficeFit(load_world(world).bounds).to_plate(np.array([[x, y]]))[0]
+    return office_plate.ORIGIN[0] + plate_x, office_plate.ORIGIN[1] + plate_y, office_plate.ORIGIN[2] + z
 
 
-def test_it_is_alive(program, browser):
-    with open_page(browser, program.url) as page:
-        program.command("resume")
-        before = program.state()["time_s"]
-        until(page, "() => document.getElementById('clock').textContent >= '0:02'")
-        assert program.state()["time_s"] > before
-        colours = page.frame_locator("#stage").locator("canvas").first.screenshot()
-        assert len(colours) > 20_000  # an empty canvas compresses to far less
-        assert page.locator("#status span").inner_text() in ("exploring", "lost: 2 packets")
-        page.keyboard.press("Space")
-        program.wait(lambda state: not state["running"])
-        page.wait_for_selector("#play[aria-label=Play]")
-        tick = program.state()["tick"]
-        page.keyboard.press(".")
-        program.wait(lambda state: state["tick"] == tick + 1)
+def robot_on_stage(state: dict, x: float, y: float) -> Place:
+    return on_office(state["world"], x, y)
 
 
-def test_a_click_on_a_far_node_brings_the_robot_there(explored, browser):
-    with open_page(browser, explored.url) as page:
-        page.keyboard.press("t")  # another palette draws the map anew; where it lies depends on its nodes alone
-        page.get_by_role("tab", name="Truth").click()
-        page.get_by_label("Closed loops on the map").uncheck()  # a click on a ring would play the loop again
-        show(page, "map")
-        state = explored.state(full=True)
-        nodes = np.array(state["map"]["xy"])
-        here = np.array([state["estimate"]["x"], state["estimate"]["y"]])
-        far = nodes[np.argsort(np.linalg.norm(nodes - here, axis=1))[int(len(nodes) * 0.9)]]
-        page.mouse.click(*on_screen(page, "map", node_on_stage(explored, far, nodes)))
-        goal = explored.wait(lambda state: state["goal"] is not None)["goal"]
-        assert math.dist((goal["x"], goal["y"]), far) < 0.4
-        page.wait_for_selector("#goal:not([hidden])")
-        explored.command("set_speed", factor=16)
-        explored.command("resume")
-        arrived = explored.wait(lambda state: state["goal"] is None or state["goal"]["state"] == "arrived")
-        assert arrived["goal"] is not None
-        there = in_office(explored.pairs, np.array([arrived["goal"]["x"], arrived["goal"]["y"]]))
-        assert math.dist((arrived["robot"]["x"], arrived["robot"]["y"]), there) < 1.5
-        until(page, "() => document.querySelector('#goal .what').textContent === 'arrived'")
-        page.click("#cancel")
-        explored.wait(lambda state: state["goal"] is None)
-    explored.command("set_speed", factor=1)
+def place_of(pose: dict[str, float]) -> tuple[float, float]:
+    return pose["x"], pose["y"]
 
 
-@pytest.mark.parametrize("where", ["page", "stage"])
-def test_a_held_key_drives_and_letting_go_stops(program, browser, where):
-    program.command("set_speed", factor=1)
+def nearest(nodes: np.ndarray, place: tuple[float, float]) -> np.ndarray:
+    return nodes[np.argmin(np.hypot(*(nodes - place).T))]
+
+
+def drag(page: Page, start: tuple[float, float], end: tuple[float, float]) -> None:
+    """As slowly as a hand, over viser's canvas, which looks at a pointer only now and then."""
+    page.mouse.move(*start)
+    page.wait_for_timeout(500)
+    page.mouse.down()
+    for x, y in np.linspace(start, end, 11)[1:].tolist():
+        page.mouse.move(x, y)
+        page.wait_for_timeout(80)
+    page.wait_for_timeout(500)
+    page.mouse.up()
+
+
+COLOURS = """(canvas) => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const seen = new Set();
+    for (let k = 0; k < data.length; k += 4) seen.add(data.slice(k, k + 3).join());
+    return seen.size; }"""
+MANY_STEPS = """() => {
+    for (let k = 0; k < 60; k++) window.dispatchEvent(new KeyboardEvent("keydown", {key: "."})); }"""
+
+
+def test_it_is_alive(program: Program, page: Page) -> None:
+    """It moves, plates and panel are drawn, keys have their effect, and a refusal is a sentence on the page."""
     program.command("resume")
-    with open_page(browser, program.url, stage=where == "stage") as page:
-        if where == "stage":
-            page.mouse.click(780, 200)  # beside the plates: the focus is in viser's frame now, and no goal is set
-        page.keyboard.down("ArrowLeft")
-        before = program.wait(lambda state: state["mode"] == "manual")
-        heading = before["robot"]["heading_rad"]
-        turned(program, heading)
-        page.keyboard.up("ArrowLeft")
-        page.wait_for_selector("#status[data-tone=hand], #status[data-tone=lost]")
-        assert_still(program)
+    before = program.state()["time_s"]
+    camera = "document.querySelector('#panel-senses canvas')"
+    until(page, f"() => ({COLOURS})({camera}) > 20")
+    first = page.evaluate(f"() => {camera}.toDataURL()")
+    until(page, "() => document.getElementById('clock').textContent >= '0:02'")
+    assert program.state()["time_s"] > before
+    assert len(page.frame_locator("#stage").locator("canvas").first.screenshot()) > 20_000  # an empty one: far less
+    until(page, f"(first) => {camera}.toDataURL() !== first", argument=first)
+    assert page.get_by_role("img", name="pose cells seen from above").evaluate(COLOURS) > 3  # a packet
+    page.keyboard.press("Space")
+    program.wait(lambda state: not state["running"])
+    page.wait_for_selector("#play[aria-label=Play]")
+    tick = program.state()["tick"]
+    page.keyboard.press(".")
+    program.wait(lambda state: state["tick"] == tick + 1)
+    page.evaluate(MANY_STEPS)
+    told(page, "At most 10 commands a second")
 
 
-def assert_still(program) -> None:
-    """After a while, ticks go by and the robot stays where it is. The program is asked, since drawing may delay the page."""
+def test_a_click_on_a_far_node_brings_the_robot_there(program: Program, page: Page) -> None:
+    way = []
+    for _ in range(6):
+        program.command("step", ticks=100)
+        way.append(program.state())
+    state = program.state(full=True)
+    was = max(way, key=lambda then: math.dist(place_of(then["robot"]), place_of(state["robot"])))
+    assert math.dist(place_of(was["robot"]), place_of(state["robot"])) > 3
+    page.keyboard.press("t")  # another palette draws the map anew; where it lies depends on its nodes alone
+    page.get_by_role("tab", name="Truth").click()
+    page.get_by_label("Closed loops on the map").uncheck()  # a click on a ring would play the loop again
+    show(page, "map")
+    nodes = np.array(state["map"]["xy"])
+    far = nearest(nodes, place_of(was["estimate"]))
+    page.mouse.click(*on_screen(page, "map", node_on_stage(program, far, nodes)))
+    goal = program.wait(lambda state: state["goal"] is not None)["goal"]
+    assert math.dist(place_of(goal), far) < 0.4
+    page.wait_for_selector("#goal:not([hidden])")
+    program.command("set_speed", factor=16)
+    program.command("resume")
+    arrived = program.wait(lambda state: state["goal"] is None or state["goal"]["state"] == "arrived")
+    assert arrived["goal"] is not None
+    assert math.dist(place_of(arrived["robot"]), place_of(was["robot"])) < 1.5
+    until(page, "() => document.querySelector('#goal .what').textContent === 'arrived'")
+    page.click("#cancel")
+    program.wait(lambda state: state["goal"] is None)
+
+
+def test_a_click_with_shift_on_the_map_and_a_click_into_the_pose_cells_inspect(program: Program, page: Page) -> None:
+    program.command("step", ticks=450)
+    page.keyboard.press("t")
+    show(page, "map")
+    nodes = np.array(program.state(full=True)["map"]["xy"])
+    wanted = nodes[len(nodes) // 2]
+    page.keyboard.down("Shift")
+    page.mouse.click(*on_screen(page, "map", node_on_stage(program, wanted, nodes)))
+    page.keyboard.up("Shift")
+    expect(page.get_by_role("tab", name="Inspect", exact=True)).to_have_attribute("aria-selected", "true")
+    panel = page.get_by_role("tabpanel")
+    expect(panel).to_contain_text("Links to other experiences")
+    number = page.get_by_label("experience #")
+    assert np.hypot(*(nodes[int(number.input_value())] - wanted)) < 0.3
+    assert program.state()["goal"] is None  # the click was no goal
+
+    show(page, "pose")
+    state = program.state()["pose_cells"]
+    at = CellFit(tuple(state["shape"])).packet(Packet(**state["packets"][0])) + CELLS_ORIGIN
+    page.mouse.click(*on_screen(page, "pose", tuple(at.tolist())))
+    expect(panel).to_contain_text("pose cells at")
+    expect(panel).to_contain_text("Views linked here, by strength")
+    page.get_by_role("button", name="Inject", exact=True).click()
+    until(page, "() => document.getElementById('events').textContent.includes('packet')")
+    program.command("step")
+    assert len(program.state()["pose_cells"]["packets"]) == 2
+
+
+def test_dragging_the_robot_kidnaps_it(program: Program, page: Page) -> None:
+    program.command("step", ticks=100)
+    show(page, "office")
+    state = program.state()
+    here = place_of(state["robot"])
+    low_x, low_y, high_x, high_y = load_world(state["world"]).bounds
+    corners = [(low_x + 0.8, low_y + 0.8), (high_x - 0.8, high_y - 0.8)]
+    target = max(corners, key=lambda corner: math.dist(corner, here))
+    drag(page, *(on_screen(page, "office", robot_on_stage(state, *place)) for place in (here, target)))
+    moved = program.wait(lambda now: math.dist(place_of(now["robot"]), target) < 0.6)
+    assert moved["estimate"] == state["estimate"]  # nobody told it
+    until(page, "() => document.getElementById('events').textContent.includes('kidnap')")
+
+
+def test_a_key_that_is_held_while_the_stage_has_the_focus_drives_and_letting_go_stops(
+    program: Program, page: Page
+) -> None:
+    program.command("resume")
+    page.mouse.click(780, 200)  # beside the plates: the focus is in viser's frame now, and no goal is set
+    page.keyboard.down("ArrowLeft")
+    before = program.wait(lambda state: state["mode"] == "manual")["robot"]["heading_rad"]
+    turned = lambda state: math.remainder(state["robot"]["heading_rad"] - before, math.tau)  # noqa: E731
+    program.wait(lambda state: turned(state) > 0.2)
+    page.keyboard.up("ArrowLeft")
+    page.wait_for_selector("#status[data-tone=hand], #status[data-tone=lost]")
 
     def still() -> bool:
+        """While ticks go by. The program is asked, since drawing may delay the page."""
         first = program.state()
         second = program.wait(lambda state: state["tick"] >= first["tick"] + 4)
-        here, there = ([state["robot"][name] for name in ("x", "y", "heading_rad")] for state in (first, second))
-        return here == pytest.approx(there, abs=0.01)
+        return list(first["robot"].values()) == pytest.approx(list(second["robot"].values()), abs=0.01)
 
     patience.until(still, "the robot stands")
 
 
-def turned(program, heading_rad: float) -> None:
-    program.wait(lambda state: abs(math.remainder(state["robot"]["heading_rad"] - heading_rad, math.tau)) > 0.2)
+def test_the_camera_goes_with_the_robot_until_a_view_is_asked_for(program: Program, page: Page) -> None:
+    follow = page.locator("#follow")
+    follow.click()
+    expect(follow).to_have_attribute("aria-pressed", "true")
+
+    def above_the_robot() -> bool:  # it looks from the front, so only across
+        page.wait_for_timeout(50)
+        return abs(eye_of(page)[0] - on_office("office", *place_of(program.state()["robot"]))[0]) < 0.3
+
+    patience.until(above_the_robot)
+    program.command("kidnap", x=8.6, y=1.6, heading_rad=0.0)
+    program.command("step", ticks=1)
+    patience.until(above_the_robot)
+    show(page, "all")
+    expect(follow).to_have_attribute("aria-pressed", "false")
 
 
-LEAVE = """async (end) => {
-    document.hasFocus = () => false;
-    window.dispatchEvent(new Event(end));
-    await new Promise((noticed) => setTimeout(noticed));
-}"""  # the page notices in its next task, which software rendering may hold up
+def test_the_candidate_movements_are_drawn_around_the_robot_while_they_are_switched_on(
+    program: Program, page: Page
+) -> None:
+    program.command("step", ticks=40)  # it follows the wall, and 6 of 47 movements are blocked
+    show(page, "office")
+    x, y = on_screen(page, "office", on_office("office", *place_of(program.state()["robot"]), z=0.0))
+    page.get_by_role("tab", name="Memory").click()
+    switch = page.get_by_label("Candidate movements")
+
+    def around_it() -> np.ndarray:
+        clip = {"x": round(x) - 90, "y": round(y) - 90, "width": 180, "height": 180}
+        return cv2.imdecode(np.frombuffer(page.screenshot(clip=clip), np.uint8), cv2.IMREAD_COLOR).astype(int)
+
+    seen = [around_it()]
+
+    def differs() -> int:
+        return int((np.abs(around_it() - seen[-1]).max(2) > 60).sum())
+
+    def stands_still() -> bool:
+        seen.append(around_it())
+        return differs() == 0
+
+    patience.until(stands_still, "the stage stands still")
+    switch.check()
+    patience.until(lambda: differs() > 300, "the movements are drawn")
+    switch.uncheck()
+    patience.until(lambda: differs() < 30, "they are gone")
 
 
-@pytest.mark.parametrize("end", ["blur", "pagehide", "gone"])
-def test_the_robot_stops_when_the_page_cannot_hold_it(program, browser, end):
+PRESSED = """() => document.activeElement.dispatchEvent(
+    new KeyboardEvent("keydown", { key: "c", code: "KeyC", bubbles: true }))"""
+
+
+def test_a_key_right_after_a_dialog_has_its_meaning(page: Page) -> None:
+    """Until the next frame the focus is still where it was in the closed dialog."""
+    page.keyboard.press("/")
+    expect(page.locator("#places-typed")).to_be_focused()
+    page.evaluate(PRESSED)  # a letter of what is looked for
+    lessons = page.locator("#lessons-dialog")
+    expect(lessons).to_be_hidden()
+    page.evaluate(f"() => {{ document.getElementById('places-dialog').close(); ({PRESSED})(); }}")
+    expect(lessons).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(lessons).to_be_hidden()
+
+
+ALIVE = (
+    "office.doors",
+    "office.script",
+    "office.people",
+)  # without, nobody stands in the door and nothing else moves it
+
+
+def test_a_click_on_a_door_opens_and_shuts_it(program: Program, page: Page) -> None:
+    for name in ALIVE:
+        program.command("set_parameter", name=name, value=False)
+    program.command("reset", world="living")
     program.command("resume")
-    with open_page(browser, program.url, stage=False) as page:
-        page.keyboard.down("d")
-        turned(program, program.wait(lambda state: state["mode"] == "manual")["robot"]["heading_rad"])
-        if end == "gone":
-            page.goto("about:blank")
-        else:
-            page.evaluate(LEAVE, end)
-        assert_still(program)
+    program.command("set_door", name="laboratory door", open=False)
+    opening = lambda state: state["living"]["doors"]["laboratory door"]  # noqa: E731
+    program.wait(lambda state: opening(state) == 0.0)
+    show(page, "office")
+    leaf = next(door for door in load_world("living").doors if door.name == "laboratory door")
+    height = DOOR_Z * OfficeFit(load_world("living").bounds).relief
+    page.mouse.click(*on_screen(page, "office", on_office("living", leaf.x + 0.5 * leaf.width, leaf.y, height)))
+    state = program.wait(lambda state: opening(state) == 1.0)
+    assert state["living"]["doors"]["meeting room door"] == 1.0  # no other door has moved
+    page.get_by_role("tab", name="Office").click()
+    page.get_by_role("tabpanel").get_by_label("laboratory door", exact=True).click()
+    program.wait(lambda state: opening(state) == 0.0)
+    program.command("pause")
+    for name in ALIVE:
+        program.command("set_parameter", name=name, value=True)
 
 
 @pytest.mark.long
-def test_the_pad_drives_while_it_is_held(program, browser):
-    program.command("resume")
-    with open_page(browser, program.url, 390, 844, stage=False) as page:
-        pad = box_of(page.locator("[data-drive=left]"))
-        assert min(pad["width"], pad["height"]) >= 52
-        before = program.state()["robot"]["heading_rad"]
-        page.mouse.move(pad["x"] + 26, pad["y"] + 26)
-        page.mouse.down()
-        turned(program, before)
-        page.mouse.up()
-        assert_still(program)
+def test_the_name_of_a_place_is_a_goal_once_the_map_knows_it(program: Program, page: Page) -> None:
+    for ticks in (1000, 700):  # it has been in the library by then, and not at the printer
+        program.command("step", ticks=ticks)
+    places = {place.name: (place.x, place.y) for place in load_world("office").places}
+    show(page, "office")
+    for name in ("printer", "library"):
+        page.mouse.click(*on_screen(page, "office", on_office("office", *places[name], place_names.Z)))
+        if name == "printer":
+            told(page, "the map does not know the printer")
+            assert program.state()["goal"] is None
+    program.wait(lambda state: state["goal"] is not None)
 
 
-def test_dragging_the_robot_kidnaps_it(explored, browser):
-    explored.command("pause")
-    with open_page(browser, explored.url) as page:
+@pytest.mark.long
+def test_what_the_stage_refuses_is_told_to_whoever_did_it(program: Program, browser: Browser, page: Page) -> None:
+    robot, wall = program.state()["robot"], load_world("office").walls[0]
+    with open_page(browser, program.url, 900, 700, stage=False) as other:
         show(page, "office")
-        state = explored.state()
-        robot = state["robot"]
-        world = load_world(state["world"])
-        low_x, low_y, high_x, high_y = world.bounds
-        corners = [(low_x + 0.8, low_y + 0.8), (high_x - 0.8, high_y - 0.8)]
-        target = max(corners, key=lambda corner: math.dist(corner, (robot["x"], robot["y"])))
-        page.mouse.move(*on_screen(page, "office", robot_on_stage(state, robot["x"], robot["y"])))
-        page.wait_for_timeout(500)
-        page.mouse.down()
-        places = (robot["x"], robot["y"]), target
-        start, end = (on_screen(page, "office", robot_on_stage(state, *place)) for place in places)
-        for share in np.linspace(0.1, 1, 10):
-            page.mouse.move(start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
-            page.wait_for_timeout(80)
-        page.wait_for_timeout(500)
-        page.mouse.up()
-        moved = explored.wait(lambda now: math.dist((now["robot"]["x"], now["robot"]["y"]), target) < 0.6)
-        assert moved["estimate"] == state["estimate"]  # nobody told it
-        until(page, "() => document.getElementById('events').textContent.includes('kidnap')")
+        places = place_of(robot), (wall.x1, wall.y1)
+        drag(page, *(on_screen(page, "office", on_office("office", *place)) for place in places))
+        told(page, "The robot stays where it is")
+        assert program.state()["robot"] == robot
+        expect(page.locator(".toast", has_text="The robot stays where it is")).to_have_count(0)  # a click would hit it
+        show(page, "map")
+        page.mouse.click(*on_screen(page, "map", (MAP_ORIGIN[0], MAP_ORIGIN[1] - 4.4, MAP_ORIGIN[2] + NODE_Z)))
+        told(page, "No goal set: that is beside the map")
+        assert other.locator("#alerts .toast").count() == 0
 
 
-MANY_STEPS = (
-    """() => { for (let k = 0; k < 60; k++) window.dispatchEvent(new KeyboardEvent("keydown", {key: "."})); }"""
-)
+@pytest.mark.long
+def test_the_stage_shows_both_brains_and_then_one_again(program: Program, page: Page) -> None:
+    program.command("compare_brains", pair="papers")
+    program.command("step", ticks=100)
+    page.click("[data-view=all]")
+
+    def stands(two: bool) -> bool:
+        box = box_of(page.frame_locator("#stage").locator("canvas").first)
+        return bool(abs(eye_of(page) - camera_for("all", box["width"] / box["height"], two=two).position).max() < 0.05)
+
+    patience.until(lambda: stands(two=True), "both brains are in view")
+    page.get_by_role("button", name="End the comparison").click()
+    patience.until(lambda: stands(two=False), "one brain is in view")
 
 
-def test_a_refusal_is_a_sentence_on_the_page(program, browser):
-    with open_page(browser, program.url, stage=False) as page:
-        page.evaluate(MANY_STEPS)
-        told(page, "At most 10 commands a second")
-
-
-SEEN = """() => JSON.stringify(["clock", "seed", "status", "events"].map((id) => document.getElementById(id).textContent))"""
 THEMES = """() => [document.documentElement.dataset.theme,
-    document.getElementById("stage").contentDocument.documentElement.dataset.mantineColorScheme].join(", the stage ")"""
-DARK, LIGHT = "dark, the stage dark", "light, the stage light"
+    document.getElementById("stage").contentDocument.documentElement.dataset.mantineColorScheme]"""
 
 
 @pytest.mark.long
-def test_two_tabs_agree_each_in_its_own_theme_and_a_reload_comes_back_to_the_same(program, browser):
-    program.command("pause")
-    with open_page(browser, program.url) as one, open_page(browser, program.url, 900, 700, light=True) as two:
-        shown = f"themes => ({THEMES})() === themes"
-        until(one, shown, argument=DARK)
-        until(two, shown, argument=LIGHT)
-        alike = lambda: one.evaluate(SEEN) == two.evaluate(SEEN)  # noqa: E731
-        patience.until(alike)
-        one.keyboard.press("t")
-        until(one, shown, argument=LIGHT)
-        two.keyboard.press("t")
-        until(two, shown, argument=DARK)
-        assert one.evaluate(THEMES) == LIGHT
-        two.keyboard.press("Space")
-        one.wait_for_selector("#play[aria-label=Pause]")
-        one.keyboard.press("Space")
-        two.wait_for_selector("#play[aria-label=Play]")
-        patience.until(alike)
-        one.reload()
-        patience.until(alike)
-        until(one, shown, argument=LIGHT)  # remembered where it was chosen, against what the system prefers
-        assert two.evaluate(THEMES) == DARK
+def test_another_theme_is_of_one_page_and_leaves_a_turned_camera_where_it_is(
+    program: Program, browser: Browser, page: Page
+) -> None:
+    show(page, "all")
+    home = eye_of(page)
+    page.mouse.move(700, 200)
+    page.mouse.down()
+    page.mouse.move(740, 190, steps=4)
+    page.mouse.up()
 
+    def at_rest() -> bool:
+        before = eye_of(page)
+        page.wait_for_timeout(500)
+        return math.dist(before, home) > 1 and np.array_equal(before, eye_of(page))
 
-@pytest.mark.long
-def test_another_theme_leaves_a_turned_camera_where_it_is(program, browser):
-    program.command("pause")
-    with open_page(browser, program.url) as page:
-        show(page, "all")
-        home = eye_of(page)
-        page.mouse.move(700, 200)
-        page.mouse.down()
-        page.mouse.move(740, 190, steps=4)
-        page.mouse.up()
-
-        def at_rest() -> bool:
-            before = eye_of(page)
-            page.wait_for_timeout(500)
-            return math.dist(before, home) > 1 and np.array_equal(before, eye_of(page))
-
-        patience.until(at_rest)
-        turned, told_anew = eye_of(page), []
-        page.on("websocket", lambda socket: socket.on("framesent", lambda frame: told_anew.append(frame)))
+    patience.until(at_rest)
+    turned, told_anew = eye_of(page), []
+    page.on("websocket", lambda socket: socket.on("framesent", lambda frame: told_anew.append(frame)))
+    with open_page(browser, program.url, 900, 700) as other:
         page.keyboard.press("t")
-        until(page, f"themes => ({THEMES})() === themes", argument=LIGHT)
-        patience.until(lambda: page.wait_for_timeout(50) or told_anew)
-        page.wait_for_timeout(1000)
-        patience.until(lambda: page.wait_for_timeout(50) or math.dist(eye_of(page), turned) < 0.1)
+        until(page, f"() => ({THEMES})().join() === 'light,light'")
+        assert other.evaluate(THEMES) == ["dark", "dark"]
+    patience.until(lambda: page.wait_for_timeout(50) or told_anew)
+    page.wait_for_timeout(1000)
+    patience.until(lambda: page.wait_for_timeout(50) or math.dist(eye_of(page), turned) < 0.1)
 
 
 HIDDEN = """(on) => {
@@ -263,7 +386,7 @@ HIDDEN = """(on) => {
 }"""  # as beneath another window
 
 
-def plates_of(page) -> np.ndarray:
+def plates_of(page: Page) -> np.ndarray:
     """What the stage shows, once it has been the same twice."""
     shots = [b"", b""]
 
@@ -277,7 +400,7 @@ def plates_of(page) -> np.ndarray:
 
 
 @pytest.mark.long
-def test_a_page_that_is_open_while_the_program_is_restarted_shows_the_new_one(browser):
+def test_a_page_that_is_open_while_the_program_is_restarted_shows_the_new_one(browser: Browser) -> None:
     """Another seed, another world, on the same port, while nobody looks at the page: the plates are those of a page that is
     opened now."""
     first = Program("--port", "0", "--seed", "1", "--paused")
@@ -307,7 +430,8 @@ def test_a_page_that_is_open_while_the_program_is_restarted_shows_the_new_one(br
             assert second.stop() == 0
 
 
-def test_a_port_in_use_is_a_sentence(program):
+@pytest.mark.long
+def test_a_port_in_use_is_a_sentence(program: Program) -> None:
     with pytest.raises(RuntimeError) as refused:
         Program("--port", str(program.port))
     assert f"Port {program.port}" in str(refused.value)

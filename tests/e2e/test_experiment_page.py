@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect
 
 from app.experiments import report
 from app.experiments.report import write_report_page
+from tests.e2e.layout import findings
 from tests.unit.app.made_trials import experiment, figure, trace, trials
 
 pytestmark = pytest.mark.slow
@@ -33,54 +33,38 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
         return write_report_page(made, stored, out, lambda ts: [traces[t.id] for t in ts], command="ratslam").page
 
 
-@pytest.fixture(params=["light", "dark"])
-def page(browser: Browser, written: Path, request: pytest.FixtureRequest) -> Iterator[Page]:
+@pytest.fixture
+def page(browser: Browser, written: Path) -> Iterator[Page]:
     """The page; afterwards its console must have said nothing, and nothing may have been loaded but the file itself."""
-    context = browser.new_context(viewport={"width": 1100, "height": 900}, color_scheme=request.param)
-    opened, faults = context.new_page(), list[str]()
-    opened.on("console", lambda message: faults.append(message.text))
-    opened.on("pageerror", lambda error: faults.append(str(error)))
-    own = (written.as_uri(), "data:")
-    opened.on("request", lambda asked: None if asked.url.startswith(own) else faults.append(asked.url))
-    opened.goto(written.as_uri())
-    yield opened
-    assert faults == []
-    context.close()
+    with browser.new_context(viewport={"width": 1100, "height": 900}) as context:
+        opened, faults = context.new_page(), list[str]()
+        opened.on("console", lambda message: faults.append(message.text))
+        opened.on("pageerror", lambda error: faults.append(str(error)))
+        own = (written.as_uri(), "data:")
+        opened.on("request", lambda asked: None if asked.url.startswith(own) else faults.append(asked.url))
+        opened.goto(written.as_uri())
+        yield opened
+        assert faults == []
 
 
-def test_a_click_on_a_dot_shows_the_command_that_opens_its_trial(page: Page) -> None:
-    dot = page.locator("svg [id^='f2-trial-']").nth(3)
-    trial = dot.get_attribute("data-trial")
-    expect(page.locator("#box")).to_be_hidden()
-    dot.click()
-    box = page.locator("#box")
-    expect(box).to_be_visible()
-    expect(box.locator("code")).to_have_text(f"ratslam experiment open {trial}")
-    expect(box).to_contain_text("N_vis 0 %, size 8")
-    expect(box).to_contain_text("kitchen: reached, at 61.5 s")
-    page.keyboard.press("Escape")
-    expect(box).to_be_hidden()
-
-
-@pytest.mark.long
-def test_the_command_can_be_copied(page: Page) -> None:
+def test_a_dot_shows_the_command_that_opens_its_trial_to_be_copied(page: Page) -> None:
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    dot = page.locator("svg [id^='f2-trial-']").first
-    dot.click()
-    page.get_by_role("button", name="Copy").click()
-    expect(page.get_by_role("button", name="Copied")).to_be_visible()
-    copied = page.evaluate("navigator.clipboard.readText()")
-    assert copied == f"ratslam experiment open {dot.get_attribute('data-trial')}"
-
-
-@pytest.mark.long
-def test_a_dot_is_reached_and_left_with_the_keyboard(page: Page) -> None:
-    dot = page.locator("svg [id^='f2-trial-']").nth(5)
-    dot.focus()
-    page.keyboard.press("Enter")
-    expect(page.locator("#box code")).to_have_text(f"ratslam experiment open {dot.get_attribute('data-trial')}")
-    page.keyboard.press("Escape")
-    expect(dot).to_be_focused()
+    box = page.locator("#box")
+    expect(box).to_be_hidden()
+    for k, press in enumerate((lambda dot: dot.click(), lambda dot: (dot.focus(), page.keyboard.press("Enter")))):
+        dot = page.locator("svg [id^='f2-trial-']").nth(3 + k)
+        command = f"ratslam experiment open {dot.get_attribute('data-trial')}"
+        press(dot)
+        expect(box).to_be_visible()
+        expect(box.locator("code")).to_have_text(command)
+        for words in ("N_vis 0 %, size 8", "kitchen: reached, at 61.5 s") if k == 0 else ():
+            expect(box).to_contain_text(words)
+        page.get_by_role("button", name="Copy").click()
+        expect(page.get_by_role("button", name="Copied")).to_be_visible()
+        assert page.evaluate("navigator.clipboard.readText()") == command
+        page.keyboard.press("Escape")
+        expect(box).to_be_hidden()
+        expect(dot).to_be_focused()
 
 
 @pytest.mark.long
@@ -94,15 +78,12 @@ def test_a_point_of_a_curve_lists_its_trials_and_a_panel_of_a_map_tells_its_own(
 
 
 @pytest.mark.long
-def test_the_page_is_accessible(page: Page) -> None:
+def test_it_is_accessible_in_both_themes_and_fits_a_small_screen(page: Page) -> None:
     page.locator("svg [data-trial]").first.focus()
     page.keyboard.press("Enter")
-    found = Axe().run(page)
-    assert found.violations_count == 0, found.generate_report()
-
-
-@pytest.mark.long
-def test_nothing_lies_beyond_a_small_screen(page: Page) -> None:
+    for theme in "light", "dark":
+        page.emulate_media(color_scheme=theme)
+        assert findings(page) == [], theme
     page.set_viewport_size({"width": 390, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     page.locator("svg [data-trial]").last.click()

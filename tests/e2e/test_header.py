@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
 
+from tests import patience
 from tests.e2e.browser import at_each, box_of, on_screen, open_page, until
-from tests.e2e.fake_engine import FakeEngine, fake_program
 from tests.fake_snapshots import SNAP_EVERY, fake_snapshot
+from web.messages import Closure
 from web.panel.panel import TABS
 from web.viewer.plates.pose_cell_plate import ORIGIN, SHEET
 
@@ -75,12 +75,6 @@ WRONG = """() => {
 }"""
 
 
-@pytest.fixture(scope="module")
-def fake() -> Iterator[tuple[FakeEngine, str]]:
-    with fake_program() as made:
-        yield made
-
-
 def test_all_of_the_header_shows_at_every_size_in_every_state(fake, browser) -> None:
     engine, url = fake
     heights: dict[tuple[int, int], set[float]] = {size: set() for size in SIZES}
@@ -135,24 +129,34 @@ def test_in_a_narrow_window_the_panel_comes_only_when_called(fake, browser, size
             until(page, beside)
 
 
-@pytest.mark.parametrize("sizes", [[(1280, 800)], [(390, 844), (360, 740)]], ids=["screen", "phones"])
-def test_all_tabs_of_the_panel_stand_on_one_row_in_full(fake, browser, sizes) -> None:
-    with open_page(browser, fake[1], *sizes[0], stage=False) as page:
-        if sizes[0][0] < 500:
-            page.click("#panels")
-        tabs = page.get_by_role("tab")
-        expect(tabs).to_have_count(len(TABS))
-        for size in at_each(page, sizes):
-            boxes = tabs.evaluate_all("""tabs => tabs.map((tab) => {
+def test_a_loop_closure_can_be_played_again(fake, browser) -> None:
+    engine, url = fake
+    plain = fake_snapshot(40)
+    before = plain.map.xy[:50]
+    closure = Closure(77, 63.0, 49, 3, plain.map.links[(plain.map.links < 50).all(1)], before, before + 0.5, 0.71)
+    with open_page(browser, url, stage=False) as page:
+        expect(page.locator("#replay")).to_be_hidden()
+        engine.shown = PLAIN | {"closures": (closure,)}
+        expect(page.locator("#replay")).to_be_visible()
+        until(page, "() => document.getElementById('replay').title.includes('moved the map by 0.7 m')")
+        page.click("#replay")
+        page.keyboard.press("r")
+        patience.until(lambda: page.wait_for_timeout(50) or engine.viewer.replayed == [77, 77])
+
+
+def test_all_tabs_of_the_panel_stand_on_one_row_in_full_and_the_hints_leave_the_pose_cells_their_place(
+    fake, browser
+) -> None:
+    with open_page(browser, fake[1], stage=False) as page:
+        hints = box_of(page.locator(".hints"))
+        assert hints["x"] + hints["width"] <= on_screen(page, "all", (-SHEET[0] / 2, ORIGIN[1], 0.0))[0]
+        expect(page.get_by_role("tab")).to_have_count(len(TABS))
+        for size in at_each(page, [(1280, 800), (1024, 768), (390, 844), (360, 740)]):
+            expect(page.locator(".hints")).to_be_visible(visible=size[0] > 1024)
+            if not page.locator("#panel").is_visible():
+                page.click("#panels")
+            boxes = page.get_by_role("tab").evaluate_all("""tabs => tabs.map((tab) => {
                 const box = tab.getBoundingClientRect();
                 return [box.top, box.left, box.right, tab.scrollWidth > tab.clientWidth]; })""")
             assert len({top for top, *_ in boxes}) == 1, size
             assert all(0 <= left < right <= size[0] and not cut for _, left, right, cut in boxes), size
-
-
-def test_the_hints_go_where_the_pose_cells_need_their_place(fake, browser) -> None:
-    with open_page(browser, fake[1], stage=False) as page:
-        hints = box_of(page.locator(".hints"))
-        assert hints["x"] + hints["width"] <= on_screen(page, "all", (-SHEET[0] / 2, ORIGIN[1], 0.0))[0]
-        page.set_viewport_size({"width": 1024, "height": 768})
-        expect(page.locator(".hints")).to_be_hidden()

@@ -39,57 +39,45 @@ def keep(page: Page, words: str) -> Callable[[], None]:
 
 
 @pytest.mark.long
-def test_plates_as_vectors(driven: Program, browser: Browser, tmp_path: Path) -> None:
-    seconds = driven.state()["tick"] / 10
+def test_plates_of_both_brains_and_plots_as_vectors_and_pixels(
+    driven: Program, browser: Browser, tmp_path: Path
+) -> None:
+    driven.command("compare_brains", values={"local_view.enabled": False}, name="eyes shut", since="now")
+    driven.command("step", ticks=20)
     with open_page(browser, driven.url, stage=False, light=True) as page:
-        for words, what in (
-            ("Office as SVG", "office"),
-            ("Pose cells as SVG", "pose"),
-            ("Experience map as SVG", "map"),
-        ):
-            file = saved(page, tmp_path, keep(page, words))
-            assert file.name == f"office-seed5-0m{seconds:04.1f}s-{what}.svg"
-            pixels = cv2.imread(str(saved(page, tmp_path, keep(page, f"{words.removesuffix(' as SVG')} as PNG"))))
+        for what, plate in {
+            "Office": "office",
+            "Pose cells": "pose",
+            "Experience map": "map",
+            "Pose cells: eyes shut": "pose-2",
+            "Experience map: eyes shut": "map-2",
+        }.items():
+            file = saved(page, tmp_path, keep(page, f"{what} as SVG"))
+            assert file.name == f"office-seed5-0m22.0s-{plate}.svg"
             picture = ElementTree.parse(file).getroot()
-            assert pixels.shape[1] == 2 * float(picture.get("width", 0)) == 2000
             assert picture.find(f"{SVG}rect").get("fill") == "#ffffff"  # type: ignore[union-attr]
             assert len(list(picture.iter())) > 30
-
-
-@pytest.mark.long
-def test_of_two_brains_each_has_its_plates(driven: Program, browser: Browser, tmp_path: Path) -> None:
-    with open_page(browser, driven.url, stage=False) as page:
-        page.click("#keep summary")
-        expect(page.get_by_role("button", name="Experience map as SVG")).to_be_visible()
-        expect(page.locator("#keep-map-2")).to_be_hidden()
-        page.keyboard.press("Escape")
-        driven.command("compare_brains", values={"local_view.enabled": False}, name="eyes shut", since="now")
-        driven.command("step", ticks=20)
-        for what, plate in (("Pose cells", "pose-2"), ("Experience map", "map-2")):
-            page.click("#keep summary")
-            button = page.get_by_role("button", name=f"{what}: eyes shut as SVG")
-            expect(button).to_be_visible()
-            file = saved(page, tmp_path, button.click)
-            assert file.name.endswith(f"s-{plate}.svg")
-            assert next(ElementTree.parse(file).getroot().iter(f"{SVG}text")).text == "eyes shut"
+            if plate.endswith("2"):
+                assert next(picture.iter(f"{SVG}text")).text == "eyes shut"
+            else:
+                pixels = cv2.imread(str(saved(page, tmp_path, keep(page, f"{what} as PNG"))))
+                assert pixels.shape[1] == 2 * float(picture.get("width", 0)) == 2000
         driven.command("end_comparison")
         page.click("#keep summary")
         expect(page.locator("#keep-map-2")).to_be_hidden()
+        page.keyboard.press("Escape")
 
-
-@pytest.mark.long
-def test_plots_as_vectors_and_pixels(driven: Program, browser: Browser, tmp_path: Path) -> None:
-    with open_page(browser, driven.url, stage=False) as page:
         page.get_by_role("tab", name="Truth").click()
         expect(page.locator(".plot canvas").first).to_be_visible()
-        button = page.get_by_role("button", name="Errors against time: save as SVG")
-        picture = ElementTree.parse(saved(page, tmp_path, button.click)).getroot()
-        lines = [path for path in picture.iter(f"{SVG}path") if path.get("stroke-linejoin") == "round"]
-        assert [line.get("d", "").count("L") > 10 for line in lines] == [True, True]
-        button = page.get_by_role("button", name="Errors against time: save as PNG")
-        file = saved(page, tmp_path, button.click)
-        assert file.name.endswith("-errors-against-time.png")
-        pixels = cv2.imread(str(file))
+        svg, png = (
+            saved(page, tmp_path, page.get_by_role("button", name=f"Errors against time: save as {kind}").click)
+            for kind in ("SVG", "PNG")
+        )
+        paths = ElementTree.parse(svg).getroot().iter(f"{SVG}path")
+        lines = [path.get("d", "") for path in paths if path.get("stroke-linejoin") == "round"]
+        assert [line.count("L") > 10 for line in lines] == [True, True]
+        assert png.name.endswith("-errors-against-time.png")
+        pixels = cv2.imread(str(png))
         assert pixels.shape[:2] == (840, 1800)
         assert pixels.std() > 10
 

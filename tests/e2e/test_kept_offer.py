@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import Browser
 
 from app.kept_brains.files import About, keep
 from app.session import Session
@@ -18,6 +19,7 @@ from tests.e2e.program import Program
 OFFERED = "() => document.getElementById('kept').checkVisibility()"
 GONE = "() => !document.getElementById('kept').checkVisibility()"
 ASKED = "() => performance.getEntriesByType('resource').some((one) => one.name.endsWith('/api/brain/kept'))"
+
 WITHIN = """() => { const box = document.getElementById('kept').getBoundingClientRect(), around =
     document.querySelector('main').getBoundingClientRect(), views = document.querySelector('.views').getBoundingClientRect();
     return box.left >= 0 && box.right <= innerWidth && box.top >= views.bottom && box.bottom <= around.bottom; }"""
@@ -41,7 +43,7 @@ def offering(known: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert program.stop() == 0
 
 
-def test_the_offer_is_seen_and_taken(offering: Program, browser, known: Session) -> None:
+def test_the_offer_is_seen_and_taken(offering: Program, browser: Browser, known: Session) -> None:
     count = len(known.brain.experience_map)
     assert offering.state()["world"] == "office"
     with (
@@ -50,10 +52,8 @@ def test_the_offer_is_seen_and_taken(offering: Program, browser, known: Session)
     ):
         for one in (page, phone):
             until(one, OFFERED)
-            words = one.inner_text("#kept-words")
-            assert f", 1 simulated minutes, {count} experiences, kept " in words
-            calm(one)
-            assert findings(one) == []
+            assert f", 1 simulated minutes, {count} experiences, kept " in one.inner_text("#kept-words")
+            assert findings(one, "#kept") == []
             assert one.evaluate(WITHIN)
         page.focus("#kept-wake")
         page.keyboard.press("Enter")
@@ -69,7 +69,7 @@ def test_the_offer_is_seen_and_taken(offering: Program, browser, known: Session)
 
 
 @pytest.mark.long
-def test_a_broken_one_is_told_of_and_not_now_stays_gone(offering: Program, browser, tmp_path: Path) -> None:
+def test_a_broken_one_is_told_of_and_not_now_stays_gone(offering: Program, browser: Browser, tmp_path: Path) -> None:
     (tmp_path / "earlier.npz").write_bytes(b"PK")
     with open_page(browser, offering.url, refused=True, stage=False) as page:
         until(page, OFFERED)

@@ -33,16 +33,10 @@ INK = """() => {
 WALLS = 1500
 
 
-@pytest.fixture
-def large(tmp_path: Path):
+def test_thousands_of_walls_are_drawn_and_edited_while_it_runs(browser: Browser, tmp_path: Path) -> None:
     file = tmp_path / "large.json"
     file.write_text(world_to_json(rooms(WALLS, 10)), encoding="utf-8")
-    program = Program("--port", "0", "--seed", "1", "--world", str(file))
-    yield program
-    assert program.stop() == 0
-
-
-def test_thousands_of_walls_are_drawn_and_edited_while_it_runs(large: Program, browser: Browser) -> None:
+    large = Program("--port", "0", "--seed", "1", "--world", str(file))
     with open_page(browser, large.url, 1440, 900) as page:
         page.click("#edit")
         until(page, "() => document.querySelector('#plan .body') !== null")
@@ -60,21 +54,7 @@ def test_thousands_of_walls_are_drawn_and_edited_while_it_runs(large: Program, b
         until(page, f"() => ({INK})() < {all_of_it // 2}")  # what is out of sight is not painted
         tick = large.state()["tick"]
         large.wait(lambda state: state["tick"] > tick + 10)
-
-
-TICKS = 2400
-
-
-@pytest.fixture(scope="module")
-def campus():
-    """Four minutes in a world 45 m long, on a plate of ten units."""
-    program = Program("--port", "0", "--seed", "5", "--world", "campus", "--paused")
-    program.command("step", ticks=1000)
-    program.command("step", ticks=1000)
-    program.command("step", ticks=TICKS - 2000)
-    program.wait(lambda state: state["tick"] >= TICKS)
-    yield program
-    assert program.stop() == 0
+    assert large.stop() == 0
 
 
 def around(page: Page, at: tuple[float, float], half: float) -> NDArray[np.int16]:
@@ -84,7 +64,11 @@ def around(page: Page, at: tuple[float, float], half: float) -> NDArray[np.int16
     return np.asarray(Image.open(io.BytesIO(page.screenshot(clip=clip))).convert("RGB"), np.int16)  # type: ignore[arg-type]
 
 
-def test_in_a_large_world_robot_and_names_can_be_seen_clicked_and_followed(campus: Program, browser: Browser) -> None:
+def test_in_a_large_world_robot_and_names_can_be_seen_clicked_and_followed(program: Program, browser: Browser) -> None:
+    """After four minutes in a world 45 m long, on a plate of ten units."""
+    program.command("reset", world="campus", seed=5)
+    for ticks in 1000, 1000, 400:
+        program.command("step", ticks=ticks)
     world = load_world("campus")
     fit = OfficeFit(world.bounds)
 
@@ -92,9 +76,9 @@ def test_in_a_large_world_robot_and_names_can_be_seen_clicked_and_followed(campu
         px, py = fit.to_plate(np.array([[x, y]]))[0] + ORIGIN[:2]
         return float(px), float(py), ORIGIN[2] + z
 
-    robot = campus.state()["robot"]
-    known = next(place for place in campus.places()["named"] if place["why"] is None)
-    with open_page(browser, campus.url, 1280, 800) as page:
+    robot = program.state()["robot"]
+    known = next(place for place in program.places()["named"] if place["why"] is None)
+    with open_page(browser, program.url, 1280, 800) as page:
         show(page, "office")
         red, green, blue = np.moveaxis(
             around(page, on_screen(page, "office", on_plate(robot["x"], robot["y"], 0.1)), 20), -1, 0
@@ -104,7 +88,7 @@ def test_in_a_large_world_robot_and_names_can_be_seen_clicked_and_followed(campu
 
         place = next(place for place in world.places if place.name == known["name"])
         page.mouse.click(*on_screen(page, "office", on_plate(place.x, place.y, Z)))
-        goal = campus.wait(lambda state: state["goal"] is not None)["goal"]
+        goal = program.wait(lambda state: state["goal"] is not None)["goal"]
         assert math.dist((goal["x"], goal["y"]), (known["x"], known["y"])) < 1.0
         until(page, "() => !document.getElementById('goal').hidden")
 

@@ -33,29 +33,21 @@ def test_seconds_of_it_and_the_page_loaded_anew(tmp_path):
     assert any(row["tick_ms"] for row in rows)
 
 
-def test_memory_is_told_against_the_growth_of_the_map():
+def test_memory_is_told_against_the_growth_of_the_map() -> None:
     findings = judge(CALM, [])
     assert not findings.wrong
     assert "300 MB at first, 305 MB after a quarter, 310 MB at half time, 320 MB at last" in findings.lines[1]
     assert "+10.0 MB an hour, with +300 experiences" in findings.lines[2]
 
 
-@pytest.mark.parametrize(
-    ("spoil", "words"),
-    [
-        (lambda row: replace(row, threads=17 + row.minute // 4), "threads more"),
-        (lambda row: replace(row, files=15 + row.minute // 4), "files more"),
-        (lambda row: replace(row, tick=min(row.tick, 90 * 9600)), "stood still for 30.0 min"),
-        (
-            lambda row: replace(row, fault="ValueError: no" if row.minute > 60 else None),
-            "at minute 61.0: ValueError: no",
-        ),
-        (lambda row: replace(row, tick_ms=None), "never told a tick's time"),
-    ],
-)
-def test_what_is_wrong_is_said(spoil, words):
-    assert words in " ".join(judge([spoil(row) for row in CALM], []).wrong)
-
-
-def test_what_the_page_complained_of_counts():
+def test_what_is_wrong_is_said(subtests: pytest.Subtests) -> None:
+    for words, spoil in {
+        "threads more": lambda row: {"threads": 17 + row.minute // 4},
+        "files more": lambda row: {"files": 15 + row.minute // 4},
+        "stood still for 30.0 min": lambda row: {"tick": min(row.tick, 90 * 9600)},
+        "at minute 61.0: ValueError: no": lambda row: {"fault": "ValueError: no" if row.minute > 60 else None},
+        "never told a tick's time": lambda _row: {"tick_ms": None},
+    }.items():
+        with subtests.test(words):
+            assert words in " ".join(judge([replace(row, **spoil(row)) for row in CALM], []).wrong)
     assert judge(CALM, ["1 x the page crashed"]).wrong == ("1 x the page crashed",)

@@ -9,16 +9,9 @@ const SPEED = { name: "pilot.cruise_speed", symbol: "v", unit: "m/s", hint: "How
 
 test("a parameter is called by its last name, in the group of the others", () => {
   assert.equal(shortName("pilot.cruise_speed"), "cruise speed");
-  assert.equal(groupOf("experience_map.links.age"), "experience map.links");
-  assert.equal(groupOf("seed"), "all");
-  const groups = grouped([{ name: "a.x" }, { name: "b.x" }, { name: "a.y" }]);
-  assert.deepEqual(
-    [...groups],
-    [
-      ["a", [{ name: "a.x" }, { name: "a.y" }]],
-      ["b", [{ name: "b.x" }]],
-    ],
-  );
+  assert.deepEqual(["experience_map.links.age", "seed"].map(groupOf), ["experience map.links", "all"]);
+  const [ax, bx, ay] = ["a.x", "b.x", "a.y"].map((name) => ({ name }));
+  assert.deepEqual(Object.fromEntries(grouped([ax, bx, ay])), { a: [ax, ay], b: [bx] });
 });
 
 test("a search means a parameter when each of its words is somewhere in it", () => {
@@ -27,16 +20,9 @@ test("a search means a parameter when each of its words is somewhere in it", () 
   for (const search of ["cruise map", "rad", "0.35"]) assert.ok(!means(SPEED, search), search);
 });
 
-test("what follows an underscore of a symbol is printed below the line", () => {
-  assert.deepEqual(["s_m", "n_x'", "delta", "t_{max}"].map(printed), [
-    ["s", "m"],
-    ["n", "x'"],
-    ["delta", ""],
-    ["t", "max"],
-  ]);
-});
-
-test("a way back is there when the value is another than the default", () => {
+test("what follows an underscore of a symbol is printed below the line; a way back is there off the default", () => {
+  const printing = { s_m: ["s", "m"], "n_x'": ["n", "x'"], delta: ["delta", ""], "t_{max}": ["t", "max"] };
+  for (const [symbol, parts] of Object.entries(printing)) assert.deepEqual(printed(symbol), parts);
   assert.ok(isDefault({ value: 0.3, default: 0.3 }));
   assert.ok(!isDefault({ value: false, default: true }));
 });
@@ -48,10 +34,7 @@ test("a tick's parts are told against the time there is, and drawn against the d
     ["attractor", 0.5, 1.04],
   ];
   assert.equal(tickWords(parts, 100), "A tick takes 0.75 of its 100 ms");
-  assert.equal(partWords(parts[1]), "0.50, worst 1.0 ms");
-  assert.deepEqual(
-    parts.map((part) => shareOf(parts, part)),
-    [0.5, 1],
-  );
   assert.equal(tickWords([], 50), "A tick takes 0.00 of its 50 ms");
+  assert.equal(partWords(parts[1]), "0.50, worst 1.0 ms");
+  assert.deepEqual([shareOf(parts, parts[0]), shareOf(parts, parts[1])], [0.5, 1]);
 });

@@ -5,38 +5,28 @@ import { test } from "node:test";
 import * as lessons from "../../../web/static/model/lessons.js";
 import { CHOICES, ending } from "../../../web/static/model/until.js";
 import { voteWords } from "../../../web/static/model/vote.js";
+import { segment } from "./made.js";
 
 /** @param {string} name @param {Partial<LessonCard>} [other] @returns {LessonCard} */
 const card = (name, other = {}) => ({
-  name,
-  number: 1,
-  title: name,
-  idea: "",
-  paper: "A 4",
-  minutes: 0.2,
-  rounds: 1,
-  own: false,
-  wrong: null,
+  ...{ name, number: 1, title: name, idea: "", paper: "A 4", minutes: 0.2, rounds: 1, own: false, wrong: null },
   ...other,
 });
 
 /** @param {Partial<LessonView>} other @returns {LessonView} */
 const view = (other = {}) => ({
-  name: "packet",
-  title: "",
-  state: "predict",
-  doing: "",
-  progress: null,
-  round: 1,
-  rounds: 1,
-  label: "",
-  seed: 1,
-  prediction: null,
-  votes: { counts: [0, 0], points: [] },
-  outcome: null,
-  marks: [],
-  altered: false,
-  draws: null,
+  ...{
+    name: "packet",
+    title: "",
+    state: "predict",
+    doing: "",
+    progress: null,
+    round: 1,
+    rounds: 1,
+    label: "",
+    seed: 1,
+  },
+  ...{ prediction: null, votes: { counts: [0, 0], points: [] }, outcome: null, marks: [], altered: false, draws: null },
   ...other,
 });
 
@@ -46,27 +36,22 @@ const outcome = { words: "it turned", because: "", right: null, choice: 1, x: nu
 const ENDED = { plate: "office", x: 0, y: 0, heading_rad: null, words: "it ended here", tick: 9 };
 /** @type {LessonText["predict"]} */
 const asked = { question: "?", options: ["left", "right"], draw: null, plate: "map" };
+const chosen = { choice: 0, x: null, y: null };
+const votes = { counts: [3, 1], points: [] };
 
 test("every lesson is in one chapter, in the order of all, the user's own last", () => {
   const cards = ["packet", "dark", "loop", "unheard-of", "goal"].map((name) => card(name));
   const all = lessons.chapters([card("mine", { own: true }), ...cards]);
-  assert.deepEqual(
-    all.flatMap((chapter) => chapter.cards.map(({ name }) => name)),
-    ["packet", "dark", "loop", "unheard-of", "goal", "mine"],
-  );
-  assert.deepEqual(
-    all.map((chapter) => chapter.cards.length),
-    [2, 2, 1, 1],
-  );
+  const names = all.map((chapter) => chapter.cards.map(({ name }) => name).join());
+  assert.deepEqual(names, ["packet,dark", "loop,unheard-of", "goal", "mine"]);
   assert.equal(lessons.chapters([card("unheard-of")]).length, 1);
   assert.deepEqual(lessons.chapters([]), []);
 });
 
 test("the next lesson is the next one that can be begun", () => {
   const cards = [card("a"), card("b", { wrong: "no such world" }), card("c")];
-  assert.equal(lessons.nextAfter(cards, "a")?.name, "c");
-  assert.equal(lessons.nextAfter(cards, "c"), null);
-  assert.equal(lessons.nextAfter(cards, "gone"), null);
+  const next = ["a", "c", "gone"].map((name) => lessons.nextAfter(cards, name)?.name);
+  assert.deepEqual(next, ["c", undefined, undefined]);
 });
 
 test("a lesson says how long it is, and its number", () => {
@@ -78,73 +63,75 @@ test("a lesson says how long it is, and its number", () => {
 });
 
 test("predictions are taken before the first round is shown", () => {
-  assert.ok(lessons.isOpen(view()));
-  assert.ok(lessons.isOpen(view({ state: "scene" })));
-  assert.ok(!lessons.isOpen(view({ state: "showing" })));
-  assert.ok(!lessons.isOpen(view({ state: "scene", round: 2, rounds: 2 })));
-  assert.ok(!lessons.isOpen(view({ rounds: 2, marks: [ENDED] })));
+  assert.ok([view(), view({ state: "scene" })].every(lessons.isOpen));
+  /** @type {Partial<LessonView>[]} */
+  const later = [{ state: "showing" }, { state: "scene", round: 2, rounds: 2 }, { rounds: 2, marks: [ENDED] }];
+  assert.ok(!later.map(view).some(lessons.isOpen));
 });
 
 test("without a prediction it is only shown; while the scene is set it cannot be", () => {
-  assert.equal(lessons.showWords(view()), "Just show me");
-  assert.equal(lessons.showWords(view({ votes: { counts: [0, 1], points: [] } })), "Let it happen");
-  assert.equal(lessons.showWords(view({ prediction: { choice: 0, x: null, y: null } })), "Let it happen");
-  assert.equal(lessons.showWords(view({ rounds: 3, marks: [ENDED] })), "Show the next round");
-  assert.equal(lessons.showWords(view({ state: "scene" })), null);
-  assert.equal(lessons.showWords(view({ state: "compared" })), null);
+  for (const [state, words] of /** @type {[Partial<LessonView>, string | null][]} */ ([
+    [{}, "Just show me"],
+    [{ votes: { counts: [0, 1], points: [] } }, "Let it happen"],
+    [{ prediction: chosen }, "Let it happen"],
+    [{ rounds: 3, marks: [ENDED] }, "Show the next round"],
+    [{ state: "scene" }, null],
+    [{ state: "compared" }, null],
+  ]))
+    assert.equal(lessons.showWords(view(state)), words);
 });
 
 test("what is going on is said as a sentence, and so is what is to be done", () => {
-  assert.equal(lessons.doingWords(view({ state: "showing", doing: "drives on" })), "Drives on.");
-  assert.match(lessons.doingWords(view()), /First say/);
-  assert.equal(lessons.doingWords(view({ prediction: { choice: 0, x: null, y: null } })), "");
-  assert.equal(lessons.doingWords(view({ rounds: 2, marks: [ENDED], doing: "3 deg/s is next" })), "3 deg/s is next.");
-  assert.match(lessons.doingWords(view({ state: "sandbox", altered: true })), /yours/);
-});
-
-test("a lesson that was broken off says by what; one that came to its end does not", () => {
   const doing = "broken off: somebody drove the robot by hand";
-  const broken = view({ state: "sandbox", doing, altered: true });
-  assert.ok(lessons.isBroken(broken));
-  assert.equal(
-    lessons.doingWords(broken),
-    'Broken off: somebody drove the robot by hand. "Once more" begins it again.',
-  );
-  const over = view({ state: "sandbox", doing: "play freely", outcome });
-  assert.ok(!lessons.isBroken(over));
-  assert.equal(lessons.doingWords(over), "");
+  for (const [state, words] of /** @type {[Partial<LessonView>, RegExp][]} */ ([
+    [{ state: "showing", doing: "drives on" }, /^Drives on\.$/],
+    [{}, /First say/],
+    [{ prediction: chosen }, /^$/],
+    [{ rounds: 2, marks: [ENDED], doing: "3 deg/s is next" }, /^3 deg\/s is next\.$/],
+    [{ state: "sandbox", altered: true }, /yours/],
+    [
+      { state: "sandbox", altered: true, doing },
+      /^Broken off: somebody drove the robot by hand\. "Once more" begins it again\.$/,
+    ],
+    [{ state: "sandbox", doing: "play freely", outcome }, /^$/],
+  ]))
+    assert.match(lessons.doingWords(view(state)), words);
+  assert.ok(lessons.isBroken(view({ state: "sandbox", doing, altered: true })));
+  assert.ok(!lessons.isBroken(view({ state: "sandbox", doing: "play freely", outcome })));
 });
 
 test("what to watch stays where Inspect tells why", () => {
   const text = /** @type {LessonText} */ ({ explains: false });
-  const explained = { ...text, explains: true };
   assert.ok(lessons.isWatched(view({ state: "showing" }), text));
   assert.ok(lessons.isWatched(view({ rounds: 2, marks: [ENDED] }), text));
-  assert.ok(!lessons.isWatched(view({ state: "compared", outcome }), text));
-  assert.ok(lessons.isWatched(view({ state: "compared", outcome }), explained));
-  assert.ok(!lessons.isWatched(view(), explained));
+  const over = view({ state: "compared", outcome });
+  assert.ok(!lessons.isWatched(over, text));
+  assert.ok(lessons.isWatched(over, { ...text, explains: true }));
+  assert.ok(!lessons.isWatched(view(), { ...text, explains: true }));
 });
 
 test("votes are shares of all, and are held against what came true", () => {
   assert.deepEqual(lessons.shares([3, 1, 0]), [0.75, 0.25, 0]);
   assert.deepEqual(lessons.shares([0, 0]), [0, 0]);
-  assert.equal(lessons.classWords(view()), "");
-  const votes = { counts: [3, 1], points: [] };
-  assert.equal(lessons.classWords(view({ votes })), "4 votes");
-  assert.equal(lessons.classWords(view({ votes, outcome })), "1 of 4 votes were for it");
-  assert.equal(lessons.classWords(view({ votes: { counts: [], points: [[1, 2]] } })), "1 vote");
+  /** @type {Partial<LessonView>[]} */
+  const states = [{}, { votes }, { votes, outcome }, { votes: { counts: [], points: [[1, 2]] } }];
+  assert.deepEqual(
+    states.map((state) => lessons.classWords(view(state))),
+    ["", "4 votes", "1 of 4 votes were for it", "1 vote"],
+  );
 });
 
 test("prediction and outcome are compared", () => {
-  assert.equal(lessons.verdict(view({ outcome }), asked).tone, "none");
-  const prediction = { choice: 0, x: null, y: null };
-  const wrong = lessons.verdict(view({ prediction, outcome: { ...outcome, right: false } }), asked);
-  assert.deepEqual([wrong.tone, wrong.said], ["wrong", "left"]);
-  const right = lessons.verdict(view({ prediction, outcome: { ...outcome, right: true, choice: 0 } }), asked);
-  assert.deepEqual([right.tone, right.said], ["right", "left"]);
+  const verdict = (/** @type {Partial<LessonView>} */ state) => {
+    const { tone, said } = lessons.verdict(view(state), asked);
+    return [tone, said];
+  };
+  assert.equal(verdict({ outcome })[0], "none");
+  assert.deepEqual(verdict({ prediction: chosen, outcome: { ...outcome, right: false } }), ["wrong", "left"]);
+  assert.deepEqual(verdict({ prediction: chosen, outcome: { ...outcome, right: true, choice: 0 } }), ["right", "left"]);
   const drawn = { ...outcome, choice: null, x: 1, y: 1, distance_m: 2.34, right: false };
-  const point = lessons.verdict(view({ prediction: { choice: null, x: 2, y: 2 }, outcome: drawn }), asked);
-  assert.equal(point.said, "2.3 m from where it ended");
+  const [, said] = verdict({ prediction: { choice: null, x: 2, y: 2 }, outcome: drawn });
+  assert.equal(said, "2.3 m from where it ended");
 });
 
 test("a moment that is marked on both plates is listed once, in the order of time", () => {
@@ -155,44 +142,25 @@ test("a moment that is marked on both plates is listed once, in the order of tim
     { plate: "map", words: "lost", tick: 650, ...at },
     { plate: "office", words: "put down", tick: 600, ...at },
   ];
-  assert.deepEqual(
-    lessons.moments(marks, (tick) => tick / 10).map(({ words, at }) => [words, at]),
-    [
-      ["put down", "1:00"],
-      ["lost", "1:05"],
-    ],
-  );
+  const told = lessons.moments(marks, (tick) => tick / 10).map(({ words, at }) => `${at} ${words}`);
+  assert.deepEqual(told, ["1:00 put down", "1:05 lost"]);
 });
 
-test("an address names a lesson, and nothing else", () => {
+test("an address names a lesson, and nothing else; what is looked at has a name", () => {
   assert.equal(lessons.linked("#lesson=two-doors"), "two-doors");
   for (const other of ["", "#run=3", "#lesson=", "#lesson=A/B", "#lesson=a&b"])
     assert.equal(lessons.linked(other), null);
+  assert.deepEqual(
+    ["truth", "pose"].map((place) => lessons.tabOf(place, ["Senses", "Truth"])),
+    ["Truth", null],
+  );
+  assert.deepEqual(["pose", "memory"].map(lessons.placeWords), ["Pose cells", "Memory"]);
 });
 
-test("what is looked at has a name", () => {
-  assert.equal(lessons.tabOf("truth", ["Senses", "Truth"]), "Truth");
-  assert.equal(lessons.tabOf("pose", ["Senses", "Truth"]), null);
-  assert.equal(lessons.placeWords("pose"), "Pose cells");
-  assert.equal(lessons.placeWords("memory"), "Memory");
-});
-
-test("a plan has room around its walls", () => {
-  const { left, bottom, width, height } = lessons.outline([
-    [
-      [0, 0],
-      [10, 0],
-    ],
-    [
-      [10, 0],
-      [10, 5],
-    ],
-  ]);
+test("a plan has room around its walls; a map is turned as on its plate, and back", () => {
+  const { left, bottom, width, height } = lessons.outline([segment("0 0, 10 0"), segment("10 0, 10 5")]);
   assert.ok(left < 0 && bottom < 0 && left + width > 10 && bottom + height > 5);
   assert.ok(Number.isFinite(lessons.outline([]).width));
-});
-
-test("a map is turned as on its plate, and back", () => {
   const [x, y] = lessons.turned([2, 1], Math.PI / 2);
   assert.ok(Math.abs(x + 1) < 1e-9 && Math.abs(y - 2) < 1e-9);
   const there = lessons.turned(lessons.turned([3, -4], 0.7), -0.7);

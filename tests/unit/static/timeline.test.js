@@ -5,42 +5,21 @@ import { test } from "node:test";
 import { clock, tickTimes, tickTimesIn } from "../../../web/static/model/clock.js";
 import { kinds, markOf, nameOf, weightOf } from "../../../web/static/model/event_kinds.js";
 import { frameOf, lying } from "../../../web/static/model/side_maps.js";
-import {
-  counted,
-  fine,
-  labelsOf,
-  marksOf,
-  nextEvent,
-  parted,
-  whole,
-  within,
-  words,
-  zoomed,
-} from "../../../web/static/model/timeline.js";
+import * as line from "../../../web/static/model/timeline.js";
 import { EVENT_KINDS } from "../../../web/static/shared.js";
-import { chance } from "./chance.js";
+import { chance, path } from "./made.js";
 
 /** @param {number} number @param {number} time_s @param {string} kind @returns {TimelineEvent} */
-const event = (number, time_s, kind) => ({
-  number,
-  time_s,
-  kind,
-  text: "x",
-  line: "",
-  count: 1,
-  since_s: time_s,
-});
+const event = (number, time_s, kind) => ({ number, time_s, kind, text: "x", line: "", count: 1, since_s: time_s });
 const next = chance(5);
 const many = Array.from({ length: 300 }, (_, k) =>
   event(k, k + next(), EVENT_KINDS[Math.floor(next() * EVENT_KINDS.length)]),
 );
 const x = (/** @type {number} */ time_s) => 6 + 2 * time_s;
 
-test("a clock has hours only when there are some", () => {
-  assert.deepEqual(
-    [clock(0), clock(59.9), clock(61), clock(3599), clock(3661)],
-    ["0:00", "0:59", "1:01", "59:59", "1:01:01"],
-  );
+test("a clock has hours only when there are some, and a moment is told to the tenth", () => {
+  assert.deepEqual([0, 59.9, 61, 3599, 3661].map(clock), ["0:00", "0:59", "1:01", "59:59", "1:01:01"]);
+  assert.deepEqual([0, 74, 61.3, 3661.9].map(line.fine), ["0:00.0", "1:14.0", "1:01.3", "1:01:01.9"]);
 });
 
 test("times beneath are round, begin at nought, and are neither few nor many", () => {
@@ -48,10 +27,8 @@ test("times beneath are round, begin at nought, and are neither few nor many", (
     for (let end = 60; end < 400_000; end *= 1.13) {
       const times = tickTimes(end, width);
       const step = times[1] - times[0];
-      assert.ok(
-        times[0] === 0 && times.length >= 2 && times.length <= Math.max(3, width / 110) + 1,
-        `${width} ${end}: ${times}`,
-      );
+      const few = times.length >= 2 && times.length <= Math.max(3, width / 110) + 1;
+      assert.ok(times[0] === 0 && few, `${width} ${end}: ${times}`);
       assert.ok(times.every((time, k) => time === k * step && time <= end) && step % 10 === 0);
     }
 });
@@ -65,79 +42,58 @@ test("all kinds that the engine notes are known, each by a name of its own", () 
 });
 
 test("no two marks of a kind in five pixels, and those that count most on top", () => {
-  const marks = marksOf(many, (time_s) => time_s);
+  const marks = line.marksOf(many, (time_s) => time_s);
   for (const kind of kinds) {
-    const own = marks
-      .filter((mark) => mark.kind === kind)
-      .map(({ at }) => at)
-      .sort((a, b) => a - b);
-    assert.ok(own.length > 0);
-    assert.ok(
-      own.every((at, k) => k === 0 || at - own[k - 1] >= 5),
-      kind,
-    );
+    const own = marks.filter((mark) => mark.kind === kind).map(({ at }) => at);
+    own.sort((a, b) => a - b);
+    assert.ok(own.length > 0 && own.every((at, k) => k === 0 || at - own[k - 1] >= 5), kind);
   }
+  const weights = marks.map(({ kind }) => weightOf(kind));
   assert.deepEqual(
-    marks.map(({ kind }) => weightOf(kind)),
-    marks.map(({ kind }) => weightOf(kind)).sort((a, b) => a - b),
+    weights,
+    weights.toSorted((a, b) => a - b),
   );
-  assert.equal(marksOf(many, (time_s) => 2000 * time_s).length, many.length);
+  assert.equal(line.marksOf(many, (time_s) => 2000 * time_s).length, many.length);
 });
 
 test("names are within the timeline and none lies over another; what counts most has its name", () => {
-  const labels = labelsOf(many, (time_s) => 6 * (time_s - 200), 620);
+  const labels = line.labelsOf(many, (time_s) => 6 * (time_s - 200), 620);
   assert.ok(labels.length > 3);
   for (const { at, half } of labels) assert.ok(at - half >= 0 && at + half <= 620);
   for (const [k, one] of labels.entries())
     for (const other of labels.slice(k + 1)) assert.ok(Math.abs(one.at - other.at) >= one.half + other.half);
   const heaviest = Math.max(...many.slice(-60).map(({ kind }) => weightOf(kind)));
   assert.equal(weightOf(labels[0].kind), heaviest);
-  assert.deepEqual(labelsOf([event(1, 5, "snap"), event(2, 6, "office")], x, 620), []); // they count too little
-  assert.deepEqual(
-    labelsOf([event(1, 5, "goal"), event(2, 6, "kidnap")], x, 620).map(({ kind }) => kind),
-    ["kidnap"],
-  );
+  assert.deepEqual(line.labelsOf([event(1, 5, "snap"), event(2, 6, "office")], x, 620), []); // they count too little
+  const [only, ...none] = line.labelsOf([event(1, 5, "goal"), event(2, 6, "kidnap")], x, 620);
+  assert.deepEqual([only.kind, none], ["kidnap", []]);
 });
 
-test("an event is told with its time and its name", () => {
-  assert.equal(words({ ...event(1, 61, "unreachable"), text: "to 5" }), "1:01 no way: to 5");
-});
-
-test("what repeats is one line that counts, wherever it came from", () => {
-  const line = (/** @type {number} */ number) => ({
-    ...event(number, 10 * number, "place"),
-    line: "several",
-    count: number,
-  });
-  const news = [line(1), event(2, 15, "snap"), line(2), event(3, 21, "snap"), { ...line(3), since_s: 10 }];
+test("an event is told with its time and its name; what repeats is one line that counts, wherever it came from", () => {
+  assert.equal(line.words({ ...event(1, 61, "unreachable"), text: "to 5" }), "1:01 no way: to 5");
+  const several = (/** @type {number} */ k) => ({ ...event(k, 10 * k, "place"), line: "several", count: k });
+  const news = [several(1), event(2, 15, "snap"), several(2), event(3, 21, "snap"), { ...several(3), since_s: 10 }];
   for (let k = 0; k <= news.length; k++) {
-    const told = counted([...counted(news.slice(0, k)), ...news.slice(k)]); // in two messages of any length
-    assert.deepEqual(
-      told.map(({ number }) => number),
-      [2, 3, 3],
-    );
-    assert.equal(words(told[2]), "0:30 places: x, 3 times since 0:10");
+    const told = line.counted([...line.counted(news.slice(0, k)), ...news.slice(k)]); // in two messages of any length
+    assert.equal(told.map(({ number }) => number).join(), "2,3,3");
+    assert.equal(line.words(told[2]), "0:30 places: x, 3 times since 0:10");
   }
 });
 
 test("a span keeps its middle when it is made shorter, stays in the whole, and becomes the whole again", () => {
-  const all = whole(1000);
-  const near = zoomed(all, 0.1, 500, all);
+  const all = line.whole(1000);
+  const near = line.zoomed(all, 0.1, 500, all);
   assert.ok(near && Math.abs(near.to - near.from - 103) < 1e-9);
   const share = (500 - near.from) / (near.to - near.from);
   assert.ok(Math.abs(share - 500 / 1030) < 1e-9);
-  assert.equal(zoomed(near, 20, 500, all), null);
-  const shortest = zoomed(near, 1e-9, 0, all);
+  assert.equal(line.zoomed(near, 20, 500, all), null);
+  const shortest = line.zoomed(near, 1e-9, 0, all);
   assert.ok(shortest && Math.abs(shortest.to - shortest.from - 5) < 1e-9 && shortest.from >= 0);
-  assert.deepEqual(within({ from: 1000, to: 1100 }, all), { from: 930, to: 1030 });
+  assert.deepEqual(line.within({ from: 1000, to: 1100 }, all), { from: 930, to: 1030 });
 });
 
 test("times beneath a part are within it and round", () => {
-  for (const [from, to] of [
-    [100, 105],
-    [930, 1030],
-    [3600, 7200],
-  ]) {
+  for (const [from, to] of path("100 105, 930 1030, 3600 7200")) {
     const times = tickTimesIn(from, to, 700);
     assert.ok(times.length >= 2 && times.length < 12, `${times}`);
     assert.ok(times.every((time) => time >= from && time <= to && Number.isInteger(time)));
@@ -147,23 +103,25 @@ test("times beneath a part are within it and round", () => {
 
 test("the next event and the one before", () => {
   const events = [event(1, 5, "snap"), event(2, 6, "office"), event(3, 9, "lost")];
-  assert.deepEqual([nextEvent(events, 6, 1), nextEvent(events, 6, -1), nextEvent(events, 9, 1)], [9, 5, undefined]);
-});
-
-test("a moment is told to the tenth", () => {
-  assert.deepEqual([fine(0), fine(74), fine(61.3), fine(3661.9)], ["0:00.0", "1:14.0", "1:01.3", "1:01:01.9"]);
+  const next = (/** @type {number} */ from, /** @type {1 | -1} */ way) => line.nextEvent(events, from, way);
+  assert.deepEqual([next(6, 1), next(6, -1), next(9, 1)], [9, 5, undefined]);
 });
 
 test("branches part where the first of them leaves the other", () => {
-  const line = (/** @type {number} */ number, /** @type {number | null} */ parent, /** @type {number} */ from_s) => ({
-    number,
+  const branches = [null, 1, 2, 1].map((parent, k) => ({
+    number: k + 1,
     parent,
-    from_s,
+    from_s: [0, 40, 60, 20][k],
     end_s: 100,
-  });
-  const branches = [line(1, null, 0), line(2, 1, 40), line(3, 2, 60), line(4, 1, 20)];
-  assert.deepEqual([parted(branches, 1, 2), parted(branches, 3, 1), parted(branches, 2, 3)], [40, 40, 60]);
-  assert.deepEqual([parted(branches, 3, 4), parted(branches, 4, 1)], [20, 20]);
+  }));
+  for (const [one, other, time_s] of [
+    [1, 2, 40],
+    [3, 1, 40],
+    [2, 3, 60],
+    [3, 4, 20],
+    [4, 1, 20],
+  ])
+    assert.equal(line.parted(branches, one, other), time_s);
 });
 
 test("two maps lie in one frame, turned as on the stage", () => {

@@ -5,15 +5,15 @@ import { test } from "node:test";
 import { THINGS } from "../../../web/static/model/things.js";
 import { TOOLS, hintOf, toolOf } from "../../../web/static/model/tools.js";
 import { OFFICE_LISTS } from "../../../web/static/shared.js";
-import { wall } from "./chance.js";
+import { path, wall } from "./made.js";
 
 const WORLD = /** @type {any} */ ({
-  walls: [wall([0, 0], [4, 0])],
+  walls: [wall("0 0, 4 0")],
   starts: [],
   lamps: [{ name: "lamp 1", x: 0, y: 0 }],
 });
-/** @param {ToolName} tool @param {Point[]} points */
-const made = (tool, points) => TOOLS[tool].makes?.(points, WORLD, { kind: "glass", height: 2 }) ?? "nothing";
+/** @param {ToolName} tool @param {string} points */
+const made = (tool, points) => TOOLS[tool].makes?.(path(points), WORLD, { kind: "glass", height: 2 }) ?? "nothing";
 
 test("every tool has a key of its own, is found by it, and says what to click for each of its points", () => {
   const names = /** @type {ToolName[]} */ (Object.keys(TOOLS));
@@ -32,94 +32,30 @@ test("every tool has a key of its own, is found by it, and says what to click fo
 });
 
 test("each tool adds one thing to its list", () => {
-  /** @type {[ToolName, Point[], object][]} */
-  const made_of = [
-    [
-      "wall",
-      [
-        [0, 0],
-        [1, 2],
-      ],
-      { from: [0, 0], to: [1, 2], kind: "glass", height: 2 },
-    ],
-    ["lamp", [[1, 2]], { name: "lamp 2", x: 1, y: 2, reach: 4, brightness: 0.5, on: true }],
-    [
-      "box",
-      [
-        [2, 3],
-        [1, 1],
-      ],
-      { name: "box 1", x: 1.5, y: 2, width: 1, depth: 2 },
-    ],
-    ["person", [[1, 1]], { name: "person 1", path: [[1, 1]], loop: false }],
-    [
-      "zone",
-      [
-        [0, 0],
-        [1, 0],
-        [1, 1],
-      ],
-      {
-        name: "slow zone 1",
-        corners: [
-          [0, 0],
-          [1, 0],
-          [1, 1],
-        ],
-        factor: 0.5,
-      },
-    ],
-    [
-      "start",
-      [
-        [1, 1],
-        [1, 4],
-      ],
-      { name: "start 1", x: 1, y: 1, heading_deg: 90 },
-    ],
-    ["place", [[5, 6]], { name: "place 1", x: 5, y: 6 }],
-  ];
-  for (const [tool, points, item] of made_of)
+  for (const [tool, points, item] of /** @type {[ToolName, string, object][]} */ ([
+    ["wall", "0 0, 1 2", { from: [0, 0], to: [1, 2], kind: "glass", height: 2 }],
+    ["lamp", "1 2", { name: "lamp 2", x: 1, y: 2, reach: 4, brightness: 0.5, on: true }],
+    ["box", "2 3, 1 1", { name: "box 1", x: 1.5, y: 2, width: 1, depth: 2 }],
+    ["person", "1 1", { name: "person 1", path: path("1 1"), loop: false }],
+    ["zone", "0 0, 1 0, 1 1", { name: "slow zone 1", corners: path("0 0, 1 0, 1 1"), factor: 0.5 }],
+    ["start", "1 1, 1 4", { name: "start 1", x: 1, y: 1, heading_deg: 90 }],
+    ["place", "5 6", { name: "place 1", x: 5, y: 6 }],
+  ]))
     assert.deepEqual(made(tool, points), [{ do: "add", list: TOOLS[tool].list, item }], tool);
 });
 
 test("a door makes its gap in an inner wall", () => {
-  const steps = made("door", [
-    [1, 0],
-    [2, 0],
-  ]);
+  const steps = made("door", "1 0, 2 0");
   assert.ok(Array.isArray(steps));
-  assert.deepEqual(
-    steps.map((step) => [step.do, step.list]),
-    [
-      ["change", "walls"],
-      ["add", "walls"],
-      ["add", "doors"],
-    ],
-  );
+  assert.equal(steps.map((step) => `${step.do} ${step.list}`).join(), "change walls,add walls,add doors");
   assert.deepEqual(steps[2].item, { name: "door 1", hinge: [1, 0], angle_deg: 0, width: 1 });
 });
 
 test("what cannot be is refused by a sentence with its size and what would be right", () => {
-  assert.equal(
-    made("door", [
-      [0, 5],
-      [0.2, 5],
-    ]),
-    "A door is 0.3 to 6 m wide; this one would be 0.2 m.",
-  );
-  assert.equal(
-    made("door", [
-      [0, 5],
-      [7, 5],
-    ]),
-    "A door is 0.3 to 6 m wide; this one would be 7 m.",
-  );
-  assert.equal(
-    made("box", [
-      [0, 0],
-      [1, 0.04],
-    ]),
-    "A box is at least 0.05 m each way; this one would be 1 × 0.04 m.",
-  );
+  for (const [points, size] of [
+    ["0 5, 0.2 5", "0.2"],
+    ["0 5, 7 5", "7"],
+  ])
+    assert.equal(made("door", points), `A door is 0.3 to 6 m wide; this one would be ${size} m.`);
+  assert.equal(made("box", "0 0, 1 0.04"), "A box is at least 0.05 m each way; this one would be 1 × 0.04 m.");
 });

@@ -1,21 +1,19 @@
-// Which keys mean what, and where.
+// Which keys mean what, and where; and those of a page that only looks on.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { meaningOf } from "../../../web/static/model/key_meanings.js";
-import { GROUPS, actOf } from "../../../web/static/model/key_table.js";
+import { GROUPS, actOf, written } from "../../../web/static/model/key_table.js";
+import { KEYS, isLook, looksOn, newId } from "../../../web/static/model/watching.js";
 
 const NOWHERE = { typing: false, arrows: false, pressing: false, dialog: false };
+const FREE = { ctrlKey: false, metaKey: false, altKey: false, isComposing: false };
 /** @param {string} code @param {string} key @param {Partial<import("../../../web/static/model/key_meanings.js").Pressed>} [rest] */
-const pressed = (code, key, rest = {}) => ({
-  code,
-  key,
-  ctrlKey: false,
-  metaKey: false,
-  altKey: false,
-  isComposing: false,
-  ...rest,
-});
+const pressed = (code, key, rest = {}) => ({ code, key, ...FREE, ...rest });
+const ROWS = GROUPS.flatMap(
+  ({ rows }) => /** @type {readonly import("../../../web/static/model/key_table.js").Row[]} */ (rows),
+);
+const HELP = ROWS.flatMap(({ keys }) => keys);
 
 // What layouts write in the places of a US keyboard, row by row: alone, and with shift; and with AltGr by place.
 const CODES = [
@@ -94,9 +92,16 @@ function deed(stroke) {
       : `${stroke.code.startsWith("Arrow") ? "Arr" : "Key"} ${meaning.drive}`;
 }
 
-const HELP = GROUPS.flatMap(({ rows }) => rows.flatMap(({ keys }) => keys.map(String)));
 const DRIVING_CODES = ["KeyW", "KeyA", "KeyS", "KeyD"];
-const DRIVING = ["Key up", "Key down", "Key left", "Key right", "Arr up", "Arr down", "Arr left", "Arr right"];
+const DRIVING = ["Key", "Arr"].flatMap((by) => ["up", "down", "left", "right"].map((way) => `${by} ${way}`));
+
+test("no key has two meanings, none of them drives, and each is written as on keyboards", () => {
+  assert.equal(new Set(HELP).size, HELP.length);
+  assert.ok(!["w", "a", "s", "d"].some((key) => HELP.includes(key)));
+  for (const { keys, act } of ROWS) for (const key of keys) assert.equal(actOf(key), act);
+  assert.equal(actOf("y"), undefined);
+  assert.deepEqual([" ", "Escape", "?"].map(written), ["space", "esc", "?"]);
+});
 
 for (const layout of Object.keys(LAYOUTS))
   test(`${layout}: every key of the help is there, and means what is written on it`, () => {
@@ -117,45 +122,41 @@ for (const layout of Object.keys(LAYOUTS))
   });
 
 test("four keys drive by their places, and mean what a layout writes there with shift", () => {
+  const shifted = (/** @type {string} */ code, /** @type {string} */ key) => pressed(code, key, { shiftKey: true });
   for (const key of ["w", "z", ",", "ц", "ς"])
     assert.deepEqual(meaningOf(pressed("KeyW", key), NOWHERE), { drive: "up" });
-  assert.deepEqual(meaningOf(pressed("KeyW", "Z", { shiftKey: true }), NOWHERE), { act: "z" }); // French
-  assert.deepEqual(meaningOf(pressed("KeyA", "Q", { shiftKey: true }), NOWHERE), { act: "q" });
-  assert.deepEqual(meaningOf(pressed("KeyW", "<", { shiftKey: true }), NOWHERE), { act: "," }); // Dvorak
+  assert.deepEqual(meaningOf(shifted("KeyW", "Z"), NOWHERE), { act: "z" }); // French
+  assert.deepEqual(meaningOf(shifted("KeyA", "Q"), NOWHERE), { act: "q" });
+  assert.deepEqual(meaningOf(shifted("KeyW", "<"), NOWHERE), { act: "," }); // Dvorak
   assert.deepEqual(meaningOf(pressed("KeyZ", "w"), NOWHERE), { act: "w" }); // which nothing has
-});
-
-test("an arrow is the slider's, a letter drives also there", () => {
-  assert.equal(meaningOf(pressed("ArrowLeft", "ArrowLeft"), { ...NOWHERE, arrows: true }), null);
-  assert.deepEqual(meaningOf(pressed("KeyA", "a"), { ...NOWHERE, arrows: true }), { drive: "left" });
-});
-
-test("nothing is taken from who types, nor from the browser's own keys", () => {
-  for (const code of ["KeyW", "KeyK", "Space"]) {
-    assert.equal(meaningOf(pressed(code, "k"), { ...NOWHERE, typing: true }), null);
-    for (const flag of ["ctrlKey", "metaKey", "altKey", "isComposing"])
-      assert.equal(meaningOf(pressed(code, "k", { [flag]: true }), NOWHERE), null);
-  }
-});
-
-test("space is the button's that has the focus, and play and pause elsewhere", () => {
-  assert.equal(meaningOf(pressed("Space", " "), { ...NOWHERE, pressing: true }), null);
-  assert.deepEqual(meaningOf(pressed("Space", " "), NOWHERE), { act: " " });
-  assert.deepEqual(meaningOf(pressed("KeyK", "K"), { ...NOWHERE, pressing: true }), { act: "k" });
-});
-
-test("a dialog takes all keys but the one for help", () => {
-  for (const [code, key] of [
-    ["KeyW", "w"],
-    ["ArrowUp", "ArrowUp"],
-    ["Escape", "Escape"],
-    ["KeyK", "k"],
-  ])
-    assert.equal(meaningOf(pressed(code, key), { ...NOWHERE, dialog: true }), null);
-  assert.deepEqual(meaningOf(pressed("Slash", "?"), { ...NOWHERE, dialog: true }), { act: "?" });
-});
-
-test("Escape keeps its name, letters are small", () => {
   assert.deepEqual(meaningOf(pressed("Escape", "Escape"), NOWHERE), { act: "Escape" });
   assert.deepEqual(meaningOf(pressed("KeyE", "E"), NOWHERE), { act: "e" });
+});
+
+test("nothing is taken from who types, from a control that has the focus, or from the browser's own keys", () => {
+  const at = (/** @type {string} */ code, /** @type {string} */ key, /** @type {Partial<typeof NOWHERE>} */ where) =>
+    meaningOf(pressed(code, key), { ...NOWHERE, ...where });
+  for (const code of ["KeyW", "KeyK", "Space"]) {
+    assert.equal(at(code, "k", { typing: true }), null);
+    for (const flag of Object.keys(FREE)) assert.equal(meaningOf(pressed(code, "k", { [flag]: true }), NOWHERE), null);
+  }
+  assert.equal(at("ArrowLeft", "ArrowLeft", { arrows: true }), null); // a slider's
+  assert.deepEqual(at("KeyA", "a", { arrows: true }), { drive: "left" });
+  assert.equal(at("Space", " ", { pressing: true }), null); // a button's
+  assert.deepEqual(at("KeyK", "K", { pressing: true }), { act: "k" });
+  for (const code of ["KeyW", "ArrowUp", "Escape", "KeyK"])
+    assert.equal(at(code, code.replace("Key", "").toLowerCase(), { dialog: true }), null);
+  assert.deepEqual(at("Slash", "?", { dialog: true }), { act: "?" });
+});
+
+test("a page that only looks on says so, says what concerns itself alone, and has no key that steers", () => {
+  assert.match(newId(true), /^watch-[0-9a-f]{32}$/);
+  assert.match(newId(false), /^[0-9a-f]{32}$/); // as hard to guess
+  assert.ok(looksOn(newId(true)) && !looksOn(newId(false)));
+  assert.ok(["view", "theme", "tabs", "got"].every(isLook));
+  assert.ok(!["kidnap", "switch", "replay", "present", "vote"].some(isLook));
+  const acts = ROWS.map(({ act }) => act);
+  for (const act of KEYS) assert.ok(acts.includes(act), act);
+  for (const key of ["k", "e", " ", ".", "b", "x", "m", "o", "c", "PageDown"])
+    assert.ok(!KEYS.has(actOf(key) ?? "escape"), key);
 });

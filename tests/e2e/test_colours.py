@@ -1,4 +1,4 @@
-"""The page by keyboard alone, and with the colours of the system instead of its own."""
+"""Colours: those of the plates in the panel, in both themes; and those of the system instead of the page's own."""
 
 from __future__ import annotations
 
@@ -6,22 +6,40 @@ from io import BytesIO
 
 import pytest
 from PIL import Image
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Browser, Page, expect
 
-from tests.e2e.browser import calm, open_page
+from tests.e2e.browser import calm, open_page, turn_theme, until
+from tests.e2e.program import Program
+from web.themes import Theme
+from web.viewer.primitives.palette import palette_of
+
+pytestmark = pytest.mark.long
+
+THEMES: tuple[Theme, Theme] = ("dark", "light")
+NAMED = "(name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim()"
+BROKEN = """() => [...document.querySelectorAll("[role=tabpanel]:not([hidden]) th")]
+    .filter((cell) => cell.getClientRects().length && cell.clientHeight > 30).map((cell) => cell.textContent)"""
 
 
-def test_a_key_right_after_a_dialog_has_its_meaning(program, browser):
-    """Until the next frame the focus is still where it was in the closed dialog."""
-    pressed = """() => document.activeElement.dispatchEvent(
-        new KeyboardEvent("keydown", { key: "c", code: "KeyC", bubbles: true }))"""
+def test_the_panel_has_the_colours_of_the_plates_and_its_words_one_line(program: Program, browser: Browser) -> None:
+    program.command("step", ticks=600)
     with open_page(browser, program.url, stage=False) as page:
-        page.keyboard.press("/")
-        expect(page.locator("#places-typed")).to_be_focused()
-        page.evaluate(pressed)  # a letter of what is looked for
-        expect(page.locator("#lessons-dialog")).to_be_hidden()
-        page.evaluate(f"() => {{ document.getElementById('places-dialog').close(); ({pressed})(); }}")
-        expect(page.locator("#lessons-dialog")).to_be_visible()
+        for name, words in ("Memory", "links of the goal memory"), ("Inspect", "energy now"):
+            page.get_by_role("tab", name=name, exact=True).click()
+            panel = page.get_by_role("tabpanel", name=name)
+            if name == "Inspect":
+                panel.get_by_role("button", name="experience", exact=True).click()
+            expect(panel).to_contain_text(words)
+            assert page.evaluate(BROKEN) == []
+        page.get_by_role("tab", name="Truth").click()
+        plot = "document.querySelector('#panel-truth canvas')?.toDataURL()"
+        before = ""
+        for theme in THEMES:
+            shown = [page.evaluate(NAMED, f"--packet-{k + 1}") for k in range(4)]
+            assert shown == ["#{:02x}{:02x}{:02x}".format(*colour) for colour in palette_of(theme).packets]
+            until(page, f"(before) => ({plot} ?? before) !== before", argument=before)  # plots are drawn anew
+            before = page.evaluate(f"() => {plot}")
+            turn_theme(page)
 
 
 def colours(page: Page, part: str) -> list[tuple[int, ...]]:
@@ -31,9 +49,10 @@ def colours(page: Page, part: str) -> list[tuple[int, ...]]:
     return [colour for count, colour in counts if count * 20 >= image.width * image.height]
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("light", [True, False])
-def test_with_the_system_s_own_colours_nothing_is_told_by_colour_alone(program, browser, light):
+def test_with_the_system_s_own_colours_nothing_is_told_by_colour_alone(
+    program: Program, browser: Browser, light: bool
+) -> None:
     with open_page(browser, program.url, stage=False, light=light) as page:
         page.emulate_media(forced_colors="active")
         page.wait_for_selector("#panel .bar .across")
