@@ -86,16 +86,6 @@ test("each of the six demos is three clicks from a fresh page", long, () =>
   ),
 );
 
-test("an address begins a lesson once", () =>
-  fresh(
-    async (page) => {
-      await isIn(page, "predict");
-      assert.ok(!page.window.location.href.includes("#")); // loaded again, the page begins nothing
-      assert.equal((await state()).lesson.name, "dark");
-    },
-    { path: "#lesson=dark" },
-  ));
-
 test("it runs until something happens and stops there", () =>
   fresh(async (page) => {
     const ask = async (/** @type {string} */ words) => {
@@ -121,17 +111,6 @@ test("it runs until something happens and stops there", () =>
     const said = page.toasted.size;
     await ask("it is at its goal"); // there is none: that is refused
     await until("it is refused", () => page.toasted.size > said);
-  }));
-
-test("a symbol leads to its row in Tune", () =>
-  fresh(async (page) => {
-    await choose(page, "quicker");
-    await page.click("#lesson-formulas .symbols button");
-    assert.equal(page.text("#panel [role=tab][aria-selected=true]"), "Tune");
-    const rows = () => page.all("#panel .knob").filter((knob) => knob.checkVisibility());
-    await until("it is the only row", () => rows().length === 1);
-    assert.ok(rows()[0].contains(page.document.activeElement));
-    assert.match(rows()[0].title, /moving average/);
   }));
 
 test("a clicker goes through a lesson", () =>
@@ -172,24 +151,38 @@ test("rounds are shown one after the other", () =>
     await page.says("#lesson-which", "round 2 of 2");
   }));
 
-test("a lesson that is broken off says by what, and begins once more", () =>
-  fresh(async (page) => {
-    await choose(page, "dark");
-    assert.ok(!page.shown("#lesson-again"));
-    await page.click("#lesson-show");
-    await isIn(page, "showing");
-    await command("drive", { speed: 0.2, yaw_rate: 0 });
-    await isIn(page, "sandbox");
-    await page.says("#lesson-doing", "Broken off: somebody drove the robot by hand.");
-    assert.ok(page.find("#lesson-again").classList.contains("go"));
-    await page.click("#lesson-again");
-    await isIn(page, "predict");
-    assert.ok(!page.text("#lesson-doing").includes("Broken off"));
-    assert.ok(!page.find("#lesson-again").classList.contains("go"));
-  }));
+test("an address begins a lesson once; one that is broken off says by what, and begins once more", () =>
+  fresh(
+    async (page) => {
+      await isIn(page, "predict");
+      assert.ok(!page.window.location.href.includes("#")); // loaded again, the page begins nothing
+      assert.equal((await state()).lesson.name, "dark");
+      assert.ok(!page.shown("#lesson-again"));
+      await page.click("#lesson-show");
+      await isIn(page, "showing");
+      await command("drive", { speed: 0.2, yaw_rate: 0 });
+      await isIn(page, "sandbox");
+      await page.says("#lesson-doing", "Broken off: somebody drove the robot by hand.");
+      assert.ok(page.find("#lesson-again").classList.contains("go"));
+      await page.click("#lesson-again");
+      await isIn(page, "predict");
+      assert.ok(!page.text("#lesson-doing").includes("Broken off"));
+      assert.ok(!page.find("#lesson-again").classList.contains("go"));
+    },
+    { path: "#lesson=dark" },
+  ));
 
-test("the card leads to Inspect where that tells why", () =>
+test("a symbol leads to its row in Tune, and the card to Inspect where that tells why", () =>
   fresh(async (page) => {
+    const tab = () => page.text("#panel [role=tab][aria-selected=true]");
+    await choose(page, "quicker");
+    await page.click("#lesson-formulas .symbols button");
+    assert.equal(tab(), "Tune");
+    const rows = () => page.all("#panel .knob").filter((knob) => knob.checkVisibility());
+    await until("it is the only row", () => rows().length === 1);
+    assert.ok(rows()[0].contains(page.document.activeElement));
+    assert.match(rows()[0].title, /moving average/);
+
     await choose(page, "snap");
     await page.click("#lesson-show");
     await isIn(page, "showing");
@@ -200,7 +193,7 @@ test("the card leads to Inspect where that tells why", () =>
     page.press("z"); // presenting, the panel is away
     await until("it presents", () => page.document.body.dataset.presenter === "true");
     await page.click(".outcome button");
-    assert.equal(page.text("#panel [role=tab][aria-selected=true]"), "Inspect");
+    assert.equal(tab(), "Inspect");
     await page.says("#panel", "What led to it");
     page.press("z");
   }));

@@ -185,27 +185,27 @@ export class Page {
     return `#panel-${name.toLowerCase()}`;
   }
 
-  /** A key, as on an English keyboard, wherever the focus is. @param {string} key @param {{ shift?: boolean }} [with_] */
+  /** A key, as on an English keyboard, wherever the focus is. @param {string} key @param {{ shift?: boolean, ctrl?: boolean }} [with_] */
   press(key, with_) {
     this.down(key, with_);
     this.up(key, with_);
   }
 
-  /** @param {string} key @param {{ shift?: boolean }} [with_] */
+  /** @param {string} key @param {{ shift?: boolean, ctrl?: boolean }} [with_] */
   down(key, with_) {
     this.key("keydown", key, with_);
   }
 
-  /** @param {string} key @param {{ shift?: boolean }} [with_] */
+  /** @param {string} key @param {{ shift?: boolean, ctrl?: boolean }} [with_] */
   up(key, with_) {
     this.key("keyup", key, with_);
   }
 
-  /** @param {string} type @param {string} key @param {{ shift?: boolean }} [with_] */
-  key(type, key, { shift = false } = {}) {
+  /** @param {string} type @param {string} key @param {{ shift?: boolean, ctrl?: boolean }} [with_] */
+  key(type, key, { shift = false, ctrl = false } = {}) {
     const code =
       /** @type {Record<string, string>} */ (CODES)[key] ?? (/^[a-z]$/i.test(key) ? `Key${key.toUpperCase()}` : key);
-    const event = { key, code, shiftKey: shift, bubbles: true, cancelable: true, composed: true };
+    const event = { key, code, shiftKey: shift, ctrlKey: ctrl, bubbles: true, cancelable: true, composed: true };
     const target = /** @type {any} */ (this.document.activeElement ?? this.document.body);
     const goes = target.dispatchEvent(new this.window.KeyboardEvent(type, event));
     if (type !== "keydown" || key !== "Enter" || !goes) return;

@@ -14,11 +14,21 @@ const walked = (use) =>
     await use(page);
   });
 
-/** @param {Page} page */
-const knobs = (page) => page.all("#panel .knob").filter((knob) => knob.checkVisibility());
+/** A switch of a tab by what it says. @param {Page} page @param {string} tab @param {string} words */
+const switchOf = (page, tab, words) =>
+  page
+    .all(`#panel-${tab} label`)
+    .find((label) => label.textContent.includes(words))
+    ?.querySelector("input");
 
-test("every tab shows something", () =>
+test("every tab shows something, is told of while it is open only, and arrows go from one to the next", () =>
   walked(async (page) => {
+    /** @type {string[]} */
+    let asked = [];
+    page.holds(({ type, names }) => {
+      if (type === "tabs") asked = names;
+      return false;
+    });
     for (const [name, words] of [
       ["Senses", "local view cells"],
       ["Memory", "links of the goal memory"],
@@ -27,96 +37,95 @@ test("every tab shows something", () =>
       ["Truth", "map error, after alignment"],
       ["Office", "preset"],
       ["Tune", "parameters"],
-    ])
+    ]) {
       await page.says(await page.tab(name), words);
+      assert.ok(name === "Senses" || String(asked) === name, `${asked}`);
+    }
+    page.press("p");
+    await until("nobody sees what is hidden", () => asked.length === 0);
+    page.press("p");
     await page.says(await page.tab("Senses"), `of ${(await state()).views})`);
-    await page.says(
-      await page.tab("Memory"),
-      "where the winning packet was (start) and where the views brought it (finish)",
-    );
+    const ends = "where the winning packet was (start) and where the views brought it (finish)";
+    await page.says(await page.tab("Memory"), ends);
+
+    page.find("#tab-senses").focus();
+    for (const [key, name] of [
+      ["ArrowRight", "memory"],
+      ["End", "tune"],
+      ["ArrowRight", "senses"],
+      ["ArrowLeft", "tune"],
+      ["Home", "senses"],
+    ]) {
+      page.press(key);
+      assert.equal(page.document.activeElement?.id, `tab-${name}`);
+      assert.ok(page.shown(`#panel-${name}`));
+    }
+    assert.equal(page.all("[role=tab]").filter((tab) => tab.tabIndex === 0).length, 1);
   }));
 
-test("a parameter is found, turned and set back; what is wrong with one is said", () =>
+test("a parameter is found, turned and set back; what is wrong with one is said; what somebody types stays typed", () =>
   walked(async (page) => {
     const tune = await page.tab("Tune");
-    await until("they have come", () => knobs(page).length > 5);
+    const knobs = () => page.all("#panel .knob").filter((knob) => knob.checkVisibility());
+    await until("they have come", () => knobs().length > 5);
     await page.fill(`${tune} [type=search]`, "match threshold");
-    const knob = knobs(page)[0];
-    const field = knob.querySelector("input");
-    const back = knob.querySelector("button");
+    const [field, back] = [knobs()[0].querySelector("input"), knobs()[0].querySelector("button")];
     const was = field.value;
+    const isBack = () => until("it is as before", () => field.value === was && !back.checkVisibility());
+    const turn = (/** @type {number} */ value) =>
+      command("set_parameter", { name: "local_view.match_threshold", value });
+    const turns = () => page.text("#events").split("match_threshold").length - 1;
     await page.fill(field, "7.5");
     await page.says("#events", "match_threshold");
     await page.click(back);
-    await until("it is as before", () => field.value === was && !back.checkVisibility());
+    await isBack();
     await page.fill(field, "-3");
     await page.told("match_threshold"); // why not
-    await until("it is as before", () => field.value === was);
-    await page.fill(`${tune} [type=search]`, "no such thing");
-    await page.says(`${tune} [role=status]`, "nothing is called “no such thing”");
-    await page.fill(`${tune} [type=search]`, "takes effect at reset");
-    assert.ok(knobs(page).length > 3);
-    assert.ok(knobs(page).every((one) => one.querySelector("[role=img]")));
-  }));
+    await isBack();
 
-test("what somebody types stays typed", () =>
-  walked(async (page) => {
-    const tune = await page.tab("Tune");
-    await until("they have come", () => knobs(page).length > 5);
-    await page.fill(`${tune} [type=search]`, "match threshold");
-    const field = knobs(page)[0].querySelector("input");
     field.focus();
     field.value = "1";
     field.dispatchEvent(new page.window.Event("input", { bubbles: true }));
-    await command("set_parameter", { name: "local_view.match_threshold", value: 5 });
-    await page.says("#events", "match_threshold");
+    const before = turns();
+    await turn(5);
+    await until("it is told", () => turns() === before + 1);
     await command("step");
     await page.says("#clock", "0:30");
     assert.equal(field.value, "1");
-    const turns = () => page.text("#events").split("match_threshold").length - 1;
     await page.fill(field, "5.5");
-    await until("it is taken", () => turns() === 2);
-    await command("set_parameter", { name: "local_view.match_threshold", value: 4 });
+    await until("it is taken", () => turns() === before + 2);
+    await turn(4);
     await until("it follows again", () => field.value === "4");
-    await page.click(knobs(page)[0].querySelector("button"));
-    await until("it is the default", () => !knobs(page)[0].querySelector("button").checkVisibility());
+    await page.click(back);
+    await isBack();
+
+    await page.fill(`${tune} [type=search]`, "no such thing");
+    await page.says(`${tune} [role=status]`, "nothing is called “no such thing”");
+    await page.fill(`${tune} [type=search]`, "takes effect at reset");
+    assert.ok(knobs().length > 3);
+    assert.ok(knobs().every((one) => one.querySelector("[role=img]")));
   }));
 
-test("a switch is on for all who look", () =>
+test("a switch is on for all who look, and keys drive although it has been clicked", () =>
   walked(async (page) => {
-    const switchOf = (/** @type {Page} */ one) =>
-      one
-        .all("#panel-memory label")
-        .find((label) => label.textContent.includes("Occupancy among the pose cells"))
-        ?.querySelector("input");
     await page.tab("Memory");
     await open(async (other) => {
       await other.tab("Memory");
-      await until("both have it", () => switchOf(page) && switchOf(other));
-      assert.ok(!switchOf(other).checked);
-      switchOf(page).click();
-      await until("it is on there too", () => switchOf(other).checked);
-      switchOf(other).click();
-      await until("it is off here too", () => !switchOf(page).checked);
+      const [here, there] = [page, other].map((one) => () => switchOf(one, "memory", "Occupancy among the pose cells"));
+      await until("both have it", () => here() && there());
+      assert.ok(!there().checked);
+      here().click();
+      await until("it is on there too", () => there().checked);
+      there().click();
+      await until("it is off here too", () => !here().checked);
+      await page.click(here());
+      await command("resume");
+      page.down("ArrowLeft");
+      await until("it is driven", async () => (await state()).mode === "manual");
+      page.up("ArrowLeft");
+      await command("pause");
+      await page.click(here());
     });
-  }));
-
-test("a key drives although a switch has been clicked", () =>
-  walked(async (page) => {
-    await page.tab("Memory");
-    const goal = () =>
-      page
-        .all("#panel-memory label")
-        .find((label) => label.textContent.includes("Goal memory"))
-        ?.querySelector("input");
-    await until("it is there", goal);
-    await page.click(goal());
-    await command("resume");
-    page.down("ArrowLeft");
-    await until("it is driven", async () => (await state()).mode === "manual");
-    page.up("ArrowLeft");
-    await command("pause");
-    await page.click(goal());
   }));
 
 test("a tick goes stage by stage from the panel, and over the page", () =>
@@ -140,15 +149,8 @@ test("a tick goes stage by stage from the panel, and over the page", () =>
       if (k < 9) await page.click("#walk-next");
     }
     assert.deepEqual(titles, [
-      "Image and odometry",
-      "View match",
-      "Injection by the view",
-      "Path integration",
-      "Excitation",
-      "Inhibition",
-      "Normalisation",
-      "Experience choice",
-      "Map correction",
+      ...["Image and odometry", "View match", "Injection by the view", "Path integration", "Excitation", "Inhibition"],
+      ...["Normalisation", "Experience choice", "Map correction"],
     ]);
     assert.equal((await state()).tick, tick + 1);
     await page.click("#walk-back");
@@ -159,21 +161,19 @@ test("a tick goes stage by stage from the panel, and over the page", () =>
     await until("it is over", () => !page.shown("#walk"));
   }));
 
-test("a stored view is shown beside what is seen now, by click and by key", () =>
+test("a stored view is shown beside what is seen now; why a false positive came is told, and left out", () =>
   walked(async (page) => {
-    const inspecting = () => page.text("#panel [role=tab][aria-selected=true]") === "Inspect";
+    const inspecting = () =>
+      until("Inspect is open", () => page.text("#panel [role=tab][aria-selected=true]") === "Inspect");
     await page.push("Inspect the stored view");
-    await until("Inspect is open", inspecting);
+    await inspecting();
     await page.says("#panel-inspect", "as it is stored");
     await page.tab("Senses");
     page.find("#panel-senses [role=slider]").focus();
     page.press("ArrowRight");
     page.press("Enter");
-    await until("Inspect is open", inspecting);
-  }));
+    await inspecting();
 
-test("why a false positive came is told, and left out", () =>
-  walked(async (page) => {
     const wrong = (/** @type {number} */ value) =>
       command("set_parameter", { name: "local_view.false_positives", value });
     await wrong(0.2);
@@ -194,32 +194,12 @@ test("why a false positive came is told, and left out", () =>
     await wrong(0); // it was not yet, there
   }));
 
-test("arrows go from tab to tab", () =>
-  fresh(async (page) => {
-    page.find("#tab-senses").focus();
-    for (const [key, name] of [
-      ["ArrowRight", "memory"],
-      ["End", "tune"],
-      ["ArrowRight", "senses"],
-      ["ArrowLeft", "tune"],
-      ["Home", "senses"],
-    ]) {
-      page.press(key);
-      assert.equal(page.document.activeElement?.id, `tab-${name}`);
-      assert.ok(page.shown(`#panel-${name}`));
-    }
-    assert.equal(page.all("[role=tab]").filter((tab) => tab.tabIndex === 0).length, 1);
-  }));
-
 test("people, lamps and presets are switched", () =>
   fresh(async (page) => {
     await command("reset", { world: "living" });
     const living = async () => (await state()).living;
-    const turn = async (/** @type {string} */ name) => {
-      const label = () => page.all("#panel-office label").find((one) => one.textContent.trim() === name);
-      await until(`there is a switch for ${name}`, label);
-      await page.click(label().querySelector("input"));
-    };
+    const turn = async (/** @type {string} */ name) =>
+      page.click(await until(`there is a switch for ${name}`, () => switchOf(page, "office", name)));
     await page.tab("Office");
     await command("step");
     assert.equal((await living()).people, 3);
@@ -233,14 +213,14 @@ test("people, lamps and presets are switched", () =>
     await turn("hall west");
     await until("the lamp is off", async () => !(await living()).lamps["hall west"]);
     assert.ok((await living()).lamps["hall east"]);
-    const preset = "#panel-office [aria-label=preset]";
-    const before = JSON.parse((await post("situation", {})).file).values;
-    await page.choose(preset, "Pioneer 2DXE 2004");
+    const values = async () => JSON.parse((await post("situation", {})).file).values;
+    const before = await values();
+    await page.choose("#panel-office [aria-label=preset]", "Pioneer 2DXE 2004");
     await page.says("#events", "preset Pioneer 2DXE 2004");
     await command("set_parameter", { name: "local_view.field_of_view", value: 1.2 }); // not that of the camera
     await page.told("robot.camera_fov_rad");
     await command("reset"); // a situation tells the values of its beginning
-    const now = JSON.parse((await post("situation", {})).file).values;
+    const now = await values();
     for (const name of Object.keys(now).filter((name) => now[name] !== before[name]))
       await command("set_parameter", { name, value: before[name] });
   }));

@@ -1,5 +1,6 @@
 // What a person does in the world editor: opens it, clicks and drags on its plan.
 
+import { path } from "../unit/static/made.js";
 import { told, until } from "./program.js";
 
 /** @typedef {import("./page.js").Page} Page */
@@ -23,27 +24,28 @@ export async function edit(page) {
 /** @param {Page} page @param {string} words */
 export const says = (page, words) => page.says("#plan-status", words);
 
-/** Where a point of the office (10 x 8 m) is on the plan, by its drawn outline. @param {Page} page @param {number} x @param {number} y @returns {[number, number]} */
-function at(page, x, y) {
-  const numbers = page
+/** Where points of the office (10 x 8 m) are on the plan, by its drawn outline. @param {Page} page @param {string} points as in an SVG: "1 2, 3 2" */
+function on(page, points) {
+  const [xs, ys] = [/** @type {number[]} */ ([]), /** @type {number[]} */ ([])];
+  for (const [k, number] of page
     .find("#plan .outer")
     .getAttribute("d")
     .match(/[\d.]+/g)
-    .map(Number);
-  const [across, down] = [0, 1].map((k) =>
-    numbers.filter((/** @type {number} */ _, /** @type {number} */ n) => n % 2 === k),
+    .entries())
+    (k % 2 ? ys : xs).push(Number(number));
+  const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+  return path(points).map(
+    ([x, y]) => /** @type {Point} */ ([left + ((right - left) * x) / 10, bottom - ((bottom - top) * y) / 8]),
   );
-  const [left, right, top, bottom] = [Math.min(...across), Math.max(...across), Math.min(...down), Math.max(...down)];
-  return [left + ((right - left) * x) / 10, bottom - ((bottom - top) * y) / 8];
 }
 
-/** @param {Page} page @param {...[number, number]} points */
-export function click(page, ...points) {
-  for (const point of points) page.drag("#plan", [at(page, ...point)]);
+/** @param {Page} page @param {string} points */
+export function click(page, points) {
+  for (const point of on(page, points)) page.drag("#plan", [point]);
 }
 
-/** @param {Page} page @param {[number, number]} start @param {[number, number]} end */
-export function drag(page, start, end) {
-  const [from, to] = [at(page, ...start), at(page, ...end)];
+/** @param {Page} page @param {string} ends */
+export function drag(page, ends) {
+  const [from, to] = on(page, ends);
   page.drag("#plan", [from, [(from[0] + to[0]) / 2, (from[1] + to[1]) / 2], to]);
 }

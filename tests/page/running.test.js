@@ -59,29 +59,17 @@ test("two tabs agree, each in its own theme, which is kept", () =>
     await open(async (three) => assert.equal(theme(three), "light"), { kept: { theme: "light" } });
   }));
 
-test("a refusal is a sentence on the page", () =>
+test("a refusal is a sentence; of toasts there is the same only once, the newest goes first, a click takes one away", () =>
   fresh(async (page) => {
-    page.press("x"); // there is no goal: the key has no meaning
-    await command("begin_lesson", { name: "dark" });
-    await command("end_lesson");
-    await page.push("Edit the office");
-    page.press("Escape");
-    page.hear({
-      type: "answer",
-      accepted: false,
-      detail: [{ field: "x", value: 9, reason: "there is no free floor" }],
-    });
+    const said = () => {
+      const words = page.all(".toast span").map((part) => part.textContent);
+      return words.filter((one) => !one.includes("graphics card"));
+    };
+    const detail = [{ field: "x", value: 9, reason: "there is no free floor" }];
+    page.hear({ type: "answer", accepted: false, detail });
     await page.told("There is no free floor.");
     assert.ok(page.shown("#alerts .toast.bad"));
-  }));
-
-test("toasts: the same only once, the newest goes first, a click takes one away", () =>
-  fresh(async (page) => {
-    const said = () =>
-      page
-        .all(".toast span")
-        .map((part) => part.textContent)
-        .filter((words) => !words.includes("graphics card"));
+    page.press("Escape");
     for (const text of ["one", "two", "three", "two"]) page.hear({ type: "notice", text });
     assert.deepEqual(said().toSorted(), ["One.", "Three.", "Two."]);
     page.press("Escape");
@@ -99,23 +87,21 @@ test("every event has a name, a mark and a place in the legend; what goes wrong 
     const { kinds } = await import("../../web/static/model/event_kinds.js");
     await command("step", { ticks: 300 });
     await page.says("#clock", "0:30");
-    const events = [...kinds, "never heard of"].map((kind, k) => ({
-      number: 10_000 + k,
-      time_s: k,
+    const event = (/** @type {number} */ time_s, /** @type {string} */ kind, text = `text of ${kind}`) => ({
+      number: 10_000 + time_s,
+      time_s,
       kind,
-      text: `text of ${kind}`,
-    }));
+      text,
+    });
+    const events = [...kinds, "never heard of"].map((kind, k) => event(k, kind));
     page.hear({ type: "events", fresh: true, events });
     await until("all are marked", () => page.all("#timeline .mark").length === events.length);
     assert.equal(page.all("#legend li").length, kinds.length);
     assert.ok(page.all("#legend li").every((row) => row.textContent.trim()));
     assert.ok(page.text("#events").includes("never heard of: text of never heard of"));
     assert.equal(page.toasted.size, 1); // of those there were: the warning
-    page.hear({
-      type: "events",
-      fresh: false,
-      events: [{ number: 10_100, time_s: 29, kind: "unreachable", text: "no way to experience 12 is known" }],
-    });
+    const late = { ...event(29, "unreachable", "no way to experience 12 is known"), number: 10_100 };
+    page.hear({ type: "events", fresh: false, events: [late] });
     await page.told("No way to experience 12 is known");
     page.drag("#timeline", [[6 + (1188 * 29) / 60, 20]], () =>
       assert.match(page.text("#event-tip"), /no way: no way to experience 12/),
@@ -208,17 +194,10 @@ test("the help lists the keys by group, and a dialog takes them", () =>
   fresh(async (page) => {
     page.press("?");
     await until("it is open", () => page.shown("#keys"));
-    assert.deepEqual(
-      page.all("#keys h4").map((head) => head.textContent),
-      ["Robot", "Time", "Looking", "Presenter", "Page"],
-    );
-    assert.equal(
-      page
-        .all("#keys li")
-        .find((row) => row.textContent.includes("kidnap"))
-        .querySelector("kbd").textContent,
-      "k",
-    );
+    const heads = page.all("#keys h4").map((head) => head.textContent);
+    assert.deepEqual(heads, ["Robot", "Time", "Looking", "Presenter", "Page"]);
+    const row = page.all("#keys li").find((one) => one.textContent.includes("kidnap"));
+    assert.equal(row.querySelector("kbd").textContent, "k");
     page.press("k");
     assert.equal((await state()).tick, 0);
     assert.ok(!page.text("#events").includes("kidnap"));
@@ -230,37 +209,45 @@ test("the help lists the keys by group, and a dialog takes them", () =>
 
 test("a presenter goes on and back, and others may go through something", () =>
   fresh(async (page) => {
-    const shown = () => page.text(".views [aria-pressed=true]");
-    page.press("z");
-    page.press("PageDown");
-    page.press("PageDown");
-    assert.equal(shown(), "Pose cells");
-    page.press("PageUp");
-    assert.equal(shown(), "Office");
+    const presses = (/** @type {string[]} */ keys, /** @type {string} */ view) => {
+      for (const key of keys) page.press(key);
+      assert.equal(page.text(".views [aria-pressed=true]"), view);
+    };
+    presses(["z", "PageDown", "PageDown"], "Pose cells");
+    presses(["PageUp"], "Office");
     page.document.addEventListener("presenter:next", (event) => event.preventDefault());
-    page.press("PageDown");
-    assert.equal(shown(), "Office");
-    page.press("q");
+    presses(["PageDown", "q"], "Office");
     assert.equal(page.document.body.dataset.presenter, "true");
-    page.press("z");
-    page.press("PageDown");
-    assert.equal(shown(), "Office");
+    presses(["z", "PageDown"], "Office");
   }));
 
-test("a key that is held drives, and letting go stops", () =>
+test("keys that are held drive; letting go, looking away or leaving stops", () =>
   fresh(async (page) => {
     await command("resume");
-    const { robot } = await state();
-    page.down("w");
-    await becomes(
-      "it is driven",
-      (now) => now.mode === "manual" && Math.hypot(now.robot.x - robot.x, now.robot.y - robot.y) > 0.05,
-    );
-    page.up("w");
-    await until("it stands", async () => {
-      const { robot: a, tick } = await state();
-      await becomes("a second later", (now) => now.tick >= tick + 10);
-      const { robot: b } = await state();
-      return a.x === b.x && a.y === b.y;
-    });
+    /** Drives left and on, until it does. @param {Page} driver */
+    const drives = async (driver) => {
+      const { robot } = await state();
+      for (const key of ["w", "a"]) driver.down(key);
+      await becomes("it is driven", ({ mode, robot: now }) => {
+        const turned = Math.sin(now.heading_rad - robot.heading_rad);
+        return mode === "manual" && turned > 0.05 && Math.hypot(now.x - robot.x, now.y - robot.y) > 0.02;
+      });
+    };
+    const stands = () =>
+      until("it stands", async () => {
+        const { robot, tick } = await state();
+        await becomes("a second later", (now) => now.tick >= tick + 10);
+        return JSON.stringify(robot) === JSON.stringify((await state()).robot);
+      });
+    await drives(page);
+    for (const key of ["w", "a"]) page.up(key);
+    await stands();
+    page.document.hasFocus = () => false;
+    for (const end of ["blur", "pagehide"]) {
+      await drives(page);
+      page.window.dispatchEvent(new page.window.Event(end));
+      await stands();
+    }
+    await open(drives);
+    await stands();
   }));

@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { path } from "../unit/static/made.js";
 import { fresh } from "./page.js";
 import { command, state, told, until } from "./program.js";
 
@@ -17,8 +18,8 @@ const opened = (use) =>
     await command("edit_world", { steps: [add("doors", DOOR), add("lamps", LAMP)] });
     await page.click("#edit");
     await until("the plan is drawn", () => page.find("#plan .outer"));
-    await page.click("#edit-time");
-    await until("it is open", () => page.shown("#time"));
+    page.press("c");
+    await until("it is open, and has the keys", () => page.document.activeElement?.id === "time");
     await use(page);
   });
 
@@ -38,20 +39,14 @@ async function addLine(page, when, what, which) {
 
 /** The world's script, by time, is this: time, action, name or level. @param {[number, string, unknown][]} lines */
 async function linesAre(...lines) {
-  const script = async () =>
-    ((await told("world")).world.script ?? []).toSorted(
-      (/** @type {any} */ a, /** @type {any} */ b) => a.at_s - b.at_s,
-    );
-  const said = async () =>
-    (await script()).map((/** @type {any} */ line) => [
-      line.at_s,
-      line.do,
-      line.do === "daylight" ? line.level : line.name,
-    ]);
-  await until(
-    `the script is ${JSON.stringify(lines)}`,
-    async () => JSON.stringify(await said()) === JSON.stringify(lines),
-  );
+  const said = async () => {
+    /** @type {any[]} */
+    const script = (await told("world")).world.script ?? [];
+    const sorted = script.toSorted((a, b) => a.at_s - b.at_s);
+    return JSON.stringify(sorted.map((line) => [line.at_s, line.do, line.do === "daylight" ? line.level : line.name]));
+  };
+  const wanted = JSON.stringify(lines);
+  await until(`the script is ${wanted}`, async () => (await said()) === wanted);
 }
 
 const SHUTS = /** @type {[number, string, unknown]} */ ([5, "close_door", "lab"]);
@@ -144,33 +139,22 @@ test("what is no time or level is refused with the reason", () =>
 
 test("the daylight is written by its points", () =>
   opened(async (page) => {
-    const is = (/** @type {object | null} */ course) =>
-      until(
-        `the daylight is ${JSON.stringify(course)}`,
-        async () => JSON.stringify((await told("world")).world.daylight ?? null) === JSON.stringify(course),
-      );
+    const is = (/** @type {string | null} */ points, /** @type {number} */ repeat_s) => {
+      const course = JSON.stringify(points && { points: path(points), repeat_s });
+      const now = async () => JSON.stringify((await told("world")).world.daylight ?? null);
+      return until(`the daylight is ${course}`, async () => (await now()) === course);
+    };
     const add = async (/** @type {string} */ when, /** @type {string} */ level) => {
       await page.fill("#daylight-add .when", when);
       await page.fill("#daylight-add .level", level);
       return page.click("#daylight-add button");
     };
     assert.ok(!page.shown("#daylight-again"));
-    for (const [when, level] of [
-      ["0:10", "0.5"],
-      ["0", "1"],
-      ["0:20", "0.25"],
-    ]) {
+    for (const [when, level] of Object.entries({ "0:10": "0.5", "0:00": "1", "0:20": "0.25" })) {
       await add(when, level);
       await says(page, `Added: daylight ${level}`);
     }
-    await is({
-      points: [
-        [0, 1],
-        [10, 0.5],
-        [20, 0.25],
-      ],
-      repeat_s: 0,
-    });
+    await is("0 1, 10 0.5, 20 0.25", 0);
     assert.equal(page.all("#daylight-curve .point").length, 3);
     await add("10", "0.4");
     await says(page, "There is a point at 0:10 already; change that one.");
@@ -180,33 +164,19 @@ test("the daylight is written by its points", () =>
     await page.says("#daylight-now", /^0\.75$/);
 
     await page.fill(page.all("#daylight-points li")[1].querySelector(".level"), "0.1");
-    await is({
-      points: [
-        [0, 1],
-        [10, 0.1],
-        [20, 0.25],
-      ],
-      repeat_s: 0,
-    });
+    await is("0 1, 10 0.1, 20 0.25", 0);
     await page.fill("#daylight-repeat", "0:15");
     await says(page, "15 s must be 0 or at least the last point's 20 s");
     await page.fill("#daylight-repeat", "0:30");
-    await is({
-      points: [
-        [0, 1],
-        [10, 0.1],
-        [20, 0.25],
-      ],
-      repeat_s: 30,
-    });
+    await is("0 1, 10 0.1, 20 0.25", 30);
     await page.says("#daylight-curve", "0:30, then again");
     for (let left = 2; left >= 0; left--) {
       await page.click("#daylight-points .remove");
       await until(`${left} points are left`, () => page.all("#daylight-points li").length === left);
     }
-    await is(null);
+    await is(null, 0);
     await command("step", { ticks: 1 });
     await page.says("#daylight-now", /^1\.00$/);
     await page.click("#edit-undo");
-    await is({ points: [[20, 0.25]], repeat_s: 30 });
+    await is("20 0.25", 30);
   }));

@@ -4,8 +4,9 @@ import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { beforeEach, test } from "node:test";
+import { path } from "../unit/static/made.js";
 import { fresh } from "./page.js";
-import { edit, wallsAre, world } from "./plan.js";
+import { edit, world } from "./plan.js";
 import { command, own, post, state, until } from "./program.js";
 
 /** @typedef {import("./page.js").Page} Page */
@@ -44,29 +45,16 @@ test("an empty world is begun, drawn in, and saved", () =>
     assert.deepEqual([name, tick], ["gym", 0]);
     const { walls, starts, lamps } = await world();
     assert.deepEqual(
-      walls.map((/** @type {any} */ wall) => wall.to),
-      [
-        [12, 0],
-        [12, 6.5],
-        [0, 6.5],
-        [0, 0],
-      ],
+      walls.map((/** @type {Wall} */ wall) => wall.to),
+      path("12 0, 12 6.5, 0 6.5, 0 0"),
     );
     assert.deepEqual([starts.length, lamps.length], [1, 1]);
     assert.ok(!existsSync(file("gym")));
 
-    await until("the plan is drawn", () => page.find("#plan .outer"));
-    await page.fill("#grid", "0.25");
-    page.find("#plan").focus();
-    page.press("w");
-    page.press("Enter");
-    page.press("ArrowUp", { shift: true });
-    page.press("Enter");
-    await wallsAre(5);
     await page.click("#edit-save");
     await page.click("#save-form .go");
     await until("it is saved", () => !page.shown("#edit-unsaved"));
-    assert.equal(JSON.parse(readFileSync(file("gym"), "utf-8")).walls.length, 5);
+    assert.equal(JSON.parse(readFileSync(file("gym"), "utf-8")).walls.length, 4);
     await menu(page, "#edit-new");
     await until("it asks", () => page.find("#new-dialog").open);
     assert.equal(page.find("#new-name").value, "my-world");
@@ -106,10 +94,7 @@ test("saving under another name can rename", () =>
 test("a saved world is opened, deleted and brought back", async () => {
   await command("reset", { world: "office" });
   const office = await world();
-  for (const [name, title] of [
-    ["lab", "My laboratory"],
-    ["school", "A school"],
-  ])
+  for (const [name, title] of Object.entries({ lab: "My laboratory", school: "A school" }))
     writeFileSync(file(name), JSON.stringify({ ...office, name, title }));
   await fresh(async (page) => {
     await edit(page);
@@ -174,20 +159,14 @@ test("what cannot be opened says why, and the session goes on", () =>
   fresh(async (page) => {
     await command("step", { ticks: 7 });
     const { state_hash } = await post("situation", {});
-    for (const [files, why] of /** @type {[[string, string][], string][]} */ ([
-      [[["w.json", '{"format": 1,\n "name": }']], "w.json: not JSON: line 2, column 10"],
-      [[["m.yaml", "image: p.png\nresolution: zero\n"]], "m.yaml: origin is missing"],
-      [[["a.txt", "hello"]], "a.txt: cannot be imported"],
-      [[["v.json", "[[0, 0, 1, 0], [1, 0, 1]]"]], "v.json: [1]: got [1, 0, 1]; must be"],
-      [
-        [
-          ["a.json", "[]"],
-          ["b.json", "[]"],
-        ],
-        "one plan at a time",
-      ],
-    ])) {
-      page.choosesFiles("#open-files", ...files);
+    for (const [why, files] of Object.entries({
+      "w.json: not JSON: line 2, column 10": { "w.json": '{"format": 1,\n "name": }' },
+      "m.yaml: origin is missing": { "m.yaml": "image: p.png\nresolution: zero\n" },
+      "a.txt: cannot be imported": { "a.txt": "hello" },
+      "v.json: [1]: got [1, 0, 1]; must be": { "v.json": "[[0, 0, 1, 0], [1, 0, 1]]" },
+      "one plan at a time": { "a.json": "[]", "b.json": "[]" },
+    })) {
+      page.choosesFiles("#open-files", ...Object.entries(files));
       await page.says("#open-wrong", why);
       await page.says("#open-wrong", "The robot goes on as before.");
     }
