@@ -134,7 +134,7 @@ def test_a_loop_closure_can_be_played_again(fake, browser) -> None:
     plain = fake_snapshot(40)
     before = plain.map.xy[:50]
     closure = Closure(77, 63.0, 49, 3, plain.map.links[(plain.map.links < 50).all(1)], before, before + 0.5, 0.71)
-    with open_page(browser, url, stage=False) as page:
+    with open_page(browser, url) as page:
         expect(page.locator("#replay")).to_be_hidden()
         engine.shown = PLAIN | {"closures": (closure,)}
         expect(page.locator("#replay")).to_be_visible()

@@ -10,6 +10,7 @@ from playwright.sync_api import Page
 
 from tests.e2e.browser import box_of, on_screen, open_page, until
 from tests.e2e.fake_engine import FakeEngine
+from tests.e2e.program import Program
 from web.messages import EventKind
 from web.viewer.plates.map_plate import ORIGIN, SHEET
 
@@ -52,11 +53,13 @@ def test_toasts_cover_neither_header_nor_buttons_nor_plates_nor_each_other(fake:
             assert page.evaluate(CLEAR)
         assert f"5. {LONG}" in toasts(page)  # the newest is always shown
         assert len(toasts(page)) >= 3 or size[1] < 500  # as many as there is room for
-        if size[0] == 1280:
-            quiet(page)
-            page.click("#edit")
-            page.evaluate(SAY, [LONG, {"stays": True}])
-            assert page.evaluate(CLEAR)
+
+
+def test_toasts_cover_none_of_the_editor_s_buttons(program: Program, browser) -> None:
+    with open_page(browser, program.url, stage=False) as page:
+        page.click("#edit")
+        page.evaluate(SAY, [LONG, {"stays": True}])
+        assert page.evaluate(CLEAR)
 
 
 def test_a_toast_has_the_sign_of_its_kind_and_stays_for_as_long_as_reading_needs(fake: Fake, browser) -> None:
@@ -66,7 +69,9 @@ def test_a_toast_has_the_sign_of_its_kind_and_stays_for_as_long_as_reading_needs
         page.clock.pause_at(page.evaluate("() => Date.now()") + 1000)
         for words, options in ("Short.", {}), (LONG, {"bad": True}), ("It stays.", {"stays": True, "notice": True}):
             page.evaluate(SAY, [words, options])
-        signs = page.locator(".toast use").evaluate_all("uses => uses.map((use) => use.getAttribute('href')).sort()")
+        signs = page.locator(".toast").evaluate_all(
+            "toasts => toasts.map((toast) => toast.querySelector('use').getAttribute('href')).sort()"
+        )
         assert signs == ["#i-check", "#i-info", "#i-warn"]
         page.clock.run_for(3900)
         assert len(toasts(page)) == 3
