@@ -40,7 +40,7 @@ def test_a_drawing_stands_there_until_the_first_frame(program: Program, browser:
     with browser.new_context(viewport={"width": 1280, "height": 800}) as context:
         page = context.new_page()
         held: list[Route] = []
-        page.route(FRAME, held.append)  # a slow server
+        page.route(FRAME, lambda route: held.append(route))  # a slow server
         page.goto(program.url, wait_until="commit")
         page.wait_for_selector("body[data-alive]", timeout=PATIENCE_MS)
         for width in (390, 1280):
