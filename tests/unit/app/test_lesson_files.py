@@ -36,7 +36,7 @@ TEXT = FILE.read_text("utf-8")
         ("{found_m}", "{way}", "name =", r"nothing is measured by the name 'way'"),
         (", at_least = 0.2 }", " }", "promise =", r"promise.1: a promise without at_least and below"),
         ('commands = [{ type = "kidnap" }]', 'commands = [{ type = "kid" }]', "[[sandbox]]", r"sandbox.1: .*is no command"),
-        ("at_least = 2, below = 120", "at_least = 1, below = 120", "[predict]", r"can both be right: their bounds overlap"),
+        ("at_least = 2, below = 30", "at_least = 1, below = 30", "[predict]", r"can both be right: their bounds overlap"),
         ('title = "Kidnapped"\n', "", "name =", r"title: field required"),
         ('view = "all"', 'set = { "pilot.speed" = 1.0 }', "set =", r"scene.set: .*pilot.speed"),
         ('view = "all"', 'set = { "pilot.cruise_speed" = 9.0 }', "set =", r"scene.set: .*pilot.cruise_speed"),

@@ -129,7 +129,7 @@ def carried() -> Carried:
     history = watched(session, 4000)
     session.kidnap()
     evidence, odds, causes = session.brain.experience_map.evidence, list[float](), list[tuple[SnapCause, ...]]()
-    for _ in range(150):
+    while session.brain.experience_map.carried or session.time_s < 400.5:
         session.tick()
         history.watch()
         if evidence.belief is not None:

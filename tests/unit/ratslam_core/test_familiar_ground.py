@@ -113,7 +113,7 @@ def test_a_known_view_at_its_place_makes_no_experience() -> None:
 @given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=150))
 def test_no_place_gets_links_without_end(steps: list[tuple[int, int]]) -> None:
     """Ten experiences, and transitions between them by chance: no more than LINKS a place; those that exist stay."""
-    map_ = ExperienceMap(SHAPE, CELL_M, EXACT, ground=FamiliarGround())
+    map_ = ExperienceMap(SHAPE, CELL_M, replace(EXACT, link_confidence=0.0), ground=FamiliarGround())
     for view in range(10):
         map_.step(Packet(32.0, 32.0, 0.0, 1.0), Recognition(view, True, -1, math.inf, 0.0), CRAWL)
     chain = map_.link_count
