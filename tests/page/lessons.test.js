@@ -16,8 +16,10 @@ const isIn = (page, name) => until(`the lesson is in ${name}`, () => page.find("
 /** @param {Page} page @param {string} name */
 async function choose(page, name) {
   await page.click("#lessons");
+  const card = await until("it is listed", () => page.text(`#lessons-list [data-name=${name}]`));
   await page.click(`#lessons-list [data-name=${name}]`);
   await until("the list is closed", () => !page.find("#lessons-dialog").open);
+  await until("it is this lesson", () => card.includes(page.text("#lesson-title") || "none yet"));
   await isIn(page, "predict");
 }
 
