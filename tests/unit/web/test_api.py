@@ -27,14 +27,14 @@ def test_before_the_first_tick_it_is_told_how_far_the_start_has_come() -> None:
         assert page.receive_json() == {"type": "waking", "doing": "starting"}
         young.latest.waking = "compiling 3 of 7"
         assert page.receive_json() == {"type": "waking", "doing": "compiling 3 of 7"}
-        health, state = young.client.get("/healthz"), young.client.get("/api/state")
-        assert (health.status_code, state.status_code) == (503, 503)
+        health, *others = (young.client.get(route) for route in ("/healthz", "/api/state", "/api/places"))
+        assert [answer.status_code for answer in (health, *others)] == [503] * 3
         assert health.json() == {"status": "starting", "doing": "compiling 3 of 7", "tick": None}
-        assert "first tick yet (compiling 3 of 7)" in state.json()["detail"][0]["reason"]
+        assert all("first tick yet (compiling 3 of 7)" in answer.json()["detail"][0]["reason"] for answer in others)
         young.latest.put(fake_snapshot(0))
         assert page.receive_json()["type"] == "state"
-        health = young.client.get("/healthz")
-        assert (health.status_code, health.json()) == (200, {"status": "ok", "tick": 0})
+        health, places = young.client.get("/healthz"), young.client.get("/api/places")
+        assert (health.status_code, health.json(), places.status_code) == (200, {"status": "ok", "tick": 0}, 200)
 
 
 def test_the_page_offers_the_speeds_there_are() -> None:

@@ -94,3 +94,5 @@ def test_a_place_of_the_office_is_an_experience_near_it_or_there_is_a_reason() -
         {"name": "kitchen", "experience": int(SNAPSHOT.map.ids[3]), "x": x, "y": y, "why": None},
         {"name": "library", "experience": None, "x": None, "y": None, "why": reason},
     ]
+    seconds = [place["seconds"] for place in places_of(SNAPSHOT)["experiences"]]
+    assert seconds == [float(s) if np.isfinite(s) else None for s in SNAPSHOT.times.seconds]
