@@ -90,6 +90,9 @@ def test_a_wrong_file_is_refused_by_name_place_and_reason(tmp_path: Path, subtes
         said = rf"^{re.escape(str(path))}: .*{message}"
         with subtests.test(msg=right), pytest.raises(ValueError, match=said):
             read_experiment(path)
+    watched = written(tmp_path, LEAST.replace("[engines.ours]", 'watch = ["9"]\n[engines.ours]', 1))
+    with pytest.raises(ValueError, match="watch: 1 levels; give one of each of the 0 axes"):
+        read_experiment(watched).check()
     with pytest.raises(ValueError, match=r"unknown experiment 'tabel'; expected .* one of: hypotheses"):
         find_experiment("tabel")
     with pytest.raises(ValueError, match="No such file"):
