@@ -142,12 +142,9 @@ def _hear_camera(page: Page, socket: WebSocket) -> None:
 def show(page: Page, view: View) -> None:
     """Press a view button, and wait until the camera has arrived and two frames are drawn, however slowly."""
     page.click(f"[data-view={view}]")
-    end, looks = time.monotonic() + PATIENCE_S, 0
+    end = time.monotonic() + PATIENCE_S
     while not _stands_at(page, view):
         assert time.monotonic() < end, f"the camera is not at {view} within {PATIENCE_S:g} s: {_told_camera.get(page)}"
-        looks += 1
-        if looks % 200 == 0:  # it was pressed while the shared page was still being laid out anew
-            page.click(f"[data-view={view}]")
         page.wait_for_timeout(50)
     draw(page)
     page.wait_for_timeout(300)

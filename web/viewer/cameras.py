@@ -176,6 +176,8 @@ class Cameras:
         for client_id, flight in list(self._flights.items()):
             camera, arrived = flight.at(now_s)
             if client_id in clients:
+                if arrived:  # viser does not send what the browser told last, which may be older than what was sent
+                    _point(clients[client_id], _beside(camera))
                 _point(clients[client_id], camera)
             if arrived or client_id not in clients:
                 del self._flights[client_id]
@@ -187,6 +189,10 @@ def _near(camera: viser.CameraHandle | Camera, position: ArrayLike, look_at: Arr
 
 def _standing(camera: viser.CameraHandle) -> Camera:
     return Camera(camera.position.copy(), camera.look_at.copy(), camera.fov)
+
+
+def _beside(camera: Camera) -> Camera:
+    return Camera(camera.position + TURNED, camera.look_at + TURNED, camera.fov_rad * 1.01)
 
 
 def _point(client: viser.ClientHandle, camera: Camera) -> None:
