@@ -18,6 +18,7 @@ from web.viewer.following import Follower, Point, follow_camera
 Robots = dict[str, tuple[Point, float]]  # by plate: where the robot stands in the scene, and plate units a metre
 SCREEN_ASPECT = 1.5
 RESHAPED = 0.01  # a larger change of aspect needs another framing
+WIDER_RAD = 1e-3  # another field of view
 TURNED = 0.02  # a camera farther from its view than this has been turned by hand
 
 
@@ -157,12 +158,14 @@ class Cameras:
             self._post(heard)
 
     def _set_back(self, client_id: int, camera: viser.CameraHandle) -> bool:
-        """Whether viser's client has gone to its initial camera by itself. From viser's thread."""
+        """Whether viser's client has gone to its initial camera by itself, or sees as widely as no hand can make it: viser does
+        not send what the browser told last, which may be older than what was sent. From viser's thread.
+        """
         end, initial = self._ends.get(client_id), self._server.initial_camera
         if end is None or client_id in self._flights or client_id in self._followers:
             return False
-        back = _near(camera, initial.position, initial.look_at)
-        return back and not _near(camera, end.position, end.look_at)
+        back = _near(camera, initial.position, initial.look_at) and not _near(camera, end.position, end.look_at)
+        return back or abs(camera.fov - end.fov_rad) > WIDER_RAD
 
     def _send_on(self, client_id: int) -> None:
         if client_id in self._ends and client_id not in self._flights:
@@ -176,8 +179,6 @@ class Cameras:
         for client_id, flight in list(self._flights.items()):
             camera, arrived = flight.at(now_s)
             if client_id in clients:
-                if arrived:  # viser does not send what the browser told last, which may be older than what was sent
-                    _point(clients[client_id], _beside(camera))
                 _point(clients[client_id], camera)
             if arrived or client_id not in clients:
                 del self._flights[client_id]
@@ -189,10 +190,6 @@ def _near(camera: viser.CameraHandle | Camera, position: ArrayLike, look_at: Arr
 
 def _standing(camera: viser.CameraHandle) -> Camera:
     return Camera(camera.position.copy(), camera.look_at.copy(), camera.fov)
-
-
-def _beside(camera: Camera) -> Camera:
-    return Camera(camera.position + TURNED, camera.look_at + TURNED, camera.fov_rad * 1.01)
 
 
 def _point(client: viser.ClientHandle, camera: Camera) -> None:
