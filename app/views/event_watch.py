@@ -21,7 +21,7 @@ NEW_GROUND, LONG_AGO_S = 20, 30.0  # after so many new experiences, one that was
 DIVERGED_EVERY_S = 60.0  # a map that diverges again and again is marked no more often
 
 
-@kind("event_watch/4")
+@kind("event_watch/5")
 class EventWatch:
     """Call `watch` after each tick."""
 
@@ -37,6 +37,7 @@ class EventWatch:
         self._at_a_loss = False  # lost, or not yet on the map again although it believes a place
         self._lost_s: float | None = None  # when it noticed that it was carried, until its map is one again
         self._believed, self._joined = False, 0  # some place since then; submaps that were joined before
+        self._corrected = session.brain.experience_map.corrected  # how often it proved to be elsewhere
         self._before = session.brain.pose_cells.winner
         self._goal_state: tuple[int | None, str] = None, ""  # the goal, and what was last true of it
         self._false_marked, self._false_due_s = 0, 0.0
@@ -99,6 +100,7 @@ class EventWatch:
             self.reasons.lost(self._log.note("lost", why))
         self._at_a_loss, self.lost = lost, is_lost(session)
         self._watch_belief(carried)
+        self._watch_error()
 
     def _watch_belief(self, carried: bool) -> None:
         """Marks that a robot that knows that it was carried believes a place again, and that its map is one again."""
@@ -117,6 +119,13 @@ class EventWatch:
             self._lost_s = None
             if joined > self._joined:
                 self._log.note("joined", f"its map is one again {after}")
+
+    def _watch_error(self) -> None:
+        """Marks that a robot that did not know of being lost proved to be elsewhere: its map, or a merge, was wrong."""
+        map_ = self._session.brain.experience_map
+        if map_.corrected > self._corrected:
+            self._log.note("corrected", "the robot was not where it took itself to be: the map follows the evidence")
+        self._corrected = map_.corrected
 
     def _watch_goal(self) -> None:
         """Marks what is true of the goal. What a robot that is lost believes of it waits until it knows where it is."""

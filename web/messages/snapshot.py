@@ -40,9 +40,9 @@ from web.messages.time import TimeView
 from web.messages.trial import TrialView
 
 EventKind = Literal[
-    "kidnap", "lost", "believes", "joined", "recovered", "snap", "goal", "arrived", "unreachable", "packet", "brain",
-    "office", "parameter", "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed", "closure",
-    "branch", "recording", "lesson",
+    "kidnap", "lost", "believes", "joined", "corrected", "recovered", "snap", "goal", "arrived", "unreachable", "packet",
+    "brain", "office", "parameter", "link", "place", "false", "warning", "fault", "trial", "tagged", "reached", "failed",
+    "closure", "branch", "recording", "lesson",
 ]  # fmt: skip
 
 

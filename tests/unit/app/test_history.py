@@ -208,6 +208,14 @@ def test_deleted_links_are_noted_once_a_tick() -> None:
     assert texts(later, "link") == [], "a watcher that comes later does not report old events"
 
 
+def test_who_proves_to_be_elsewhere_than_it_took_itself_to_be_is_noted_once() -> None:
+    session = a_session()
+    history = History(session)
+    session.brain.experience_map.corrected += 1
+    go_on(session, history, 3)
+    assert kinds(history).count("corrected") == 1
+
+
 def test_places_that_pose_cells_hold_twice_or_in_common_are_noted(monkeypatch: pytest.MonkeyPatch) -> None:
     """They are looked for every ten seconds, and noted once when there are more than before."""
     session, found = a_session(), SimpleNamespace(multiple_representations=[1], hash_collisions=[])

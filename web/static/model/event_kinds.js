@@ -15,6 +15,7 @@ const KINDS = {
     d: "M-7 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0M-1 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0",
     open: true,
   },
+  corrected: { name: "map corrected", weight: 3, d: "M-6-3h12M-6 3h12M4-7l-8 14", open: true },
   recovered: { name: "recovered", weight: 3, d: circle(5), open: true },
   snap: { name: "snap", weight: 0, d: circle(5) },
   goal: { name: "goal set", weight: 4, d: "M-4 7v-15l10 4-8.4 4v7z" },

@@ -9,6 +9,7 @@ const TOLD = new Set(
     "lost",
     "believes",
     "joined",
+    "corrected",
     "recovered",
     "goal",
     "arrived",
