@@ -10,12 +10,10 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 from numba.core import config
-from numba.core.dispatcher import Dispatcher
 
-from app.startup.compile_part import PARTS
+from app.startup.compile_part import PARTS, kept
 from disk import kernel_cache
 from ratslam_live import command_of
 
@@ -28,8 +26,8 @@ class Compiling:
     def __init__(self) -> None:
         if kernel_cache.words:
             print(f"ratslam: {kernel_cache.words}", file=sys.stderr)
-        kept = not (kernel_cache.in_memory or config.DISABLE_JIT)  # pyright: ignore[reportAttributeAccessIssue,reportUnknownMemberType]
-        missing = [part for part, (_, modules) in PARTS.items() if kept and not all(map(is_compiled, modules))]
+        keeps = not (kernel_cache.in_memory or config.DISABLE_JIT)  # pyright: ignore[reportAttributeAccessIssue,reportUnknownMemberType]
+        missing = [part for part, (_, modules) in PARTS.items() if keeps and not all(map(is_compiled, modules))]
         self._process = _process(missing) if missing else None
 
     def __bool__(self) -> bool:
@@ -62,10 +60,7 @@ def say_how_far(words: str) -> None:
 def is_compiled(module: ModuleType) -> bool:
     """Whether numba has cached a kernel of this module that is not older than the source."""
     source = Path(str(module.__file__))
-    items: list[Any] = [item for item in vars(module).values() if isinstance(item, Dispatcher)]
-    kernel = next(item for item in items if item.py_func.__module__ == module.__name__)
-    kept = Path(str(kernel.stats.cache_path)).glob(f"{source.stem}.*.nbi")
-    return any(index.stat().st_mtime >= source.stat().st_mtime for index in kept)
+    return any(index.stat().st_mtime >= source.stat().st_mtime for index in kept(module))
 
 
 def _process(parts: list[str]) -> subprocess.Popen[str]:

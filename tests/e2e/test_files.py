@@ -70,8 +70,6 @@ def test_a_folder_is_dropped_or_chosen_and_what_is_wrong_with_one_is_said(
             for lacking in ("#explore", "#kidnap", "#edit", "#pad", "[data-view=office]", "#tab-truth"):
                 expect(page.locator(lacking)).to_be_hidden()
             assert page.locator("#world option:checked").inner_text() == "walk round"
-            program.command("set_speed", factor=0)
-            program.command("resume")
             expect(page.locator("#status span")).to_have_text("the recording has ended")
             assert program.state()["tick"] == 29
             page.select_option("#world", "loop")
