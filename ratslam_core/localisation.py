@@ -30,19 +30,19 @@ class Localisation:
         strength: how sure the recognition is, 0 to 1; lost: the robot knows that it was carried away; watch: called
         with the name of each stage after it.
 
-        Several beats in one tick: the image is associated once for each, and the way is driven beat by beat. The
-        attractor follows every such part of a stage.
+        Several beats in one tick: what is seen at its end is seen in the last of them. The way up to there is driven beat
+        by beat, then the image is associated once for each; the attractor follows every such part of a stage.
         """
         jumped = False
+        for _ in range(tick.beats - 1):
+            self._integrate(tick.moved)
+            jumped |= self._attract()[1]
         for beat in range(tick.beats):
             if beat:
                 jumped |= self._attract()[1]
             self.association.step(again(seen) if beat else seen, strength, tick.moved.dt, self.pose_cells, lost)
         watch("injection")
-        for beat in range(tick.beats):
-            if beat:
-                jumped |= self._attract()[1]
-            self._integrate(tick.moved)
+        self._integrate(tick.moved)
         watch("path integration")
         packet, jumps = self._attract()
         watch("attractor")

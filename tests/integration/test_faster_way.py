@@ -60,6 +60,6 @@ def test_the_slow_zone_flips_the_choice(seed: int, upper: bool) -> None:
     """upper: which way is quick. Without a slow floor both are, and either is taken."""
     course, heights = ways(seed, load_world("two-goals") if upper else slow_above())
     assert [visit.why for visit in course.visits] == ["", ""]
-    assert max(visit.time_s for visit in course.visits) < 80  # the slow way takes more than 100 s
+    assert max(visit.time_s for visit in course.visits) < 100  # as the slow way takes at least
     assert len(heights) == 2
     assert all((height > MIDDLE_Y) is upper and abs(height - MIDDLE_Y) > 1.5 for height in heights.values())

@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 
 from disk import encode
-from ratslam_core import ExperienceMapParams, LocalViewParams, PoseCells, RatSlamParams, Recognition
+from ratslam_core import (
+    ExperienceMapParams,
+    LocalViewParams,
+    Odometry,
+    Packet,
+    PoseCellParams,
+    PoseCells,
+    RatSlamParams,
+    Recognition,
+)
+from ratslam_core.beats import Tick
+from ratslam_core.localisation import Localisation
 from ratslam_core.visual_association import VisualAssociation
 from tests.unit.ratslam_core import literal
 from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, start
@@ -103,3 +114,35 @@ def test_the_adaptive_rate_follows_vision_and_confidence() -> None:
         association.step(seen(0, True), strength, 0.1, pose_cells, lost)
         assert association.learning_rate == pytest.approx(rate)
         assert association.links.of(0)[1].sum() == pytest.approx(rate)
+
+
+def test_what_is_seen_after_several_beats_is_seen_in_the_last_of_them() -> None:
+    """The attractor runs in between. At 10 Hz a tick is one beat, and this is the papers' order."""
+    order = list[str]()
+
+    class Cells:
+        winner = Packet(0.0, 0.0, 0.0, 1.0)
+
+        def integrate(self, *_way: float) -> None:
+            order.append("integrate")
+
+        def attract(self) -> Packet:
+            order.append("attract")
+            return self.winner
+
+        def cells_apart(self, *_ends: float) -> float:
+            return 0.0
+
+    class Association:
+        def step(self, *_seen: object) -> None:
+            order.append("associate")
+
+    robot = Localisation(Cells(), Association(), PoseCellParams())  # type: ignore[arg-type]
+    for beats, expected in (
+        (1, ["associate", "integrate", "attract"]),
+        (2, ["integrate", "attract", "associate", "attract", "associate", "integrate", "attract"]),
+    ):
+        order.clear()
+        moved = Odometry(0.3, 0.0, 0.1)
+        robot.step(Recognition(3, False, 3, 0.0, None), 1.0, Tick(beats, moved, moved, 0.0), False, lambda _stage: None)
+        assert order == expected
