@@ -79,6 +79,7 @@ class Bench:
 
     def room(self, name: str, mutants: list[Mutant]) -> list[Mutant]:
         """The mutants that nothing noticed."""
+        self._trees.learn()
         survivors = [m for m, found in self._tried(dict.fromkeys(mutants, ())) if not found]
         for m in survivors:
             print(f"{m.file}:{m.line}: {m.before!r} -> {m.after!r}")
@@ -89,23 +90,24 @@ class Bench:
     def faults(self) -> int:
         """Each fault of the whole, against its own tests. How many nothing noticed."""
         named = {fault.mutant(ROOT): fault for fault in faults()}
-        tried = self._tried({mutant: fault.whole for mutant, fault in named.items()})
+        self._trees.require_known(*{test for fault in named.values() for test in fault.tests})
+        tried = self._tried({mutant: fault.tests for mutant, fault in named.items()})
         unnoticed = [named[mutant].name for mutant, found in tried if not found]
         for name in unnoticed:
             print(f"not noticed: {name}")
         print(f"faults of the whole: {len(named) - len(unnoticed)} of {len(named)} noticed")
         return len(unnoticed)
 
-    def _tried(self, whole: dict[Mutant, tuple[str, ...]]) -> Iterator[tuple[Mutant, list[str]]]:
-        tried = {self._pool.submit(self._found_by, mutant, tests): mutant for mutant, tests in whole.items()}
+    def _tried(self, tests: dict[Mutant, tuple[str, ...]]) -> Iterator[tuple[Mutant, list[str]]]:
+        tried = {self._pool.submit(self._found_by, mutant, own): mutant for mutant, own in tests.items()}
         for one in tqdm(as_completed(tried), total=len(tried), unit="fault", mininterval=10, file=sys.stderr):
             yield tried[one], one.result()
             self._file.write_text(json.dumps(self._found, indent=1), encoding="utf-8")
 
-    def _found_by(self, mutant: Mutant, whole: tuple[str, ...]) -> list[str]:
+    def _found_by(self, mutant: Mutant, tests: tuple[str, ...]) -> list[str]:
         key = repr(mutant)
         if key not in self._found:
-            self._found[key] = self._trees.found_by(mutant, whole)
+            self._found[key] = self._trees.found_by(mutant, tests)
         return self._found[key]
 
 

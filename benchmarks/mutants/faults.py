@@ -12,13 +12,13 @@ from benchmarks.mutants.operators import Mutant
 
 @dataclass(frozen=True)
 class Fault:
-    """One change of one place in the program, and the tests of the whole program that may notice it."""
+    """One change of one place in the program, and the tests that notice it."""
 
     name: str
     file: str
     before: str
     after: str
-    whole: tuple[str, ...] = ()
+    tests: tuple[str, ...] = ()
 
     def mutant(self, root: Path) -> Mutant:
         """Where it is now. ValueError: the code is another by now."""
@@ -35,4 +35,4 @@ class Fault:
 def faults() -> list[Fault]:
     text = Path(__file__).with_name("faults.toml").read_text(encoding="utf-8")
     tables: list[dict[str, Any]] = tomllib.loads(text)["fault"]
-    return [Fault(whole=tuple(table.pop("whole", ())), **table) for table in tables]
+    return [Fault(tests=tuple(table.pop("tests", ())), **table) for table in tables]

@@ -36,34 +36,45 @@ class Trees:
         """folder: what was found out about the unchanged tree is kept there, and not found out again."""
         self._folder, self._lock, self._made, self._own = folder, threading.Lock(), 0, threading.local()
         self._warm = folder / "warm"
-        if not (folder / "covering").exists():
+        self._covering: Covering | None = None
+        if not self._warm.exists():
             self._copy(self._warm)
             _require_own(self._warm)
-            self._learn()
-        self._covering = Covering(folder / "covering", self._warm)
-        if _run(self._warm, [sys.executable, "-m", "compileall", "-q", "."], compiled=True) or _run(
-            self._warm, _pytest("--collect-only", *self._covering.every), compiled=True
-        ):
+        if _run(self._warm, [sys.executable, "-m", "compileall", "-q", "."], compiled=True):
+            raise RuntimeError(f"{self._warm} does not compile")
+
+    def learn(self) -> None:
+        """Which test runs which line, and how long each takes, if that is not known yet. Before the first mutant."""
+        if self._covering is None:
+            if not (self._folder / "covering").exists():
+                self._run_all()
+            self._covering = Covering(self._folder / "covering", self._warm)
+            self.require_known(*self._covering.every)
+
+    def require_known(self, *tests: str) -> None:
+        if _run(self._warm, _pytest("--collect-only", *tests), compiled=True):
             raise RuntimeError(
                 "pytest does not know tests by these names: what it cannot find would count as a fault noticed"
             )
 
-    def found_by(self, mutant: Mutant, whole: tuple[str, ...] = ()) -> list[str]:
-        """The tests that notice the mutant: of the quicker ones that run its line, all; else of the others and then of
-        `whole`, tests of the whole program, the first. Or what else noticed it. Empty: it survives."""
+    def found_by(self, mutant: Mutant, tests: tuple[str, ...] = ()) -> list[str]:
+        """Which of `tests` notice the mutant; without any, the tests that do: of the quicker ones that run its line, all;
+        else the first of the others. Or what else noticed it. Empty: it survives."""
         own = self._own_tree()
         source = own.change(mutant)
         try:
             if mutant.file.endswith(".js"):
                 found = next(([tests] for tests in PAGE_TESTS if _node_fails(own.folder, tests)), list[str]())
-                return found or own.failed(Tests(whole, WHOLE_S), "-x")
+                return found or own.failed(Tests(tests, WHOLE_S), "-x")
+            if tests:
+                return own.failed(Tests(tests, WHOLE_S), "-x")
+            assert self._covering is not None
             quick, rest = self._covering.tests(mutant)
-            return own.failed(quick) or own.failed(rest, "-x") or own.failed(Tests(whole, WHOLE_S), "-x")
+            return own.failed(quick) or own.failed(rest, "-x")
         finally:
             own.restore(mutant, source)
 
-    def _learn(self) -> None:
-        """Which test runs which line, and how long each takes."""
+    def _run_all(self) -> None:
         measured = ["--cov", "--cov-report=", "--cov-context=test", "-o", "junit_family=xunit1"]
         command = _pytest("-n2", "--dist=loadfile", *measured, f"--junitxml={self._folder / 'times.xml'}", *SUITE)
         if _run(self._warm, command, show=True):
