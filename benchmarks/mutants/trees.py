@@ -52,6 +52,7 @@ class Trees:
             self.require_known(*self._covering.every)
 
     def require_known(self, *tests: str) -> None:
+        """RuntimeError: pytest knows one of these tests by no such name."""
         if _run(self._warm, _pytest("--collect-only", *tests), compiled=True):
             raise RuntimeError(
                 "pytest does not know tests by these names: what it cannot find would count as a fault noticed"

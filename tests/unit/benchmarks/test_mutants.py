@@ -20,6 +20,9 @@ def test_a_fault_of_the_whole_is_one_place_of_the_program_that_there_is() -> Non
         if mutant.file.endswith(".py"):
             ast.parse(changed)
             assert fault.tests, fault.name
+        for test in fault.tests:
+            file, _, function = test.partition("::")
+            assert f"def {function}" in (ROOT / file).read_text(encoding="utf-8"), f"{fault.name}: {test}"
 
 
 def test_what_a_file_can_have_wrong(tmp_path: Path) -> None:
