@@ -1,6 +1,6 @@
 """A session that plays a recording: the same brain, looked at and changed in the same way, and no office or pilot.
 
-What a recording does not have is absent: an order that needs it is refused (app/commands/needs.py). The recording itself
+What a recording does not have is absent: an order that needs it is refused (app/commands/table.py). The recording itself
 is no part of the state: copies of a session share it (app/recordings/reel.py).
 """
 

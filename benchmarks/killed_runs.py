@@ -29,8 +29,8 @@ from app.engine_thread import EngineThread
 from app.runs.book import Book
 from app.runs.folder import LINES, all_runs
 from app.runs.header import Beginning, beginning_of, header_of, written
+from app.runs.journal import line_of
 from app.runs.keeper import RunKeeper
-from app.runs.lines import line_of
 from app.runs.replay import newest_state, replay
 from app.runs.run_file import KeptRun, open_run
 from app.session import Session

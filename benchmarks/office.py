@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from app.session import Session
-from app.views.world_drawing import world_drawing
+from app.views.office import world_drawing
 from app.world_editor import WorldEditor
 from sim2d import Drive, Person, Place, Simulator, Start, Wall, World, load_world, world_to_json
 from sim2d.importers.dress import Dresser

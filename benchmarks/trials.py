@@ -14,11 +14,11 @@ import time
 from pathlib import Path
 from typing import Any
 
-from app.experiments.cluster import connected_to
 from app.experiments.runner import pending, run_trials
 from app.experiments.store import Store
+from app.experiments.workers import connected_to
 from app.trials.experiment import find_experiment
-from app.trials.notes import Moment
+from app.trials.scores import Moment
 from app.trials.trial import Result, Trial
 
 BAR_MS = 5.0

@@ -4,11 +4,16 @@ G_xy is the activity of the pose cells at a place, summed over all headings. A l
 cell i to cell j takes. Times to a goal are summed along the links; the robot moves towards the lowest time in reach.
 
 Links are sparse: a hash table of pairs (i < j) with room for twice as many as there are, 12 bytes each.
-"""
 
-# SciPy has no types, and callers may not be type-checked.
-# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
-# pyright: reportUnnecessaryIsInstance=false
+Compiled array functions of the goal memory: the table of links, what is learnt, and the lowest time in reach.
+
+Plateaus of the temporal map: cells from which two ways to the goal, in opposite directions, take the same time.
+
+IROS 2005 V.D, point C: "it is possible for the goal memory movement vectors to be split evenly between taking the upper and
+lower paths. The choice of the robot as to which path to take in this condition is arbitrary". It is the watershed of the
+times: where they are highest along a loop, since times grow from the goal on both ways round until they meet. That
+is a maximum, so the robot always leaves it, and no local minimum.
+"""
 
 from __future__ import annotations
 
@@ -17,16 +22,183 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core import goal_links
 from ratslam_core.params import GoalMemoryParams
-from ratslam_core.pose_cells.activity_kernels import offset
+from ratslam_core.pose_cells.activity_kernels import Cells, Shape, Values, X, Y, offset
 from ratslam_core.types import Packet, require_finite
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
+
+
+FREE = -1  # key of an empty place in the table
+
+
+@njit(cache=True, nogil=True)
+def project(
+    cells: Cells, activity: Values, shape: Shape, share: float, place: NDArray[np.int32]
+) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
+    """G_xy = sum over theta of P, where it is above share * G_max. IROS 2005 eq. 1.
+
+    Returns the cells of the plane, their G, and the first row that lies outside of it (-1: none). `place`: scratch, all
+    0.
+    """
+    n_y, n_x = shape[1], shape[2]
+    flats = np.empty(len(cells), np.int64)
+    values = np.empty(len(cells), np.float64)
+    n = 0
+    wrong = -1
+    for i in range(len(cells)):
+        x, y = cells[i, X], cells[i, Y]
+        if not (0 <= x < n_x and 0 <= y < n_y):
+            wrong = i
+            break
+        flat = y * n_x + x
+        at = place[flat]
+        if at == 0:
+            flats[n] = flat
+            values[n] = activity[i]
+            n += 1
+            place[flat] = n
+        else:
+            values[at - 1] += activity[i]
+    most = 0.0
+    for i in range(n):
+        place[flats[i]] = 0
+        most = max(most, values[i])
+    kept = 0
+    for i in range(n):
+        if values[i] > share * most:
+            flats[kept] = flats[i]
+            values[kept] = values[i]
+            kept += 1
+    return flats[:kept], values[:kept], wrong
+
+
+@njit(cache=True, nogil=True)
+def centre(flats: NDArray[np.int64], values: NDArray[np.float64], shape: Shape, near: int) -> tuple[float, float]:
+    """Centre of the activity within `near` cells of the strongest, in cells."""
+    n_y, n_x = shape[1], shape[2]
+    best = np.argmax(values)
+    peak_x, peak_y = flats[best] % n_x, flats[best] // n_x
+    mass = sx = sy = 0.0
+    for i in range(flats.size):
+        dx, dy = offset(flats[i] % n_x, peak_x, n_x), offset(flats[i] // n_x, peak_y, n_y)
+        if abs(dx) <= near and abs(dy) <= near:
+            mass += values[i]
+            sx += values[i] * dx
+            sy += values[i] * dy
+    return (peak_x + sx / mass) % n_x, (peak_y + sy / mass) % n_y
+
+
+@njit(cache=True, nogil=True)
+def find(key: int, keys: NDArray[np.int64]) -> int:
+    """Where a key is in the table, or the free place where it belongs. The table is never full."""
+    mask = keys.size - 1
+    mixed = key * 5_872_781
+    at = (mixed ^ (mixed >> 21)) & mask
+    while keys[at] != key and keys[at] != FREE:
+        at = (at + 1) & mask
+    return at
+
+
+@njit(cache=True, nogil=True)
+def misplaced(keys: NDArray[np.int64]) -> int:
+    """The first place whose key would be looked for elsewhere, -1 when there is none."""
+    for at in range(keys.size):
+        if keys[at] != FREE and find(keys[at], keys) != at:
+            return at
+    return -1
+
+
+@njit(cache=True, nogil=True)
+def learn(
+    flats_i: NDArray[np.int64],
+    G_i: NDArray[np.float64],
+    flats_j: NDArray[np.int64],
+    G_j: NDArray[np.float64],
+    keys: NDArray[np.int64],
+    times: NDArray[np.float32],
+    used: int,
+    shape: Shape,
+    elapsed: float,
+    time_weight: float,
+    activity_weight: float,
+    distance_weight: float,
+    rate: float,
+) -> int:
+    """tau_ij = tau_ji <- moving average of a dt + b (1 - G_i G_j / G_max^2) + g |i - j|. IROS 2005 eqs. 2-5.
+
+    i: active in the iteration before; j: active now. The first value replaces the large one that a link starts with.
+    Returns how many links there are.
+    """
+    n_y, n_x = shape[1], shape[2]
+    size = n_y * n_x
+    most = max(np.max(G_i), np.max(G_j))
+    sigma = time_weight * elapsed
+    for a in range(flats_i.size):
+        i = flats_i[a]
+        xi, yi = i % n_x, i // n_x
+        for b in range(flats_j.size):
+            j = flats_j[b]
+            if i == j:
+                continue
+            mu = activity_weight * (1.0 - G_i[a] * G_j[b] / (most * most))
+            dx, dy = offset(j % n_x, xi, n_x), offset(j // n_x, yi, n_y)
+            tau = sigma + mu + distance_weight * np.sqrt(dx * dx + dy * dy)
+            key = min(i, j) * size + max(i, j)
+            at = find(key, keys)
+            if keys[at] == FREE:
+                keys[at] = key
+                times[at] = tau
+                used += 1
+            else:
+                times[at] += rate * (tau - times[at])
+    return used
+
+
+@njit(cache=True, nogil=True)
+def move(
+    keys: NDArray[np.int64], times: NDArray[np.float32], new_keys: NDArray[np.int64], new_times: NDArray[np.float32]
+) -> None:
+    """Copy all links into a larger table."""
+    for k in range(keys.size):
+        if keys[k] != FREE:
+            at = find(keys[k], new_keys)
+            new_keys[at] = keys[k]
+            new_times[at] = times[k]
+
+
+@njit(cache=True, nogil=True)
+def lowest(T: NDArray[np.float64], x: int, y: int, reach: int, keys: NDArray[np.int64]) -> int:
+    """The cell with the lowest T below that of (x, y), among those within `reach` that it is linked to; -1 when there is none.
+
+    Where nothing has been learnt yet (T is inf), any known cell in reach will do.
+    """
+    n_y, n_x = T.shape
+    here = y * n_x + x
+    best, lowest = -1, T[y, x]
+    unknown = not np.isfinite(lowest)
+    for dy in range(-reach, reach + 1):
+        for dx in range(-reach, reach + 1):
+            if dx * dx + dy * dy > reach * reach:
+                continue
+            there_x, there_y = (x + dx) % n_x, (y + dy) % n_y
+            if T[there_y, there_x] < lowest:
+                there = there_y * n_x + there_x
+                key = min(here, there) * (n_y * n_x) + max(here, there)
+                if unknown or keys[find(key, keys)] == key:
+                    best, lowest = there, T[there_y, there_x]
+    return best
+
+
+# SciPy has no types, and callers may not be type-checked.
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+# pyright: reportUnnecessaryIsInstance=false
+
 
 ARRIVED = 1.0  # cells from the goal within which the robot has arrived, III.B
 REACH = 3  # cells around the packet in which the way is searched, III.B
@@ -53,7 +225,7 @@ class GoalMemory:
         self.params = params or GoalMemoryParams()
         self.shape, self.cell_m = shape, cell_m
         self._place = np.zeros(shape[1] * shape[2], np.int32)
-        self._keys = np.full(ROOM, goal_links.FREE, np.int64)
+        self._keys = np.full(ROOM, FREE, np.int64)
         self._times = np.zeros(ROOM, np.float32)
         self._used = 0
         self._last: _Iteration | None = None
@@ -73,7 +245,7 @@ class GoalMemory:
     @property
     def links(self) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
         """Pairs of cells y * n_x + x, shape (m, 2), the smaller first, and tau in s, shape (m,). In no order; copies."""
-        used = self._keys != goal_links.FREE
+        used = self._keys != FREE
         keys = self._keys[used]
         return np.stack([keys // self._place.size, keys % self._place.size], axis=1), self._times[used]
 
@@ -116,7 +288,7 @@ class GoalMemory:
         if self._apart(x, y, goal % n_x, goal // n_x) <= ARRIVED:
             return None
         for wider in range(1, WIDER + 1):
-            best = goal_links.lowest(T, round(x) % n_x, round(y) % n_y, wider * REACH, self._keys)
+            best = lowest(T, round(x) % n_x, round(y) % n_y, wider * REACH, self._keys)
             if best >= 0:
                 return math.atan2(offset(best // n_x, y, n_y), offset(best % n_x, x, n_x))
         return None
@@ -148,7 +320,7 @@ class GoalMemory:
             return
         self._make_room(last.flats.size * now.flats.size)
         p = self.params
-        self._used = goal_links.learn(
+        self._used = learn(
             last.flats, last.activity, now.flats, now.activity, self._keys, self._times, self._used, self.shape,
             time_s - last.time_s, p.time_weight, p.activity_weight, p.distance_weight, p.rate,
         )  # fmt: skip
@@ -164,12 +336,12 @@ class GoalMemory:
         if cells.ndim != 2 or cells.shape[1] != 4 or activity.shape != cells.shape[:1]:
             raise ValueError(f"cells must have shape (n, 4) and activity (n,), got {cells.shape} and {activity.shape}")
         n_y, n_x = self.shape[1:]
-        flats, values, wrong = goal_links.project(cells, activity, self.shape, self.params.share, self._place)
+        flats, values, wrong = project(cells, activity, self.shape, self.params.share, self._place)
         if wrong >= 0:
             raise ValueError(f"cells must lie in 0..{n_x - 1}, 0..{n_y - 1}, got {cells[wrong, :2].tolist()}")
         if flats.size == 0:
             raise ValueError(f"activity must be positive somewhere, got {activity!r}")
-        return _Iteration(flats, values, *goal_links.centre(flats, values, self.shape, CENTRE), time_s, time_s)
+        return _Iteration(flats, values, *centre(flats, values, self.shape, CENTRE), time_s, time_s)
 
     def _apart(self, x1: float, y1: float, x2: float, y2: float) -> float:
         """Cells between two places, the shorter way round."""
@@ -180,8 +352,8 @@ class GoalMemory:
         while 2 * (self._used + more) > size:
             size *= 2
         if size > self._keys.size:
-            keys, times = np.full(size, goal_links.FREE, np.int64), np.zeros(size, np.float32)
-            goal_links.move(self._keys, self._times, keys, times)
+            keys, times = np.full(size, FREE, np.int64), np.zeros(size, np.float32)
+            move(self._keys, self._times, keys, times)
             self._keys, self._times = keys, times
 
 
@@ -196,3 +368,55 @@ class _Iteration:
     y: float
     time_s: float
     latest_s: float  # time of the latest iteration since
+
+
+def lead_s(memory: GoalMemory, T: NDArray[np.float64], apart_m: float = 2.0) -> NDArray[np.float64]:
+    """By how many seconds the quickest way from each cell leads over the quickest other way, shape (n_y, n_x).
+
+    T: s, from `GoalMemory.times_to`. Near 0 is a plateau; inf where there is one way only. Another way begins with a link to
+    a cell with a lower T, too, and comes at least `apart_m` away from the first. test_goal_plateau.py.
+    """
+    n_y, n_x = memory.shape[1:]
+    if T.shape != (n_y, n_x):
+        raise ValueError(f"T must have shape {(n_y, n_x)}, as times_to gives it, got {T.shape}")
+    pairs, tau = memory.links
+    t = T.ravel()
+    here, there = np.concatenate([pairs, pairs[:, ::-1]]).T
+    via = t[there] + np.concatenate([tau, tau])
+    down = np.isfinite(via) & (t[there] < t[here])
+    here, there, via = here[down], there[down], via[down]
+    order = np.lexsort((via, here))
+    cells, first = np.unique(here[order], return_index=True)
+    following = np.full(t.size, -1)
+    following[cells] = there[order][first]
+    quickest = np.full(t.size, np.inf)
+    quickest[cells] = via[order][first]
+    lead = np.full(t.size, np.inf)
+    ways: dict[int, NDArray[np.int64]] = {}
+    for row in order:
+        i, j = int(here[row]), int(there[row])
+        if lead[i] == np.inf and j != following[i]:  # the quickest links come first
+            best, other = (ways.setdefault(k, _way(k, following)) for k in (int(following[i]), j))
+            if memory.cell_m * _parting(best, other, n_x, n_y) >= apart_m:
+                lead[i] = via[row] - quickest[i]
+    return lead.reshape(n_y, n_x)
+
+
+def _way(cell: int, following: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The cells from this one to the goal."""
+    way = [cell]
+    while following[way[-1]] >= 0:
+        way.append(int(following[way[-1]]))
+    return np.array(way)
+
+
+def _parting(a: NDArray[np.int64], b: NDArray[np.int64], n_x: int, n_y: int) -> float:
+    """The largest distance (cells) of a cell of either way from the other way."""
+    dx, dy = _offset(a[:, None] % n_x, b[None] % n_x, n_x), _offset(a[:, None] // n_x, b[None] // n_x, n_y)
+    apart = np.hypot(dx, dy)
+    return float(max(apart.min(0).max(), apart.min(1).max()))
+
+
+def _offset(a: NDArray[np.int64], b: NDArray[np.int64], size: int) -> NDArray[np.float64]:
+    """Cells from a to b, the shorter way round."""
+    return ((b - a + size / 2) % size - size / 2).astype(np.float64)

@@ -12,13 +12,10 @@ from disk import encode, kind
 from sim2d.actors.actors import Actors
 from sim2d.geometry.segments import inside_ring
 from sim2d.params import OfficeParams, SimParams
-from sim2d.physics.robot import Robot
-from sim2d.physics.surroundings import Surroundings
-from sim2d.sensors.odometer import true_motion, wrap_angle
-from sim2d.sensors.sensors import SensorFrame, Sensors, seeds
+from sim2d.robot import Robot, Surroundings
+from sim2d.sensors.sensors import SensorFrame, Sensors, seeds, true_motion, wrap_angle
 from sim2d.world.elements import BOX_M, Box
-from sim2d.world.free_space import FreeSpace
-from sim2d.world.robot_fit import RobotFit
+from sim2d.world.free_space import FreeSpace, RobotFit
 from sim2d.world.world import World
 
 _TRIES = 1000  # random places tried to find one where the robot fits

@@ -19,7 +19,7 @@ from ratslam_core.params import RatSlamParams
 from ratslam_core.params.additions import ADDITIONS, Addition
 from sim2d.world.world_schema import LISTS, WorldFile
 from web.http.commands import MODELS
-from web.http.watching import LOOKS
+from web.http.security import LOOKS
 from web.messages import EditStep, EventKind, GoalState, OfficeList
 from web.panel.panel import TABS
 from web.themes import THEMES

@@ -1,25 +1,102 @@
-"""What `ratslam run` begins with: a run of its own, one that was kept, a situation, a recording, a trial."""
+"""What `ratslam run` begins with: a run of its own, one that was kept, a situation, a recording, a trial.
+
+What `ratslam run` finds from earlier programs and offers to go on with: a brain that was kept, a run that was cut off.
+
+A situation that is named on the command line: by the path of its file, or by its link.
+"""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.earlier import cut_off_run, kept_brain
 from app.cli.options import checked_seed, config_of, session_of
 from app.config import Config
 from app.order_book import SMALLEST_M
+from app.situations import Situation, read_situation
+from app.situations.document import KEY
+from disk.limits import SITUATION_BYTES
 from ratslam_core import RatSlam
 from sim2d import DEFAULT_WORLD, World, own_worlds, world_from_json
 from sim2d.importers import open_world
 
 if TYPE_CHECKING:
     from app.engine.engine import Engine
-    from app.kept_brains.files import KeptBrain
+    from app.kept_brains import KeptBrain
     from app.runs.run_file import KeptRun
     from app.trials.trial import Trial
+    from web import messages as m
+
+
+def going_on(kept: KeptRun, tell: Callable[[float], object]) -> m.GoOn:
+    """The run in the session where it was left. tell: is told the share that is done, and may raise to give it up."""
+    from app.runs.replay import resumed
+    from web import messages as m
+
+    done_s = 0.0
+
+    def told(seconds: float) -> None:
+        nonlocal done_s
+        done_s += seconds
+        tell(min(1.0, done_s / max(kept.length_s, 1e-9)))
+
+    return m.GoOn(kept, resumed(kept, told))
+
+
+def cut_off_run() -> KeptRun | None:
+    """The newest run, if it was cut off in the middle, by a crash or a kill."""
+    from app.runs.folder import all_runs, is_open
+    from app.runs.run_file import open_run
+
+    for folder in all_runs()[:1]:
+        try:
+            run = open_run(folder)
+        except ValueError:
+            return None
+        if run.last_tick > 0 and not run.end and not is_open(folder):
+            print(f"The run {run.name} was cut off: go on with it by `ratslam run --resume {run.name}`", flush=True)
+            return run
+    return None
+
+
+def kept_brain(args: argparse.Namespace) -> KeptBrain | None:
+    """The brain kept last: with --resume-brain set up to be run, without it returned, to be offered on the page."""
+    from app.kept_brains import folder, newest
+
+    kept = newest()
+    if not args.resume_brain:
+        if kept is None or args.brain is not None:
+            return None
+        print(f"There is {kept.words}: go on with it by `ratslam run --resume-brain`", flush=True)
+        return kept
+    if args.brain is not None:
+        raise ValueError(f"--resume-brain takes the brain that was kept last; do not give --brain {args.brain} with it")
+    if kept is None:
+        raise ValueError(f"--resume-brain: no brain is kept in {folder()}")
+    args.brain, args.world, args.seed = kept.path, kept.about.world, kept.about.seed
+    return None
+
+
+def situation_in(name: str) -> Situation:
+    """ValueError says why it cannot be opened."""
+    if f"{KEY}=" in name:
+        return read_situation(name)
+    try:
+        with Path(name).open("rb") as file:
+            text = file.read(SITUATION_BYTES + 1).decode()
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is no text"
+        raise ValueError(
+            f"--situation {name[:80]}: {reason}; give the file of a situation, or a link with #{KEY}= in quotes"
+        ) from None
+    try:
+        return read_situation(text)
+    except ValueError as error:
+        raise ValueError(f"--situation {name[:80]}: {error}") from None
+
 
 _NOT_WITH_RECORDING = ("scale", "brain", "resume_brain", "experiment", "engine", "levels")
 _NOT_WITH_EXPERIMENT = ("scale", "brain", "preset", "config", "set", "resume_brain")
@@ -85,7 +162,6 @@ def resumed_run(args: argparse.Namespace) -> First:
 
 def opened_situation(args: argparse.Namespace) -> First:
     """Play up to the moment of a situation; the page shows how far it is."""
-    from app.cli.situation import situation_in
 
     _refuse(args, _NOT_WITH_A_RUN, "--situation, which has its own")
     situation = situation_in(args.situation)
@@ -114,8 +190,7 @@ def played_recording(args: argparse.Namespace) -> First:
 
 def chosen_experiment(args: argparse.Namespace, running: bool) -> First:
     """A trial of an experiment from its beginning. running: as in `first_of_trial`."""
-    from app.trials.chosen import chosen_trial
-    from app.trials.experiment import find_experiment
+    from app.trials.experiment import chosen_trial, find_experiment
 
     _refuse(args, _NOT_WITH_EXPERIMENT, "--experiment, which has its own world and parameters")
     experiment = find_experiment(args.experiment)

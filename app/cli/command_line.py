@@ -1,23 +1,74 @@
-"""The command `ratslam`, one file for each of its verbs: run (the dashboard), headless, experiment, export, recording ..."""
+"""The command `ratslam`, one file for each of its verbs: run (the dashboard), headless, experiment, export, recording ...
+
+`ratslam bench`: the engine's speed.
+
+`ratslam config`: every parameter with its meaning.
+"""
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
+from itertools import chain
+from pathlib import Path
+from typing import Any
 
-from app.cli.bench import add_bench
-from app.cli.config import add_config
 from app.cli.deliver import add_deliver
 from app.cli.experiment import add_experiment
 from app.cli.export import add_export
 from app.cli.headless import add_headless
 from app.cli.lessons import add_lessons
+from app.cli.options import Verbs, add_config_options, config_of
 from app.cli.recording import add_recording
 from app.cli.run import add_run
 from app.cli.runs import add_replay, add_runs
 from app.cli.trial import add_trial
 from app.cli.worlds import add_worlds
 from app.startup.ending import ended
+from disk import require_writable, write_whole
+
+
+def add_bench(commands: Verbs) -> None:
+    bench = commands.add_parser("bench", help="measure the speed of the engine, each part beside a reference")
+    bench.add_argument("--json", type=Path, metavar="FILE", help="also write the rows to FILE as JSON")
+    bench.add_argument("--quick", action="store_true", help="small sizes, to see that all of it works")
+    bench.set_defaults(do=_bench)
+
+
+def _bench(args: argparse.Namespace) -> int:
+    require_writable("--json", args.json)
+    from benchmarks import engine, machine, office
+
+    measured: list[dict[str, Any]] = []
+    for row in chain(engine.rows(args.quick), office.rows(args.quick)):
+        print(engine.line(row), flush=True)
+        measured.append(row)
+    if not all(row["holds"] for row in measured):
+        print(machine.busy_words())
+    if args.json is not None:
+        write_whole(args.json, json.dumps(measured, indent=2) + "\n")
+    return 0
+
+
+def add_config(commands: Verbs) -> None:
+    config = commands.add_parser("config", help="print every parameter as TOML with symbol, unit and source")
+    pages = config.add_mutually_exclusive_group()
+    pages.add_argument("--table", action="store_true", help="print them as Markdown tables instead")
+    pages.add_argument(
+        "--additions", action="store_true", help="print what is ours beyond the papers, as a Markdown table"
+    )
+    add_config_options(config)
+    config.set_defaults(do=_config)
+
+
+def _config(args: argparse.Namespace) -> int:
+    from app.config import Config, additions_markdown, to_markdown, to_toml
+
+    config = config_of(args, Config())
+    text = additions_markdown() if args.additions else to_markdown(config) if args.table else to_toml(config)
+    print(text, end="")
+    return 0
 
 
 def main(argv: list[str] | None = None) -> int:

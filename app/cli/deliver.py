@@ -6,9 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from app.cli.options import Verbs, add_session_options, session_of
+from app.cli.options import Verbs, add_session_options, session_of, write_report
 from app.cli.progress import compile_first, with_progress
-from app.cli.reports import write_report
 from disk import require_writable
 
 DELIVERY_S = 40.0  # about what a delivery takes, for the progress bar

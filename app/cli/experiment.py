@@ -115,7 +115,7 @@ def _open(trial_id: str, args: argparse.Namespace) -> int:
 
 
 def _results(args: argparse.Namespace) -> int:
-    from app.experiments.outputs import make_folder
+    from app.experiments.report import make_folder
     from app.experiments.results import write_results
     from app.experiments.store import Store
     from app.trials.experiment import catalogue

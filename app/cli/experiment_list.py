@@ -7,9 +7,9 @@ import sys
 import textwrap
 from pathlib import Path
 
-from app.experiments.cluster import cores
-from app.experiments.durations import duration_of, time_words
+from app.experiments.runner import duration_of, time_words
 from app.experiments.store import Store, default_path
+from app.experiments.workers import cores
 from app.trials.experiment import Experiment, catalogue, names
 
 WIDTH = 100

@@ -15,15 +15,12 @@ from rich.console import Console
 
 from app.cli.experiment import check_whole
 from app.cli.progress import compile_first
-from app.experiments.durations import Duration, duration_of, time_words
 from app.experiments.export import write_parquet
 from app.experiments.live import LiveTable
-from app.experiments.outputs import make_folder, write_outputs
-from app.experiments.report import Report, write_index
-from app.experiments.result_table import table_of
-from app.experiments.runner import pending, run_trials
+from app.experiments.report import Report, make_folder, write_index, write_outputs
+from app.experiments.runner import Duration, duration_of, pending, run_trials, time_words
 from app.experiments.store import Store
-from app.experiments.summary import summarise
+from app.experiments.summary import summarise, table_of
 from app.experiments.workers import Workers
 from app.trials.experiment import EngineName, Experiment, catalogue, find_experiment
 from app.trials.trial import Trial

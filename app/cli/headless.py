@@ -6,10 +6,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from app.cli.options import Verbs, add_session_options, config_of, session_of
+from app.cli.options import Verbs, add_session_options, config_of, session_of, write_report
 from app.cli.progress import compile_first, with_progress
 from app.cli.recording import add_recording_options, recording_of, require_no_recording_options
-from app.cli.reports import write_report
 from disk import require_writable
 from sim2d import DEFAULT_WORLD
 
@@ -122,7 +121,7 @@ def _checked(args: argparse.Namespace) -> list[float]:
             raise ValueError(f"--kidnap-at must be from 0 to below {args.minutes * 60:g} s, got {at:g}")
     if args.kidnaps and args.kidnap_at:
         raise ValueError("--kidnaps draws its own times; do not give --kidnap-at with it")
-    from app.headless.kidnap_times import kidnap_times
+    from app.headless.run import kidnap_times
 
     return kidnap_times(args.kidnaps, args.minutes, args.seed) or args.kidnap_at
 

@@ -66,7 +66,7 @@ def _check(path: Path) -> int:
 def _run(name: str, seed: int | None) -> int:
     from app.cli.progress import compile_first
     from app.lessons.files import find_lesson, read_lesson
-    from app.lessons.report import report_of
+    from app.lessons.performance import report_of
 
     lesson = read_lesson(Path(name)) if name.endswith(".toml") else find_lesson(name)
     compile_first()

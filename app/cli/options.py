@@ -1,20 +1,26 @@
-"""The options that several commands share, and how they become a world, a config and a brain."""
+"""The options that several commands share, and how they become a world, a config and a brain.
+
+Where the report of a run goes.
+"""
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from app.config.presets import PRESETS, preset
 from app.config.toml_file import read_text
 from app.config.tree import Config, Value
+from disk import write_whole
 from sim2d import DEFAULT_WORLD
 
 if TYPE_CHECKING:
     from ratslam_core import RatSlam
     from sim2d import World
+
 
 Verbs: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"  # pyright: ignore[reportPrivateUsage]
 
@@ -90,3 +96,19 @@ def session_of(args: argparse.Namespace) -> tuple[World, Config, RatSlam | None]
         print(f"ratslam: note: {words}", file=sys.stderr)
     world = open_world(args.world, args.scale, robot_radius_m=config.robot.robot_radius_m, tell=tell_beside)
     return world, config, brain
+
+
+def write_report(report: dict[str, Any], file: Path | None, words: str) -> None:
+    """Write the report to a file and say so in words, or without a file print it. OSError: it was printed instead."""
+    text = json.dumps(report, indent=2) + "\n"
+    if file is None:
+        print(text, end="")
+        if report.get("partial"):
+            print(words, file=sys.stderr)
+        return
+    try:
+        write_whole(file, text)
+    except OSError:
+        print(text, end="")  # the run is over: its report is not lost for want of a file
+        raise
+    print(f"{words}; report in {file}")

@@ -48,7 +48,7 @@ def recording_of(path: Path, args: argparse.Namespace) -> Recording:
         raise ValueError(f"--seed must be from 0 to {2**32 - 1}, got {args.seed}")
     from app.recordings.apart import ReadApart
     from app.recordings.formats.ros_topics import Choice
-    from app.recordings.made_odometry import parse_errors
+    from app.recordings.motion import parse_errors
     from app.recordings.opening import Opening
 
     choice = Choice(**{name: getattr(args, f"{name}_topic") for name in TOPICS})

@@ -1,4 +1,7 @@
-"""`ratslam run`: the dashboard."""
+"""`ratslam run`: the dashboard.
+
+`ratslam run --class`: whether and where a class in the local network is let in.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,6 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.for_class import add_class_options, for_class
 from app.cli.options import ENGINES, Verbs, add_session_options, port_number
 from app.cli.serving import PAST_DISK_MB, PAST_MB, Serving, serve
 from app.runs.folder import BUDGET_MB
@@ -15,6 +17,33 @@ from app.runs.folder import BUDGET_MB
 if TYPE_CHECKING:
     from app.cli.beginnings import First
     from app.trials.trial import Trial
+    from web.http.server import ForClass
+
+
+PORT = 8001
+
+
+def add_class_options(run: argparse.ArgumentParser) -> None:
+    run.add_argument(
+        "--class", dest="for_class", action="store_true", help="a class in the local network votes and looks on"
+    )
+    run.add_argument("--class-address", metavar="ADDRESS", help="with --class: at this address of the machine")
+    run.add_argument(
+        "--class-port", type=int, metavar="PORT", help=f"with --class: port (default {PORT}, 0 = any free one)"
+    )
+
+
+def for_class(args: argparse.Namespace) -> ForClass | None:
+    """Where a class is let in. ValueError: an option says where, but not that."""
+    if args.for_class:
+        from web.http.server import ForClass
+
+        return ForClass(args.class_address, PORT if args.class_port is None else args.class_port)
+    for name in ("class-address", "class-port"):
+        if getattr(args, name.replace("-", "_")) is not None:
+            raise ValueError(f"--{name} goes with --class, which lets a class in")
+    return None
+
 
 LEAST_PAST_MB = 20.0  # the copy of the last moment alone takes some
 

@@ -12,13 +12,13 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.for_class import class_words
 from app.runs.folder import BUDGET_MB, runs_folder
 
 if TYPE_CHECKING:
     from app.cli.beginnings import First
     from app.startup.compiling import Compiling
     from app.time_machine import PastRoom
+    from web.http.class_door import Classroom
     from web.http.server import Dashboard, ForClass
 
 PAST_MB, PAST_DISK_MB = 200.0, 2000.0
@@ -61,12 +61,12 @@ def _past_room(serving: Serving) -> PastRoom:
 
 
 def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
-    from app.cli.earlier import going_on
+    from app.cli.beginnings import going_on
     from app.engine_thread import EngineThread
     from app.export.page import PageExports
     from app.gallery.gallery import StoredGallery
     from app.gallery.lessons import StoredLessons
-    from app.kept_brains.keeper import BrainKeeper
+    from app.kept_brains import BrainKeeper
     from app.runs.keeper import RunKeeper
     from app.situations.page import PageSituations
     from app.startup.waking import Waking
@@ -74,7 +74,7 @@ def _serve(serving: Serving, first: First, compiling: Compiling) -> int:
     from web import messages as m
     from web.http.kept_offer import Offered
     from web.http.server import CannotListen, Dashboard
-    from web.viewer.viewers import Viewers
+    from web.viewer.viewer import Viewers
 
     gc.freeze()  # what is loaded by now stays to the end: to look through it for garbage holds everything up for 50 ms
 
@@ -142,3 +142,9 @@ def _tell(serving: Serving, dashboard: Dashboard, url: str) -> None:
 
 def _has_screen() -> bool:
     return sys.platform in ("win32", "darwin") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def class_words(classroom: Classroom) -> str:
+    return (
+        f"A class votes at {classroom.url} and looks on at {classroom.url}?watch, as can whoever is in the same network"
+    )

@@ -6,8 +6,7 @@ from app.commands.outcome import Outcome
 from app.config.presets import values_of
 from app.engine.engine import Engine
 from app.engine.watched_trial import CHANGED
-from app.trials.chosen import check_levels, chosen_trial
-from app.trials.experiment import Experiment, catalogue
+from app.trials.experiment import Experiment, catalogue, check_levels, chosen_trial
 from web import messages as m
 
 ENDS: dict[type, str] = {  # the robot can have one master only

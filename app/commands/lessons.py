@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from app.commands.outcome import Outcome, attempt
 from app.engine.engine import Engine
-from app.engine.lesson_run import LessonRun
-from app.engine.teaching import Teaching
-from app.engine.until import RunUntil
+from app.engine.lesson_run import LessonRun, Teaching
+from app.engine.waiting import RunUntil
 from app.lessons.conditions import read_until
 from app.lessons.files import find_lesson
 from web import messages as m

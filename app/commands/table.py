@@ -1,32 +1,40 @@
-"""Which handler carries out which command. People give commands, the server makes requests; both are handled alike."""
+"""Which handler carries out which command. People give commands, the server makes requests; both are handled alike.
+
+What a command needs of the source of the session. A recording has no office, and its robot cannot be told anything.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-from app.commands import (
-    bookmarks,
-    brains,
-    comparing,
-    editing,
-    lessons,
-    looking,
-    office,
-    parameters,
-    recordings,
-    robot,
-    situations,
-    time,
-    transport,
-    worlds,
-)
+from app.commands import brain, lessons, office, robot, time, transport
+from app.commands.brain import inject_packet
 from app.commands.experiments import after_order, watch_experiment
-from app.commands.inject_packet import inject_packet
-from app.commands.needs import lacking
 from app.commands.outcome import Later, Outcome, Working
 from app.engine.engine import Engine
+from app.session import Session
 from web import messages as m
+
+DRIVEN = "a recording plays: its robot goes where it went, and cannot be sent, driven or carried"
+OFFICE = "a recording plays: it has no office"
+LINK = "a recording plays: a link or a file of it would have to hold the recording; share that instead"
+NEEDS: dict[type, str] = {
+    **dict.fromkeys((m.SetGoal, m.GoToTag, m.CancelGoal, m.SetMode, m.Drive, m.Kidnap), DRIVEN),
+    **dict.fromkeys((m.SetDoor, m.SetLamp, m.PutBox, m.RemoveBox, m.EditWorld, m.UndoEdit, m.RedoEdit), OFFICE),
+    **dict.fromkeys((m.ReadWorld, m.WorldSaved), OFFICE),
+    m.ReadSituation: LINK,
+    m.RunUntil: DRIVEN,
+}
+
+
+def lacking(session: Session, command: object) -> m.Refused | None:
+    """Why this session cannot carry out such a command; None: it can."""
+    if session.recording is None or type(command) not in NEEDS:
+        return None
+    kind = getattr(command, "type", type(command).__name__)
+    return m.Refused("type", kind, NEEDS[type(command)])
+
 
 Handler = Callable[[Engine, Any], Outcome]  # Any: an instance of the class that is the key in the table
 
@@ -45,16 +53,16 @@ COMMANDS: dict[type, Handler] = {
     m.StepStage: transport.step_stage,
     m.SetSpeed: transport.set_speed,
     m.Reset: transport.reset,
-    m.SetParameter: parameters.set_parameter,
-    m.UsePreset: parameters.use_preset,
+    m.SetParameter: brain.set_parameter,
+    m.UsePreset: brain.use_preset,
     m.SetDoor: office.set_door,
     m.SetLamp: office.set_lamp,
     m.PutBox: office.put_box,
     m.RemoveBox: office.remove_box,
-    m.EditWorld: editing.edit_world,
-    m.UndoEdit: editing.undo_edit,
-    m.RedoEdit: editing.redo_edit,
-    m.Inspect: looking.inspect,
+    m.EditWorld: office.edit_world,
+    m.UndoEdit: office.undo_edit,
+    m.RedoEdit: office.redo_edit,
+    m.Inspect: robot.inspect,
     m.InjectPacket: inject_packet,
     m.WatchExperiment: watch_experiment,
     m.BeginLesson: lessons.begin_lesson,
@@ -71,28 +79,28 @@ COMMANDS: dict[type, Handler] = {
     m.ChangeBranch: time.change_branch,
     m.CompareBranch: time.compare_branch,
     m.Loop: time.loop,
-    m.LeaveSituation: situations.leave_situation,
-    m.PutBookmark: bookmarks.put_bookmark,
-    m.RemoveBookmark: bookmarks.remove_bookmark,
-    m.CompareBrains: comparing.compare_brains,
-    m.EndComparison: comparing.end_comparison,
+    m.LeaveSituation: time.leave_situation,
+    m.PutBookmark: time.put_bookmark,
+    m.RemoveBookmark: time.remove_bookmark,
+    m.CompareBrains: brain.compare_brains,
+    m.EndComparison: brain.end_comparison,
 }
 REQUESTS: dict[type, Handler] = {
-    m.ReadExperience: looking.read_experience,
-    m.Warn: looking.warn,
-    m.ReadBrain: brains.read_brain,
-    m.ReadSession: looking.read_session,
-    m.UseBrain: brains.use_brain,
-    m.GoOn: brains.go_on,
-    m.ReadWorld: worlds.read_world,
-    m.ReadFiled: worlds.read_filed,
-    m.OpenWorld: worlds.open_world,
-    m.WorldSaved: worlds.world_saved,
-    m.WorldDeleted: worlds.world_deleted,
-    m.WorldRestored: worlds.world_restored,
-    m.PlayRecording: recordings.play_recording,
-    m.ReadSituation: situations.read_situation,
-    m.OpenSituation: situations.open_situation,
+    m.ReadExperience: robot.read_experience,
+    m.Warn: robot.warn,
+    m.ReadBrain: brain.read_brain,
+    m.ReadSession: robot.read_session,
+    m.UseBrain: brain.use_brain,
+    m.GoOn: brain.go_on,
+    m.ReadWorld: office.read_world,
+    m.ReadFiled: office.read_filed,
+    m.OpenWorld: office.open_world,
+    m.WorldSaved: office.world_saved,
+    m.WorldDeleted: office.world_deleted,
+    m.WorldRestored: office.world_restored,
+    m.PlayRecording: transport.play_recording,
+    m.ReadSituation: time.read_situation,
+    m.OpenSituation: time.open_situation,
 }
 
 
@@ -107,7 +115,7 @@ def carry_out(engine: Engine, command: m.Command | m.EngineRequest) -> m.Accepte
     elif engine.time.past is not None and kind not in time.IN_THE_PAST:
         outcome = m.Refused("type", getattr(command, "type", ""), time.PAST)
     elif kind in COMMANDS:
-        outcome = situations.waits(engine, command) or _commanded(engine, COMMANDS[kind], command)
+        outcome = time.waits(engine, command) or _commanded(engine, COMMANDS[kind], command)
     else:
         raise TypeError(f"nobody carries out {getattr(command, 'type', kind.__name__)}")
     return m.Accepted(engine.shown.session.tick_count) if outcome is None else outcome

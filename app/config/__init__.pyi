@@ -1,5 +1,4 @@
-from .additions import additions_markdown
-from .table import to_markdown
+from .tables import additions_markdown, to_markdown
 from .toml_file import from_toml, parse_value, to_toml
 from .tree import Config, Value
 

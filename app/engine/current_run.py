@@ -6,13 +6,12 @@ import traceback
 from collections.abc import Callable
 
 from app.config import Config
-from app.engine.faults import words_of
 from app.engine.library import Library
 from app.engine.pace import Pace
 from app.engine.run import Run
-from app.engine.steps import Steps
 from app.engine.time_travel import TimeTravel
-from app.engine.watchdog import Watchdog
+from app.engine.waiting import Steps
+from app.engine.watchdog import Watchdog, words_of
 from app.engine.work import Slices, Work
 from app.runs.book import Book, Fork
 from app.runs.header import Beginning
@@ -20,7 +19,7 @@ from app.runs.keeper import RunKeeper
 from app.runs.run_file import KeptRun
 from app.session import Session
 from app.time_machine import PastRoom
-from app.views.pair_choices import PairChoices
+from app.views.snapshots import PairChoices
 from app.world_editor import WorldEditor
 from ratslam_core import RatSlam
 from sim2d import World

@@ -7,8 +7,8 @@ import math
 import time
 import traceback
 
-from app.engine.faults import words_of
 from app.engine.other_runs import OtherRuns
+from app.engine.watchdog import words_of
 from app.views.tick_stages import TickRecorder
 from web import messages as m
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from app.config import Config
 from app.engine.current_run import CurrentRun
-from app.engine.lesson_run import LessonRun
+from app.engine.lesson_run import LessonRun, Teaching
 from app.engine.played_ahead import PlayedAhead
 from app.engine.run import Run
-from app.engine.teaching import Teaching
 from app.engine.watched_trial import WatchedTrial
 from app.lessons.performance import session_of
 from app.played_session import PlayedSession

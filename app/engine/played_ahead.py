@@ -1,20 +1,46 @@
-"""A situation that was opened: its orders are given at their ticks, up to its moment; there the hashes are compared."""
+"""A situation that was opened: its orders are given at their ticks, up to its moment; there the hashes are compared.
+
+What the timeline says of an order that is given again.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.engine.order_words import events_of
-from app.order_book import carry_out
+from app.order_book import Order, carry_out
 from app.session import Session
 from app.situations import Situation
 from app.views.event_log import EventLog
+from app.views.office import goal_view
 from sim2d import World
-from web.messages import SituationState, SituationView
+from web.messages import EventKind, SituationState, SituationView
 
 if TYPE_CHECKING:
     from app.engine.run import Run
     from app.engine.time_travel import TimeTravel
+
+
+_OFFICE = {
+    "set_door": "door {name} told to move", "set_lamp": "lamp {name} switched", "put_box": "a box put down",
+    "remove_box": "box {name} taken away", "edit_world": "edited",
+}  # fmt: skip
+
+
+def events_of(order: Order, session: Session) -> list[tuple[EventKind, str]]:
+    """Kinds and words; none for an order that is seen anyway. The session has just carried it out."""
+    name, values = order.name, order.values
+    if name == "kidnap":
+        return [("kidnap", "carried away without being told")]
+    if name in ("set_goal", "go_to_place_of", "go_to", "go_to_tag"):
+        goal = goal_view(session)
+        return [] if goal is None else [("goal", f"to experience {goal.experience}")]
+    if name == "tag":
+        return [("place", f"{values['name']} is here")]
+    if name == "set_parameters":
+        return [("parameter", f"{parameter} = {value}") for parameter, value in values["values"].items()]
+    if name == "put_packet":
+        return [("packet", f"a packet put at cell ({values['x']}, {values['y']}) by hand")]
+    return [("office", _OFFICE[name].format_map(values))] if name in _OFFICE else []
 
 
 class PlayedAhead:

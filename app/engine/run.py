@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from app.config import Config
-from app.engine.faults import require_finite
 from app.engine.lesson_run import LessonRun
 from app.engine.played_ahead import PlayedAhead
-from app.engine.until import RunUntil
+from app.engine.waiting import RunUntil
+from app.engine.watchdog import require_finite
 from app.engine.watched_trial import WatchedTrial
 from app.order_book import Order
 from app.runs.book import Book
@@ -16,10 +16,9 @@ from app.runs.run_file import KeptRun
 from app.session import Session
 from app.time_machine import TimeMachine
 from app.views.event_log import EventLog
-from app.views.history import History
+from app.views.history import History, VisitLog
 from app.views.snapshots import Snapshots
 from app.views.tick_stages import TickRecorder
-from app.views.visits import VisitLog
 from ratslam_core import RatSlam
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.trials.chosen import seconds_of
 from app.trials.course import Course
+from app.trials.experiment import seconds_of
 from app.trials.trial import Trial
 from app.views.event_log import EventLog
 from web.messages import TrialState, TrialView

@@ -16,9 +16,8 @@ from functools import partial
 from app.commands import Later, Working, carry_out
 from app.config import Config
 from app.engine.engine import Engine
-from app.engine.faults import words_of
 from app.engine.pace import LONGEST_WAIT_S, SLICE_S, Pace
-from app.engine.watchdog import Watchdog
+from app.engine.watchdog import Watchdog, words_of
 from app.engine_thread.inbox import Inbox
 from app.runs.keeper import RunKeeper
 from app.session import Session

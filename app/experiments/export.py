@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from app.experiments.stored_trial import StoredTrial
+from app.experiments.store import StoredTrial
 from app.trials.experiment import Experiment
 from disk import whole_file, write_whole
 

@@ -11,11 +11,9 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from app.experiments.durations import time_words
-from app.experiments.outcome import Outcome
-from app.experiments.result_table import table_of
-from app.experiments.stored_trial import StoredTrial
-from app.experiments.summary import CellKey, CellSummary, place_in, summarise
+from app.experiments.runner import time_words
+from app.experiments.store import Outcome, StoredTrial
+from app.experiments.summary import CellKey, CellSummary, place_in, summarise, table_of
 from app.trials.experiment import Experiment
 from app.trials.trial import Trial
 

@@ -1,18 +1,22 @@
-"""The files that an experiment leaves behind for people: its page, its figures, and the index of all."""
+"""The files that an experiment leaves behind for people: its page, its figures, and the index of all.
+
+What an experiment leaves behind: its trials as CSV, its figures, and the page that shows them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from app.experiments.export import write_csv
 from app.experiments.figures import NEED_TRACES, draw, wanted
 from app.experiments.figures.canvas import png_of, svg_of
 from app.experiments.figures.material import Drawn, Material
 from app.experiments.page.page import Entry, index_of, page_of, picture_of
-from app.experiments.result_table import table_of
-from app.experiments.sentences import found
-from app.experiments.stored_trial import StoredTrial
+from app.experiments.store import StoredTrial
+from app.experiments.summary import found, table_of
+from app.experiments.workers import Workers
 from app.trials.experiment import Experiment
 from app.trials.trace import Trace
 from app.trials.trial import Trial
@@ -115,3 +119,21 @@ def trials_by_id(experiment: Experiment, stored: list[StoredTrial], *, quick: bo
     """The trials as they are run, found by the ids of those that are stored."""
     most = max((trial.seed for trial in stored), default=experiment.seed) - experiment.seed + 1
     return {trial.id: trial for trial in experiment.make_trials(trials=max(most, 1), quick=quick)}
+
+
+def make_folder(folder: Path) -> Path:
+    """The folder, made if it does not exist. ValueError says why it cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(f"--out {folder}: {error.strerror or error}") from None
+    return folder
+
+
+def write_outputs(
+    experiment: Experiment, stored: Sequence[StoredTrial], folder: Path, workers: Workers, *, command: str, quick: bool
+) -> tuple[Path, Report]:
+    """The table and the report. stored: the trials that were run; workers: run those again that the figures show."""
+    table = folder / f"{experiment.name}.csv"
+    write_csv(table, experiment, stored)
+    return table, write_report_page(experiment, list(stored), folder, workers.traces, command=command, quick=quick)

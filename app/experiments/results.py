@@ -13,11 +13,8 @@ from dataclasses import astuple
 from pathlib import Path
 from typing import Any, cast
 
-from app.experiments.intervals import Estimate
-from app.experiments.sentences import found
-from app.experiments.stored_trial import StoredTrial
-from app.experiments.summary import CellSummary, summarise, words
-from app.experiments.words import ENGINE_WORDS, words_of
+from app.experiments.store import StoredTrial
+from app.experiments.summary import ENGINE_WORDS, CellSummary, Estimate, found, summarise, words, words_of
 from app.trials.code_version import code_version
 from app.trials.experiment import Experiment
 

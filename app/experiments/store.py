@@ -1,4 +1,13 @@
-"""Trials and their scores in one SQLite file. Trajectories are not kept: the same trial runs again, bit for bit."""
+"""Trials and their scores in one SQLite file. Trajectories are not kept: the same trial runs again, bit for bit.
+
+How a trial ended: with a result, or with an error.
+
+A trial that was run: what it was, and its scores.
+
+A trial as text, from which it can be made again even when its experiment's file has changed.
+
+The tables of the file in which trials are kept.
+"""
 
 from __future__ import annotations
 
@@ -8,17 +17,185 @@ import json
 import math
 import os
 import sqlite3
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from app.experiments.definition import definition_of, trial_from
-from app.experiments.outcome import Outcome
-from app.experiments.schema import broken, connected, opened
-from app.experiments.stored_trial import StoredTrial
-from app.trials.trial import Trial
+from pydantic import TypeAdapter
+
+from app.trials.steps import Step
+from app.trials.trial import Result, Trial
 from disk import kept_folder
+from disk.locks import require_record_locks
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Of the trial with this id. Exactly one of result and error is given."""
+
+    trial_id: str
+    result: Result | None = None
+    error: str = ""  # in words
+
+
+@dataclass(frozen=True, slots=True)
+class StoredTrial:
+    """One row of the store. A trial that failed has an error, no scores, and is run again by the next command."""
+
+    id: str
+    engine: str
+    levels: tuple[str, ...]  # of each axis, by label
+    seed: int
+    scores: dict[str, float]
+    moment_s: float  # simulated time of the moment that decided the trial
+    moment_words: str
+    simulated_s: float = 0.0
+    wall_s: float = 0.0
+    error: str = ""
+    version: str = ""  # of the code
+    quick: bool = False
+
+
+_STEPS: TypeAdapter[tuple[Step, ...]] = TypeAdapter(tuple[Step, ...])
+
+
+def definition_of(trial: Trial) -> str:
+    """All of a trial but its seed, as JSON: the trials of a cell share it."""
+    tree = {
+        "experiment": trial.experiment,
+        "engine": trial.engine,
+        "levels": trial.levels,
+        "world": trial.world,
+        "world_text": trial.world_text,
+        "values": trial.values,
+        "protocol": _STEPS.dump_python(trial.protocol, mode="json"),
+        "measures": trial.measures,
+        "version": trial.version,
+        "quick": trial.quick,
+    }
+    return json.dumps(tree, sort_keys=True, separators=(",", ":"))
+
+
+def trial_from(definition: str, seed: int) -> Trial:
+    """The trial whose definition this is."""
+    tree: dict[str, Any] = json.loads(definition)
+    return Trial(
+        tree["experiment"], tree["engine"], tuple(tree["levels"]), seed, tree["world"], tree["world_text"], tree["values"],
+        _STEPS.validate_python(tree["protocol"]), tuple(tree["measures"]), tree["version"], tree["quick"],
+    )  # fmt: skip
+
+
+VERSION = 1  # of these tables, kept as the file's user_version
+BUSY_S = 60.0  # how long a command that writes waits for another that does
+READ_BUSY_S = 0.5  # and one that only reads: the file's journal lets it read meanwhile, unless somebody locks it whole
+
+_TABLES = """
+CREATE TABLE definitions (
+    digest TEXT PRIMARY KEY,    -- of the text; the trials of a cell share it
+    text TEXT NOT NULL          -- JSON: all of a trial but its seed
+) WITHOUT ROWID;
+CREATE TABLE trials (
+    id TEXT PRIMARY KEY,        -- hash of version, protocol, world, config, seed and what is measured
+    experiment TEXT NOT NULL,
+    engine TEXT NOT NULL,
+    levels TEXT NOT NULL,       -- JSON: of each axis, by label
+    seed INTEGER NOT NULL,
+    version TEXT NOT NULL,      -- of the code
+    quick INTEGER NOT NULL,
+    world TEXT NOT NULL,
+    definition TEXT NOT NULL REFERENCES definitions (digest),
+    simulated_s REAL NOT NULL,
+    wall_s REAL NOT NULL,
+    state_hash TEXT NOT NULL,
+    moment_s REAL NOT NULL,     -- when it was decided, simulated
+    moment TEXT NOT NULL,       -- and by what
+    error TEXT NOT NULL,        -- empty, or why the trial failed; it then has no scores and is run again
+    made_at TEXT NOT NULL       -- UTC
+) WITHOUT ROWID;
+CREATE INDEX trials_by_experiment ON trials (experiment);
+CREATE TABLE scores (
+    trial TEXT NOT NULL REFERENCES trials (id) ON DELETE CASCADE,
+    name TEXT NOT NULL,
+    value REAL NOT NULL,
+    PRIMARY KEY (trial, name)
+) WITHOUT ROWID;
+"""
+
+
+def broken(path: Path, error: sqlite3.Error) -> ValueError:
+    """What is wrong with the file, and the way out."""
+    if "locked" in str(error) or "busy" in str(error):
+        return ValueError(
+            f"--store {path}: another program has locked it; end that one, or name another file by --store"
+        )
+    return ValueError(
+        f"--store {path}: {error}; name a file that `ratslam experiment` has made, or a new one; or move this one away, and a "
+        "new one is begun in its place"
+    )
+
+
+def opened(path: Path) -> sqlite3.Connection:
+    """A file that exists, to be read only and without waiting. ValueError if it cannot be, or is something else."""
+    where = f"{path.absolute().as_uri()}?mode=ro"
+    try:
+        connection = sqlite3.connect(
+            where, uri=True, timeout=READ_BUSY_S, isolation_level=None, check_same_thread=False
+        )
+    except sqlite3.Error as error:
+        raise broken(path, error) from None
+    return _ready(connection, path, _require_ours)
+
+
+def connected(path: Path) -> sqlite3.Connection:
+    """The file, made if it does not exist. ValueError if it is something else, or of a newer program."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        way_out = "the trials need; keep them on a local disk: --store FILE, or RATSLAM_EXPERIMENTS"
+        require_record_locks(path.parent, way_out)
+        connection = sqlite3.connect(path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
+    except (OSError, sqlite3.OperationalError) as error:
+        raise ValueError(f"--store {path}: {getattr(error, 'strerror', None) or error}") from None
+    return _ready(connection, path, _make_tables)
+
+
+def _ready(
+    connection: sqlite3.Connection, path: Path, prepare: Callable[[sqlite3.Connection, Path], None]
+) -> sqlite3.Connection:
+    """The connection, prepared; closed again if that fails."""
+    try:
+        prepare(connection, path)
+    except (sqlite3.Error, ValueError) as error:
+        connection.close()
+        raise (broken(path, error) if isinstance(error, sqlite3.Error) else error) from None
+    return connection
+
+
+def _make_tables(connection: sqlite3.Connection, path: Path) -> None:
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("PRAGMA synchronous = NORMAL")  # a killed process loses nothing; a power cut the last moments
+    connection.execute("PRAGMA foreign_keys = ON")
+    connection.execute("BEGIN IMMEDIATE")  # two commands may begin at once
+    found = connection.execute("PRAGMA user_version").fetchone()[0]
+    empty = not connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+    if found == 0 and empty:
+        for statement in _TABLES.split(";\n"):
+            connection.execute(statement)
+        connection.execute(f"PRAGMA user_version = {VERSION}")
+    connection.execute("COMMIT")
+    _require_ours(connection, path)
+
+
+def _require_ours(connection: sqlite3.Connection, path: Path) -> None:
+    found = connection.execute("PRAGMA user_version").fetchone()[0]
+    if found == 0:
+        raise ValueError(f"--store {path}: this is another program's database; name a new file")
+    if found > VERSION:
+        raise ValueError(
+            f"--store {path}: its tables have version {found}, this program knows {VERSION}; use a newer program, or a new file"
+        )
+
 
 _AT_ONCE = 500  # ids in one question
 _COLUMNS = "id, engine, levels, seed, moment_s, moment, simulated_s, wall_s, error, version, quick"

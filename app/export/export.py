@@ -8,13 +8,10 @@ from pathlib import Path
 from typing import IO, Literal, TypeAlias, get_args
 
 from app.export.film import write_mp4
-from app.export.graph_file import graphml_text
 from app.export.map_pictures import map_pictures
 from app.export.mcap_file import Pictures, write_mcap
 from app.export.played import Played, Progress, Window, last_of, ticks_in
-from app.export.pose_graph import g2o_text
-from app.export.table import write_csv
-from app.export.trajectories import tum_files
+from app.export.text_formats import g2o_text, graphml_text, tum_files, write_csv
 from app.session import Session
 from disk import require_writable, whole_file
 

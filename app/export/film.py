@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.session import Session
-from app.trials.final_map import placed, plan_of
+from app.trials.trace import placed, plan_of
 from ratslam_core import Pose2
 
 FPS = 20

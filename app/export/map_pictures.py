@@ -12,11 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from numpy.typing import NDArray
 
-from app.evaluation.alignment import alignment
-from app.experiments.figures.canvas import frame, panels, png_of, style
-from app.experiments.figures.palette import BLUE, FAINT, INK, ORANGE, VERMILION, WALL
+from app.evaluation.agreement import alignment
+from app.experiments.figures.canvas import BLUE, FAINT, INK, ORANGE, VERMILION, WALL, frame, panels, png_of, style
 from app.session import Session
-from app.trials.final_map import placed, plan_of
+from app.trials.trace import placed, plan_of
 
 _WIDTH_IN = 6.4
 _MARGIN_M = 0.4

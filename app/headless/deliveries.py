@@ -10,12 +10,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.config import Config
-from app.headless.growth import EVERY_S, Sample
-from app.headless.loop import Loop, Progress, silent
-from app.headless.report import counts, judged
-from app.headless.visiting import Visit, visit
+from app.headless.loop import Loop, Progress, Visit, silent, visit
+from app.headless.report import EVERY_S, Sample, counts, judged
 from app.session import Session, spread_goals
-from app.trials.tour import order
+from app.trials.steps import order
 from ratslam_core import RatSlam
 from sim2d import World
 

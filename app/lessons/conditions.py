@@ -64,7 +64,7 @@ class Waiting:
 
     def __init__(self, until: Until, session: Session, history: History) -> None:
         """ValueError: it cannot happen, as things are."""
-        from app.trials.checking import place_of
+        from app.trials.steps import place_of
 
         self.until, self._session, self._history = until, session, history
         self._events = history.log.events[-1].number if history.log.events else 0

@@ -12,13 +12,13 @@ from app.config import Config
 from app.config.pairs import Pair, pair_of, require_pair
 from app.config.presets import values_of
 from app.lessons.conditions import Until
+from app.lessons.course import LessonStep
 from app.lessons.findings import Finding
 from app.lessons.second import OF_SECOND
-from app.lessons.steps import LessonStep
 from app.trials.steps import Line, Seconds, Text, Values, WorldName
 from disk.words import lines
 from web.messages import Command
-from web.messages.command import Name
+from web.messages.commands import Name
 
 Plate = Literal["office", "map"]  # where something is marked or drawn; frames: the simulator's own, the map's own
 MarkKind = Literal["closure", "snap", "lost", "recovered", "kidnap", "arrived", "false", "packet", "link", "reached"]

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 
 from app.pilot.bars import Bars
 from app.pilot.behaviours import Behaviour
-from app.pilot.candidates import Candidates, candidates
 from app.pilot.explore import Explorer
 from app.pilot.freeing import Freeing
-from app.pilot.local_movement import LocalMovement
+from app.pilot.local_movement import Candidates, LocalMovement, candidates
 from app.pilot.params import PilotParams
 from app.pilot.route_following import Progress, RouteFollower
 from app.pilot.seeking import Seeker

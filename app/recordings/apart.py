@@ -30,8 +30,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import NamedTuple, NoReturn, cast
 
-from app.recordings.fingerprint import files_of
-from app.recordings.opening import Opening, open_recording
+from app.recordings.opening import Opening, files_of, open_recording
 from app.recordings.recording import About, Moment, Recording, Wanted, every
 from disk.limits import TICKS
 from ratslam_live import command_of

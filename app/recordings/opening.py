@@ -1,23 +1,33 @@
-"""Opens a recording: finds out what kind it is, by what is in it rather than by its name."""
+"""Opens a recording: finds out what kind it is, by what is in it rather than by its name.
+
+A digest of a recording on the disk, to tell whether it is still the one that a run was made from. [ours]
+
+A small file counts as a whole; of a large one its length and pieces from all over it, since bags may have many gigabytes.
+test_kept_recordings.py.
+
+A recording that was found within something larger: what else lies there is told of, and an archive's folder goes with it.
+
+A run of ours that was exported and is played as a recording: it brings its parameters and its seed.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import math
 import re
 import shutil
+import weakref
 import zlib
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path, PurePosixPath
 
-from app.recordings.beside import Unpacked, Within
 from app.recordings.formats.airsim import FILE as AIRSIM
 from app.recordings.formats.airsim import open_airsim
-from app.recordings.formats.archive import is_archive, unpack
-from app.recordings.formats.bag_file import MAGIC as BAG
-from app.recordings.formats.bag_file import bag_packets
-from app.recordings.formats.bag_folder import METADATA, Bag, has_bag
+from app.recordings.formats.archive import ZSTD, is_archive, unpack
+from app.recordings.formats.bags import MAGIC as BAG
+from app.recordings.formats.bags import METADATA, Bag, bag_packets, has_bag
 from app.recordings.formats.carmen import WORDS, open_carmen
 from app.recordings.formats.donkey import MANIFEST, open_old_tub, open_tub
 from app.recordings.formats.image_folder import open_image_folder
@@ -25,15 +35,102 @@ from app.recordings.formats.lines import open_whole
 from app.recordings.formats.lying import files_in, left_over
 from app.recordings.formats.mcap_file import MAGIC as MCAP
 from app.recordings.formats.mcap_file import mcap_packets, said_of_run
-from app.recordings.formats.packed import ZSTD
 from app.recordings.formats.pictures import PICTURES, within
 from app.recordings.formats.ros_recording import open_ros
 from app.recordings.formats.ros_topics import Choice
 from app.recordings.formats.scan_json import open_scans
 from app.recordings.formats.video import VIDEOS, open_video
-from app.recordings.made_odometry import OdometryErrors, WithMadeOdometry
-from app.recordings.own_run import OwnRun
-from app.recordings.recording import Recording
+from app.recordings.motion import OdometryErrors, WithMadeOdometry
+from app.recordings.recording import About, Moment, Recording, Wanted, every
+
+WHOLE_BYTES = 64 << 20  # of files up to this size everything counts
+PIECE_BYTES, PIECES = 1 << 20, 32
+
+
+def fingerprint(path: Path) -> str:
+    """SHA-256 over the names, lengths and contents of all files that belong to it. OSError: one cannot be read."""
+    whole = hashlib.sha256()
+    home = path if path.is_dir() else path.parent
+    for file in files_of(path):
+        size = file.stat().st_size
+        whole.update(f"{file.relative_to(home).as_posix()}\0{size}\0".encode())
+        with file.open("rb") as data:
+            if size <= WHOLE_BYTES:
+                whole.update(data.read())
+                continue
+            for k in range(PIECES):
+                data.seek(k * (size - PIECE_BYTES) // (PIECES - 1))
+                whole.update(data.read(PIECE_BYTES))
+    return whole.hexdigest()
+
+
+def files_of(path: Path) -> list[Path]:
+    """The files of a recording, in the order of their names: those of a folder; or a file and the table beside it."""
+    if not path.is_dir():
+        if path.name in (AIRSIM, MANIFEST):
+            return files_of(path.parent)
+        table = path.with_suffix(".csv")
+        return [path, *([table] if table != path and table.is_file() else [])]
+    return sorted(file for file in path.rglob("*") if file.is_file())
+
+
+class Within:
+    """The same recording under the name of what it was found in."""
+
+    def __init__(self, recording: Recording, name: str, unused: tuple[str, ...] = ()) -> None:
+        self._recording, self._name, self._more = recording, name, unused
+
+    @property
+    def about(self) -> About:
+        about = self._recording.about
+        return replace(about, name=self._name, unused=(*about.unused, *self._more))
+
+    def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
+        return self._recording.moments(wanted)
+
+
+class Unpacked(Within):
+    """One that was unpacked into a folder, which is deleted when nobody has the recording any more."""
+
+    def __init__(self, recording: Recording, name: str, folder: Path, unused: tuple[str, ...]) -> None:
+        super().__init__(recording, name, unused)
+        self._gone = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+
+    @property
+    def about(self) -> About:
+        about = super().about
+        return replace(about, format=f"{about.format}, unpacked")
+
+    def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
+        yield from super().moments(wanted)  # so that the folder is there until the last of them
+
+
+class OwnRun:
+    """With these, the same views, experiences and links come out as in the run."""
+
+    def __init__(self, recording: Recording, said: dict[str, str]) -> None:
+        """said: what the run says of itself, as `app/export/mcap_file.py` writes it."""
+        from app.config.toml_file import from_toml  # which needs the engine, and most recordings do not
+
+        self._recording = recording
+        self._problems: tuple[str, ...] = ()
+        self._config, self._seed = None, None
+        try:
+            self._config, self._seed = from_toml(said["config"]), int(said["seed"])
+        except (KeyError, ValueError) as error:
+            self._problems = (f"the parameters of this run cannot be used, and rules take their place: {error}",)
+
+    @property
+    def about(self) -> About:
+        about = self._recording.about
+        uses = about.uses if self._config is None else (*about.uses, "parameters and seed: those of the run")
+        return replace(
+            about, uses=uses, problems=(*about.problems, *self._problems), config=self._config, seed=self._seed
+        )
+
+    def moments(self, wanted: Wanted = every) -> Iterator[Moment]:
+        return self._recording.moments(wanted)
+
 
 READ = (
     "MCAP, a bag of ROS 1 or 2, a video, a folder of pictures, a Donkey tub, AirSim's folder, a CARMEN log, or an archive "

@@ -13,8 +13,7 @@ from app.config import Config
 from app.recordings.brain_rules import rules
 from app.recordings.motion import Motion
 from app.recordings.recording import Moment, Recording
-from app.recordings.scan_odometry import is_laser
-from app.recordings.scan_rules import ScanRules
+from app.recordings.scan_odometry import ScanRules, is_laser
 from app.recordings.scan_ties import ScanTies
 from disk import kind
 from ratslam_core import Estimate, Odometry, RatSlam

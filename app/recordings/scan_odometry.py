@@ -3,20 +3,223 @@
 That is a local map of some scans, not the last scan alone: then errors grow with the way, not with the number of scans.
 test_recorded_motion.py::{test_a_laser_makes_wheels_better,test_errors_do_not_grow_with_the_rate_of_scans}. `ScanRules.local_map`
 off is the plain twin.
+
+What a laser adds to the wheels, each with a switch: off is the plain twin. [ours]
+
+[ours] How a laser moved between two scans: the second is laid over the first. What wheels say is where to begin.
+
+Wheels that slip turn a robot by degrees between two scans; a scan tells the turn to a fraction of one. Point to line, as
+Censi 2008. test_recorded_motion.py::test_a_movement_in_a_room_is_found.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from app.recordings.recording import About
-from app.recordings.scan_matching import Walls, points_of
-from app.recordings.scan_rules import ScanRules
 from disk import kind
-from ratslam_core import Odometry, Pose2
+from ratslam_core import Odometry, Pose2, wrap_angle
+
+
+@kind("scan rules/1")
+@dataclass(frozen=True, slots=True)
+class ScanRules:
+    """Compared by `python -m benchmarks.recordings --without NAME variants`."""
+
+    local_map: bool = True  # a scan is laid over several before it; off: over the one before
+    confirmed: bool = True  # a look counts where the scans agree; off: every look counts, as the gate lets it
+    mutual: bool = (
+        True  # each scan laid over the other must say the same, and nowhere near may fit as well; off: one of them
+    )
+    weighed: bool = True  # a match weighs less where walls tell little of a direction; off: all weigh the same
+    neighbours: bool = True  # a match far from where the robot believes to be needs a second one; off: one is enough
+
+
+Points = NDArray[np.float64]  # (n, 2), m
+
+STARTS_RAD = tuple(math.radians(d) for d in (0, -8, 8, -16, 16))  # added to the turn of the wheels
+SPACING_M = 0.5  # between the places from which it begins
+ROUNDS = 15
+ROUGH_ROUNDS, SPARSE, MOST_STARTS = 6, 3, 8  # every third point first; then the best places that are not the same
+LEAST_POINTS = 30
+LEAST, WELL = 0.15, 0.85  # share of the points on walls: to be believed, and to try no other start
+NEAR = 0.4  # m to begin with; points farther from every line say nothing, and this shrinks to a quarter
+TRUST_M, TRUST_RAD = 0.5, 0.4  # from what the wheels say; a match beyond is none
+SPLIT = 0.3  # share of the range by which two beams side by side may differ and still show one wall
+SAME_M, SAME_RAD = 0.15, 0.05  # of two matches that say the same
+DOUBT = (1e-2, 1e-2, 1e-3)  # a point: where all walls are parallel, a scan stays where the wheels put it
+
+
+def alike(a: Pose2, b: Pose2, times: float = 1.0) -> bool:
+    """Whether two matches say the same, or so many times the error of that."""
+    near = math.hypot(a.x - b.x, a.y - b.y) < times * SAME_M
+    return near and abs(wrap_angle(a.heading_rad - b.heading_rad)) < times * SAME_RAD
+
+
+class Match(NamedTuple):
+    """Where a scan lies over another."""
+
+    pose: Pose2
+    fits: float  # share of its points on walls, less how far off they are
+    rival: float  # `fits` of the best place elsewhere, if it was looked for
+    holds: (
+        float  # 0 to 0.5: how much of the walls lies across the direction that they tell least of; 0 in a bare corridor
+    )
+
+
+def points_of(ranges_m: NDArray[np.float64], angles_rad: NDArray[np.float64], limit_m: float) -> Points:
+    """Where the beams end, in the frame of the laser; those that end nowhere are left out."""
+    ends = np.isfinite(ranges_m) & (ranges_m > 0) & (ranges_m < limit_m)
+    r, a = ranges_m[ends], angles_rad[ends]
+    return np.stack([r * np.cos(a), r * np.sin(a)], axis=1)
+
+
+def normals_of(points: Points) -> tuple[Points, Points]:
+    """Points with the direction across the wall that they and their neighbours lie on, (n, 2) each."""
+    if len(points) < 3:
+        return points[:0], points[:0]
+    gap = SPLIT * np.hypot(points[:, 0], points[:, 1]) + 0.05
+    step = np.hypot(*np.diff(points, axis=0).T)
+    k = 1 + np.flatnonzero((step[:-1] < gap[1:-1]) & (step[1:] < gap[1:-1]))
+    along = points[k + 1] - points[k - 1]
+    along = along / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-9)[:, None]
+    return points[k], np.stack([-along[:, 1], along[:, 0]], axis=1)
+
+
+@kind("walls/1")
+class Walls:
+    """Points on walls, with the directions across them, over which scans are laid."""
+
+    def __init__(self, points: Points, normals: Points | None = None) -> None:
+        """points: a scan, beam by beam; or with their normals, any points."""
+        if normals is None:
+            points, normals = normals_of(points)
+        self.points, self.normals = points, normals
+        low = points.min(axis=0, initial=0.0) - NEAR
+        columns, rows = (int(n) + 3 for n in (points.max(axis=0, initial=0.0) - low) // NEAR)
+        square = ((points - low) // NEAR).astype(np.int64)
+        which = square[:, 1] * columns + square[:, 0]
+        order = np.argsort(which, kind="stable")
+        self._order, self._low, self._columns = order, low, columns
+        self._first = np.searchsorted(which[order], np.arange(columns * rows + 1))  # of each square
+
+    @staticmethod
+    def joined(scans: Iterable[tuple[Pose2, Walls]]) -> Walls:
+        """Several as one, each at its pose."""
+        parts = [
+            (walls.points @ _turning(at.heading_rad) + (at.x, at.y), walls.normals @ _turning(at.heading_rad))
+            for at, walls in scans
+        ]
+        points, normals = (np.concatenate(column) for column in zip(*parts, strict=True))
+        return Walls(points, normals)
+
+    def match(self, now: Points, told: Pose2, least: float = LEAST, *, reach_m: float = 0.0) -> Match | None:
+        """The pose of the scan `now` in the frame of this; None when no start near `told` fits well.
+
+        reach_m: how far off `told` may be; then it begins in all places so near, and looks for a rival, too.
+        """
+        if len(self.points) < LEAST_POINTS or len(now) < LEAST_POINTS:
+            return None
+        settled: list[Match] = []
+        for start in self._starts(now, told, reach_m):
+            if reach_m > 0 or not settled or settled[-1].fits <= WELL:
+                settled.append(self._settle(now, start))
+        best = max(settled, key=lambda each: each.fits)
+        if reach_m > 0:
+            best = best._replace(rival=max((s.fits for s in settled if not alike(s.pose, best.pose, 2.0)), default=0.0))
+        far = math.hypot(best.pose.x - told.x, best.pose.y - told.y) > TRUST_M + reach_m
+        if best.fits < least or far or abs(wrap_angle(best.pose.heading_rad - told.heading_rad)) > TRUST_RAD:
+            return None
+        return best
+
+    def _starts(self, now: Points, told: Pose2, reach_m: float) -> list[Pose2]:
+        """Where to begin. Of many places, those to which a part of the points settles best in a few rounds."""
+        starts = [
+            Pose2(told.x + dx, told.y + dy, told.heading_rad + turn)
+            for dx, dy in _around(reach_m)
+            for turn in STARTS_RAD
+        ]
+        if reach_m == 0:
+            return starts
+        roughly = [self._settle(now[::SPARSE], start, ROUGH_ROUNDS) for start in starts]
+        chosen: list[Pose2] = []
+        for each in sorted(roughly, key=lambda each: -each.fits):
+            if len(chosen) < MOST_STARTS and not any(alike(each.pose, other, 2.0) for other in chosen):
+                chosen.append(each.pose)
+        return chosen
+
+    def _settle(self, now: Points, start: Pose2, rounds: int = ROUNDS) -> Match:
+        fits, holds, x, y, heading = _settle(
+            self.points, self.normals, self._order, self._first, self._columns, self._low, now, start.x, start.y,
+            start.heading_rad, rounds,
+        )  # fmt: skip
+        return Match(Pose2(x, y, wrap_angle(heading)), fits, 0.0, holds)
+
+
+def _around(reach_m: float) -> list[tuple[float, float]]:
+    n = math.ceil(reach_m / SPACING_M)
+    return [(SPACING_M * i, SPACING_M * j) for i in range(-n, n + 1) for j in range(-n, n + 1)]
+
+
+def _turning(angle: float) -> NDArray[np.float64]:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, s], [-s, c]])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _settle(
+    points: Points, normals: Points, order: NDArray[np.int64], first: NDArray[np.int64], columns: int, low: NDArray[np.float64],
+    now: Points, x: float, y: float, heading: float, rounds: int,
+) -> tuple[float, float, float, float, float]:  # fmt: skip
+    """From one start to where it settles: fits and holds (`Match`), x, y, heading. order, first: the points by squares."""
+    rows = (len(first) - 1) // columns
+    fits = holds = 0.0
+    for k in range(rounds):
+        near = NEAR * (1 - 0.75 * k / (ROUNDS - 1))
+        c, s = math.cos(heading), math.sin(heading)
+        h, g = np.zeros((3, 3)), np.zeros(3)
+        on, off = 0, 0.0
+        for i in range(len(now)):
+            px, py = c * now[i, 0] - s * now[i, 1], s * now[i, 0] + c * now[i, 1]
+            qx, qy = px + x, py + y
+            column, row = math.floor((qx - low[0]) / NEAR), math.floor((qy - low[1]) / NEAR)
+            closest, which = near * near, -1
+            for r in range(max(row - 1, 0), min(row + 2, rows)):
+                for square in range(r * columns + max(column - 1, 0), r * columns + min(column + 2, columns)):
+                    for at in range(first[square], first[square + 1]):
+                        j = order[at]
+                        away = (points[j, 0] - qx) ** 2 + (points[j, 1] - qy) ** 2
+                        if away < closest:
+                            closest, which = away, j
+            if which < 0:
+                continue
+            n0, n1 = normals[which, 0], normals[which, 1]
+            error = (qx - points[which, 0]) * n0 + (qy - points[which, 1]) * n1
+            a = (n0, n1, n1 * px - n0 * py)
+            for u in range(3):
+                g[u] -= a[u] * error
+                for v in range(3):
+                    h[u, v] += a[u] * a[v]
+            on += 1
+            off += abs(error)
+        if on < min(LEAST_POINTS // 2, len(now) / 4):
+            return 0.0, 0.0, x, y, heading
+        apart = math.hypot((h[0, 0] - h[1, 1]) / 2, h[0, 1])
+        holds = ((h[0, 0] + h[1, 1]) / 2 - apart) / on
+        fits = on / len(now) - off / on / near / 4
+        for u in range(3):
+            h[u, u] += DOUBT[u] * on
+        step = np.linalg.solve(h, g)
+        x, y, heading = x + step[0], y + step[1], heading + step[2]
+    return fits, holds, x, y, heading
+
 
 IDENTITY = Pose2(0.0, 0.0, 0.0)
 LEAST_BEAMS = 60  # fewer are sonars

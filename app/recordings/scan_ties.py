@@ -16,9 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.recordings.recording import About
-from app.recordings.scan_matching import Points, Walls, alike, points_of
-from app.recordings.scan_odometry import FARTHEST_M
-from app.recordings.scan_rules import ScanRules
+from app.recordings.scan_odometry import FARTHEST_M, Points, ScanRules, Walls, alike, points_of
 from disk import kind
 from ratslam_core import ExperienceMap, Pose2
 

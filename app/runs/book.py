@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from app.order_book import Order
-from app.runs.header import Beginning
-from app.runs.pulse import pulse_of
+from app.runs.header import Beginning, pulse_of
 from app.runs.run_file import KeptRun
 from app.session import Session
 from disk import copy_state

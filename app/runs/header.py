@@ -1,10 +1,17 @@
-"""The first line of a run's file: what the run began from, and which program on which machine made it."""
+"""The first line of a run's file: what the run began from, and which program on which machine made it.
+
+Four bytes that tell one tick of a run from another: where the robot is, what it sees, and where it believes to be.
+
+The text of an edited world as what differs from the text before, so that an hour of editing stays small.
+"""
 
 from __future__ import annotations
 
 import json
 import platform
+import struct
 import time
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -15,12 +22,70 @@ from pydantic.dataclasses import dataclass as checked
 
 from app.config import Config, Value
 from app.trials.code_version import code_version
+from disk.limits import EDITED_BYTES, ORDERS
 from disk.state_reading import words_of
 from disk.words import one_line, plain
 
 if TYPE_CHECKING:
     from app.played_session import PlayedSession
     from app.session import Session
+
+
+SIZE = 4
+_NUMBERS = struct.Struct("<12d")
+
+
+def pulse_of(session: Session) -> bytes:
+    """The pulse of the tick that the session has just run. It costs some microseconds; a `state_hash` ten thousand times that.
+
+    Of the picture it holds how much it differs from the most similar view: a sum over the picture alone would cost more
+    than all the rest.
+    """
+    truth, frame, estimate = session.truth, session.frame, session.estimate
+    x, y, heading_rad = (truth.x, truth.y, truth.heading_rad) if truth else (0.0, 0.0, 0.0)  # a recording may have none
+    pose, packet, seen = estimate.pose_map_robot, estimate.packet, estimate.recognition
+    numbers = _NUMBERS.pack(
+        x, y, heading_rad, frame.odometry_speed, frame.odometry_yaw_rate, pose.x, pose.y,
+        pose.heading_rad, packet.mass, estimate.experience, seen.view, seen.difference,
+    )  # fmt: skip
+    return zlib.crc32(numbers).to_bytes(SIZE, "little")
+
+
+def edit_of(before: str, after: str) -> dict[str, Any]:
+    """The lines `from` to `to` of `before` become the lines `put`; `check` is the checksum of `after`."""
+    old, new = before.splitlines(keepends=True), after.splitlines(keepends=True)
+    most = min(len(old), len(new))
+    first = next((k for k in range(most) if old[k] != new[k]), most)
+    last = next((k for k in range(most - first) if old[-1 - k] != new[-1 - k]), most - first)
+    return {"from": first, "to": len(old) - last, "put": "".join(new[first : len(new) - last]), "check": _check(after)}
+
+
+def edited(before: str, edit: dict[str, Any]) -> str:
+    """The text after an edit. ValueError: the edit does not belong to this text."""
+    lines = before.splitlines(keepends=True)
+    try:
+        first, last, put = edit["from"], edit["to"], edit["put"]
+        if not 0 <= first <= last <= len(lines):
+            raise ValueError(f"it changes lines {first} to {last} of {len(lines)}")
+        after = "".join([*lines[:first], put, *lines[last:]])
+        if edit["check"] != _check(after):
+            raise ValueError("the text after it is another than the one that was written")
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"an edit of the world cannot be made again: {error}") from None
+    return after
+
+
+def require_room(orders: int, edited_bytes: int) -> None:
+    """ValueError: no run has so many orders, or so many edits of so large a world. Who writes one and who reads it ask here."""
+    if orders > ORDERS:
+        raise ValueError(f"a run has at most {ORDERS:,} orders")
+    if edited_bytes > EDITED_BYTES:
+        raise ValueError(f"the worlds of a run, one for each edit, have at most {EDITED_BYTES >> 20} MiB together")
+
+
+def _check(text: str) -> int:
+    return zlib.crc32(text.encode())
+
 
 FORMAT = "ratslam run/1"
 _Words = Annotated[str, Field(max_length=200), AfterValidator(one_line)]
@@ -101,7 +166,7 @@ _HEADER = TypeAdapter(Header)
 
 def header_of(beginning: Beginning) -> Header:
     """OSError: its recording cannot be read."""
-    from app.recordings.fingerprint import fingerprint
+    from app.recordings.opening import fingerprint
 
     path = beginning.recording
     recording = path and KeptRecording(str(path), fingerprint(path), beginning.dt or 0.0)

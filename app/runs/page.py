@@ -1,26 +1,97 @@
-"""One run on its way to the disk: makes its folder, turns what the engine tells into lines, and survives a full disk."""
+"""One run on its way to the disk: makes its folder, turns what the engine tells into lines, and survives a full disk.
+
+Hashes and files of the copies that the engine makes of a session, from a thread of their own: both take their time.
+
+A branch of a run on the disk: a run of its own, with the other's past up to where it left it.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
+import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import count
 from pathlib import Path
 
 from app.order_book import Order
 from app.runs.book import Book, Copy, Ended, Fork, Hashed, Marked, Told
 from app.runs.bookmarks import write_bookmarks
-from app.runs.folder import BRAIN, runs_folder
-from app.runs.fork import copy_until
+from app.runs.folder import BRAIN, STATE, runs_folder
 from app.runs.header import header_of, written
-from app.runs.journal import Journal
-from app.runs.line_book import LineBook
+from app.runs.journal import Journal, LineBook
 from app.runs.run_file import KeptRun, open_run
-from app.runs.states import States
+from app.session_snapshot import save_copy
 from app.trials.code_version import code_version
 from disk import encode, whole_file, write_state
+
+SAVE_EVERY_S = 60.0  # simulated time ...
+SAVE_PAUSE_S = 10.0  # ... and wall time between two files of states, at least
+SAVE_SHARE = 0.0025  # of the time may go into such files
+
+
+class States:
+    """Takes one copy at a time; those that come meanwhile are dropped, and only the hash of a moment is missing."""
+
+    def __init__(self, folder: Path, hashed: Callable[[int, str, int, float], object]) -> None:
+        """hashed: is given tick, hash, number of experiences, and the computing time of the hash in seconds, from the thread.
+        The newest state lies in the folder."""
+        self._folder, self._hashed = folder, hashed
+        self._saved_s, self._saved_at, self._pause_s = 0.0, time.monotonic(), SAVE_PAUSE_S
+        self._thread: threading.Thread | None = None
+
+    def take(self, copy: Copy) -> None:
+        if self._thread is None or not self._thread.is_alive():
+            self._thread = threading.Thread(target=self._work, args=(copy,), name="state keeper", daemon=True)
+            self._thread.start()
+
+    def finish(self, patience_s: float) -> None:
+        if self._thread is not None:
+            self._thread.join(patience_s)
+
+    def _work(self, copy: Copy) -> None:
+        began, session = time.thread_time(), copy.session
+        tick, time_s = copy.tick, copy.time_s
+        hash_ = session.digest(copy.texts)
+        hashed_at = time.thread_time()
+        self._hashed(tick, hash_, len(session.brain.experience_map), hashed_at - began)
+        if time_s - self._saved_s < SAVE_EVERY_S or time.monotonic() - self._saved_at < self._pause_s:
+            return
+        self._saved_s, self._saved_at = time_s, time.monotonic()
+        with contextlib.suppress(OSError, ValueError):
+            save_copy(copy.texts, session, self._folder / STATE)
+        # When that failed, the older state stays, and the orders are enough: the run's file complains of a full disk.
+        self._pause_s = max(SAVE_PAUSE_S, (time.thread_time() - hashed_at) / SAVE_SHARE)
+
+
+def copy_until(run: KeptRun, tick: int, folder: Path) -> KeptRun:
+    """Write the run up to the end of this tick, without the orders given then, into a new folder.
+
+    ValueError: it is not known so far. OSError: the disk does not take it.
+    """
+    if not 0 <= tick <= run.last_tick:
+        raise ValueError(f"the run {run.name} is known up to tick {run.last_tick}, not {tick}")
+    journal = Journal(folder)
+    try:
+        journal.add(written(replace(run.header, made_at=time.time())))
+        lines = LineBook(journal, run.header.world, 0)
+        orders = [order for order in run.orders if order.tick < tick][::-1]
+        for done in range(tick):
+            while orders and orders[-1].tick == done:
+                lines.order(orders.pop())
+            lines.tick(done + 1, run.pulse(done + 1))
+            if done + 1 in run.hashes:
+                lines.hash(done + 1, run.hashes[done + 1], run.experiences or 0)
+        lines.flush()
+    finally:
+        journal.close()
+    if run.header.brain:
+        shutil.copyfile(run.folder / BRAIN, folder / BRAIN)
+    return open_run(folder)
+
 
 STATES_PATIENCE_S = 0.5  # a run is whole without its newest hash and state
 _numbers = count(1)

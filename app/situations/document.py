@@ -2,10 +2,16 @@
 
 A link leaves out what every program has: the text of a world of the program (`check` says which text that was), and
 parameters at their defaults (`defaults` says which those were).
+
+A situation from the text of a file or from a link. Both come from others, so everything in them is checked.
+
+A situation as the text of a file or as a link.
 """
 
 from __future__ import annotations
 
+import base64
+import binascii
 import json
 import zlib
 from typing import Annotated, Any
@@ -14,9 +20,15 @@ import msgspec
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from app.config import Config, Value
-from app.runs.lines import parts_of
-from disk.limits import LINE_PARTS, ORDERS, PARTS_OF_AN_ORDER, SITUATION_BYTES, TICKS
+from app.order_book import SMALLEST_M, Order, overtakes
+from app.runs.header import FORMAT as RUN
+from app.runs.header import Header, edit_of, edited, require_room
+from app.runs.journal import parts_of
+from app.runs.run_file import check_order
+from app.situations.situation import Situation
+from disk.limits import LINE_PARTS, LINK_BYTES, ORDERS, PARTS_OF_AN_ORDER, SITUATION_BYTES, TICKS
 from disk.words import one_line
+from sim2d import load_world, world_from_json, world_names, world_to_json
 from web.messages.situation import Look
 
 FORMAT = "ratslam situation/1"
@@ -101,3 +113,186 @@ def _checked(raw: bytes) -> Document:
         where = ".".join(map(str, first["loc"]))
         wrong = first["msg"][0].lower() + first["msg"][1:]
         raise ValueError(f"it is no situation of this program: {f'{where}: ' if where else ''}{wrong}") from None
+
+
+def read_situation(text: str) -> Situation:
+    """text: of a file, or a link: a whole address, or its end from `run=` on. ValueError says what is wrong with it."""
+    text = text.strip()
+    document, orders = document_in(text if text.startswith("{") else _unpacked(text))
+    if document.format != FORMAT:
+        raise ValueError(f"its format is {document.format!r}; this program reads {FORMAT!r}")
+    notes: list[str] = []
+    if document.defaults not in (None, check_of_defaults()):
+        notes.append("Some of the defaults, which its link leaves out, were others then.")
+    world = _world_of(document)
+    header = Header(
+        RUN, document.version, document.python, document.numpy, document.platform, document.made_at,
+        document.world_name, world, document.seed, defaults() | document.values, document.brain is not None,
+        document.trial,
+    )  # fmt: skip
+    _ = header.config  # ValueError: there is no such parameter, or not such a value
+    return Situation(
+        header, _orders_of(document, orders, world), document.tick, document.state_hash, document.look, _brain_of(document),
+        tuple(notes), document.second_hash,
+    )  # fmt: skip
+
+
+def _unpacked(text: str) -> bytes:
+    _, found, packed = text.rpartition(f"{KEY}=")
+    packed = packed.partition("&")[0]
+    if not found:
+        raise ValueError(f"it is neither the file of a situation nor a link with #{KEY}=")
+    try:
+        raw = base64.b64decode(packed + "=" * (-len(packed) % 4), altchars=b"-_", validate=True)
+        opening = zlib.decompressobj()
+        document = opening.decompress(raw, LINK_BYTES)
+    except (binascii.Error, ValueError, zlib.error):
+        raise ValueError("the link is damaged: what follows run= cannot be unpacked; copy it whole") from None
+    if not opening.eof:
+        too_long = "is longer than any run" if len(document) >= LINK_BYTES else "is cut off; copy it whole"
+        raise ValueError(f"the link {too_long}")
+    return document
+
+
+def _world_of(document: Document) -> str:
+    """The text of the world."""
+    text = document.world if document.world is not None else text_of_ours(document.world_name)
+    if text is None:
+        raise ValueError(f"this program has no world {document.world_name!r}; ask for the file, which has it")
+    if check_of(text) != document.check:
+        whose = "the world in it" if document.world is not None else f"this program's world {document.world_name!r}"
+        raise ValueError(f"{whose} is another than the one that the run began in; ask for the file")
+    world_from_json(text, f"the world {document.world_name}", SMALLEST_M)
+    return text
+
+
+def _orders_of(document: Document, rows: list[msgspec.Raw], world: str) -> tuple[Order, ...]:
+    orders: list[Order] = []
+    last = edited_bytes = 0
+    for number, raw in enumerate(rows, start=1):
+        try:
+            tick, name, values = order_in(raw)
+        except ValueError as error:
+            raise ValueError(f"order {number}: {error}") from None
+        if not last <= tick <= document.tick:
+            raise ValueError(f"order {number} is of tick {tick}; it must be from {last} to {document.tick}")
+        try:
+            if "edit" in values:
+                world = values["world"] = edited(world, values.pop("edit"))
+                edited_bytes += len(world)
+            order = Order(tick, name, values)
+            check_order(order)
+            if orders and overtakes(order, orders[-1]):
+                orders.pop()
+            orders.append(order)
+            require_room(len(orders), edited_bytes)
+        except ValueError as error:
+            raise ValueError(f"order {number}, of tick {tick}: {error}") from None
+        last = tick
+    return tuple(orders)
+
+
+def _brain_of(document: Document) -> bytes | None:
+    try:
+        return None if document.brain is None else base64.b64decode(document.brain, validate=True)
+    except (binascii.Error, ValueError):
+        raise ValueError("the brain in it is damaged: it is no base64") from None
+
+
+LONGEST_LINK = 8000  # characters; longer addresses are cut by mail programs and chats
+KEY = "run"
+
+
+def file_of(situation: Situation) -> str:
+    """The text of its file, an order a line: whatever the program that reads it has as worlds and defaults, this is the
+    same. ValueError: it would be longer than what can be read again."""
+    document = _document(situation, short=False).model_dump(mode="json", exclude=_left_out(situation))
+    orders = ",\n  ".join(map(json.dumps, _orders(situation)))
+    lines = [f'"{key}": {json.dumps(value)}' for key, value in document.items()]
+    text = "{" + ",\n ".join([*lines, f'"orders": [\n  {orders}]' if orders else '"orders": []']) + "}\n"
+    if len(text) > SITUATION_BYTES or parts_of(text.encode(), MOST_PARTS) > MOST_PARTS:
+        raise ValueError(
+            f"the run is too long for a situation: {len(situation.orders):,} orders, {len(text) >> 20} MiB"
+        )
+    return text
+
+
+def link_of(situation: Situation) -> tuple[str | None, str]:
+    """The end of an address, `run=...`, and nothing; or None and a sentence that says why it fits into no link."""
+    if situation.brain is not None:
+        size = f"{len(situation.brain) / 1e6:.1f} MB"
+        return None, f"The run began with a brain of its own, {size}, which fits into no link; the file has it."
+    document = _document(situation, short=True).model_dump_json(exclude=_left_out(situation)).removesuffix("}")
+    text = f'{document},"orders":{json.dumps(_orders(situation), separators=(",", ":"))}}}'.encode()
+    if len(text) > LINK_BYTES:
+        return None, f"The run has {len(situation.orders):,} orders, too many for a link; the file has them."
+    packed = zlib.compress(text, 9)
+    link = f"{KEY}={base64.urlsafe_b64encode(packed).decode().rstrip('=')}"
+    if len(link) <= LONGEST_LINK:
+        return link, ""
+    parts = [f"{len(situation.orders):,} orders"] if situation.orders else []
+    parts += [] if is_ours(situation) else [f"the world {situation.header.world_name}, which is none of the program's"]
+    return None, (
+        f"The link would have {len(link):,} characters ({' and '.join(parts)}), and more than {LONGEST_LINK:,} do not "
+        "get through everywhere; the file has it."
+    )
+
+
+def is_ours(situation: Situation) -> bool:
+    """Whether its world is one that comes with the program, as it comes."""
+    return situation.header.world == text_of_ours(situation.header.world_name)
+
+
+def text_of_ours(name: str) -> str | None:
+    """The text of the world of this name that comes with the program. A link names nothing else: no file of this machine."""
+    return world_to_json(load_world(name)) if name in dict(world_names()) else None
+
+
+def changed_values(situation: Situation) -> dict[str, Any]:
+    """The parameters that are not at their defaults, and one that would otherwise follow another (`Config.with_values`)."""
+    values, usual = situation.header.values, defaults()
+    changed = {name: value for name, value in values.items() if usual.get(name) != value}
+    if "robot.camera_fov_rad" in changed:
+        changed["local_view.field_of_view"] = values["local_view.field_of_view"]
+    return changed
+
+
+def _left_out(situation: Situation) -> set[str]:
+    """Programs that know of no second hash read what has none."""
+    return {"second_hash"} if situation.second_hash is None else set()
+
+
+def _document(situation: Situation, *, short: bool) -> Document:
+    header = situation.header
+    left_out = short and is_ours(situation)
+    return Document(
+        format=FORMAT,
+        version=header.version,
+        python=header.python,
+        numpy=header.numpy,
+        platform=header.platform,
+        made_at=header.made_at,
+        world_name=header.world_name,
+        world=None if left_out else header.world,
+        check=check_of(header.world),
+        seed=header.seed,
+        values=changed_values(situation) if short else header.values,
+        defaults=check_of_defaults() if short else None,
+        tick=situation.tick,
+        state_hash=situation.state_hash,
+        second_hash=situation.second_hash,
+        look=situation.look,
+        trial=header.trial,
+        brain=None if situation.brain is None else base64.b64encode(situation.brain).decode(),
+    )
+
+
+def _orders(situation: Situation) -> list[tuple[int, str, dict[str, Any]]]:
+    text, rows = situation.header.world, list[tuple[int, str, dict[str, Any]]]()
+    for order in situation.orders:
+        values = dict(order.values)
+        if "world" in values:
+            after = values.pop("world")
+            values["edit"], text = edit_of(text, after), after
+        rows.append((order.tick, order.name, values))
+    return rows

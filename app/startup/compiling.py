@@ -1,21 +1,227 @@
 """The first start. numba compiles each kernel at its first call and caches it on disk. All kernels together take half a
-minute of one core, so separate processes compile them side by side and report their progress."""
+minute of one core, so separate processes compile them side by side and report their progress.
+
+Uses parts of the program for a moment, so that numba compiles their kernels and caches them on disk.
+
+Called with the names of parts, it compiles each part in a process of its own, forked when everything has been
+imported. It prints an empty line for each kernel. Nothing else depends on what is computed here.
+"""
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
+import numpy as np
 from numba.core import config
+from numba.core.dispatcher import Dispatcher
+from numba.core.event import Event, Listener, register  # pyright: ignore[reportUnknownVariableType]
 
-from app.startup.compile_part import PARTS, kept
+import app.pilot.local_movement
+import ratslam_core.experience_map.places
+import ratslam_core.extensions.evidence
+import ratslam_core.goal_memory
+import ratslam_core.local_view.echo_matcher
+import ratslam_core.local_view.front_ends.image_and_sonars
+import ratslam_core.local_view.matcher
+import ratslam_core.local_view.view_links
+import ratslam_core.occupancy_grid
+import ratslam_core.pose_cells.activity_kernels
+import ratslam_core.pose_cells.attractor_kernels
+import ratslam_core.pose_cells.packet_kernels
+import ratslam_core.pose_graph.relaxation
+import ratslam_core.solvers.dijkstra
+import ratslam_core.solvers.laplacian
+import sim2d.camera.painting
+import sim2d.geometry.grid_cells
+import sim2d.sensors.ranges
+from app.config import Config
+from app.evaluation import Coverage
+from app.pilot import Pilot
+from app.pilot.bars import Bars
+from app.pilot.local_movement import LocalMovement
+from app.pilot.route_following import RouteFollower
 from disk import kernel_cache
+from ratslam_core import (
+    ExperienceMap,
+    GoalMemory,
+    LocalView,
+    MapGrid,
+    OccupancyGrid,
+    Odometry,
+    Packet,
+    Pose2,
+    PoseCells,
+    Recognition,
+    ViewLinks,
+    find_places,
+)
+from ratslam_core.extensions.familiar_ground import FamiliarGround
+from ratslam_core.extensions.kidnap_detector import ScanChange
+from ratslam_core.pose_cells.activity_kernels import X, Y
+from ratslam_core.pose_graph.experiences import Experiences
 from ratslam_live import command_of
+from sim2d import SONAR_ANGLES_RAD, Drive, Simulator, load_world
+
+ANGLES = np.array(SONAR_ANGLES_RAD)
+RANGES = np.full(len(ANGLES), 2.0)
+
+
+def office() -> None:
+    """The simulator, and the pilot's local movement."""
+    config = Config()
+    simulator = Simulator(load_world(), config.robot, 1, config.office)
+    pilot = Pilot(config.pilot, ANGLES, np.random.default_rng(1))
+    cells = config.pose_cells
+    nowhere = ExperienceMap((cells.n_theta, cells.n_y, cells.n_x), cells.cell_m, config.experience_map)
+    frame = simulator.observe()
+    Coverage().follow(simulator.free_space, np.zeros((1, 2)))
+    local = LocalMovement(ANGLES, config.pilot.echo_s)
+    local.free_way(0.0, config.pilot)
+    local.sense(np.full(len(ANGLES), 0.2, np.float32), Odometry(0.0, 0.0, 0.1), config.pilot)
+    local.gap_towards(1.0, 0.2, config.pilot)
+    for _ in range(50):
+        odometry = Odometry(frame.odometry_speed, frame.odometry_yaw_rate, frame.dt)
+        frame = simulator.step(Drive(*pilot.step(frame.ranges_m, frame.bumped, odometry, nowhere)))
+
+
+def cells() -> None:
+    """Views, pose cells with two packets, and the links between them."""
+    config = Config()
+    rng = np.random.default_rng(1)
+    local_view, links = LocalView(config.local_view, rng), ViewLinks(config.local_view)
+    pose_cells, jump = PoseCells(config.pose_cells), ScanChange()
+    images = rng.integers(0, 256, (4, 8, 12), dtype=np.uint8).repeat(6, axis=1).repeat(6, axis=2)
+    for k in range(60):
+        seen = local_view.observe(images[k // 5 % 4], None, RANGES, 0.02)
+        local_view.difference_to(0)
+        jump.observe(RANGES + k % 2)
+        pose_cells.integrate(0.03, 0.02)
+        links.learn(seen.view, *pose_cells.active, pose_cells.slot, config.local_view.learning_rate)
+        where, strength = links.recall(seen.view)
+        pose_cells.inject(where.copy(), strength)
+        if k == 30:
+            far = (where + np.int32(20)) % np.int32(min(pose_cells.shape))
+            pose_cells.inject(np.ascontiguousarray(far, np.int32), strength)
+        pose_cells.attract()
+    for view in range(300):  # more than the arena has room for at first: compiles its growth
+        links.learn(view, *pose_cells.active, pose_cells.slot)
+
+
+def maps() -> None:
+    """The goal memory and the occupancy grids."""
+    config = Config()
+    cells = config.pose_cells
+    shape = (cells.n_theta, cells.n_y, cells.n_x)
+    goals = GoalMemory(config.goal_memory, shape, cells.cell_m)
+    grid = OccupancyGrid(shape, cells.cell_m, ANGLES)
+    pictures = MapGrid(ANGLES)
+    for k in range(10):
+        grid.update(Packet(k % 5 * 4.0, 4.0, 0.0, 1.0), RANGES)
+        pictures.add(k, Pose2(0.0, 0.0, 0.0), RANGES)
+    blob = np.zeros((64, 4), np.int32)
+    for k in range(3):  # more links than there is room for at first: compiles the growth
+        blob[:, X], blob[:, Y] = np.arange(64) % 8 + 8 * k, np.arange(64) // 8
+        goals.learn(blob, np.ones(64, np.float32), 0.1 * k)
+    goals.direction(goals.times_to(20, 4), Packet(4.0, 4.0, 0.0, 1.0))
+
+
+def loops() -> None:
+    """The experience map with closed loops, and the routes through it."""
+    config = Config()
+    cells = config.pose_cells
+    shape = cells.n_theta, cells.n_y, cells.n_x
+    believes = replace(config.experience_map, islands=False)  # else it would doubt that it is now here, now there
+    made = ExperienceMap(shape, cells.cell_m, believes, ground=FamiliarGround())
+    for k in range(600):
+        view, known = k // 10 % 20, k >= 200
+        packet = Packet(view % 5 * 4.0, view // 5 * 4.0, 0.0, 1.0)
+        seen = Recognition(view, not known and k % 10 == 0, view if known else -1, 2.0)
+        created = made.step(packet, seen, Odometry(0.3, 0.1, 0.1))
+        made.ground.note(made, seen, created, Odometry(0.3, 0.1, 0.1), False)
+        made.correct()
+    Experiences(shape).of_view(0)
+    made.temporal_map.times_to(0)
+    made.step(Packet(30.0, 30.0, 0.0, 1.0), Recognition(99, True, -1, 2.0), Odometry(0.3, 0.1, 0.1))
+    made.temporal_map.times_to(0)  # is mended now
+    rng, seen_by = np.random.default_rng(1), LocalView(config.local_view)
+    for _ in range(20):
+        seen_by.observe(rng.integers(0, 256, (48, 64), np.uint8), None, RANGES)
+    made.params = config.experience_map
+    made.declare_kidnapped()
+    for _ in range(3):
+        made.evidence.move(Odometry(0.3, 0.1, 0.1))
+        made.evidence.observe(made, seen_by, made.islands.current)
+    ratslam_core.extensions.evidence.nats(0.5, 0)
+    local = LocalMovement(ANGLES, config.pilot.echo_s)
+    RouteFollower(0, Bars()).step(made, local, 0.1, config.pilot)
+    find_places(made)
+
+
+# With each part, the modules whose kernels it compiles last: once these are on disk, the whole part is.
+PARTS: dict[str, tuple[Callable[[], None], tuple[Any, ...]]] = {
+    "office": (office, (sim2d.geometry.grid_cells, sim2d.geometry.grid_cells, sim2d.camera.painting, sim2d.sensors.ranges,
+                        app.pilot.local_movement)),
+    "cells": (cells, (ratslam_core.pose_cells.activity_kernels, ratslam_core.pose_cells.attractor_kernels,
+                      ratslam_core.pose_cells.packet_kernels,
+                      ratslam_core.local_view.front_ends.image_and_sonars, ratslam_core.local_view.echo_matcher,
+                      ratslam_core.local_view.matcher, ratslam_core.local_view.view_links)),
+    "loops": (loops, (ratslam_core.pose_graph.relaxation, ratslam_core.solvers.laplacian, ratslam_core.solvers.dijkstra,
+                      ratslam_core.extensions.evidence, ratslam_core.experience_map.places)),
+    "maps": (maps, (ratslam_core.goal_memory, ratslam_core.occupancy_grid)),
+}  # fmt: skip
+
+
+def kept(module: ModuleType) -> list[Path]:
+    """Where numba keeps what it knows of the kernels of this module."""
+    items: list[Any] = [item for item in vars(module).values() if isinstance(item, Dispatcher)]
+    kernel = next(item for item in items if item.py_func.__module__ == module.__name__)
+    return [*Path(str(kernel.stats.cache_path)).glob(f"{Path(str(module.__file__)).stem}.*.nbi")]
+
+
+def date(modules: Iterable[ModuleType]) -> None:
+    """Their kernels fit their sources as they are now: numba goes by the text, and `is_compiled` by dates alone."""
+    for index in chain.from_iterable(map(kept, modules)):
+        index.touch()
+
+
+class _Count(Listener):
+    """Prints a line when a kernel has been compiled. Kernels that it calls are counted with it."""
+
+    def __init__(self) -> None:
+        self._depth = 0
+
+    def on_start(self, event: Event) -> None:  # noqa: ARG002
+        self._depth += 1
+
+    def on_end(self, event: Event) -> None:  # noqa: ARG002
+        self._depth -= 1
+        if self._depth == 0:
+            print(flush=True)
+
+
+if __name__ == "__main__":
+    register("numba:compile", _Count())
+    gc.disable()  # saves an eighth of the time; the process is short-lived, so its garbage does no harm
+    for part in sys.argv[1:]:
+        if os.fork() == 0:
+            use, modules = PARTS[part]
+            use()
+            date(modules)
+            break
+    else:
+        for _ in sys.argv[1:]:
+            os.wait()
+
 
 WORDS = "compiling the engine for this machine, once"
 
@@ -66,6 +272,6 @@ def is_compiled(module: ModuleType) -> bool:
 def _process(parts: list[str]) -> subprocess.Popen[str]:
     """The compiling process. It leads a process group of its own, so that its children can be ended with it."""
     return subprocess.Popen(
-        command_of("app.startup.compile_part", *parts),
+        command_of("app.startup.compiling", *parts),
         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, process_group=0,
     )  # fmt: skip

@@ -6,8 +6,7 @@ import contextlib
 import threading
 from typing import TYPE_CHECKING
 
-from app.startup.compile_part import PARTS
-from app.startup.compiling import WORDS, Compiling, say_how_far
+from app.startup.compiling import PARTS, WORDS, Compiling, say_how_far
 from disk import kernel_cache
 
 if TYPE_CHECKING:

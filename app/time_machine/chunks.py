@@ -1,17 +1,267 @@
-"""States that follow one another, kept as chunks: what has not changed costs nothing, and what nobody needs is let go."""
+"""States that follow one another, kept as chunks: what has not changed costs nothing, and what nobody needs is let go.
+
+What memory has no room for, in a file without a name, which the system removes together with the program. [ours]
+
+Places in the file are given out at once; a thread of its own writes, so a slow disk holds nobody up, and what was not written
+yet stays in memory. A full disk takes nothing more, and says nothing: what it does not take is thinned. test_shelf.py.
+
+Arrays and states kept as chunks of bytes: one that has not changed since the state before is the same object; one that has
+changed is kept as its difference from an earlier one where that is smaller.
+
+Of ten hours there are hundreds of thousands of them. None can be part of a cycle, so the garbage collector is not to walk
+through them: it would hold up everything for half a second. test_chunks.py.
+"""
 
 from __future__ import annotations
 
 import json
-from collections import Counter
+import os
+import shutil
+import tempfile
+import weakref
+from collections import Counter, deque
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any, cast
 
+import msgspec
 import numpy as np
+import zstandard
+from numpy.typing import NDArray
 
-from app.time_machine.kept_state import Bytes, Chunk, KeptArray, KeptState, kept_array, pack
-from app.time_machine.shelf import Place, Shelf
 from disk import State
+
+UNIT = 512  # bytes; places have sizes of whole units, so that one that is free fits another content
+LEAVES_FREE = 1_000_000_000  # bytes that are left to others on the disk
+
+
+class Place(msgspec.Struct, frozen=True, eq=False, gc=False):
+    """Where a content lies, and its length in bytes."""
+
+    file: int
+    offset: int
+    size: int
+
+    def read(self) -> bytes:
+        return os.pread(self.file, self.size, self.offset)
+
+
+class Shelf:
+    """Use it from one thread; what it hands out can be read from any."""
+
+    def __init__(self, folder: Path, budget_bytes: int) -> None:
+        """folder: on the disk to use; it need not exist. Where it cannot be made, the shelf has no room."""
+        self.nbytes = 0  # of all places that are taken
+        self._budget_bytes, self._folder = budget_bytes, folder
+        self._end, self._free = 0, dict[int, list[int]]()  # of the file; offsets by size
+        self._refused = budget_bytes <= 0
+        self._file = -1
+        self._done: deque[Place] = deque()
+        self._writer = ThreadPoolExecutor(1, "shelf")
+
+    @property
+    def has_room(self) -> bool:
+        return not self._refused and self.nbytes < self._budget_bytes
+
+    def put(self, content: bytes) -> Place | None:
+        """A place that is written soon: it can be read when `written` has named it. None: there is no room."""
+        if not self.has_room or not self._opened():
+            return None
+        room = _room(len(content))
+        free = self._free.get(room)
+        if free:
+            offset = free.pop()
+        else:
+            offset, self._end = self._end, self._end + room
+        self.nbytes += room
+        place = Place(self._file, offset, len(content))
+        self._writer.submit(self._write, place, content)
+        return place
+
+    def written(self) -> list[Place]:
+        """Those that were written since the last call."""
+        return [self._done.popleft() for _ in range(len(self._done))]
+
+    def give_back(self, place: Place) -> None:
+        """Nobody reads this any more."""
+        room = _room(place.size)
+        self.nbytes -= room
+        self._free.setdefault(room, []).append(place.offset)
+
+    def _opened(self) -> bool:
+        if self._file < 0:
+            try:
+                self._folder.mkdir(parents=True, exist_ok=True)
+                file = tempfile.TemporaryFile(dir=self._folder, buffering=0)  # noqa: SIM115 - closed with the shelf
+            except OSError:
+                self._refused = True
+                return False
+            self._file = file.fileno()
+            weakref.finalize(self, file.close)
+        return True
+
+    def _write(self, place: Place, content: bytes) -> None:
+        """In the thread. Contents follow one another as they were put, so a place that is used again holds the later one."""
+        if self._refused:
+            return
+        try:
+            is_free = shutil.disk_usage(self._folder).free >= LEAVES_FREE
+            self._refused = not is_free or os.pwrite(place.file, content, place.offset) < len(content)
+        except OSError:
+            self._refused = True
+        if not self._refused:
+            self._done.append(place)
+
+
+def _room(size: int) -> int:
+    return -(-size // UNIT) * UNIT
+
+
+CHUNK = 32768  # bytes
+LARGE = 1 << 20  # arrays from this size on are cut by their content ...
+CUT_BITS, CUT = 13, 77  # ... after a word whose hash has these first bits, ...
+LEAST, MOST = 4096, 131072  # ... in chunks of about these sizes, bytes
+WORTH = 0.7  # a difference is kept where it takes less than this share of the whole
+_PACK, UNPACK = zstandard.ZstdCompressor(level=1), zstandard.ZstdDecompressor()  # fast: the engine waits for them
+Bytes = NDArray[np.uint8]
+
+
+def pack(content: bytes) -> bytes:
+    """A copy: what the compressor returns holds the memory that it might have needed, whatever its length says."""
+    return bytes(memoryview(_PACK.compress(content)))
+
+
+class Chunk(msgspec.Struct, eq=False, gc=False):
+    """base: what the content was XORed with. itemsize: of the numbers by whose places the bytes were then sorted.
+
+    packed: b"" once it lies at its place on the shelf, no sooner.
+    """
+
+    packed: bytes
+    base: Chunk | None = None
+    itemsize: int = 1
+    place: Place | None = None
+
+    def content(self) -> Bytes:
+        packed = self.packed or (self.place.read() if self.place else b"")
+        raw = np.frombuffer(UNPACK.decompress(packed), np.uint8)
+        if self.itemsize > 1:
+            raw = _as_it_was(raw, self.itemsize)
+        return raw if self.base is None else raw ^ self.base.content()
+
+    def pack_whole(self, whole: Bytes, dtype: np.dtype[Any]) -> None:
+        """Keep the content without a base. Whole numbers are mostly small ones: their bytes pack better sorted."""
+        self.base, self.itemsize = None, dtype.itemsize if dtype.kind in "iu" else 1
+        self.packed = pack(_sorted(whole, self.itemsize))
+
+
+class KeptArray(msgspec.Struct, frozen=True, eq=False, gc=False):
+    """starts: of the chunks, bytes."""
+
+    dtype: np.dtype[Any]
+    shape: tuple[int, ...]
+    chunks: tuple[Chunk, ...]
+    starts: NDArray[np.int64]
+
+    def array(self) -> NDArray[Any]:
+        whole = np.empty(self.shape, self.dtype)
+        raw = whole.reshape(-1).view(np.uint8)
+        for (start, end), chunk in zip(_parts(self.starts, len(raw)), self.chunks, strict=True):
+            raw[start:end] = chunk.content()
+        return whole
+
+
+class KeptState(msgspec.Struct, frozen=True, eq=False, gc=False):
+    tree: bytes  # packed JSON
+    arrays: tuple[KeptArray, ...]
+
+    def state(self) -> State:
+        """The state as it was, in arrays of its own."""
+        return State(json.loads(UNPACK.decompress(self.tree)), [kept.array() for kept in self.arrays])
+
+
+def kept_array(array: NDArray[Any], before: tuple[Bytes, KeptArray] | None) -> tuple[Bytes, KeptArray]:
+    """A copy of an array's bytes, and the array as it is kept. `before` is the same for the state before; it is used up."""
+    raw = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
+    if before is None or before[1].dtype != array.dtype or len(before[0]) != len(raw):
+        return raw.copy(), _kept_anew(array, raw, before)
+    copy, old = before
+    parts, chunks = [slice(*part) for part in _parts(old.starts, len(raw))], list(old.chunks)
+    changed = [number for number, part in enumerate(parts) if copy[part].tobytes() != raw[part].tobytes()]
+    if not changed and array.shape == old.shape:
+        return before
+    for number in changed:
+        part = parts[number]
+        copy[part] = raw[part]
+        chunks[number] = _chunk(raw[part], array.dtype, chunks[number])
+    return copy, KeptArray(array.dtype, array.shape, tuple(chunks), old.starts)
+
+
+def _kept_anew(array: NDArray[Any], raw: Bytes, before: tuple[Bytes, KeptArray] | None) -> KeptArray:
+    """An array that has another size than before. What has only moved within it is found again by its content."""
+    known: dict[bytes, Chunk] = {}
+    if before is not None:
+        copy, old = before
+        for (start, end), chunk in zip(_parts(old.starts, len(copy)), old.chunks, strict=True):
+            known[copy[start:end].tobytes()] = chunk
+    starts = _starts(raw, array.itemsize)
+    chunks: list[Chunk] = []
+    for start, end in _parts(starts, len(raw)):
+        content = raw[start:end].tobytes()
+        if content not in known:
+            known[content] = _whole(raw[start:end], array.dtype)
+        chunks.append(known[content])
+    return KeptArray(array.dtype, array.shape, tuple(chunks), starts)
+
+
+def _starts(raw: Bytes, itemsize: int) -> NDArray[np.int64]:
+    """Where chunks begin, bytes: of a large array where its content says so, so that what has moved is cut as before."""
+    if len(raw) < LARGE or itemsize != 4:
+        return np.arange(0, len(raw), CHUNK)
+    hashes = (raw.view(np.uint32) * np.uint32(2654435761)) >> np.uint32(32 - CUT_BITS)
+    cuts = 4 * np.flatnonzero(hashes[:-1] == CUT) + 4
+    cuts = np.concatenate([[0], cuts[np.diff(cuts, prepend=0) >= LEAST]])
+    ends = np.append(cuts[1:], len(raw))
+    long: list[int] = np.flatnonzero(ends - cuts > MOST).tolist()
+    more: list[NDArray[np.int64]] = [np.arange(cuts[number], ends[number], MOST) for number in long]
+    return np.unique(np.concatenate((cuts, *more)))
+
+
+def _parts(starts: NDArray[np.int64], size: int) -> list[tuple[int, int]]:
+    """Begin and end of each chunk of an array of this size, bytes."""
+    begins: list[int] = starts.tolist()
+    return list(zip(begins, [*begins[1:], size], strict=True)) if begins else []
+
+
+def _chunk(raw: Bytes, dtype: np.dtype[Any], before: Chunk) -> Chunk:
+    base = before.base or before
+    content = base.content()
+    if len(content) == len(raw):
+        packed = pack(_sorted(raw ^ content, dtype.itemsize))
+        if len(packed) < WORTH * len(base.packed):
+            return Chunk(packed, base, dtype.itemsize)
+    return _whole(raw, dtype)
+
+
+def _whole(raw: Bytes, dtype: np.dtype[Any]) -> Chunk:
+    chunk = Chunk(b"")
+    chunk.pack_whole(raw, dtype)
+    return chunk
+
+
+def _sorted(raw: Bytes, itemsize: int) -> bytes:
+    """By the place of each byte in its number."""
+    return raw.reshape(-1, itemsize).T.tobytes()
+
+
+def _as_it_was(raw: Bytes, itemsize: int) -> Bytes:
+    """The other way. A byte of all numbers after the other, which takes half the time of numpy's own transposing."""
+    numbers, places = np.empty((len(raw) // itemsize, itemsize), np.uint8), raw.reshape(itemsize, -1)
+    for place in range(itemsize):
+        numbers[:, place] = places[place]
+    return numbers.reshape(-1)
+
 
 ENTRY, LINK = 160, 8  # bytes that a chunk takes besides its content, and where an array names it
 SHELVED = 256  # bytes; a smaller content stays in memory, where its entry takes as much

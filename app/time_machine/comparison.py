@@ -7,8 +7,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from app.time_machine.branch import Branch
-from app.time_machine.moment import Moment
+from app.time_machine.machine import Branch, Moment
 from app.views.history import History
 from web.messages import Packet, Pose, Side
 

@@ -2,22 +2,114 @@
 
 No paper has this: a run is the same bit for bit, so a keyframe now and then and the orders in between are enough.
 tests/unit/app/test_time_machine.py.
+
+A moment of a run, made again: a session and its history, which go on exactly as they once did.
+
+One line of a run: its end, the keyframes on it, and the orders in between. With these any moment can be made again.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import cast
 
-from app.order_book import Order, overtakes
+from app.order_book import Order, carry_out, overtakes
 from app.session import Session
-from app.time_machine.branch import Branch, Keyframe
-from app.time_machine.chunks import Chunks
-from app.time_machine.moment import Moment
-from app.time_machine.shelf import Shelf
+from app.time_machine.chunks import Chunks, KeptState, Shelf
 from app.views.history import History
-from disk import encode
+from app.views.tick_stages import TickRecorder
+from disk import decode, encode
+from sim2d import World
+from web.messages import Snap
+
+
+class Moment:
+    """What is shown of the past. The branch is left as it is."""
+
+    def __init__(self, branch: Branch, tick: int) -> None:
+        """That of the last keyframe at or before this tick; `go_to` or `going` leads on to the tick."""
+        self.branch = branch
+        owner = branch.at(tick)
+        self.session, self.history = _restored(owner.keyframe(tick), branch)
+
+    @property
+    def tick_count(self) -> int:
+        return self.session.tick_count
+
+    def go_to(self, tick: int) -> None:
+        """Go on to a later tick: its end, before the orders that came after it."""
+        for _ in self.going(tick):
+            pass
+
+    def going(self, tick: int) -> Iterator[float]:
+        """The same in steps. Yields the share of the way that is done."""
+        first = self.tick_count
+        while self.tick_count < tick:
+            self.tick()
+            yield (self.tick_count - first) / (tick - first)
+
+    def tick(self, recorder: TickRecorder | None = None) -> None:
+        """Run the next tick, with the orders that were given before it."""
+        for order in self.branch.at(self.tick_count + 1).orders_after(self.tick_count):
+            carry_out(self.session, order)
+        self.session.tick(recorder)
+        self.history.watch()
+
+
+def _restored(keyframe: Keyframe, branch: Branch) -> tuple[Session, History]:
+    session, history = cast("tuple[Session, History]", decode(keyframe.state.state()))
+    session.settle(keyframe.worlds, branch.session)
+    history.settle(session, branch.history.log.until(session.time_s, session), keyframe.last_snap)
+    return session, history
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Keyframe:
+    """A session and its history at the end of a tick, before the orders that came after it."""
+
+    tick: int
+    time_s: float
+    dt: float
+    state: KeptState
+    worlds: tuple[World, ...]  # as `Session.worlds`
+    last_snap: Snap | None
+
+
+@dataclass(slots=True, eq=False)
+class Branch:
+    """A line of time. It has its parent's past up to `from_tick`, and its own keyframes and orders from there on."""
+
+    number: int
+    session: Session  # at its end
+    history: History
+    parent: Branch | None = None
+    from_tick: int = 0
+    keyframes: list[Keyframe] = field(default_factory=list[Keyframe])  # by tick, the first at from_tick
+    orders: list[Order] = field(default_factory=list[Order])
+
+    @property
+    def end_tick(self) -> int:
+        return self.session.tick_count
+
+    def at(self, tick: int) -> Branch:
+        """This branch or the one of its forebears that a moment is on."""
+        branch = self
+        while branch.parent is not None and tick < branch.from_tick:
+            branch = branch.parent
+        return branch
+
+    def keyframe(self, tick: int) -> Keyframe:
+        """The last one of this very branch at or before a tick."""
+        return self.keyframes[max(0, bisect_right(self.keyframes, tick, key=lambda frame: frame.tick) - 1)]
+
+    def orders_after(self, tick: int) -> list[Order]:
+        """Those of this very branch that were carried out after this tick and before the next."""
+        first = bisect_right(self.orders, tick - 1, key=lambda order: order.tick)
+        return self.orders[first : bisect_right(self.orders, tick, key=lambda order: order.tick)]
+
 
 EVERY_TICKS = 100  # between two keyframes, until there are too many
 AGAIN_MS, LOOK_AFTER = 200.0, 10  # the moments of some recordings take long: so much is run again at most

@@ -9,8 +9,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from app.session import Session, spread_goals
-from app.trials.checking import check_steps, place_of
-from app.trials.notes import Moment, MomentKind, Tagged, Visited
+from app.trials.scores import Moment, MomentKind, Tagged, Visited
 from app.trials.steps import (
     Door,
     Drive,
@@ -27,8 +26,10 @@ from app.trials.steps import (
     Visit,
     Wait,
     Where,
+    check_steps,
+    order,
+    place_of,
 )
-from app.trials.tour import order
 
 REACHED_M = 0.25  # a driven robot has come to a point of its path
 PATIENCE_S = 60.0  # a point of the path that takes longer is left out: somebody stands there

@@ -1,11 +1,15 @@
-"""An experiment as a file: world, robot, engines, protocol, axes, scores, figures. docs/experiments.md tells how to write one."""
+"""An experiment as a file: world, robot, engines, protocol, axes, scores, figures. docs/experiments.md tells how to write one.
+
+One trial of an experiment, chosen by engine, levels and seed.
+"""
 
 from __future__ import annotations
 
 import itertools
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -36,7 +40,7 @@ from app.trials.steps import (
 from app.trials.trial import Trial, text_of
 from disk.limits import AXES, CELLS, TRIAL_S, TRIALS
 from disk.words import one_line
-from web.messages.command import EngineName, Label
+from web.messages.commands import EngineName, Label
 
 Labelled = Annotated[Label, Field(min_length=1)]
 _CATALOGUE = Path(__file__).with_name("catalogue")
@@ -349,3 +353,50 @@ def find_experiment(name: str) -> Experiment:
     raise ValueError(
         f"unknown experiment {name!r}; expected a file that ends in .toml, or one of: {', '.join(names())}"
     )
+
+
+OURS: EngineName = "ours"
+
+
+def chosen_trial(
+    experiment: Experiment,
+    engine: EngineName | None = None,
+    levels: Sequence[str] | None = None,
+    seed: int | None = None,
+    quick: bool = False,
+) -> Trial:
+    """The trial; what is left out is as the experiment begins. ValueError names an engine or level that there is not."""
+    engine = engine or (OURS if OURS in experiment.engines else next(iter(experiment.engines)))
+    wanted = first_levels(experiment) if levels is None else tuple(levels)
+    check_levels(experiment, wanted)
+    axes = [
+        axis.model_copy(update={"levels": [each for each in axis.levels if each.label == label]})
+        for axis, label in zip(experiment.axes, wanted, strict=True)
+    ]
+    found = experiment.model_copy(update={"axes": axes}).make_trials([engine], 1)[0]
+    if quick:
+        steps = tuple(shortened(step, experiment.quick.share) for step in found.protocol)
+        found = replace(found, protocol=steps, quick=True)
+    return found if seed is None else replace(found, seed=seed)
+
+
+def first_levels(experiment: Experiment) -> tuple[str, ...]:
+    """Those at which the experiment is watched if nobody says otherwise: of each axis, by label."""
+    return tuple(experiment.watch) or tuple(axis.levels[0].label for axis in experiment.axes)
+
+
+def check_levels(experiment: Experiment, levels: Sequence[str]) -> None:
+    """ValueError names a level that an axis does not have, or says how many there must be."""
+    axes = experiment.axes
+    if len(levels) != len(axes):
+        names = ", ".join(axis.name for axis in axes) or "it has no axes"
+        raise ValueError(f"{experiment.name} takes {len(axes)} levels ({names}), got {len(levels)}")
+    for axis, level in zip(axes, levels, strict=True):
+        known = [each.label for each in axis.levels]
+        if level not in known:
+            raise ValueError(f"{axis.name} has no level {level!r}; expected one of: {', '.join(known)}")
+
+
+def seconds_of(trial: Trial) -> float:
+    """About how long a trial is, in simulated seconds."""
+    return sum(map(duration_s, trial.protocol))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from web.messages.command import EngineName
+from web.messages.commands import EngineName
 
 if TYPE_CHECKING:
     from app.trials.experiment import Experiment, FigureSpec

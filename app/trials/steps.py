@@ -1,13 +1,37 @@
-"""The steps that protocols are made of, as they stand in an experiment's file. docs/experiments.md tells how to use them."""
+"""The steps that protocols are made of, as they stand in an experiment's file. docs/experiments.md tells how to use them.
+
+The order in which places are visited, round after round.
+
+Whether the steps of a protocol fit the world and the parameters, before the first of them is carried out.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
+from app.session import Session
 from disk.words import lines, one_line
-from web.messages.command import Name
+from sim2d import World
+from web.messages.commands import Name
+
+_STREAM = 2  # of the run's seed; session.py and kidnap_times.py use others
+
+
+def order(goals: int, visits: int, seed: int) -> Iterator[int]:
+    """The goal of each visit: every round visits all goals in a new order, never the same twice in a row."""
+    rng = np.random.default_rng([seed, _STREAM])
+    last = -1
+    for first in range(0, visits, goals):
+        round_ = [int(goal) for goal in rng.permutation(goals)]
+        if round_[0] == last and goals > 1:
+            round_ = [*round_[1:], last]
+        last = round_[-1]
+        yield from round_[: visits - first]
+
 
 Line = Annotated[str, Field(min_length=1, max_length=160), AfterValidator(one_line)]
 Text = Annotated[str, Field(min_length=1, max_length=700), AfterValidator(lines)]
@@ -147,3 +171,54 @@ Step = Annotated[
     Field(discriminator="do"),
 ]
 Repeat.model_rebuild()
+
+
+def place_of(world: World, where: Where) -> tuple[float, float]:
+    """A place of the world by name, or the point itself (m, office frame). ValueError lists the names."""
+    if not isinstance(where, str):
+        return where
+    known = [*world.places, *world.starts]
+    for place in known:
+        if place.name == where:
+            return place.x, place.y
+    names = ", ".join(place.name for place in known)
+    raise ValueError(f"{world.name} has no place {where!r}; expected one of: {names}, or [x, y] in metres")
+
+
+def check_steps(session: Session, steps: Sequence[Step], tagged: frozenset[str] = frozenset()) -> None:
+    """ValueError names a place, door or parameter that does not exist, or a goal that nothing has tagged."""
+    for step in steps:
+        if isinstance(step, Repeat):
+            check_steps(session, step.steps, tagged)
+        elif isinstance(step, Tag):
+            tagged |= set(step.places)
+        elif isinstance(step, TagHere):
+            tagged |= {step.name}
+        elif isinstance(step, Set):
+            session.config.with_values(step.values)
+        elif isinstance(step, Door):
+            _check_door(session.world, step.name)
+        for where in _places(step):
+            place_of(session.world, where)
+        goals = step.places if isinstance(step, Visit) else [step.place] if isinstance(step, Send) else []
+        missing = [name for name in goals if name not in tagged]
+        if missing:
+            raise ValueError(f"{step.do} {missing[0]!r}: nothing is tagged so before; tag it first")
+
+
+def _places(step: Step) -> Sequence[Where]:
+    match step:
+        case Tag(places=places):
+            return places
+        case Drive(path=path):
+            return path
+        case Kidnap(place=place) if place is not None:
+            return [place]
+        case _:
+            return []
+
+
+def _check_door(world: World, name: str) -> None:
+    names = [door.name for door in world.doors]
+    if name not in names:
+        raise ValueError(f"no door {name!r} in {world.name}; expected one of: {', '.join(names) or 'there are none'}")

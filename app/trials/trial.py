@@ -13,8 +13,7 @@ from pydantic import TypeAdapter
 
 from app.config import Config
 from app.trials.measures import MEASURES, Measure
-from app.trials.notes import Moment
-from app.trials.scores import scores_of
+from app.trials.scores import Moment, scores_of
 from app.trials.steps import Step, Values
 
 if TYPE_CHECKING:

@@ -1,11 +1,23 @@
-"""Arrays that a snapshot shares with other threads are read-only."""
+"""Arrays that a snapshot shares with other threads are read-only.
+
+Expensive parts of a snapshot are rebuilt only as often as people can see a change.
+
+The angle by which the map is drawn turned, to lie like the office. For people only; the robot never learns it.
+"""
 
 from __future__ import annotations
 
-from typing import TypeVar
+import math
+import time
+from collections.abc import Callable
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+from app.evaluation import Evaluation, alignment
+from ratslam_core import ExperienceMap
+from sim2d import Truth
 
 Kind = TypeVar("Kind", bound=np.generic)
 
@@ -14,3 +26,60 @@ def frozen(array: NDArray[Kind]) -> NDArray[Kind]:
     """The same array, read-only from now on."""
     array.setflags(write=False)
     return array
+
+
+REST = 30.0  # a part is built again only after this many times the time it took to build: a large map costs 3 % at most
+Part = TypeVar("Part")
+
+
+class Slow(Generic[Part]):
+    """An expensive part, rebuilt when the session has moved on and enough time has passed."""
+
+    def __init__(self, every_s: float, build: Callable[[], Part]) -> None:
+        self.due = -math.inf
+        self._every_s, self._build = every_s, build
+        self._built: tuple[int, Part] | None = None
+
+    def refresh(self) -> None:
+        """Rebuild the part when it is next asked for."""
+        self.due = -math.inf
+
+    def part(self, tick: int) -> Part:
+        began = time.perf_counter()
+        if self._built is None or began >= self.due:
+            if self._built is None or self._built[0] != tick or self.due == -math.inf:
+                self._built = (tick, self._build())
+            now = time.perf_counter()
+            self.due = now + max(self._every_s, REST * (now - began))
+        return self._built[1]
+
+
+SPREAD_M = 1.0  # RMS distance of the path from its middle; a path with less hardly has a direction
+CALM_RAD = math.radians(
+    3.0
+)  # smaller changes are ignored, so that a map under correction does not make the plate swing
+
+
+def map_turn(shown_rad: float | None, evaluation: Evaluation, experiences: ExperienceMap, truth: Truth | None) -> float:
+    """The angle (rad) of the map's frame in the office's frame; still `shown_rad` while that is near enough. 0 without
+    truth."""
+    if truth is None:
+        return shown_rad or 0.0
+    true, mapped, _ = evaluation.trajectories(experiences)
+    if min(_spread(true), _spread(mapped)) >= SPREAD_M:
+        return calm(shown_rad, alignment(mapped, true).heading_rad)
+    made = evaluation.heading_at(0)
+    if made is None:  # the brain came with its map, so where that began in this office is unknown
+        return calm(shown_rad, truth.heading_rad - experiences.robot.heading_rad)
+    return calm(shown_rad, made - float(experiences.poses[0, 2]))
+
+
+def calm(shown_rad: float | None, wanted_rad: float) -> float:
+    """`shown_rad` if it is within CALM_RAD of `wanted_rad`, else `wanted_rad`, wrapped."""
+    if shown_rad is not None and abs(math.remainder(shown_rad - wanted_rad, math.tau)) <= CALM_RAD:
+        return shown_rad
+    return math.remainder(wanted_rad, math.tau)
+
+
+def _spread(points: NDArray[np.float64]) -> float:
+    return float(np.sqrt(points.var(axis=0).sum())) if len(points) else 0.0

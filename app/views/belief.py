@@ -1,16 +1,23 @@
-"""How sure the robot is of its place, where else it may be, and what it let go."""
+"""How sure the robot is of its place, where else it may be, and what it let go.
+
+[ours] How far off the robot may be, as an ellipse around its estimate: by the pose filter, which weighs looks against
+odometry; by the rules of the papers, which have none, from the spread of the winning packet. test_judged_views.py checks both.
+
+What spoke for the place that a robot believes, and what against it, observation by observation, for people to see.
+"""
 
 from __future__ import annotations
 
 import math
+from collections import deque
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.session import Session
-from ratslam_core import ExperienceMap, Pose2
-from ratslam_core.extensions.evidence import ODDS, SUBMAP
-from web.messages import Belief, Hypothesis
+from ratslam_core import CellsOnly, ExperienceMap, Pose2
+from ratslam_core.extensions.evidence import HEADING, ODDS, SUBMAP, X, Y
+from web.messages import Belief, Hypothesis, Spread
 
 POSSIBLE = 3.0  # nats: a place that is twenty times less likely than the likeliest, or than a new one, is not counted
 MOST_LOG_ODDS = 14.0  # a million to one is enough
@@ -75,3 +82,83 @@ def state_of(map_: ExperienceMap, place: Pose2, submap: int) -> tuple[float, flo
     facing = theta * math.tau / map_.shape[0]
     state = Pose2(x * map_.cell_m, y * map_.cell_m, facing).compose(beside)
     return state.x / map_.cell_m, state.y / map_.cell_m, state.heading_rad
+
+
+REACH = 6  # cells from the packet's centre: what is farther away belongs to another packet
+
+
+def spread_of(session: Session) -> Spread | None:
+    """None without a map: nothing would be there to draw it on."""
+    map_ = session.brain.experience_map
+    if isinstance(map_, CellsOnly):
+        return None
+    sigma = map_.off_m
+    if math.isfinite(sigma):
+        return Spread(sigma, sigma, 0.0, "filter")
+    return packet_spread(session)
+
+
+def packet_spread(session: Session) -> Spread:
+    """The ellipse of the winner's activity in x', y', turned from the cells' frame into the map's by the robot's two headings."""
+    brain = session.brain
+    cells, values = brain.pose_cells.active
+    packet, (_, n_y, n_x) = brain.pose_cells.winner, brain.pose_cells.shape
+    dx = _around(cells[:, 0] - packet.x, n_x)
+    dy = _around(cells[:, 1] - packet.y, n_y)
+    near = np.hypot(dx, dy) <= REACH
+    weights, points = values[near].astype(np.float64), np.stack([dx[near], dy[near]])
+    if weights.sum() <= 0:
+        return Spread(0.0, 0.0, 0.0, "packet")
+    middle = (points * weights).sum(1) / weights.sum()
+    off = points - middle[:, None]
+    variances, axes = np.linalg.eigh((off * weights) @ off.T / weights.sum())
+    across, along = (brain.params.pose_cells.cell_m * math.sqrt(max(v, 0.0)) for v in variances.tolist())
+    turn = brain.experience_map.robot.heading_rad - packet.heading_rad
+    return Spread(along, across, math.remainder(math.atan2(axes[1, 1], axes[0, 1]) + turn, math.pi), "packet")
+
+
+def _around(apart: np.ndarray, size: int) -> np.ndarray:
+    return apart - size * np.round(apart / size)
+
+
+MOST_TICKS = 1800  # that are looked back on
+SAME_M, SAME_RAD = 0.5, 0.4  # in a tick no hypothesis goes farther
+BARS = 24
+
+
+class SpokenFor:
+    """Call `watch` after each tick."""
+
+    def __init__(self) -> None:
+        self._kept: deque[tuple[float, NDArray[np.float64]]] = deque(maxlen=MOST_TICKS)
+
+    def watch(self, time_s: float, map_: ExperienceMap) -> None:
+        """Keep the hypotheses of this tick; none once the map is one again, so that the next time begins anew."""
+        if map_.carried:
+            self._kept.append((time_s, map_.evidence.hypotheses[:, [X, Y, HEADING, ODDS]].copy()))
+        else:
+            self._kept.clear()
+
+    def of(self, place: Pose2) -> list[tuple[float, float]]:
+        """Since when this place was a hypothesis, and what was said of it then: (s, nats), at most BARS of them.
+
+        The first is what it began with. Positive speaks for it.
+        """
+        at, odds = np.array([place.x, place.y, place.heading_rad]), list[tuple[float, float]]()
+        for time_s, rows in reversed(self._kept):
+            off = np.hypot(rows[:, 0] - at[0], rows[:, 1] - at[1])
+            turn = np.abs(np.remainder(rows[:, 2] - at[2] + math.pi, 2 * math.pi) - math.pi)
+            near = np.flatnonzero((off < SAME_M) & (turn < SAME_RAD))
+            if not len(near):
+                break
+            row = rows[near[np.argmin(off[near])]]
+            at = row[:3]
+            odds.append((time_s, float(row[3])))
+        return _said(odds[::-1])
+
+
+def _said(odds: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Log odds over time as changes, in so many parts."""
+    ends = [odds[(k + 1) * len(odds) // min(BARS, len(odds)) - 1] for k in range(min(BARS, len(odds)))]
+    before = [0.0, *(value for _, value in ends)]
+    return [(time_s, value - old) for (time_s, value), old in zip(ends, before, strict=False)]

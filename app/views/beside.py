@@ -9,14 +9,11 @@ import numpy as np
 from app.companion import Companion
 from app.config import Config
 from app.session import Session
-from app.views.arrays import frozen
+from app.views.arrays import Slow, frozen
 from app.views.belief import other_places
-from app.views.beside_history import BesideHistory
-from app.views.goal_view import goal_view
-from app.views.history import History
-from app.views.map_layers import MapLayers
-from app.views.pose_cell_layer import layer_of
-from app.views.throttle import Slow
+from app.views.history import BesideHistory, History
+from app.views.map_layers import MapLayers, layer_of
+from app.views.office import goal_view
 from ratslam_core import RatSlam
 from web.messages import BesideView, BrainFigures, Changed, Difference, Goal, Packet, Pose, Snap
 

@@ -6,10 +6,8 @@ import math
 from typing import get_args
 
 from app.session import Session, is_lost
-from app.views.closures import Closures
-from app.views.event_log import EventLog
-from app.views.reasons import Reasons
-from app.views.snap_causes import words_of
+from app.views.event_log import Closures, EventLog
+from app.views.reasons import Reasons, words_of
 from disk import kind
 from ratslam_core import find_places
 from web.messages import GoalState, Packet, Snap

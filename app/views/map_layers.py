@@ -1,18 +1,40 @@
-"""The experience map and the times over it, rebuilt only as often as people can see a change."""
+"""The experience map and the times over it, rebuilt only as often as people can see a change.
+
+The occupancy grids from the sonars: the one around the robot, and one laid out over the experience map.
+
+Times to the goal over the pose cells, as in ACRA 2005.
+
+The strongest pose cells and the competing packets.
+"""
 
 from __future__ import annotations
 
+import copy
 import math
 import time
 from collections.abc import Callable
+from importlib import import_module
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.evaluation import Evaluation
+from app.session import Session
 from app.views.arrays import frozen
+from app.views.history import History
 from ratslam_core import CellsOnly, ExperienceMap
-from web.messages import NO_PLACES, MapLayer, TimesLayer
+from ratslam_core.pose_cells.network import PoseCells
+from web.messages import (
+    NO_PLACES,
+    GoalMemoryLayer,
+    MapLayer,
+    OccupancyLayer,
+    OccupancyPicture,
+    Packet,
+    PoseCellLayer,
+    Snap,
+    TimesLayer,
+)
 
 MAP_EVERY_S = 0.5  # of wall time
 TIMES_EVERY_S = 0.25
@@ -77,3 +99,56 @@ def _visited(cells: CellsOnly, evaluation: Evaluation) -> NDArray[np.float32]:
         low = -high
     corners = np.array([(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])])
     return frozen(corners.astype(np.float32))
+
+
+def occupancy_layer(session: Session) -> OccupancyLayer | None:
+    brain = session.brain
+    if brain.occupancy is None or brain.map_grid is None:
+        return None
+    grid, poses = copy.deepcopy(brain.map_grid), brain.experience_map.poses.copy()
+
+    def draw_map() -> OccupancyPicture:
+        drawn = grid.draw(poses)
+        return OccupancyPicture(frozen(drawn.probability), drawn.origin_xy_m, drawn.cell_m)
+
+    return OccupancyLayer(frozen(brain.occupancy.probability), draw_map)
+
+
+import_module("scipy.sparse.csgraph")  # otherwise the first goal would import it, while the robot drives
+
+
+def goal_memory_layer(session: Session) -> GoalMemoryLayer:
+    memory, goal = session.brain.goal_memory, session.pilot.goal
+    if goal is None:
+        return GoalMemoryLayer(len(memory), None, None, None)
+    x, y, _, _ = session.brain.experience_map.cell_state(goal)
+    cell = round(x) % memory.shape[2], round(y) % memory.shape[1]
+    times = memory.times_to(*cell)
+    direction = memory.direction(times, session.brain.pose_cells.winner)
+    return GoalMemoryLayer(len(memory), cell, frozen(times.astype(np.float32)), direction)
+
+
+STRONGEST = 500
+
+
+def pose_cell_layer(session: Session, history: History) -> PoseCellLayer:
+    return layer_of(session.brain.pose_cells, history.trails.packet, history.events.last_snap)
+
+
+def layer_of(pose_cells: PoseCells, path: NDArray[np.float32], last_snap: Snap | None) -> PoseCellLayer:
+    """path: of the winner, (p, 3): x', y' in cells, heading in rad."""
+    cells, activity = pose_cells.active
+    strongest = np.argsort(-activity, kind="stable")[:STRONGEST]
+    packets = tuple(Packet(p.x, p.y, p.heading_rad, p.mass, p.id) for p in pose_cells.packets)
+    return PoseCellLayer(
+        shape=pose_cells.shape,
+        cell_m=pose_cells.params.cell_m,
+        cells=frozen(np.ascontiguousarray(cells[strongest][:, [2, 1, 0]], np.int32)),
+        activity=frozen(activity[strongest]),
+        active_cells=len(activity),
+        packets=packets,
+        path=path,
+        last_snap=last_snap,
+        total=float(activity.sum(dtype=np.float64)),
+        least=float(activity.min()),
+    )

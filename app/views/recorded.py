@@ -7,7 +7,7 @@ import numpy as np
 from app.recordings.recording import About
 from app.session import Session
 from app.views.arrays import frozen
-from app.views.trails import Trails
+from app.views.history import Trails
 from web.messages import RecordingView, WorldDrawing
 
 LEAST_M = 4.0  # half the side of the ground at the beginning

@@ -1,4 +1,7 @@
-"""What the robot senses, and which view it recognises."""
+"""What the robot senses, and which view it recognises.
+
+Views and packets of a brain as people are shown them.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,8 @@ from numpy.typing import NDArray
 
 from app.session import Session
 from app.views.arrays import frozen
+from ratslam_core import Packet, RatSlam
+from web import messages as m
 from web.messages import Senses
 
 NO_PICTURE: NDArray[np.uint8] = frozen(np.zeros((0, 0, 3), np.uint8))
@@ -37,3 +42,17 @@ def senses_of(session: Session) -> Senses:
         false_positives=local_view.false_positives,
         ranges_m=session.frame.ranges_m,
     )
+
+
+def stored_picture(brain: RatSlam, view: int) -> NDArray[np.uint8]:
+    """A stored view as an image for people."""
+    return frozen(brain.local_view.front_end.picture(brain.local_view.stored(view)).copy())
+
+
+def present_picture(brain: RatSlam) -> NDArray[np.uint8]:
+    return frozen(brain.local_view.front_end.picture(brain.local_view.features).copy())
+
+
+def packet_of(packet: Packet) -> m.Packet:
+    """A packet of the engine as one that is shown."""
+    return m.Packet(packet.x, packet.y, packet.heading_rad, packet.mass, packet.id)

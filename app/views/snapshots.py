@@ -1,32 +1,32 @@
-"""Builds the immutable Snapshot of a session. Expensive parts are rebuilt only as often as people can see a change."""
+"""Builds the immutable Snapshot of a session. Expensive parts are rebuilt only as often as people can see a change.
+
+All parameters with their descriptions, and the preset whose values they have.
+
+The second brains that the page offers: those that would differ from the first, and each with one addition the other way.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, cast
 
-from app.config.presets import PRESETS
+from app.config import Config, Value
+from app.config.pairs import pairs_beside, without
+from app.config.presets import PRESETS, preset_of
+from app.played_session import NOT_RECORDED
 from app.session import SECOND, Session, is_lost
-from app.views.actors import ActorsView
-from app.views.belief import belief_of
+from app.views.arrays import Slow
+from app.views.belief import belief_of, spread_of
 from app.views.beside import BesideDrawn
-from app.views.ghost import ghost_of, shown
-from app.views.goal_memory_layer import goal_memory_layer
-from app.views.goal_view import goal_view, tags_view
 from app.views.history import History
 from app.views.inspection import inspect
-from app.views.map_layers import MapLayers
-from app.views.movements import movements_of
-from app.views.occupancy_layer import occupancy_layer
-from app.views.parameter_rows import ParameterRows
-from app.views.places import known_places
-from app.views.pose_cell_layer import pose_cell_layer
+from app.views.map_layers import MapLayers, goal_memory_layer, occupancy_layer, pose_cell_layer
+from app.views.office import ActorsView, DrawnWorld, ghost_of, goal_view, known_places, movements_of, shown, tags_view
 from app.views.recorded import TruthFloor, no_room, recording_view
 from app.views.senses import senses_of
-from app.views.spread import spread_of
-from app.views.throttle import Slow
 from app.views.tick_stages import Walk
-from app.views.world_drawing import DrawnWorld
 from ratslam_core import Pose2
+from ratslam_core.params.additions import ADDITIONS
 from web.messages import (
     AdditionsOff,
     BesideView,
@@ -34,6 +34,7 @@ from web.messages import (
     LessonView,
     OfficeEdition,
     PairChoice,
+    Parameter,
     Pose,
     Report,
     SituationView,
@@ -43,6 +44,59 @@ from web.messages import (
     TrialView,
     UntilView,
 )
+
+
+class ParameterRows:
+    """Builds the rows anew only when the config has changed."""
+
+    def __init__(self) -> None:
+        self._config: Config | None = None
+        self._rows: tuple[Parameter, ...] = ()
+        self._preset = ""
+
+    def of(self, config: Config, recorded: bool = False) -> tuple[tuple[Parameter, ...], str]:
+        """All parameters, and the name of the preset whose values they have, or "".
+
+        recorded: without those of the simulator and the pilot, which a recording does not have.
+        """
+        if self._config is not config:
+            self._config, self._preset = config, preset_of(config)
+            self._rows = tuple(
+                Parameter(name=name, value=value, default=cast(Value, item.default), **item.metadata)
+                for name, item, value in config.items()
+                if not (recorded and name.split(".")[0] in NOT_RECORDED)
+            )
+        return self._rows, self._preset
+
+
+class PairChoices:
+    """Made anew only when a config has changed."""
+
+    def __init__(self) -> None:
+        self._configs: tuple[Config, Config] | None = None
+        self._choices: tuple[tuple[PairChoice, ...], AdditionsOff] = (), AdditionsOff()
+
+    def of(self, beginning: Config, now: Config) -> tuple[tuple[PairChoice, ...], AdditionsOff]:
+        """beginning: the config with which the run would begin anew; now: that with which it runs."""
+        before = self._configs
+        if before is None or before[0] is not beginning or before[1] is not now:
+            self._configs = beginning, now
+            self._choices = tuple(_choices(beginning, now)), AdditionsOff(_off(beginning), _off(now))
+        return self._choices
+
+
+def _choices(beginning: Config, now: Config) -> Iterator[PairChoice]:
+    for pair in pairs_beside(beginning):
+        yield PairChoice(pair.name, pair.title, pair.about, "beginning")
+    live = {dotted for dotted, item, _ in now.items() if item.metadata["live"]}
+    for pair in pairs_beside(now):
+        if pair.values.keys() <= live:
+            yield PairChoice(pair.name, pair.title, pair.about, "now")
+
+
+def _off(config: Config) -> tuple[str, ...]:
+    return tuple(addition.name for addition in ADDITIONS if without(addition, config))
+
 
 OCCUPANCY_EVERY_S = 2.0  # of wall time
 GOAL_MEMORY_EVERY_S = 0.5

@@ -1,6 +1,12 @@
 """One tick, stage by stage: the effect of each stage is recorded while the tick runs and can be shown afterwards.
 
 The tick is always computed as a whole, in the order of `RatSlam.step`, whether it is recorded or not.
+
+One attractor iteration in its three stages, for people to look at: excitation, inhibition, normalisation. ACRA 2004
+eqs. 10-12.
+
+The engine computes all three at once and skips cells that inhibition would silence. This computes the same sum, slowly.
+`test_tick_stages.py::test_the_stages_lead_where_the_engine_went` compares the two.
 """
 
 from __future__ import annotations
@@ -10,14 +16,57 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.session import Session
 from app.views.arrays import frozen
-from app.views.attractor_stages import Activity, excited, inhibited
-from app.views.map_layers import map_layer
-from app.views.pose_cell_layer import STRONGEST
-from ratslam_core import Odometry
+from app.views.map_layers import STRONGEST, map_layer
+from ratslam_core import Odometry, PoseCellParams
+from ratslam_core.pose_cells.attractor_kernels import gaussian
 from web.messages import Pose, PoseCellLayer, TickStage, TickWalk
+
+
+@dataclass(frozen=True)
+class Activity:
+    """Active pose cells: flat indices (n,), ascending, and their activities (n,)."""
+
+    flat: NDArray[np.int64]
+    values: NDArray[np.float64]
+
+    @property
+    def total(self) -> float:
+        return float(self.values.sum())
+
+
+def excited(activity: Activity, params: PoseCellParams) -> Activity:
+    """Every cell excites its neighbours on the torus."""
+    return _spread(activity, params, gaussian(params.excite_sigma))
+
+
+def inhibited(activity: Activity, params: PoseCellParams) -> Activity:
+    """The same amount is subtracted from every cell. A cell that falls to 0 or below becomes silent."""
+    values = activity.values - params.inhibit
+    alive = values > 0
+    return Activity(activity.flat[alive], values[alive])
+
+
+def normalised(activity: Activity) -> Activity:
+    return Activity(activity.flat, activity.values / activity.total)
+
+
+def _spread(activity: Activity, params: PoseCellParams, weights: NDArray[np.float32]) -> Activity:
+    """Convolution along theta', then y', then x', over the active cells only."""
+    n_theta, n_y, n_x = shape = params.n_theta, params.n_y, params.n_x
+    reach = np.arange(len(weights)) - len(weights) // 2
+    for axis, size in enumerate((n_theta, n_y, n_x)):
+        places = np.stack(np.unravel_index(activity.flat, shape))
+        moved = np.repeat(places, len(reach), 1)
+        moved[axis] = (moved[axis] + np.tile(reach, len(activity.flat))) % size
+        flat, row = np.unique(np.ravel_multi_index(tuple(moved), shape), return_inverse=True)
+        parts = (activity.values[:, None] * weights.astype(np.float64)).ravel()
+        activity = Activity(flat, np.asarray(np.bincount(row.ravel(), parts, len(flat)), np.float64))
+    return activity
+
 
 TITLES = {
     "image": "Image and odometry",

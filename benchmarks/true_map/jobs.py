@@ -9,7 +9,7 @@ from typing import Any
 
 from app.config import Config, Value
 from app.headless import Deliveries, run_headless
-from app.headless.kidnap_times import kidnap_times
+from app.headless.run import kidnap_times
 from sim2d.importers import open_world
 
 GOAL_S, DELIVERY_S = 40.0, 40.0  # about what they take

@@ -6,7 +6,7 @@ import math
 
 from disk import kind
 from ratslam_core.experience_map.experience_map import ExperienceMap
-from ratslam_core.pose_graph.preintegrated import moved_by
+from ratslam_core.pose_graph.transitions import moved_by
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, wrap_angle
 
 

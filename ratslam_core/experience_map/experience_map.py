@@ -23,15 +23,13 @@ from ratslam_core.extensions.evidence import PRIOR, Belief, Evidence
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import FamiliarGround, NewGround
 from ratslam_core.extensions.islands import Islands, Merge
-from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges
+from ratslam_core.extensions.odometry_edges import NoOdometryEdges, OdometryEdges, open_way_m, soften
 from ratslam_core.extensions.pose_filter import SNAP, PoseFilter
-from ratslam_core.extensions.torn import open_way_m, soften
 from ratslam_core.params import EvidenceParams, ExperienceMapParams
 from ratslam_core.parts import LocalViewPart, Optimiser, Witness
 from ratslam_core.pose_graph.pose_graph import PoseGraph
-from ratslam_core.pose_graph.preintegrated import PreintegratedOdometry, moved_by
 from ratslam_core.pose_graph.relaxation import has_diverged
-from ratslam_core.pose_graph.transitions import require_behaviour
+from ratslam_core.pose_graph.transitions import PreintegratedOdometry, moved_by, require_behaviour
 from ratslam_core.types import IDENTITY, Odometry, Packet, Pose2, Recognition, require_finite, wrap_angle
 
 CARRIED = 400.0  # cells: how far off the robot may be after it was carried

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.extensions import robust_weights
-from ratslam_core.extensions.graduated_trust import BAR, contradiction, kept
+from ratslam_core.extensions import robust_closures
+from ratslam_core.extensions.robust_closures import BAR, contradiction, kept
 from ratslam_core.pose_graph import relaxation
 from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS, PoseGraph
 
@@ -87,7 +87,7 @@ class ExactSolver:
             if self._given_up(graph).any():  # the verdict of the last trial stands
                 share = np.divide(t.believed[: t.count], weights, out=np.zeros(t.count), where=weights > 0.0)
             else:
-                share = robust_weights.trust(poses, ends, moves, weights, self._odometry(graph), graph.cell_m)
+                share = robust_closures.trust(poses, ends, moves, weights, self._odometry(graph), graph.cell_m)
         t.believed[: t.count] = weights if share is None else weights * share
         doubt = (STEP_SIGMA * TURN_CELLS / p.bias_sigma) ** 2  # in the unit of the weights
         believed, known = t.believed[: t.count], graph.yaw_bias

@@ -1,7 +1,11 @@
-"""What is true of a whole brain: of each part, and between the parts."""
+"""What is true of a whole brain: of each part, and between the parts.
 
-# Laws look at all of a state, and take nothing for granted.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+What is true of the beats between two ticks.
+
+What is true of the goal memory, of the pictures of occupancy and of the last scan between two steps.
+
+What is true of the pose cells between two steps.
+"""
 
 from __future__ import annotations
 
@@ -10,17 +14,168 @@ from typing import Any
 
 import numpy as np
 
+from ratslam_core.beats import EARLY, Beats
 from ratslam_core.extensions.kidnap_detector import MOST_USUAL, KidnapDetector
-from ratslam_core.laws import memories
-from ratslam_core.laws.beats import beats
-from ratslam_core.laws.experience_map import LONGEST, experience_map
-from ratslam_core.laws.kinds import same_kind
-from ratslam_core.laws.measures import array, number, true, whole, within
-from ratslam_core.laws.pose_cells import pose_cells
-from ratslam_core.laws.views import learnt, local_view, view_links
+from ratslam_core.goal_memory import FREE, GoalMemory, _Iteration, misplaced
+from ratslam_core.laws.experience_map import LONGEST, experience_map, learnt, local_view, view_links
+from ratslam_core.laws.measures import FAR_M, array, number, same_kind, true, whole, within
 from ratslam_core.local_view.recogniser import LocalView
+from ratslam_core.occupancy_grid import BOUND, KEPT, MapGrid, OccupancyGrid
 from ratslam_core.params import RatSlamParams
+from ratslam_core.pose_cells import activity_kernels as kernels
+from ratslam_core.pose_cells import packet_kernels
+from ratslam_core.pose_cells.network import PoseCells
 from ratslam_core.slam import RatSlam
+
+# Laws read private attributes and do not trust annotations.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+
+
+ROUNDING = 1e-6
+
+
+def beats(beats: Beats) -> None:
+    """ValueError names the first law that does not hold."""
+    true(isinstance(beats, Beats), f"the beats are a {type(beats).__name__}")
+    true(isinstance(beats._begun, bool), "beats have begun or not")
+    number("the part of a beat that is over", beats._over, -EARLY - ROUNDING, 1.0)
+    number("the way since the last beat", beats._distance_m, -FAR_M, FAR_M)
+    number("the turn since the last beat", beats._turn_rad, -FAR_M, FAR_M)
+    number("the time since the last beat", beats._time_s, 0.0, FAR_M)
+
+
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+
+
+MOST_LIT = 16_384  # cells of the plane above a share of the strongest: many packets, each as wide as its window
+MOST_SONARS = 1024
+
+
+def goal_memory(memory: GoalMemory, now_s: float) -> None:
+    """ValueError names the first law that does not hold. now_s: for how long the robot has been under way."""
+    plane = memory.shape[1] * memory.shape[2]
+    place = array("the plane", memory._place, np.int32, (plane,))
+    true(not place.any(), "the plane must be empty between two steps")
+    keys = array("keys", memory._keys, np.int64, (None,))
+    times = array("times", memory._times, np.float32, keys.shape)
+    true(keys.size & (keys.size - 1) == 0, f"the table must have a power of two of places, got {keys.size}")
+    used = keys != FREE
+    links = whole("the number of links", memory._used, 0, keys.size // 2)
+    true(links == np.count_nonzero(used), f"there must be as many keys as links, {links}")
+    within("a key", keys[used], 0, plane * plane - 1)
+    true((keys[used] // plane < keys[used] % plane).all(), "a key must name two cells, the smaller first")
+    true(misplaced(keys) < 0, "each key must lie where it is looked for")
+    within("a time", times[used], 0.0, float(np.finfo(np.float32).max))
+    if memory._last is not None:
+        _iteration(memory._last, memory.shape, now_s)
+
+
+def _iteration(last: _Iteration, shape: tuple[int, int, int], now_s: float) -> None:
+    true(isinstance(last, _Iteration), "the last iteration must be one")
+    flats = array("what was active", last.flats, np.int64, (None,))
+    true(len(np.unique(flats)) == len(flats) <= MOST_LIT, f"at most {MOST_LIT} cells were active, each once")
+    within("what was active", flats, 0, shape[1] * shape[2] - 1)
+    activity = array("its activity", last.activity, np.float64, flats.shape)
+    within("its activity", activity, float(np.finfo(np.float32).tiny), 1e6)
+    number("its x", last.x, 0.0, shape[2])
+    number("its y", last.y, 0.0, shape[1])
+    number("its time", last.time_s, 0.0, number("its latest time", last.latest_s, 0.0, now_s))
+
+
+def occupancy(grid: OccupancyGrid, shape: tuple[int, int, int]) -> int:
+    """Returns how many sonars it is made of. shape: of the pose cells."""
+    angles = array("sonar angles", grid._angles, np.float64, (None,))
+    true(angles.size <= MOST_SONARS, f"there are {angles.size} sonars; at most {MOST_SONARS}")
+    within("a sonar's angle", angles, -100.0, 100.0)
+    within("log odds", array("log odds", grid._log_odds, np.float32, shape[1:]), -BOUND, BOUND)
+    return angles.size
+
+
+def map_grid(grid: MapGrid, experiences: int, sonars: int) -> None:
+    within("a sonar's angle", array("sonar angles", grid._angles, np.float64, (sonars,)), -100.0, 100.0)
+    count = array("counts of scans", grid._count, np.int64, (None,))
+    scans = array("scans", grid._scans, np.float32, (len(count), KEPT, 3 + sonars))
+    known = whole("experiences with scans", grid._known, 0, min(len(count), experiences))
+    within("a count of scans", count, 0, 2**53)
+    true(not count[known:].any(), f"only the first {known} experiences may have scans")
+    real = scans[:known][np.arange(KEPT) < count[:known, None]]
+    within("where a scan was made", real[:, :3], -FAR_M, FAR_M)
+    within("a range", real[:, 3:], 0.0, math.inf)
+
+
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+
+
+MOST_ACTIVITY = 1e6  # packets injected by hand add to the sum of 1 until the next step
+
+
+def pose_cells(cells: PoseCells, fresh: PoseCells) -> None:
+    """ValueError names the first law that does not hold. fresh: a network that was just made with the same parameters."""
+    _buffers(cells)
+    _derived(cells, fresh)
+    _activity(cells)
+    _packets(cells)
+
+
+def _buffers(cells: PoseCells) -> None:
+    p = cells.params
+    true(cells.shape == (p.n_theta, p.n_y, p.n_x), f"the pose cells' shape must be {(p.n_theta, p.n_y, p.n_x)}")
+    room = len(array("cells", cells._cells, np.int32, (None, 4)))
+    array("slot", cells._slot, np.int32, (p.n_theta * p.n_y * p.n_x,))
+    array("spare cells", cells._spare_cells, np.int32, (room, 4))
+    for name in ("_values", "_spare_values"):
+        array(name[1:], getattr(cells, name), np.float32, (room,))
+    for name in ("_owner", "_spare_owner", "_peaks"):
+        array(name[1:], getattr(cells, name), np.int32, (room,))
+    array("bounds", cells._bounds, np.int8, (room, 6))
+
+
+def _derived(cells: PoseCells, fresh: PoseCells) -> None:
+    """Arrays that follow from the parameters, and scratch arrays between two steps."""
+    for name in ("_patch", "_headings", "_excite"):
+        wanted = getattr(fresh, name)
+        found = array(name[1:], getattr(cells, name), wanted.dtype, wanted.shape)
+        true(np.array_equal(found, wanted), f"{name[1:]} must be as in a network that was just made")
+    for name in ("_box_a", "_box_b"):
+        array(name[1:], getattr(cells, name), np.float32, getattr(fresh, name).shape)
+
+
+def _activity(cells: PoseCells) -> None:
+    n_theta, n_y, n_x = cells.shape
+    n = whole("the number of active cells", cells._n, 1, min(len(cells._cells), cells._slot.size))
+    rows, values = cells.active
+    for column, size in ((kernels.X, n_x), (kernels.Y, n_y), (kernels.THETA, n_theta)):
+        within(f"column {column} of the active cells", rows[:, column], 0, size - 1)
+    x, y, theta, flat = rows.astype(np.int64).T
+    true((flat == (theta * n_y + y) * n_x + x).all(), "each active cell's index must be that of its place")
+    true((cells._slot[flat] == np.arange(1, n + 1)).all(), "slot must name the row of each active cell")
+    true(np.count_nonzero(cells._slot) == n, "slot must name no cell that is not active")
+    within("activity", values, 0.0, MOST_ACTIVITY)
+    number("the sum of all activity", float(values.sum(dtype=np.float64)), 0.99, MOST_ACTIVITY)
+
+
+def _packets(cells: PoseCells) -> None:
+    k, spare = len(array("packets", cells._rows, np.float64, (None, packet_kernels.ROW))), len(cells._spare_rows)
+    array("spare packets", cells._spare_rows, np.float64, (None, packet_kernels.ROW))
+    moves = len(array("moves", cells._moves, np.float64, (None, 4)))
+    array("yaws", cells._yaws, np.float64, (moves,))
+    ids = array("ids", cells._ids, np.int64, (k,))
+    array("spare ids", cells._spare_ids, np.int64, (spare,))
+    found = whole("the number of packets", cells._found, 1, min(k, moves, cells._n))
+    within("owner", cells._owner[: cells._n], 0, found - 1)
+    within("ids", ids[:found], 1, np.iinfo(np.int32).max)
+    rows = cells._rows[:found]
+    for axis in range(3):
+        within("a packet's place", rows[:, axis], 0.0, cells.shape[2 - axis])
+    within("a packet's mass", rows[:, packet_kernels.MASS], 0.0, MOST_ACTIVITY)
+    within("a packet's headings", rows[:, [packet_kernels.COS, packet_kernels.SIN]], -1.001, 1.001)
+    within("a packet's carry", rows[:, packet_kernels.CARRY :], -float(max(cells.shape)), float(max(cells.shape)))
+
+
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
 
 
 def check(brain: RatSlam) -> None:
@@ -42,11 +197,11 @@ def check(brain: RatSlam) -> None:
     association = brain.association
     learnt(association._learnt_s, views, number("time", association._time_s, 0.0, LONGEST))
     number("learning rate", association.learning_rate, 0.0, 2.0)
-    memories.goal_memory(brain.goal_memory, number("time under way", brain.memories._under_way_s, 0.0, LONGEST))
+    goal_memory(brain.goal_memory, number("time under way", brain.memories._under_way_s, 0.0, LONGEST))
     sonars = 0
     if brain.occupancy is not None and brain.map_grid is not None:
-        sonars = memories.occupancy(brain.occupancy, shape)
-        memories.map_grid(brain.map_grid, len(brain.experience_map), sonars)
+        sonars = occupancy(brain.occupancy, shape)
+        map_grid(brain.map_grid, len(brain.experience_map), sonars)
     if isinstance(brain.kidnap_detector, KidnapDetector):
         _kidnap_detector(brain.kidnap_detector, len(brain.experience_map), sonars)
     whole("relocalisations", brain.relocalisations)
@@ -59,7 +214,7 @@ def _sonars(brain: RatSlam) -> tuple[float, ...]:
     if brain.occupancy is None:
         return ()
     angles = array("sonar angles", brain.occupancy._angles, np.float64, (None,))
-    true(angles.size <= memories.MOST_SONARS, f"there are {angles.size} sonars; at most {memories.MOST_SONARS}")
+    true(angles.size <= MOST_SONARS, f"there are {angles.size} sonars; at most {MOST_SONARS}")
     within("a sonar's angle", angles, -100.0, 100.0)
     return tuple(angles.tolist())
 

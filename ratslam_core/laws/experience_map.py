@@ -1,11 +1,16 @@
-"""What is true of the experience map between two steps."""
+"""What is true of the experience map between two steps.
 
-# Laws look at all of a state, and take nothing for granted.
-# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+What is true of the local view and of its links to the pose cells between two steps.
+
+What is true of experiences and of the links between them between two steps.
+"""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ratslam_core.experience_map.experience_map import ExperienceMap, _Arrival
 from ratslam_core.extensions.evidence import CEILING, SUBMAP, Belief, Evidence
@@ -13,9 +18,201 @@ from ratslam_core.extensions.evidence import MOST as MOST_HYPOTHESES
 from ratslam_core.extensions.exact_solver import ExactSolver
 from ratslam_core.extensions.familiar_ground import MOST_NEAR, FamiliarGround
 from ratslam_core.extensions.odometry_edges import OdometryEdges
-from ratslam_core.laws import experiences as law
-from ratslam_core.laws.measures import FAR_M, MOST, array, number, pose, true, whole, within
-from ratslam_core.pose_graph.preintegrated import PreintegratedOdometry
+from ratslam_core.laws.measures import FAR_M, MOST, TURN, apart, array, number, pose, true, whole, within
+from ratslam_core.local_view.echo_matcher import EchoMatcher
+from ratslam_core.local_view.matcher import Matcher
+from ratslam_core.local_view.recogniser import LocalView, matcher_of
+from ratslam_core.local_view.view_links import ViewLinks
+from ratslam_core.pose_graph.experiences import BUCKET, Experiences
+from ratslam_core.pose_graph.transitions import BEHAVIOURS, Adjacency, PreintegratedOdometry, Transitions
+from ratslam_core.types import Recognition
+
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+
+
+def local_view(view: LocalView) -> None:
+    """ValueError names the first law that does not hold."""
+    size = whole("columns", view.front_end.columns, 1, 4096) * whole("rows", view.front_end.rows, 1, 4096)
+    size += whole("echoes", view.front_end.echoes, 0, 4096)
+    known = array("templates", view._templates, np.uint8, (None, size))
+    true(len(known) > 1, "templates must have room to grow by half")
+    count = whole("the number of views", view._count, 0, len(known))
+    array("features", view.features, np.uint8, (size,))
+    if view._last is not None:
+        array("the last features", view._last, np.uint8, (size,))
+    number("surprise", view.image_change, 0.0)
+    whole("false positives", view.false_positives)
+    _recognition(view.recognition, count)
+    for matcher in (view._matcher,):
+        _matcher(matcher, matcher_of(view.front_end))
+
+
+def _recognition(seen: Recognition, count: int) -> None:
+    whole("the recognised view", seen.view, -1, count - 1)
+    whole("the best view", seen.best_view, -1, count - 1)
+    number("its difference", seen.difference, 0.0)
+    if seen.facing_rad is not None:
+        number("its facing", seen.facing_rad, -20.0, 20.0)
+
+
+def _matcher(matcher: Matcher, fresh: Matcher) -> None:
+    same = (matcher.columns, matcher.rows) == (fresh.columns, fresh.rows)
+    true(same, "the matcher must be of the front end's columns and rows")
+    if isinstance(matcher, EchoMatcher) and isinstance(fresh, EchoMatcher):
+        same = (matcher.echoes, matcher.echo_weight) == (fresh.echoes, fresh.echo_weight)
+        true(same, "the matcher must weigh echoes as the front end does")
+        whole("where the search begins", matcher._guess, 0)
+    true(type(matcher) is type(fresh), "the matcher must be of the front end's kind")
+    array("masks", matcher._masks, np.uint8, fresh._masks.shape)
+    true(np.array_equal(matcher._masks, fresh._masks), "masks must be those of the shifts")
+    shifted = array("the shifted view", matcher._shifted, np.uint8, fresh._shifted.shape)
+    true(not (shifted & ~fresh._masks).any(), "the shifted view must be empty where nothing overlaps")
+    array("least", matcher._least, np.int32, fresh._least.shape)
+    array("at", matcher._at, np.int64, fresh._at.shape)
+
+
+def view_links(links: ViewLinks, views: int, cells: int) -> None:
+    """views: how many are known; cells: how many pose cells there are."""
+    size = len(array("linked cells", links._cells, np.int32, (None,)))
+    strength = array("strengths", links._strength, np.float32, (size,))
+    start, used, room = array("blocks", links._blocks, np.int64, (None, 3)).T
+    whole("forgotten links", links.forgotten)
+    array("seen", links._seen, np.bool_, (None,))
+    apart("blocks of links", start, room, whole("their end", links._end, 0, size), size)
+    true(((used >= 0) & (used <= room)).all(), "a block of links must have room for those in use")
+    true(not used[views:].any(), f"only the {views} known views may have links")
+    at = places(start, used)
+    within("a linked cell", links._cells[at], 0, cells - 1)
+    within("a strength", strength[at], 0.0, float(np.finfo(np.float32).max))
+
+
+def places(start: NDArray[np.int64], used: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Where in an arena the blocks' entries in use lie, block after block."""
+    begins = np.cumsum(used) - used
+    return np.arange(int(used.sum())) + np.repeat(start - begins, used)
+
+
+def learnt(times_s: list[float], views: int, now_s: float) -> None:
+    """When each view was recruited."""
+    true(len(times_s) == views, f"each of {views} views must have a time, got {len(times_s)}")
+    for time_s in times_s:
+        number("when a view was recruited", time_s, 0.0, now_s)
+
+
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+
+
+LARGEST = 1e12  # of weights and seconds
+
+
+def experiences(known: Experiences, views: int) -> None:
+    """ValueError names the first law that does not hold. views: how many local view cells there are."""
+    room = len(array("poses", known.pose, np.float64, (None, 3)))
+    array("states", known.at, np.float64, (room, 3))
+    array("the experiences' views", known.view, np.int64, (room,))
+    n = whole("the number of experiences", known.count, 0, room)
+    within("an island", array("islands", known.island, np.int32, (room,))[:n], 0, MOST)
+    within("a place in the map", known.pose[:n, :2], -FAR_M, FAR_M)
+    within("a heading in the map", known.pose[:n, 2], -TURN, TURN)
+    for axis in range(3):
+        within("a state", known.at[:n, axis], 0.0, known.shape[2 - axis])
+    within("an experience's view", known.view[:n], -1, views - 1)
+    _chains(known, n, room)
+
+
+def _chains(known: Experiences, n: int, room: int) -> None:
+    """Each experience names the one before it of its view and of its bucket. The chains end, since the numbers fall."""
+    before = array("before of the view", known._before_of_view, np.int64, (room,))
+    expected, newest = _before(known.view[:n])
+    true(np.array_equal(before[:n], expected), "each experience must know the one before it of its view")
+    true(known._newest_of_view == newest, "each view must know its newest experience")
+    buckets = tuple(-(-size // BUCKET) for size in known.shape)
+    heads = array("the newest of each bucket", known._newest_in, np.int64, buckets)
+    x, y, theta = known.at[:n].astype(np.int64).T
+    n_theta, n_y, n_x = known.shape
+    own = (theta % n_theta // BUCKET, y % n_y // BUCKET, x % n_x // BUCKET)
+    key = np.asarray(np.ravel_multi_index(own, buckets), np.int64)
+    expected, newest = _before(key)
+    before = array("before in the bucket", known._before_in, np.int64, (room,))
+    true(np.array_equal(before[:n], expected), "each experience must know the one before it of its bucket")
+    wanted = np.full(math.prod(buckets), -1, np.int64)
+    wanted[list(newest)] = list(newest.values())
+    true(np.array_equal(heads.ravel(), wanted), "each bucket must know its newest experience")
+
+
+def _before(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], dict[int, int]]:
+    """For each row the last before it with the same key, -1 for none; and the last row of each key."""
+    order = np.argsort(keys, kind="stable")
+    before = np.full(len(keys), -1, np.int64)
+    same = keys[order][1:] == keys[order][:-1]
+    before[order[1:][same]] = order[:-1][same]
+    last = order[np.append(~same, True)] if len(keys) else order
+    return before, dict(zip(keys[last].tolist(), last.tolist(), strict=True))
+
+
+def adjacency(graph: Adjacency, nodes: int) -> None:
+    room = len(array("start", graph.start, np.uint32, (None,)))
+    used, rooms = (array(name, a, np.uint32, (room,)) for name, a in (("used", graph.used), ("room", graph._room)))
+    size = len(array("half-edges", graph.half, np.uint32, (None,)))
+    other = array("other ends", graph.other, np.uint32, (size,))
+    true(whole("the number of nodes", graph._nodes, 0, room) == nodes, f"there must be {nodes} nodes")
+    apart("blocks of half-edges", graph.start[:nodes], rooms[:nodes], whole("their end", graph._end, 0, size), size)
+    true((rooms[:nodes] > 0).all(), "a block of half-edges must have room to double")
+    true((used[:nodes] <= rooms[:nodes]).all(), "a block of half-edges must have room for those in use")
+    at = places(graph.start[:nodes].astype(np.int64), used[:nodes].astype(np.int64))
+    if nodes:
+        within("an other end", other[at], 0, nodes - 1)
+    whole("changes", graph.changes)
+
+
+def transitions(t: Transitions, nodes: int) -> None:
+    """nodes: how many experiences there are."""
+    adjacency(t.graph, nodes)
+    room = len(array("ends", t.ends, np.int64, (None, 2)))
+    n = whole("the number of transitions", t.count, 0, room)
+    array("moves", t.move, np.float64, (room, 3))
+    within("an end", t.ends[:n], 0, nodes - 1)
+    within("a move", t.move[:n], -FAR_M, FAR_M)
+    for name, high in (("weight", LARGEST), ("believed", LARGEST), ("turning_s", LARGEST), ("time_s", LARGEST),
+                       ("confidence", 1.0)):  # fmt: skip
+        within(name, array(name, getattr(t, name), np.float64, (room,))[:n], 0.0, high)
+    for name in ("passages", "trials"):
+        within(name, array(name, getattr(t, name), np.int64, (room,))[:n], 0, MOST)
+    within("behaviour", array("behaviour", t.behaviour, np.int8, (room,))[:n], 0, BEHAVIOURS - 1)
+    travelled = array("travelled", t.travelled, np.bool_, (room,))[:n]
+    array("chain", t.chain, np.bool_, (room,))
+    rows = np.flatnonzero(travelled)
+    ways = {(i, j): row for (i, j), row in zip(t.ends[rows].tolist(), rows.tolist(), strict=True)}
+    true(t.row_of == ways, "the rows of links must be those that were travelled")
+    for row in t.free:
+        whole("an empty row", row, 0, n - 1)
+        empty = not travelled[row] and t.weight[row] == 0 == t.believed[row]
+        true(empty, "a row that is used again must be no way and of no weight")
+    true(len(set(t.free)) == len(t.free), "a row must be empty only once")
+    for ends in t.dropped:
+        true(isinstance(ends, tuple) and len(ends) == 2, "a dropped link must have two ends")
+        for end in ends:
+            whole("the end of a dropped link", end, 0, nodes - 1)
+    _halves(t, n, nodes)
+
+
+def _halves(t: Transitions, n: int, nodes: int) -> None:
+    """Every row appears twice, at its beginning and at its end, and each of the two names the other."""
+    graph, used = t.graph, t.graph.used[:nodes].astype(np.int64)
+    at = places(graph.start[:nodes].astype(np.int64), used)
+    half, other = graph.half[at].astype(np.int64), graph.other[at].astype(np.int64)
+    node = np.repeat(np.arange(nodes), used)
+    true(np.array_equal(np.sort(half), np.arange(2 * n)), "each transition must have its two half-edges")
+    row, end = half >> 1, half & 1
+    right = (t.ends[row, end] == node) & (t.ends[row, 1 - end] == other)
+    true(right.all(), "a half-edge must name the ends of its transition")
+
+
+# Laws look at all of a state, and take nothing for granted.
+# pyright: reportPrivateUsage=false, reportUnnecessaryIsInstance=false
+
 
 LONGEST = 1e12  # metres and seconds
 FASTEST = 10.0  # rad/s, the largest yaw bias
@@ -25,10 +222,10 @@ def experience_map(map_: ExperienceMap, views: int) -> None:
     """ValueError names the first law that does not hold. views: how many local view cells there are."""
     true(map_._experiences.shape == map_.shape, "the experiences must be of the same pose cells")
     true(map_._temporal_map._map is map_, "the temporal map must be of the same experiences")
-    law.experiences(map_._experiences, views)
+    experiences(map_._experiences, views)
     n = len(map_)
     within("an island", map_._experiences.island[:n], 0, map_.islands.begun)
-    law.transitions(map_.transitions, n)
+    transitions(map_.transitions, n)
     whole("the active experience", map_.here, 0 if n else -1, n - 1)
     pose("the robot's place", map_.pose_filter.local)
     number("how far off it may be", map_.pose_filter.sigma_m, 0.0, LONGEST)
@@ -107,6 +304,6 @@ def _arrival(arrival: _Arrival, rows: int) -> None:
     true(isinstance(arrival, _Arrival), "the arrival must be one")
     whole("the arrival's row", arrival.row, 0, rows - 1)
     within("the arrival's move", array("the arrival's move", arrival.move, np.float64, (3,)), -FAR_M, FAR_M)
-    number("the arrival's weight", arrival.weight, 0.0, law.LARGEST)
+    number("the arrival's weight", arrival.weight, 0.0, LARGEST)
     pose("where the robot came from", arrival.came)
     number("the arrival's sigma", arrival.sigma, 0.0, LONGEST)

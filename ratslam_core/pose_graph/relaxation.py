@@ -10,8 +10,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.pose_graph.adjacency import Adjacency
 from ratslam_core.pose_graph.pose_graph import PoseGraph, disagreement, wrapped
+from ratslam_core.pose_graph.transitions import Adjacency
 from ratslam_core.solvers.laplacian import eliminate
 
 DIVERGED = 10.0  # times the length of all links together: where no map that fits them puts an experience

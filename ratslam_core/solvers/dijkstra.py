@@ -8,18 +8,61 @@ test_temporal_map.py::test_a_map_that_was_mended_is_as_good_as_new.
 
 links: start, used, half, other of an `Adjacency` and the seconds of each row, inf for no way.
 near: poses, reach (m, 0 = no shortcuts), pace (s/m), and the grid of `buckets`.
+
+A binary heap of nodes by their times: the entry of the least time comes first.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ratslam_core.solvers.heap import Heap, Whole, pop, push, twice
+Whole: TypeAlias = int | np.integer[Any]
+Heap: TypeAlias = tuple[NDArray[np.float64], NDArray[np.uint32]]  # times, and the node of each
+
+
+@njit(cache=True, nogil=True)
+def twice(heap: Heap) -> Heap:
+    """The heap with twice the room."""
+    return np.concatenate((heap[0], heap[0])), np.concatenate((heap[1], heap[1]))
+
+
+@njit(cache=True, nogil=True, inline="always")
+def push(size: Whole, heap: Heap, time: float, node: Whole) -> None:
+    """Add an entry to the `size` that there are; there must be room."""
+    key, name = heap
+    one, at = np.uint64(1), np.uint64(size)
+    while at:
+        above = (at - one) >> one
+        if key[above] <= time:
+            break
+        key[at], name[at] = key[above], name[above]
+        at = above
+    key[at], name[at] = time, node
+
+
+@njit(cache=True, nogil=True, inline="always")
+def pop(size: Whole, heap: Heap) -> None:
+    """Remove the entry of the least time; `size` entries are left."""
+    key, name = heap
+    one, at, end = np.uint64(1), np.uint64(0), np.uint64(size)
+    last, node = key[end], name[end]
+    while True:
+        below = (at << one) + one
+        if below >= end:
+            break
+        if below + one < end and key[below + one] < key[below]:
+            below += one
+        if last <= key[below]:
+            break
+        key[at], name[at] = key[below], name[below]
+        at = below
+    key[at], name[at] = last, node
+
 
 Links: TypeAlias = tuple[
     NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float64]

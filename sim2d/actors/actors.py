@@ -16,7 +16,7 @@ from sim2d.actors.walkers import PERSON_SIDES, Walkers
 from sim2d.geometry.segments import nearest_segment
 from sim2d.params import OfficeParams
 from sim2d.world.elements import Box, Door, Event, Lamp
-from sim2d.world.robot_fit import Standing
+from sim2d.world.free_space import Standing
 from sim2d.world.world import World
 
 CLEARANCE_M = 0.01  # least distance from the robot of a moving leaf and of a box that appears

@@ -7,12 +7,10 @@ from numpy.typing import NDArray
 
 from sim2d.actors.actors import Actors
 from sim2d.camera.atlas import Atlas
-from sim2d.camera.column_hits import MAX_HITS, column_hits
 from sim2d.camera.element_walls import element_walls
 from sim2d.camera.lights import Lights
-from sim2d.camera.mirror import mirrored
-from sim2d.camera.painting import Strips, expose, paint_columns
-from sim2d.camera.sight import MOST_FLAT_RAD, lens_rays, round_hits, seen_walls
+from sim2d.camera.painting import Strips, expose, mirrored, paint_columns
+from sim2d.camera.sight import MAX_HITS, MOST_FLAT_RAD, column_hits, lens_rays, round_hits, seen_walls
 from sim2d.geometry.wall_index import WallIndex, build_index
 from sim2d.params import SimParams
 from sim2d.world.world import World

@@ -7,8 +7,7 @@ from pathlib import Path, PurePath
 from typing import cast
 
 from sim2d.importers.map_yaml import SCALES_M, MapYaml, Tell, read_map_yaml
-from sim2d.importers.picture import PICTURES
-from sim2d.importers.picture_map import picture_world
+from sim2d.importers.picture_map import PICTURES, picture_world
 from sim2d.importers.vector_map import vector_world
 from sim2d.params import SimParams
 from sim2d.world.world import World

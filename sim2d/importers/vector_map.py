@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim2d.importers.dress import Dresser
-from sim2d.importers.floor import choose_floor
 from sim2d.importers.plan import plan_world
+from sim2d.importers.trace import choose_floor
 from sim2d.world.json_lines import line_of
 from sim2d.world.world import World
 from sim2d.world.world_check import MOST_M

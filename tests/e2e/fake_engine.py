@@ -173,7 +173,7 @@ def main() -> None:
     engine.tick = options.tick
     stage = FakeViewer()
     if options.real_stage:
-        from web.viewer.viewers import Viewers
+        from web.viewer.viewer import Viewers
 
         stage = Viewers(engine.latest, engine.submit)
     engine.start()

@@ -13,7 +13,7 @@ from tests.e2e.browser import at_each, open_page, until
 from tests.e2e.layout import boxes, findings
 from tests.e2e.program import Program
 from tests.patience import PATIENCE_S
-from web.http.listening import CannotListen, class_socket
+from web.http.connections import CannotListen, class_socket
 
 pytestmark = pytest.mark.long
 

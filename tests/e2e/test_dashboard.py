@@ -18,10 +18,8 @@ from tests.e2e.browser import box_of, eye_of, on_screen, open_page, show, told, 
 from tests.e2e.program import Program
 from web.messages import Packet
 from web.viewer.camera_views import camera_for
-from web.viewer.fits.cell_fit import CellFit
-from web.viewer.fits.map_fit import MapFit, refit
-from web.viewer.fits.office_fit import OfficeFit
-from web.viewer.marks import place_names
+from web.viewer.fits import CellFit, MapFit, OfficeFit, refit
+from web.viewer.marks import names
 from web.viewer.plates import office_plate
 from web.viewer.plates.map_plate import NODE_Z
 from web.viewer.plates.map_plate import ORIGIN as MAP_ORIGIN
@@ -324,7 +322,7 @@ def test_the_name_of_a_place_is_a_goal_once_the_map_knows_it(program: Program, p
     places = {place.name: (place.x, place.y) for place in load_world("office").places}
     show(page, "office")
     for name in ("printer", "library"):
-        page.mouse.click(*on_screen(page, "office", on_office("office", *places[name], place_names.Z)))
+        page.mouse.click(*on_screen(page, "office", on_office("office", *places[name], names.Z)))
         if name == "printer":
             told(page, "the map does not know the printer")
             assert program.state()["goal"] is None

@@ -7,10 +7,8 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, expect
 
-from app.experiments.outcome import Outcome
-from app.experiments.store import Store
-from app.trials.chosen import chosen_trial
-from app.trials.experiment import find_experiment
+from app.experiments.store import Outcome, Store
+from app.trials.experiment import chosen_trial, find_experiment
 from app.trials.trial import run_trial
 from tests.e2e.browser import open_page, told, until
 from tests.e2e.program import Program

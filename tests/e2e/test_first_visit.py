@@ -9,7 +9,7 @@ from playwright.sync_api import Browser, Page, expect
 from tests.e2e.browser import on_screen, open_page, show, until
 from tests.e2e.program import Program
 from tests.e2e.test_dashboard import Place, node_on_stage
-from web.viewer.fits.map_fit import DEPTH, WIDTH
+from web.viewer.fits import DEPTH, WIDTH
 from web.viewer.plates.map_plate import NODE_Z, ORIGIN
 
 MOST_WORDS = 60

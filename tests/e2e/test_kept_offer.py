@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
-from app.kept_brains.files import About, keep
+from app.kept_brains import About, keep
 from app.session import Session
 from sim2d import load_world
 from tests.e2e.browser import calm, open_page, told, until

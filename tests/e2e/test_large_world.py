@@ -15,8 +15,8 @@ from playwright.sync_api import Browser, Page
 from benchmarks.office import rooms
 from sim2d import load_world, world_to_json
 from tests import patience
-from web.viewer.fits.office_fit import OfficeFit
-from web.viewer.marks.place_names import Z
+from web.viewer.fits import OfficeFit
+from web.viewer.marks.names import Z
 from web.viewer.plates.office_plate import ORIGIN
 
 from .browser import eye_of, on_screen, open_page, show, until

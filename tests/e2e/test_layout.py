@@ -9,11 +9,9 @@ from dataclasses import replace
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from app.experiments.outcome import Outcome
-from app.experiments.store import Store
-from app.trials.chosen import chosen_trial
-from app.trials.experiment import find_experiment
-from app.trials.notes import Moment
+from app.experiments.store import Outcome, Store
+from app.trials.experiment import chosen_trial, find_experiment
+from app.trials.scores import Moment
 from app.trials.trial import Result
 from sim2d import load_world, world_to_json
 from tests.e2e.browser import NO_STAGE, PATIENCE_MS, at_each, box_of, calm, on_screen, open_page, turn_theme, until

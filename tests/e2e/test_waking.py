@@ -14,7 +14,7 @@ from tests.e2e.browser import PATIENCE_MS, box_of, on_screen, open_page, told, u
 from tests.e2e.program import Program
 from tests.e2e.test_dashboard import place_of
 from web.viewer.camera_views import MAP_AT, camera_for
-from web.viewer.fits.map_fit import MapFit, refit
+from web.viewer.fits import MapFit, refit
 from web.viewer.plates.map_plate import NODE_Z
 
 FRAME = re.compile(r"/viser/\?")

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim2d import FreeSpace, Start, Wall, World
-from sim2d.world.robot_fit import RobotFit
+from sim2d.world.free_space import RobotFit
 from web.messages import Pose, Senses, WorldDrawing
 
 SONAR_RAD = np.radians([-90, -50, -30, -10, 10, 30, 50, 90]).astype(np.float32)

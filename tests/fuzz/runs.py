@@ -20,14 +20,11 @@ from app.engine.engine import Engine
 from app.engine.pace import Pace
 from app.engine.watchdog import Watchdog
 from app.runs.folder import BRAIN, LINES, STATE
-from app.runs.header import beginning_of, header_of, written
-from app.runs.journal import Journal
+from app.runs.header import beginning_of, edit_of, header_of, pulse_of, written
+from app.runs.journal import Journal, LineBook
 from app.runs.keeper import RunKeeper
-from app.runs.line_book import LineBook
-from app.runs.pulse import pulse_of
 from app.runs.replay import replay, resumed
 from app.runs.run_file import open_run
-from app.runs.world_edits import edit_of
 from app.session import Session
 from app.session_snapshot import read_session, take_session
 from disk import State, encode, write_state

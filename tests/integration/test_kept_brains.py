@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from app.kept_brains.files import newest
+from app.kept_brains import newest
 from tests.e2e.program import START, Program
 from tests.patience import PATIENCE_S, until
 
-OFTEN, SELDOM = (f"import app.kept_brains.keeper as keeper; keeper.EVERY_S = {every}; {START}" for every in (0.2, 1e6))
+OFTEN, SELDOM = (f"import app.kept_brains as keeper; keeper.EVERY_S = {every}; {START}" for every in (0.2, 1e6))
 
 
 def kept() -> tuple[str, float]:

@@ -6,11 +6,10 @@ import re
 
 import pytest
 
-from app.engine.teaching import Teaching
+from app.engine.lesson_run import Teaching
 from app.gallery.lessons import StoredLessons, check_formulas
 from app.lessons.files import catalogue, check_lesson
-from app.lessons.performance import perform_round
-from app.lessons.report import report_of
+from app.lessons.performance import perform_round, report_of
 from app.lessons.schema import Lesson
 from ratslam_core.params.additions import ADDITIONS
 from sim2d import load_world

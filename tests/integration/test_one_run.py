@@ -25,11 +25,10 @@ from app.runs.run_file import open_run
 from app.session import Session
 from app.session_snapshot import load_session, save_session
 from app.situations import Situation
-from app.situations.reading import read_situation
-from app.situations.writing import file_of, link_of
+from app.situations.document import file_of, link_of, read_situation
 from app.views.history import History
 from app.views.inspection import inspect
-from app.views.movements import movements_of
+from app.views.office import movements_of
 from app.views.snapshots import Snapshots
 from app.views.tick_stages import TickRecorder
 from app.world_editor import edited

@@ -9,8 +9,8 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from ratslam_core.pose_graph.adjacency import Adjacency
 from ratslam_core.pose_graph.relaxation import solve, sweep
+from ratslam_core.pose_graph.transitions import Adjacency
 
 EXAMPLES = settings(max_examples=60)
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core.pose_graph.adjacency import Adjacency
+from ratslam_core.pose_graph.transitions import Adjacency
 
 
 class Lists:

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core.pose_graph import pose_graph, relaxation
-from ratslam_core.pose_graph.adjacency import Adjacency
 from ratslam_core.pose_graph.relaxation import sweep
+from ratslam_core.pose_graph.transitions import Adjacency
 from tests.unit.ratslam_core.literal import also_interpreted
 
 from .pose_graphs import EXAMPLES, Graph, disturb, graphs, turned, wrap

@@ -10,8 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim2d.camera.column_hits import MAX_HITS, NEAR_M, column_hits
-from sim2d.camera.sight import MOST_FLAT_RAD, lens_rays, round_hits, seen_walls
+from sim2d.camera.sight import MAX_HITS, MOST_FLAT_RAD, NEAR_M, column_hits, lens_rays, round_hits, seen_walls
 from sim2d.geometry.segments import nearest_segment
 from sim2d.geometry.wall_index import build_index, first_wall, nearest_within
 from sim2d.sensors.ranges import laser_ranges

@@ -182,7 +182,7 @@ def test_a_notebook_beside_a_package_of_the_same_name(tmp_path: Path) -> None:
 # ------------------------------------------------------------ kernels
 
 KERNEL = """
-from sim2d.geometry.connected_cells import connected
+from sim2d.geometry.grid_cells import connected
 from disk import kernel_cache
 import numpy as np
 assert connected(np.ones((2, 3), bool), np.array([[0, 0]])).all()

@@ -10,8 +10,7 @@ import pytest
 from app.config import Config
 from app.config.pairs import pairs_beside
 from app.lessons.files import catalogue
-from app.lessons.performance import perform_round
-from app.lessons.report import report_of
+from app.lessons.performance import perform_round, report_of
 from app.lessons.schema import Lesson
 from web.shared import TABS
 

@@ -16,28 +16,22 @@ from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
-from web.http.asking import Submit, told
-from web.http.bodies import body_of, json_response
-from web.http.brain_download import BrainDownload
-from web.http.brain_files import unpacked
-from web.http.class_door import Classroom
-from web.http.classroom import add_classroom
+from web.http.asking import Submit, body_of, json_response, told
+from web.http.brain_files import BrainDownload, unpacked
+from web.http.class_door import Classroom, add_classroom
 from web.http.commands import READER, CommandAccepted, Declined, Malformed, Problem, check, problem, read_object, wrong
 from web.http.experiments import Gallery, add_experiments
 from web.http.export import Exports, add_exports
-from web.http.inspected_state import experience_fields
 from web.http.kept_offer import Offered, add_kept_offer
 from web.http.lessons import Lessons, add_lessons
-from web.http.pictures import add_pictures
+from web.http.pictures import add_pictures, add_stage_picture
 from web.http.places import add_places
 from web.http.proxy import PAGE_ID, Cameras, ViewersLike, ViserProxy, spoken
 from web.http.recordings import Opener, add_recordings
-from web.http.security import MAX_BRAIN_BYTES, Guard, Limits
+from web.http.security import MAX_BRAIN_BYTES, NO, Guard, Limits, comes_from_class, looks_on
 from web.http.situations import Situations, add_situations
-from web.http.stage_picture import add_stage_picture
-from web.http.state import title, to_json
+from web.http.state import experience_fields, title, to_json
 from web.http.stream import Stream
-from web.http.watching import NO, comes_from_class, looks_on
 from web.http.worlds import add_worlds
 from web.latest import Latest
 from web.messages import ExperienceReport, ReadExperience, Snapshot, UseBrain

@@ -4,12 +4,21 @@ uvicorn counts those that ask for something, and waits for the end of a request 
 descriptor is left, for anybody; then it complains thousands of times a second (cpython 151615). So each door takes its
 connections itself, one after the other, and has a number of places of its own. Where they are taken, the one that has owed
 something for longest makes room: the rest of a request, or reading on. One that owes nothing never has to go.
+
+Answers websocket requests that cannot be read. By itself, uvicorn leaves their senders waiting for ever.
+
+uvicorn reads a request with h11 and then has websockets read it again, which accepts fewer and shorter headers.
+Browsers send the cookies of every server at this address, whatever its port, so a long header need not be anybody's
+fault.
+
+Sockets to listen on: one for whoever sits at this machine, and, if it was asked for, one for a class in the local network.
 """
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import ipaddress
 import logging
 import socket
 from collections.abc import Callable
@@ -17,7 +26,153 @@ from dataclasses import dataclass
 from typing import Any
 
 import h11
+import websockets.http11
+from uvicorn._types import ASGISendEvent
 from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.exceptions import InvalidState, SecurityError
+
+from web.http.commands import problem
+
+MAX_HEADER_BYTES = 64 * 1024  # of a request, all headers together
+websockets.http11.MAX_LINE_LENGTH = MAX_HEADER_BYTES  # read anew for each request; 8 KiB by default
+
+
+class WebSocketProtocol(WebSocketsSansIOProtocol):
+    """uvicorn's protocol, with an answer to what websockets does not accept as a request.
+
+    It also completes a refusal: uvicorn takes a request that was answered with a sentence for one that was forgotten. And the
+    program may end while a browser is closing a connection.
+    """
+
+    def shutdown(self) -> None:
+        try:
+            super().shutdown()
+        except InvalidState:  # the browser's farewell was there first
+            self.transport.close()
+
+    async def send(self, message: ASGISendEvent) -> None:
+        await super().send(message)
+        if message["type"] == "websocket.http.response.body" and not message.get("more_body", False):
+            self.handshake_complete = True
+
+    def data_received(self, data: bytes) -> None:
+        super().data_received(data)
+        fault = self.conn.handshake_exc
+        if fault is None or self.handshake_initiated or self.transport.is_closing():
+            return
+        if isinstance(fault.__cause__, SecurityError):
+            status = "431 Request Header Fields Too Large"
+            reason = (
+                f"a websocket's request may have {websockets.http11.MAX_NUM_HEADERS} headers "
+                f"of {MAX_HEADER_BYTES} bytes; this one has more"
+            )
+        else:
+            status, reason = "400 Bad Request", "a websocket is asked for with GET and without a body"
+        body = problem(reason)
+        head = (
+            f"HTTP/1.1 {status}\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\nConnection: close"
+        )
+        self.transport.write(head.encode() + b"\r\n\r\n" + body)
+        self.transport.close()
+
+
+WAITING = 2048  # connections that the system keeps until they are accepted; what it drops comes again after a second
+Address = ipaddress.IPv4Address | ipaddress.IPv6Address
+
+
+class CannotListen(Exception):  # noqa: N818
+    """The address is not available; the message says why and what to do."""
+
+
+def listening_socket(host: str, port: int) -> socket.socket:
+    """A bound socket on a loopback address (port 0: any free one). Raises CannotListen."""
+    return _bound(_loopback(host), port, "--port")
+
+
+def class_socket(host: str | None, port: int) -> socket.socket:
+    """A bound socket on one address of this machine; None: that in its local network. Raises CannotListen."""
+    return _bound(_own(host) if host is not None else _in_local_network(), port, "--class-port")
+
+
+def _bound(address: Address, port: int, option: str) -> socket.socket:
+    family = socket.AF_INET6 if address.version == 6 else socket.AF_INET
+    # asyncio has small messages sent at once only where TCP is named: else each second one waits 40 ms
+    listener = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((str(address), port))
+        listener.listen(WAITING)  # at once: until then a second one could bind the same port
+    except OverflowError:
+        listener.close()
+        raise CannotListen(
+            f"Port {port} does not exist; take one from 0 (any free one) to 65535 with {option}."
+        ) from None
+    except OSError as error:
+        listener.close()
+        raise CannotListen(_why(address, port, option, error)) from None
+    return listener
+
+
+def _why(address: Address, port: int, option: str, error: OSError) -> str:
+    if option == "--port" or _is_own(address):
+        return f"Port {port} is not free ({error.strerror}). Choose another with {option}, or 0 for any free one."
+    return f"{address} is no address of this machine ({error.strerror}); give one of its own with --class-address."
+
+
+def _is_own(address: Address) -> bool:
+    family = socket.AF_INET6 if address.version == 6 else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as probe:
+        try:
+            probe.bind((str(address), 0))
+        except OSError:
+            return False
+    return True
+
+
+def _loopback(host: str) -> Address:
+    """The address, which must be this machine's own: 127.0.0.1 or ::1."""
+    address = _read("127.0.0.1" if host == "localhost" else host)
+    if address is None or str(address) not in ("127.0.0.1", "::1"):
+        reason = f"{host!r} would let other machines in; the dashboard listens on 127.0.0.1, localhost or ::1 only."
+        raise CannotListen(reason)
+    return address
+
+
+def _own(host: str) -> Address:
+    """One address, and no spelling of all addresses."""
+    address = _read(host)
+    if address is None or "%" in host or address.is_multicast or getattr(address, "ipv4_mapped", None) is not None:
+        raise CannotListen(f"--class-address takes one IP address of this machine, as 192.168.1.5; got {host!r}.")
+    if address.is_unspecified:
+        raise CannotListen(f"{host} stands for every address of this machine; name one of them with --class-address.")
+    return address
+
+
+def _in_local_network() -> Address:
+    """The address from which this machine would speak to others. Nothing is sent to find it out."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("198.51.100.1", 9))  # kept for documentation: it is nobody's
+            address = ipaddress.ip_address(probe.getsockname()[0])
+        except OSError:
+            address = None
+    if address is None or address.is_loopback or address.is_unspecified:
+        raise CannotListen(
+            "This machine is in no network, so no class can reach it; give --class-address if it is in one."
+        )
+    if address.is_global:
+        reason = f"{address} can be reached from the whole internet; if that is meant, say --class-address {address}."
+        raise CannotListen(reason)
+    return address
+
+
+def _read(host: str) -> Address | None:
+    try:
+        return ipaddress.ip_address(host)
+    except ValueError:
+        return None
+
 
 try:
     import resource

@@ -11,11 +11,11 @@ from fastapi import Path as InPath
 from fastapi.responses import FileResponse, Response
 from pydantic import BaseModel
 
-from web.http.bodies import json_response
+from web.http.asking import json_response
 from web.http.commands import Declined, Problem
 from web.http.security import Limits
 from web.http.state import to_json
-from web.messages.command import EngineName
+from web.messages.commands import EngineName
 
 Name = Annotated[str, InPath(max_length=40, description="its name")]
 TYPES = {".svg": "image/svg+xml", ".png": "image/png"}

@@ -16,8 +16,7 @@ from fastapi.responses import FileResponse, Response
 from pydantic import BaseModel
 from starlette.background import BackgroundTask
 
-from web.http.asking import NoAnswer, Submit
-from web.http.bodies import ERRORS, json_response
+from web.http.asking import ERRORS, NoAnswer, Submit, json_response
 from web.http.commands import Malformed, wrong
 from web.http.security import Limits
 from web.http.state import to_json

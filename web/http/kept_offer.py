@@ -14,8 +14,7 @@ from pydantic import BaseModel
 
 from ratslam_core import RatSlam
 from sim2d import World, load_world
-from web.http.asking import NoAnswer, Submit, told
-from web.http.bodies import ERRORS, Body, checked_body, json_response, takes
+from web.http.asking import ERRORS, Body, NoAnswer, Submit, checked_body, json_response, takes, told
 from web.http.commands import Malformed, wrong
 from web.http.security import Limits
 from web.http.state import to_json

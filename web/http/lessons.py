@@ -10,11 +10,10 @@ from fastapi import Path as InPath
 from fastapi.responses import Response
 from pydantic import BaseModel
 
-from web.http.bodies import json_response
+from web.http.asking import json_response
 from web.http.commands import Declined, Problem
-from web.http.security import Limits
+from web.http.security import Limits, comes_from_class
 from web.http.state import to_json
-from web.http.watching import comes_from_class
 
 Name = Annotated[str, InPath(max_length=40, description="its name")]
 

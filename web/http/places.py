@@ -9,7 +9,7 @@ import numpy as np
 from fastapi import FastAPI
 from fastapi.responses import Response
 
-from web.http.bodies import json_response
+from web.http.asking import json_response
 from web.http.commands import Problem, problem
 from web.http.state import to_json
 from web.latest import Latest

@@ -22,7 +22,7 @@ from starlette.responses import Response
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 from websockets.asyncio.client import ClientConnection
 
-from web.http.watching import is_look
+from web.http.security import is_look
 from web.switches import Switches
 from web.themes import Theme, Themes
 from web.viewer.camera_views import Camera

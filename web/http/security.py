@@ -11,6 +11,11 @@ therefore pure ASGI: it runs before a websocket is accepted, which ordinary HTTP
   24 MiB with plans and 256 MiB with situations; a brain that is uploaded is application/octet-stream (no form can send
   that either) of at most 256 MiB. So is a recording, of at most 900 MB, which goes to a file part by part.
 - A page that only looks on changes nothing; its requests carry its id (X-Page).
+
+Pages that only look on: what their websockets may say. Everything else is refused here, whatever the page itself offers.
+
+Such a page has an id that begins with `watch-`. It says so itself, so that it stays one when the connection or the server
+comes back. Whoever comes from the network of a class is one whatever it says (web/http/class_door.py).
 """
 
 from __future__ import annotations
@@ -18,14 +23,16 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
+import msgspec
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import HTTPConnection
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from disk.limits import SITUATION_BYTES
 from web.http.commands import Declined, problem, wrong
-from web.http.watching import NO, PAGE_HEADER, looks_on
 
 MAX_BODY_BYTES = 64 * 1024
 BRAIN_PATH, MAX_BRAIN_BYTES = "/api/brain", 256 * 1024 * 1024
@@ -222,3 +229,35 @@ class Limits:
         refusal = self.refusal(kind)
         if refusal is not None:
             raise Declined([wrong("type", kind, refusal)], 429)
+
+
+WATCHER = "watch-"
+PAGE_HEADER = "x-page"  # with it, every request of a page that looks on says whose it is
+FROM_CLASS = "ratslam.from_class"  # in the scope of whatever comes through the door of the class
+LOOKS = ("got", "view", "follow", "camera", "theme", "tabs")  # they concern the page alone
+NO = "this page only looks on; whoever has the main page steers"
+
+
+def looks_on(page: str) -> bool:
+    """Whether a page with this id only looks on."""
+    return page.startswith(WATCHER)
+
+
+def comes_from_class(connection: HTTPConnection) -> bool:
+    return bool(connection.scope.get(FROM_CLASS))
+
+
+def must_look(kind: object) -> None:
+    """Raises Declined when a message of this type is more than a look."""
+    if kind not in LOOKS:
+        raise Declined.of(403, NO)
+
+
+def is_look(message: bytes) -> bool:
+    """Whether a message of viser's client only tells where its own camera stands. It is read with viser's own reader, so that
+    viser can understand nothing else by it."""
+    try:
+        said: dict[str, Any] | list[Any] | str | float | None = msgspec.msgpack.decode(message)
+    except (msgspec.DecodeError, UnicodeDecodeError):
+        return False
+    return isinstance(said, dict) and said.get("type") == "ViewerCameraMessage"

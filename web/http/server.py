@@ -19,13 +19,21 @@ from starlette.types import ASGIApp
 
 from web.http.api import create_app
 from web.http.class_door import ClassDoor, Classroom
-from web.http.connections import Connection, Door, Places, places
+from web.http.connections import (
+    MAX_HEADER_BYTES,
+    CannotListen,
+    Connection,
+    Door,
+    Places,
+    WebSocketProtocol,
+    class_socket,
+    listening_socket,
+    places,
+)
 from web.http.experiments import Gallery
 from web.http.export import Exports
-from web.http.handshake import MAX_HEADER_BYTES, WebSocketProtocol
 from web.http.kept_offer import Offered
 from web.http.lessons import Lessons
-from web.http.listening import CannotListen, class_socket, listening_socket
 from web.http.proxy import ViewersLike
 from web.http.recordings import Opener
 from web.http.security import Guard

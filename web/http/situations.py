@@ -9,14 +9,13 @@ from fastapi import FastAPI, Request
 from fastapi.responses import Response
 from pydantic import BaseModel, Field, ValidationError
 
-from web.http.asking import Submit, told
-from web.http.bodies import ERRORS, Body, body_of, checked_body, json_response, takes
+from web.http.asking import ERRORS, Body, Submit, body_of, checked_body, json_response, takes, told
 from web.http.commands import Malformed, wrong
 from web.http.proxy import Cameras
 from web.http.security import MAX_SITUATION_BYTES, Limits
 from web.http.state import to_json
 from web.messages import CameraAt, Look, OpenSituation, ReadSituation
-from web.messages.command import Label
+from web.messages.commands import Label
 from web.messages.situation import Plate
 
 READ_TIMEOUT_S = 20.0  # the engine makes a hash of its whole state

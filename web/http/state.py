@@ -2,6 +2,13 @@
 
 Numbers that are not finite become null; the speed "as fast as possible" (infinite) becomes 0, as in `set_speed`.
 Each text is made at most once per snapshot, however many ask for it.
+
+The state of a run as JSON: the recording, trial or situation that plays, its branches, the brain beside it.
+
+What people look into, as JSON: an experience, and in words what is inspected or walked through.
+
+What the page shows beside the plates: whether the robot sees, which brains could be compared, and the last loop closure that
+can be played again.
 """
 
 from __future__ import annotations
@@ -12,19 +19,204 @@ from typing import Any
 
 import orjson
 
-from web.http.inspected_state import inspected_words, walk_fields
-from web.http.run_state import (
-    beside_fields,
-    office_fields,
-    pose_fields,
-    recording_fields,
-    situation_fields,
-    time_fields,
-    trial_fields,
+from web.messages import (
+    BesideView,
+    CellReport,
+    Event,
+    ExperienceReport,
+    Goal,
+    LivingLayer,
+    MapLayer,
+    OfficeEdition,
+    Pose,
+    RecordingView,
+    Report,
+    Side,
+    SituationView,
+    Snapshot,
+    TickWalk,
+    TimeView,
+    TrialView,
+    ViewReport,
+    WhyReport,
 )
-from web.http.stage_state import stage_fields
-from web.messages import Event, Goal, LivingLayer, MapLayer, Snapshot
 from web.messages.told import Facts, goal_told, robot_told
+
+
+def pose_fields(pose: Pose) -> dict[str, float]:
+    return {"x": pose.x, "y": pose.y, "heading_rad": pose.heading_rad}
+
+
+def recording_fields(recording: RecordingView) -> dict[str, Any]:
+    return {
+        "name": recording.name,
+        "format": recording.format,
+        "moments": recording.moments,
+        "seconds": recording.seconds,
+        "has": recording.has,
+        "over": recording.over,
+    }
+
+
+def situation_fields(situation: SituationView) -> dict[str, Any]:
+    return {
+        "state": situation.state,
+        "tick": situation.tick,
+        "end_tick": situation.end_tick,
+        "words": situation.words,
+        "state_hash": situation.state_hash,
+        "look": situation.look.model_dump(),
+    }
+
+
+def office_fields(office: OfficeEdition) -> dict[str, Any]:
+    return {"edition": office.number, "undo": office.undo, "redo": office.redo, "saved": office.saved}
+
+
+def time_fields(time: TimeView) -> dict[str, Any]:
+    branches = [
+        {"number": branch.number, "parent": branch.parent, "from_s": branch.from_s, "end_s": branch.end_s}
+        for branch in time.branches
+    ]
+    return {
+        "past": time.past,
+        "end_tick": time.end_tick,
+        "end_s": time.end_s,
+        "begin_s": time.begin_s,
+        "branch": time.branch,
+        "branches": branches,
+        "loop": time.loop,
+        "bookmarks": [{"tick": each.tick, "time_s": each.time_s, "name": each.name} for each in time.bookmarks],
+        "differs": time.differs,
+        "doing": time.doing,
+        "done": round(time.done, 3),
+        "sides": [_side(side) for side in time.sides],
+    }
+
+
+def _side(side: Side) -> dict[str, Any]:
+    """One branch beside another. Its map is some of its experiences, centimetres."""
+    return {
+        "number": side.number,
+        "time_s": side.time_s,
+        "error_m": {"map": side.error_map_m, "odometry": side.error_odometry_m},
+        "views": side.views,
+        "experiences": side.experiences,
+        "links": side.links,
+        "packet": {
+            "x": side.packet.x,
+            "y": side.packet.y,
+            "heading_rad": side.packet.heading_rad,
+            "mass": side.packet.mass,
+        },
+        "xy": side.xy.round(2),
+        "robot": pose_fields(side.robot),
+        "turn_rad": side.turn_rad,
+    }
+
+
+def beside_fields(beside: BesideView) -> dict[str, Any]:
+    """Two brains in figures, and since when they differ in what."""
+    return {
+        "first": asdict(beside.first),
+        "second": asdict(beside.second),
+        "since_s": beside.since_s,
+        "error_odometry_m": beside.error_odometry_m,
+        "estimate": pose_fields(beside.estimate),
+        "differences": [asdict(difference) for difference in beside.differences],
+        "changed": [asdict(changed) for changed in beside.changed],
+    }
+
+
+def trial_fields(trial: TrialView) -> dict[str, Any]:
+    return {
+        "experiment": trial.experiment,
+        "title": trial.title,
+        "engine": trial.engine,
+        "levels": trial.levels,
+        "seed": trial.seed,
+        "id": trial.id,
+        "state": trial.state,
+        "doing": trial.doing,
+        "about_s": trial.about_s,
+        "ahead": trial.ahead,
+        "altered": trial.altered,
+        "outcome": trial.outcome,
+    }
+
+
+def experience_fields(report: ExperienceReport) -> dict[str, Any]:
+    """`/api/experience/{id}`. The strongest links of its view to pose cells are rows theta', y', x' with strengths."""
+    x, y, theta = report.cell
+    return {
+        "id": report.id,
+        "active": report.active,
+        "energy": report.energy,
+        "pose_cells": {"x": x, "y": y, "theta": theta},
+        "zone": {"xy": report.zone_xy, "theta": report.zone_theta},
+        "map": pose_fields(report.pose),
+        "view": report.view,
+        "picture": report.picture,
+        "links": [
+            {
+                "from": link.start,
+                "to": link.end,
+                "distance_m": link.distance_m,
+                "bearing_rad": link.bearing_rad,
+                "facing_rad": link.facing_rad,
+                "time_s": link.time_s,
+                "behaviour": link.behaviour,
+                "passages": link.passages,
+                "trials": link.trials,
+                "confidence": link.confidence,
+            }
+            for link in report.links
+        ],
+        "view_links": {
+            "count": report.hebbian.count,
+            "cells": report.hebbian.cells,
+            "strength": report.hebbian.strength,
+        },
+        "first_s": report.times.first_s,
+        "last_s": report.times.last_s,
+        "visits": report.times.visits,
+    }
+
+
+def inspected_words(report: Report) -> str:
+    match report:
+        case ExperienceReport():
+            return f"experience #{report.id}"
+        case ViewReport():
+            return f"view #{report.id}"
+        case CellReport():
+            return f"pose cells at {report.x}, {report.y}"
+        case WhyReport():
+            return f"{report.kind} at {report.time_s:.1f} s"
+
+
+def walk_fields(walk: TickWalk) -> dict[str, Any]:
+    stage = walk.stages[walk.at]
+    return {"at": walk.at + 1, "of": len(walk.stages), "title": stage.title, "words": stage.words}
+
+
+SEES = "local_view.enabled"
+WORTH_M = 0.05  # nothing would be seen of a smaller correction
+
+
+def stage_fields(snapshot: Snapshot) -> dict[str, Any]:
+    seeing = next((row.value for row in snapshot.parameters if row.name == SEES), True)
+    seen = [closure for closure in snapshot.closures if closure.moved_m >= WORTH_M]
+    last = None
+    if seen:
+        last = {"event": seen[-1].event, "time_s": seen[-1].time_s, "moved_m": round(seen[-1].moved_m, 2)}
+    return {
+        "vision": bool(seeing),
+        "closure": last,
+        "pairs": [asdict(pair) for pair in snapshot.pairs],
+        "additions_off": asdict(snapshot.additions_off),
+    }
+
 
 _OPTIONS = orjson.OPT_SERIALIZE_NUMPY
 

@@ -14,13 +14,17 @@ the plates, or on the drawing in their place; it does what a pointer there means
 state wins. A browser that takes nothing for five seconds is disconnected. A page that connects with `got=1` says
 {"type": "got"} after each state and gets no other before, so that a slow page never falls behind because of what lies in
 buffers.
+
+One page that listens to the stream.
 """
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import secrets
 import time
+from collections.abc import Coroutine
 from typing import Any
 
 import numpy as np
@@ -28,11 +32,10 @@ from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from web.http.asking import Submit, told
-from web.http.client import Client
 from web.http.commands import Declined, Malformed, check, read_object, wrong
 from web.http.proxy import VIEWS, Cameras, close_quietly, end_all
+from web.http.security import Limits, must_look
 from web.http.state import StateText, event_fields, to_json
-from web.http.watching import must_look
 from web.latest import Latest
 from web.messages import CameraAt, Command, Drawn, Drive, Inspect, SetGoal, Snapshot, StageClick
 from web.panel.panel import TABS, Panel, PanelReader
@@ -40,6 +43,47 @@ from web.switches import NAMES, Switches
 from web.themes import THEMES, Themes
 from web.viewer.camera_views import Camera
 from web.viewer.picture import meant
+
+SEND_TIMEOUT_S = 5.0
+
+
+class Client:
+    def __init__(
+        self, socket: WebSocket, page: str, confirms: bool, reader: PanelReader, watches: bool = False
+    ) -> None:
+        self.socket = socket
+        self.confirms = confirms  # says "got" to each state
+        self.got = asyncio.Event()
+        self.page = page
+        self.watches = watches  # it only looks on
+        self.presents = False  # in larger type, for a class
+        self.reader = reader  # the side panel's, for this page
+        self.news = asyncio.Event()
+        self.limits = Limits()
+        self.moving = False  # its last drive command asked for motion
+        self.events_of: tuple[int, int] = (-1, -1)  # run and number of the last event it got
+        self.tasks: set[asyncio.Task[None]] = set()
+
+    async def send(self, message: bytes | str) -> None:
+        """Text, or bytes where a panel's part has arrays."""
+        async with asyncio.timeout(SEND_TIMEOUT_S):  # not wait_for, which may swallow a cancellation
+            if isinstance(message, str):
+                await self.socket.send_text(message)
+            else:
+                await self.socket.send_bytes(message)
+
+    async def wait_for_news(self, at_most_s: float | None) -> None:
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(at_most_s):
+                await self.news.wait()
+        self.news.clear()
+
+    def background(self, work: Coroutine[Any, Any, None]) -> None:
+        """Run work beside the page's listening. It ends with the page, and its failure ends nothing else."""
+        task = asyncio.create_task(work)
+        self.tasks.add(task)
+        task.add_done_callback(lambda done: (self.tasks.discard(done), done.cancelled() or done.exception()))
+
 
 PERIOD_S = 0.045  # at x1 the engine ticks ten times a second; the effect of a command is shown sooner
 MOST_CLIENTS = 32

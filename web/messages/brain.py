@@ -2,6 +2,13 @@
 
 The map frame is the experience map's own (first experience at its origin); pose cells are indices [theta, y, x], one layer
 10 degrees. SI units and radians.
+
+What only people are shown: where the wheels alone would be, how sure the estimate is, how a closure moved the map, and
+which places of the office the map knows. Parts of a snapshot. SI units and radians.
+
+One tick in detail: its stages, and what its parts cost. Parts of a snapshot.
+
+Two brains on the same senses: the second one as it is drawn, and how the two differ. Parts of a snapshot.
 """
 
 from __future__ import annotations
@@ -204,3 +211,130 @@ class Goal:
     # experiences that stand for the goal
     lost: bool = False  # the robot does not know where it is, and so only believes what it says of the goal
     followed: bool = True  # the robot is on its way there, or there: nobody drives it, nor was it told to explore
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ghost:
+    """The robot as it would be if it believed its wheels alone, in the frame of where the run began."""
+
+    pose: Pose
+    path: NDArray[np.float32]  # (n, 2) of the last two minutes, the newest last
+    office_start: Pose  # that frame in the office
+    map_start: Pose  # that frame in the map, as the map is now
+
+
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """[ours] How far off the estimate may be: one standard deviation, as an ellipse around it. Map frame."""
+
+    along_m: float
+    across_m: float
+    turn_rad: float  # of `along`
+    by: str  # "filter" or "packet": what tells it
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Closure:
+    """A loop closure, with the map before it and after its correction. Map frame; n experiences were known then."""
+
+    event: int  # its number on the timeline
+    time_s: float
+    start: int  # the link that closed the loop leads from this experience
+    end: int  # to this one
+    links: NDArray[np.int32]  # (m, 2)
+    before_xy: NDArray[np.float32]  # (n, 2)
+    after_xy: NDArray[np.float32]  # (n, 2), some seconds later
+    moved_m: float = 0.0  # how far the experience moved that moved farthest
+
+
+@dataclass(frozen=True, slots=True)
+class KnownPlace:
+    """A place of the office by its name, and where the map has it; None: the robot has not been near it."""
+
+    name: str
+    x: float  # office frame
+    y: float
+    map_xy: tuple[float, float] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """What a part of a tick costs, in milliseconds, over the last hundred ticks."""
+
+    part: str
+    mean_ms: float
+    worst_ms: float
+
+
+@dataclass(frozen=True, slots=True)
+class TickStage:
+    """One stage of a tick that is walked through."""
+
+    name: str  # "image", "view match", "path integration", "injection", ...
+    title: str
+    words: str  # what it did, in a sentence
+
+
+@dataclass(frozen=True, slots=True)
+class TickWalk:
+    """A tick shown stage by stage. The snapshot's pose cells, map and estimate are those of stage `at`."""
+
+    stages: tuple[TickStage, ...]
+    at: int
+
+
+Kind = Literal["packet", "view", "experience", "link"]
+
+
+@dataclass(frozen=True, slots=True)
+class BrainFigures:
+    """One of two brains in figures."""
+
+    name: str
+    views: int
+    experiences: int
+    links: int
+    relocalisations: int
+    error_map_m: float | None  # None without truth
+    off_m: (
+        float | None
+    )  # how far the robot is from where this brain believes it to be, judged by where its experience was made
+    lost: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """What two brains differ in, and since when."""
+
+    kind: Kind
+    tick: int
+    time_s: float
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class Changed:
+    """A parameter in which two brains differ: its dotted name, and its value in each."""
+
+    name: str
+    first: float | int | bool | str
+    second: float | int | bool | str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BesideView:
+    """The second brain is drawn as the first; its map lies in a frame of its own."""
+
+    first: BrainFigures
+    second: BrainFigures
+    since_s: float  # when the second began; at 0 it began as a new one, later as a copy of the first
+    error_odometry_m: float | None
+    differences: tuple[Difference, ...]  # the earliest first
+    changed: tuple[Changed, ...]  # what makes the difference
+    pose_cells: PoseCellLayer
+    map: MapLayer
+    times: TimesLayer
+    estimate: Pose
+    others: tuple[Hypothesis, ...]  # where it may be instead, the likeliest first
+    goal: Goal | None  # where the first is sent to: the same place, and the way to it, in this map
+    map_turn_rad: float

@@ -1,18 +1,269 @@
-"""The commands that people give the engine: pydantic models, strict and closed. Names and docstrings are the HTTP API's."""
+"""The commands that people give the engine: pydantic models, strict and closed. Names and docstrings are the HTTP API's.
+
+What all commands are: pydantic models, strict and closed; and what many of them hold.
+
+The commands that change the office: doors, lamps, boxes, the robot's sensors in it, and edits of the world itself.
+
+The commands of the timeline: moments of the past, branches, loops.
+
+The commands of lessons, and running until something happens.
+"""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from web.messages.command import CommandModel, EngineName, Finite
-from web.messages.command import Label as _Label
-from web.messages.command import Name as _Name
-from web.messages.lesson_orders import LessonOrder
-from web.messages.office_orders import EditOrder, OfficeOrder
-from web.messages.time_orders import TimeOrder
+from disk.words import one_line
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Name = Annotated[str, Field(min_length=1, max_length=40), AfterValidator(one_line)]
+Label = Annotated[str, Field(max_length=64), AfterValidator(one_line)]
+
+EngineName = Literal["paper", "paper-2005", "paper-2006", "ours"]  # whose rules; "paper": those of an experiment's own
+
+
+class CommandModel(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+_Size = Annotated[float, Field(ge=0.05, le=20.0)]
+
+
+class SetDoor(CommandModel):
+    """Open or shut a door of the office. It moves from the next tick on, and waits for anyone who stands in it."""
+
+    type: Literal["set_door"]
+    name: Name
+    open: bool
+
+
+class SetLamp(CommandModel):
+    type: Literal["set_lamp"]
+    name: Name
+    on: bool
+
+
+class PutBox(CommandModel):
+    """Put a box down (office frame, metres). Refused where it would cover the robot. A reset removes it."""
+
+    type: Literal["put_box"]
+    name: Name
+    x: Finite
+    y: Finite
+    width: _Size = 0.5
+    depth: _Size = 0.5
+    height: _Size = 0.6
+    angle_rad: Finite = 0.0
+
+
+class RemoveBox(CommandModel):
+    type: Literal["remove_box"]
+    name: Name
+
+
+class UsePreset(CommandModel):
+    """Set the robot's sensors and encoders to a preset: "Pioneer 2DXE 2004" or "ideal"."""
+
+    type: Literal["use_preset"]
+    name: Name
+
+
+OfficeList = Literal[
+    "walls", "starts", "places", "doors", "lamps", "boxes", "people", "slow_zones", "script", "daylight"
+]  # fmt: skip
+
+
+class EditStep(CommandModel):
+    """One item in one list of the world file: added at the end, changed, or deleted. `item` is written as in that file.
+
+    `daylight` counts as a list of at most one item.
+    """
+
+    do: Literal["add", "change", "delete"]
+    list: OfficeList
+    number: Annotated[int, Field(ge=0, le=100_000)] | None = None  # of the item to change or delete, from 0
+    item: dict[str, Any] | None = None  # the new item; a wall without a colour gets looks of its own
+
+
+class EditWorld(CommandModel):
+    """Change the office under the running robot: all steps or none. Refused when the world would not be valid, when the
+    robot would be covered, or when the office is no longer the edition that the editor saw. Undone as one."""
+
+    type: Literal["edit_world"]
+    steps: Annotated[list[EditStep], Field(min_length=1, max_length=200)]
+    edition: int | None = None
+
+
+class UndoEdit(CommandModel):
+    """Undo the last change of the office."""
+
+    type: Literal["undo_edit"]
+
+
+class RedoEdit(CommandModel):
+    """Redo the change that was undone last."""
+
+    type: Literal["redo_edit"]
+
+
+OfficeOrder = SetDoor | SetLamp | PutBox | RemoveBox | UsePreset
+EditOrder = EditWorld | UndoEdit | RedoEdit
+
+
+_Moment = Annotated[float, Field(ge=0, le=1e9)]
+
+
+class Seek(CommandModel):
+    """Pause and show a moment of the run, by simulated time or by tick. From the last one on: the present. Changes nothing."""
+
+    type: Literal["seek"]
+    time_s: _Moment | None = None
+    tick: Annotated[int, Field(ge=0, le=10**9)] | None = None
+
+
+class BackToNow(CommandModel):
+    """Show the present again, paused."""
+
+    type: Literal["back_to_now"]
+
+
+class GoOnFromHere(CommandModel):
+    """Make the moment of the past that is shown the present of another branch. The run as it was stays as its own branch."""
+
+    type: Literal["go_on_from_here"]
+
+
+class GoOnWithout(CommandModel):
+    """Go back to before what led to this event, and go on in another branch in which the brain has forgotten the views that
+    led to it."""
+
+    type: Literal["go_on_without"]
+    event: Annotated[int, Field(ge=1)]
+
+
+class ChangeBranch(CommandModel):
+    """Go on with another branch, from its end."""
+
+    type: Literal["change_branch"]
+    number: Annotated[int, Field(ge=1, le=1000)]
+
+
+class CompareBranch(CommandModel):
+    """Show another branch beside the live one, at the same time, and say where they differ first. Without a number: none."""
+
+    type: Literal["compare_branch"]
+    number: Annotated[int, Field(ge=1, le=1000)] | None = None
+
+
+class Loop(CommandModel):
+    """Play the past between two times (simulated seconds) again and again. Without them: no longer."""
+
+    type: Literal["loop"]
+    begin_s: _Moment | None = None
+    end_s: _Moment | None = None
+
+
+class PutBookmark(CommandModel):
+    """Name the moment that is shown, to come back to it; with a tick: give the bookmark there another name."""
+
+    type: Literal["put_bookmark"]
+    name: Annotated[str, Field(min_length=1, max_length=60), AfterValidator(one_line)]
+    tick: Annotated[int, Field(ge=0, le=10**9)] | None = None
+
+
+class RemoveBookmark(CommandModel):
+    type: Literal["remove_bookmark"]
+    tick: Annotated[int, Field(ge=0, le=10**9)]
+
+
+class LeaveSituation(CommandModel):
+    """Stop playing a situation that was opened, before it is at its moment. The run that it took the place of goes on, paused."""
+
+    type: Literal["leave_situation"]
+
+
+TimeOrder = (
+    Seek
+    | BackToNow
+    | GoOnFromHere
+    | GoOnWithout
+    | ChangeBranch
+    | CompareBranch
+    | Loop
+    | PutBookmark
+    | RemoveBookmark
+    | LeaveSituation
+)
+
+
+class BeginLesson(CommandModel):
+    """Begin a lesson, by its name in /api/lessons, in a run of its own. seed: another than the lesson's."""
+
+    type: Literal["begin_lesson"]
+    name: Label
+    seed: Annotated[int, Field(ge=0, lt=2**31)] | None = None
+
+
+class Predict(CommandModel):
+    """The prediction that is compared with what happens: an option by its number, from 0, or a point (m) on the plate on
+    which the lesson asks for one. It can be changed until it is shown."""
+
+    type: Literal["predict"]
+    choice: Annotated[int, Field(ge=0, le=9)] | None = None
+    x: Finite | None = None
+    y: Finite | None = None
+
+
+class Vote(CommandModel):
+    """As `predict`, by one of a class: voter is a text that each page makes up for itself, and each voter counts once.
+    sender: the address it comes from, which the server tells."""
+
+    type: Literal["vote"]
+    lesson: Label
+    voter: Annotated[Label, Field(min_length=8)]
+    sender: Annotated[str, Field(max_length=64)] = ""
+    choice: Annotated[int, Field(ge=0, le=9)] | None = None
+    x: Finite | None = None
+    y: Finite | None = None
+
+
+class ShowLesson(CommandModel):
+    """Let it happen; also without a prediction. Between two rounds: begin the next one."""
+
+    type: Literal["show_lesson"]
+
+
+class LessonAgain(CommandModel):
+    """Begin the lesson anew, with the same seed."""
+
+    type: Literal["lesson_again"]
+
+
+class EndLesson(CommandModel):
+    """Leave the lesson. Its run goes on, or stays paused, as it is."""
+
+    type: Literal["end_lesson"]
+
+
+class RunUntil(CommandModel):
+    """Run as fast as possible until this happens, and pause exactly then; or until `within_s` simulated seconds have passed.
+
+    count: of packets; place: a place of the office by name, or x and y (m, office frame), which the robot comes near.
+    """
+
+    type: Literal["run_until"]
+    what: Literal["closure", "snap", "lost", "found again", "packets", "goal reached", "place"]
+    within_s: Annotated[float, Field(gt=0, le=36000)] = 600.0
+    count: Annotated[int, Field(ge=2, le=9)] = 2
+    place: Label | None = None
+    x: Finite | None = None
+    y: Finite | None = None
+
+
+LessonOrder = BeginLesson | Predict | Vote | ShowLesson | LessonAgain | EndLesson | RunUntil
 
 
 class SetGoal(CommandModel):
@@ -31,19 +282,19 @@ class Tag(CommandModel):
     """Name the place where the robot believes itself to be, to send it there later. A name that is given again moves."""
 
     type: Literal["tag"]
-    name: _Name
+    name: Name
 
 
 class Untag(CommandModel):
     type: Literal["untag"]
-    name: _Name
+    name: Name
 
 
 class GoToTag(CommandModel):
     """Go to the place that was given this name."""
 
     type: Literal["go_to_tag"]
-    name: _Name
+    name: Name
 
 
 class SetMode(CommandModel):
@@ -110,14 +361,14 @@ class Reset(CommandModel):
     """Start anew. Fields that are left out keep their values."""
 
     type: Literal["reset"]
-    world: _Label | None = None
+    world: Label | None = None
     seed: Annotated[int, Field(ge=0, le=2**32 - 1)] | None = None
 
 
 class SetParameter(CommandModel):
     type: Literal["set_parameter"]
-    name: _Label
-    value: float | int | bool | _Label
+    name: Label
+    value: float | int | bool | Label
 
 
 class StepStage(CommandModel):
@@ -163,12 +414,12 @@ class WatchExperiment(CommandModel):
     """
 
     type: Literal["watch_experiment"]
-    experiment: _Label
+    experiment: Label
     engine: EngineName | None = None
-    levels: Annotated[list[_Label], Field(max_length=8)] | None = None
+    levels: Annotated[list[Label], Field(max_length=8)] | None = None
     seed: Annotated[int, Field(ge=0, le=2**32 - 1)] | None = None
     quick: bool = False  # the shortened trial
-    trial: _Label | None = None
+    trial: Label | None = None
     moment_s: Annotated[float, Field(ge=0, le=1e7)] | None = None
 
 
@@ -182,15 +433,15 @@ class CompareBrains(CommandModel):
     """
 
     type: Literal["compare_brains"]
-    pair: _Name | None = None
+    pair: Name | None = None
     values: (
         Annotated[
-            dict[_Label, float | int | bool | _Label],
+            dict[Label, float | int | bool | Label],
             Field(min_length=1, max_length=200),
         ]
         | None
     ) = None
-    name: _Name | None = None  # of the second
+    name: Name | None = None  # of the second
     since: Literal["beginning", "now"] = "beginning"
 
 

@@ -16,8 +16,7 @@ from web.messages import (
     ViewReport,
     WhyReport,
 )
-from web.panel.part import Content
-from web.panel.words import Rows, clock, degrees, often, percent, table
+from web.panel.part import Content, Rows, clock, degrees, often, percent, table
 
 LINKS, NUMBERS, MOST_PACKETS, MOST_EVENTS = 24, 6, 6, 6
 EXPLAINED = ("snap", "closure", "false", "lost", "believes")  # events of which is known why

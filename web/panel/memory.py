@@ -7,8 +7,7 @@ from typing import Any
 
 from web.messages import Belief, Goal, PoseCellLayer, Snap, Snapshot
 from web.messages.told import goal_told, odds_words, share_words
-from web.panel.part import Content
-from web.panel.words import clock, counted, number, often, percent, table, thousands
+from web.panel.part import Content, clock, counted, number, often, percent, table, thousands
 
 LOG = 8
 SNAP_KINDS = ("snap", "kidnap", "recovered", "lost")

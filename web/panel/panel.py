@@ -3,28 +3,67 @@
 A part's message is {"type": "panel", "part", "data"}, framed with its arrays if it has any (packing.py). Only the parts
 of open tabs are sent, only when they have changed, and only those arrays that have changed. Each is made once for all
 pages.
+
+A message with arrays: a head of JSON and the bytes of each array, so that the page can draw them as they are.
+
+Four bytes with the head's length (little-endian), the head, then the arrays one after the other. Each array begins at a
+multiple of four: the head is padded with spaces, an array with zeros.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import cv2
+import numpy as np
 import orjson
+from numpy.typing import NDArray
 
+from web.latest import Throttle
 from web.messages import Snapshot
 from web.panel.inspected import active, inspected
 from web.panel.memory import memory
-from web.panel.office import office, tags
-from web.panel.packing import Packed, framed, packed
 from web.panel.part import Content
-from web.panel.senses import RecentViews, cells, views
-from web.panel.tick import timings, walk
-from web.panel.truth import numbers, series
+from web.panel.senses import RecentViews, cells, timings, views, walk
+from web.panel.truth import numbers, office, series, tags
 from web.panel.tune import tune
 from web.switches import SWITCHES, Switches
-from web.throttle import Throttle
+
+MANY_BYTES = 4096  # larger colour pictures go as JPEG with whole colours, a fifth of the bytes
+_JPEG = (cv2.IMWRITE_JPEG_QUALITY, 93, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444)
+
+
+@dataclass(frozen=True, slots=True)
+class Packed:
+    """One array: how to read it, and its bytes."""
+
+    kind: str  # "u1", "u2", "f4": numbers; "jpeg": a picture that the browser unpacks
+    shape: tuple[int, ...]
+    body: bytes
+
+
+def packed(array: NDArray[Any]) -> Packed:
+    """An array as it is sent: large colour pictures as JPEG, all others as they are."""
+    if array.dtype == np.uint8 and array.ndim == 3 and array.nbytes > MANY_BYTES:
+        _, image = cv2.imencode(".jpg", np.ascontiguousarray(array[..., ::-1]), _JPEG)
+        return Packed("jpeg", array.shape, image.tobytes())
+    little = np.ascontiguousarray(array, array.dtype.newbyteorder("<"))
+    return Packed(f"{array.dtype.kind}{array.dtype.itemsize}", array.shape, little.tobytes())
+
+
+def framed(head: dict[str, Any], arrays: Mapping[str, Packed]) -> bytes:
+    """The whole message; the head gets the arrays' names, kinds, shapes and lengths in their order."""
+    listed = [{"name": n, "kind": p.kind, "shape": p.shape, "bytes": len(p.body)} for n, p in arrays.items()]
+    text = _to_four(orjson.dumps({**head, "arrays": listed}), b" ")
+    bodies = (_to_four(array.body, b"\0") for array in arrays.values())
+    return b"".join((len(text).to_bytes(4, "little"), text, *bodies))
+
+
+def _to_four(raw: bytes, filler: bytes) -> bytes:
+    return raw + filler * (-len(raw) % 4)
+
 
 TABS = ("Senses", "Memory", "Inspect", "Tick", "Truth", "Office", "Tune")
 SOON_S = 0.05  # after this time, content that came too early is tried again

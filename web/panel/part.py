@@ -1,7 +1,11 @@
-"""The content of a part of the panel."""
+"""The content of a part of the panel.
+
+Numbers as the panel writes them, and tables of them.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -15,3 +19,41 @@ class Content:
 
     data: Mapping[str, Any]
     arrays: Mapping[str, NDArray[Any]] = field(default_factory=dict[str, NDArray[Any]])
+
+
+Rows = list[tuple[str, str]]
+
+
+def clock(seconds: float) -> str:
+    minutes, second = divmod(int(seconds), 60)
+    hours, minute = divmod(minutes, 60)
+    return f"{hours}:{minute:02d}:{second:02d}" if hours else f"{minute}:{second:02d}"
+
+
+def number(value: float | None, unit: str, digits: int = 1) -> str:
+    return "-" if value is None or not math.isfinite(value) else f"{value:.{digits}f} {unit}"
+
+
+def thousands(count: int) -> str:
+    return f"{count:,}".replace(",", "\u00a0")  # a space that does not break
+
+
+def degrees(angle_rad: float) -> str:
+    return f"{math.degrees(angle_rad):.0f}°".replace("-0°", "0°")
+
+
+def percent(share: float) -> str:
+    return f"{100 * share:.0f} %" if share >= 0.095 else f"{100 * share:.1f} %"
+
+
+def counted(count: int, one: str, many: str) -> str:
+    return f"{count} {one if count == 1 else many}"
+
+
+def often(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
+
+
+def table(title: str, rows: Rows, empty: str = "") -> dict[str, Any]:
+    """Two columns of plain words; `empty` says why there are none."""
+    return {"title": title, "rows": rows, "empty": empty}

@@ -1,4 +1,7 @@
-"""Senses: the camera's image, the stored view most like it, how different they are, and which cells are active."""
+"""Senses: the camera's image, the stored view most like it, how different they are, and which cells are active.
+
+Tick: one tick stage by stage, and what the parts of a tick cost.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from web.cell_owners import owners
-from web.messages import PoseCellLayer, Senses, Snapshot
+from web.messages import Parameter, PoseCellLayer, Senses, Snapshot, TickWalk, Timing
 from web.panel.part import Content
 
 RECENT = 60
@@ -98,3 +101,21 @@ def from_above(layer: PoseCellLayer) -> tuple[NDArray[np.uint32], NDArray[np.uin
     sums = np.bincount(row.ravel(), weights=layer.activity, minlength=len(pairs))
     share = np.rint(sums / max(float(sums.max(initial=0.0)), 1e-12) * MOST)
     return (pairs % (n_y * n_x)).astype(np.uint32), (pairs // (n_y * n_x)).astype(np.uint8), share.astype(np.uint16)
+
+
+RATE = "robot.sensor_rate_hz"  # ticks a second
+
+
+def walk(walk: TickWalk | None) -> Content:
+    """The stages; those to come have no words yet."""
+    if walk is None:
+        return Content({"at": None, "stages": []})
+    stages = [(stage.title, stage.words if k <= walk.at else "") for k, stage in enumerate(walk.stages)]
+    return Content({"at": walk.at, "stages": stages})
+
+
+def timings(timings: tuple[Timing, ...], parameters: tuple[Parameter, ...]) -> Content:
+    """Milliseconds of each part over the last hundred ticks, and how many a tick may take at x1."""
+    rate_hz = next((float(p.value) for p in parameters if p.name == RATE), 10.0)
+    parts = [(timing.part, round(timing.mean_ms, 3), round(timing.worst_ms, 2)) for timing in timings]
+    return Content({"there_are_ms": 1000 / rate_hz, "parts": parts})

@@ -1,6 +1,5 @@
 """The 3-D viewer, drawn with viser: three plates, and what a pointer does on them. `Viewers` is all that others need."""
 
-from web.viewer.viewer import Viewer
-from web.viewer.viewers import Viewers
+from web.viewer.viewer import Viewer, Viewers
 
 __all__ = ["Viewer", "Viewers"]

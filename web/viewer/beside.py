@@ -10,8 +10,8 @@ from collections.abc import Callable
 import numpy as np
 import viser
 
+from web.latest import Throttle
 from web.messages import BesideView, MapLayer, PoseCellLayer
-from web.throttle import Throttle
 from web.viewer.camera_views import stands
 from web.viewer.plates.map_plate import NODE_Z, MapPlate, on_sheet
 from web.viewer.plates.plate import point_on_plane

@@ -8,15 +8,13 @@ from __future__ import annotations
 import numpy as np
 import viser
 
+from web.latest import Throttle
 from web.messages import Ghost, Pose, Snapshot, Spread, WorldDrawing
 from web.switches import Switches
-from web.throttle import Throttle
-from web.viewer.fits.judged import error_line, judged, walls_in_map, wheels_alone, wheels_path
-from web.viewer.fits.map_fit import DEPTH, WIDTH
-from web.viewer.fits.poses import on_plate
+from web.viewer.fits import DEPTH, WIDTH, error_line, judged, on_plate, walls_in_map, wheels_alone, wheels_path
 from web.viewer.marks.doubt import Doubt
-from web.viewer.marks.ghost import GhostRobot
 from web.viewer.marks.outline import Outline
+from web.viewer.marks.robot import GhostRobot
 from web.viewer.plates.map_plate import MapPlate
 from web.viewer.plates.office_plate import OfficePlate
 from web.viewer.primitives.palette import Palette, mix

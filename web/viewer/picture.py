@@ -15,12 +15,9 @@ from numpy.typing import NDArray
 from web.messages import ExperienceReport, Inspect, Pose, SetGoal, Snapshot
 from web.switches import Name
 from web.viewer.camera_views import At, Camera, View, camera_for, ray_through, seen_by, stands
-from web.viewer.fits.cell_fit import HEIGHT, SIDE, CellFit
-from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
-from web.viewer.fits.office_fit import OfficeFit
-from web.viewer.fits.overlaid import Overlaid, overlaid
+from web.viewer.fits import DEPTH, HEIGHT, SIDE, WIDTH, CellFit, MapFit, OfficeFit, Overlaid, overlaid, refit
 from web.viewer.marks.inspected import links_of, spots_of
-from web.viewer.marks.robot_model import ENLARGED, SMALLEST
+from web.viewer.marks.robot import ENLARGED, SMALLEST
 from web.viewer.plates.map_plate import NODE_Z, nearest, on_sheet
 from web.viewer.plates.plate import point_on_plane
 from web.viewer.pointer import BESIDE_MAP, NOTHING_THERE, OTHER_BRAIN

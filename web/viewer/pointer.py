@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from web.messages import Accepted, Closure, Command, Inspect, Kidnap, KnownPlace, Refused, SetDoor, SetGoal, Snapshot
-from web.viewer.marks.place_names import Z as NAMES_Z
+from web.viewer.marks.names import Z as NAMES_Z
 from web.viewer.plates.map_plate import NODE_Z, MapPlate, on_sheet
 from web.viewer.plates.office_plate import OfficePlate
 from web.viewer.plates.plate import point_on_plane

@@ -16,11 +16,9 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 from numpy.typing import NDArray
 
-from app.experiments.figures.canvas import WIDTH_IN, go_by_powers, grid_lines, panels
+from app.experiments.figures.canvas import CYCLE, INK, MARKERS, WIDTH_IN, go_by_powers, grid_lines, panels
 from app.experiments.figures.material import Drawn, Material
-from app.experiments.figures.palette import CYCLE, INK, MARKERS
-from app.experiments.summary import CellSummary
-from app.experiments.words import ENGINE_WORDS
+from app.experiments.summary import ENGINE_WORDS, CellSummary
 from app.trials.experiment import FigureSpec, Score
 from app.trials.figure_options import Curves
 

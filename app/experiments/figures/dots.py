@@ -12,12 +12,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from app.experiments.figures.canvas import WIDTH_IN, grid_lines, panels
+from app.experiments.figures.canvas import ENGINE_COLOUR, FAINT, INK, WIDTH_IN, grid_lines, panels
 from app.experiments.figures.curves import finish_score, has, interval_words
 from app.experiments.figures.material import Drawn, Material, trial_gid
-from app.experiments.figures.palette import ENGINE_COLOUR, FAINT, INK
-from app.experiments.stored_trial import StoredTrial
-from app.experiments.words import ENGINE_WORDS, value_of
+from app.experiments.store import StoredTrial
+from app.experiments.summary import ENGINE_WORDS, value_of
 from app.trials.experiment import FigureSpec, Score
 from app.trials.figure_options import Dots
 

@@ -1,18 +1,25 @@
-"""One panel of a map, each kind a function: it draws a trace on axes in metres of the office, or in pose cells."""
+"""One panel of a map, each kind a function: it draws a trace on axes in metres of the office, or in pose cells.
 
-# matplotlib tells the types of its own functions in part only.
-# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+The goal memory's temporal map over the pose cells, and its plateaus. IROS 2005 V.D, figure 9 and point C.
+
+The arcs among which a robot on a route chose at one moment, and the one that it drove. ACRA 2006 4.3, figure 4.
+"""
 
 from __future__ import annotations
+
+import math
+from typing import cast
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
+from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation, label, maximum_filter
 
-from app.experiments.figures.palette import (
+from app.experiments.figures.canvas import (
     BLUE,
     ENGINE_COLOUR,
     FAINT,
@@ -26,8 +33,11 @@ from app.experiments.figures.palette import (
     WALL,
 )
 from app.trials.figure_options import Maps
-from app.trials.final_map import Grid
-from app.trials.trace import Trace
+from app.trials.trace import APART_M, Grid, Movements, Trace
+
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
 
 _Array = NDArray[np.float64]
 MARGIN_M = 0.4
@@ -215,3 +225,102 @@ def representations(panel: Axes, trace: Trace, options: Maps) -> None:
             panel.plot(x, y, marker + ":", ms=4, mfc="none", color=colour, lw=0.4, mew=0.8, zorder=4,
                        label=f"{words}s" if options.marks else None)  # fmt: skip
     panel.set_xlabel(f"{len(trace.map.multiple)} multiple, {len(trace.map.collisions)} collisions", color=SOFT)
+
+
+# matplotlib and SciPy tell the types of their own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+# pyright: reportMissingTypeStubs=false
+
+
+LEAD = 0.1  # of the longest time: two ways whose times differ by less take the same time
+BELOW = 0.05  # of the longest time: what is no lower than this under the highest time around is at the watershed
+LEAST_CELLS = 4  # fewer are no plateau: they have room for no robot
+TOGETHER = 3  # cells; groups that are nearer have one ring
+
+
+def goal_memory(panel: Axes, trace: Trace, options: Maps) -> None:  # noqa: ARG001
+    times, lead = trace.map.goal_times, trace.map.goal_lead
+    if times is not None and lead is not None:
+        drawn = panel.imshow(
+            np.ma.masked_invalid(times.values), origin="lower", extent=extent(times), cmap="viridis_r", zorder=0
+        )
+        seconds(panel, drawn)
+        _rings(panel, plateau(times.values, lead.values, APART_M / trace.cell_m))
+    cells_frame(panel, trace)
+
+
+def plateau(times_s: NDArray[np.float64], lead_s: NDArray[np.float64], apart: float) -> NDArray[np.bool_]:
+    """The cells from which two ways take the same time and around which none within `apart` cells takes longer. (n_y, n_x).
+
+    Since times grow from the goal on both ways round until they meet, a plateau is where they are highest. Elsewhere
+    two ways may begin with nearly the same time, too, beside the goal or where the packet once jumped.
+    """
+    known = np.isfinite(times_s)
+    if not known.any():
+        return known
+    longest = float(times_s[known].max())
+    reach = np.arange(-int(apart), int(apart) + 1)
+    around = maximum_filter(
+        np.where(known, times_s, -np.inf), footprint=np.hypot(reach[:, None], reach) <= apart, mode="wrap"
+    )
+    return known & (lead_s < LEAD * longest) & (times_s >= around - BELOW * longest)
+
+
+def _rings(panel: Axes, cells: NDArray[np.bool_]) -> None:
+    """A dot in each cell, and a ring about each group, since a cell is small on the page."""
+    near = label(binary_dilation(cells, np.ones((3, 3)), TOGETHER))
+    groups, count = cast("tuple[NDArray[np.int32], int]", near)
+    for group in range(1, count + 1):
+        y, x = np.nonzero(cells & (groups == group))
+        if len(x) < LEAST_CELLS:
+            continue
+        panel.plot(x, y, "s", ms=1.2, color=VERMILION, mew=0, ls="none", zorder=3)
+        panel.plot(x.mean(), y.mean(), "o", ms=11, mfc="none", mec=VERMILION, mew=1.0, ls="none", zorder=4,
+                   label="plateau: both ways take the same time")  # fmt: skip
+
+
+# matplotlib tells the types of its own functions in part only.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnknownArgumentType=false
+
+
+ROUND_M = 1.2  # of the plan, on each side of the robot
+
+
+def movements(panel: Axes, trace: Trace, options: Maps) -> None:  # noqa: ARG001
+    """A turn on the spot has no arc, and is left out."""
+    plan(panel, trace)
+    shown = trace.movements
+    if shown is None:
+        panel.set_xlabel("no choice between free and barred arcs", color=SOFT)
+        return
+    _robot(panel, shown)
+    panel.plot(*shown.route.T, ".-", color=GREEN, lw=1.2, ms=4, zorder=4, label="route ahead")
+    panel.plot(
+        *shown.aim, "o", ms=6, mfc=GREEN, mec="white", mew=0.6, ls="none", zorder=7, label="point it steers towards"
+    )
+    barred, free = shown.paths[shown.drives & ~shown.free], shown.paths[shown.drives & shown.free]
+    panel.add_collection(
+        LineCollection(list(barred), colors=SOFT, linewidths=0.6, linestyles=(0, (3, 2)), zorder=3, label="barred arc")
+    )
+    panel.add_collection(LineCollection(list(free), colors=BLUE, linewidths=0.7, zorder=5, label="free arc"))
+    _chosen(panel, shown)
+    x, y = shown.robot.x, shown.robot.y
+    panel.set(xlim=(x - ROUND_M, x + ROUND_M), ylim=(y - ROUND_M, y + ROUND_M), aspect="equal")
+    panel.set_xlabel(f"{2 * ROUND_M:g} m across, after {shown.time_s / 60:.1f} min", color=SOFT)
+
+
+def _robot(panel: Axes, shown: Movements) -> None:
+    """A disc of its true size, with a stroke where it faces."""
+    x, y, heading = shown.robot.x, shown.robot.y, shown.robot.heading_rad
+    panel.add_patch(Circle((x, y), shown.radius_m, fc=FAINT, ec=INK, lw=0.8, zorder=2))
+    far = x + shown.radius_m * math.cos(heading), y + shown.radius_m * math.sin(heading)
+    panel.plot([x, far[0]], [y, far[1]], color=INK, lw=1.2, zorder=2)
+
+
+def _chosen(panel: Axes, shown: Movements) -> None:
+    """An arrow whose head ends where the arc does."""
+    way = shown.paths[shown.chosen]
+    panel.plot(*way[:-1].T, color=VERMILION, lw=1.8, zorder=6, label="chosen arc")
+    head = FancyArrowPatch(way[-2], way[-1], arrowstyle="-|>,head_length=6,head_width=3", shrinkA=0, shrinkB=0,
+                           color=VERMILION, lw=0, mutation_scale=1, zorder=6)  # fmt: skip
+    panel.add_patch(head)

@@ -11,15 +11,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.experiments.figures import goal_memory_panel, map_panels, movement_panel
-from app.experiments.figures.canvas import WIDTH_IN, frame, panels
+from app.experiments.figures import map_panels
+from app.experiments.figures.canvas import SOFT, WIDTH_IN, frame, panels
 from app.experiments.figures.material import Drawn, Material, Pick, trial_gid
-from app.experiments.figures.palette import SOFT
-from app.experiments.words import ENGINE_WORDS
+from app.experiments.summary import ENGINE_WORDS
 from app.trials.experiment import FigureSpec
 from app.trials.figure_options import Maps
-from app.trials.final_map import APART_M
-from app.trials.trace import Trace
+from app.trials.trace import APART_M, Trace
 
 _SHOW = {
     "experience map": map_panels.experience_map,
@@ -29,8 +27,8 @@ _SHOW = {
     "map grid": map_panels.map_grid,
     "representations": map_panels.representations,
     "temporal map": map_panels.temporal_map,
-    "goal memory": goal_memory_panel.goal_memory,
-    "movements": movement_panel.movements,
+    "goal memory": map_panels.goal_memory,
+    "movements": map_panels.movements,
 }
 _IN_CELLS = {"pose cells", "occupancy", "goal memory"}
 _SAYS = {

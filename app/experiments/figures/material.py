@@ -11,9 +11,8 @@ from dataclasses import dataclass, field
 
 from matplotlib.figure import Figure
 
-from app.experiments.stored_trial import StoredTrial
-from app.experiments.summary import CellSummary, summarise
-from app.experiments.words import ENGINE_WORDS, value_of, words_of
+from app.experiments.store import StoredTrial
+from app.experiments.summary import ENGINE_WORDS, CellSummary, summarise, value_of, words_of
 from app.trials.code_version import code_version
 from app.trials.experiment import Experiment, FigureSpec, Original, Score
 from app.trials.figure_options import OneTrial, Options

@@ -13,12 +13,23 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from app.experiments.figures.canvas import WIDTH_IN, go_by_powers, grid_lines, panels
+from app.experiments.figures.canvas import (
+    BLUE,
+    CYCLE,
+    ENGINE_COLOUR,
+    FAINT,
+    INK,
+    SOFT,
+    VERMILION,
+    WIDTH_IN,
+    go_by_powers,
+    grid_lines,
+    panels,
+)
 from app.experiments.figures.material import Drawn, Material, Pick, trial_gid
-from app.experiments.figures.palette import BLUE, CYCLE, ENGINE_COLOUR, FAINT, INK, SOFT, VERMILION
 from app.trials.experiment import FigureSpec
 from app.trials.figure_options import Series
-from app.trials.notes import Moment
+from app.trials.scores import Moment
 from app.trials.trace import Trace
 
 _Array = NDArray[np.float64]

@@ -8,12 +8,10 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.ticker import PercentFormatter
 
-from app.experiments.figures.canvas import grid_lines, panels
+from app.experiments.figures.canvas import CYCLE, ENGINE_COLOUR, grid_lines, panels
 from app.experiments.figures.material import Drawn, Material, trial_gid
-from app.experiments.figures.palette import CYCLE, ENGINE_COLOUR
-from app.experiments.intervals import wilson
-from app.experiments.stored_trial import StoredTrial
-from app.experiments.words import ENGINE_WORDS, value_of
+from app.experiments.store import StoredTrial
+from app.experiments.summary import ENGINE_WORDS, value_of, wilson
 from app.trials.experiment import FigureSpec, Score
 from app.trials.figure_options import Survival
 

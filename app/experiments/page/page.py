@@ -1,8 +1,13 @@
-"""Fill the page's template in."""
+"""Fill the page's template in.
+
+An SVG file made a part of a page: ids of its own, colours of the page, and dots that tell their trial.
+"""
 
 from __future__ import annotations
 
 import json
+import re
+import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,15 +15,71 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from app.experiments.figures.canvas import svg_of
+from app.experiments.figures.canvas import THEMED, svg_of
 from app.experiments.figures.material import Drawn, Material
-from app.experiments.page.inline_svg import inlined
-from app.experiments.sentences import found
-from app.experiments.stored_trial import StoredTrial
-from app.experiments.summary import CellSummary, words
-from app.experiments.words import ENGINE_WORDS, value_of, words_of
+from app.experiments.store import StoredTrial
+from app.experiments.summary import ENGINE_WORDS, CellSummary, found, value_of, words, words_of
 from app.trials.code_version import code_version
 from app.trials.experiment import Experiment, Score
+
+_SVG, _XLINK = "http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"
+_HREF = f"{{{_XLINK}}}href"
+_ADDRESS = re.compile(r"url\(#([^)]+)\)")
+_COLOUR = re.compile("|".join(THEMED))
+_LARGER = 1.2  # than on paper, since a screen is farther away
+_TOLD = re.compile(r"(trial|cell)-([0-9a-f]+)$")
+
+
+def inlined(svg: str, prefix: str, titles: dict[str, str], label: str) -> str:
+    """The SVG as an element of a page.
+
+    prefix: of its ids, since several figures stand on a page. titles: what is told of each trial or cell when it is
+    pointed at, by `trial-ID` or `cell-NUMBER`. label: what the whole figure is, for those who do not see it.
+    """
+    ET.register_namespace("", _SVG)
+    ET.register_namespace("xlink", _XLINK)
+    root = ET.fromstring(svg)
+    for metadata in root.findall(f"{{{_SVG}}}metadata"):
+        root.remove(metadata)
+    taken: set[str] = set()
+    for element in root.iter():
+        _own(element, prefix, titles, taken)
+    width = root.attrib.pop("width", "100%")
+    root.attrib.pop("height", None)
+    root.set("style", f"width: calc({width} * {_LARGER})")
+    root.set("role", "group")
+    root.set("aria-label", label)
+    return ET.tostring(root, encoding="unicode")
+
+
+def _own(element: ET.Element, prefix: str, titles: dict[str, str], taken: set[str]) -> None:
+    name = element.attrib.get("id")
+    if name is not None:
+        own = f"{prefix}-{name}"
+        while own in taken:  # a trial that two cells share has two dots
+            own += "-again"
+        taken.add(own)
+        element.set("id", own)
+        told = _TOLD.match(name)
+        if told and name in titles:
+            _tell(element, told[1], told[2], titles[name])
+    for key, value in element.attrib.items():
+        if key == _HREF and value.startswith("#"):
+            element.set(key, f"#{prefix}-{value[1:]}")
+        elif key == "clip-path" or key == "style":
+            own = _ADDRESS.sub(rf"url(#{prefix}-\1)", value)
+            element.set(key, _COLOUR.sub(lambda found: f"var(--{THEMED[found.group()]})", own))
+
+
+def _tell(element: ET.Element, kind: str, which: str, words: str) -> None:
+    element.set(f"data-{kind}", which)
+    element.set("tabindex", "0")
+    element.set("role", "button")
+    element.set("aria-label", words)
+    title = ET.Element(f"{{{_SVG}}}title")
+    title.text = words
+    element.insert(0, title)
+
 
 _HERE = Path(__file__).parent
 

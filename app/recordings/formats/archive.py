@@ -2,6 +2,8 @@
 
 Refused: names that lead out of the folder, more files or bytes than a recording has, and what unpacks to a hundred times its
 size. Links and devices are left out and told of. test_folders.py.
+
+Unpacks zstd and lz4, and never more than was said.
 """
 
 from __future__ import annotations
@@ -16,9 +18,43 @@ from collections.abc import Generator
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from typing import IO
+from typing import IO, Any
+
+import lz4.frame  # pyright: ignore[reportMissingTypeStubs]
+import zstandard
 
 from disk.words import plain
+
+ZSTD = b"\x28\xb5\x2f\xfd"  # with which each frame begins
+
+
+def zstd_unpacked(data: bytes, most: int) -> bytes:
+    """ValueError: it is broken, or unpacks to more than `most` bytes.
+
+    Fed piece by piece, since it has no limit of its own: a piece of 1 kB unpacks to some 16 MB at most.
+    """
+    unpacker: Any = zstandard.ZstdDecompressor().decompressobj()
+    out = bytearray()
+    try:
+        for at in range(0, len(data), 1024):
+            out += unpacker.decompress(data[at : at + 1024])
+            if len(out) > most:
+                raise ValueError(f"more than the {most} bytes that it says")
+            if unpacker.eof:
+                break
+    except zstandard.ZstdError as error:
+        raise ValueError(f"cannot be unpacked: {error}") from None
+    return bytes(out)
+
+
+def lz4_unpacked(data: bytes, most: int) -> bytes:
+    """ValueError: it is broken, or unpacks to more than `most` bytes."""
+    unpacker: Any = lz4.frame.LZ4FrameDecompressor()
+    out: bytes = unpacker.decompress(data, max_length=most + 1)
+    if len(out) > most:
+        raise ValueError(f"more than the {most} bytes that it says")
+    return out
+
 
 MOST_BYTES, MOST_FILES, MOST_RATIO = 16_000_000_000, 500_000, 100
 SPARE_BYTES = 500_000_000  # of the disk are left free

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.local_view.front_ends.front_end import FrontEnd
-from ratslam_core.local_view.front_ends.image import grey
+from ratslam_core.local_view.front_ends.front_end import FrontEnd, grey
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
 
 WIDTH, HEIGHT = 48, 36  # pixels at which the filters work

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from disk import kind
-from ratslam_core.local_view.front_ends.front_end import FrontEnd
-from ratslam_core.local_view.front_ends.image import checked
+from ratslam_core.local_view.front_ends.front_end import FrontEnd, checked
 from ratslam_core.local_view.matcher import COLUMNS, ROWS, Features
 
 HUES, SATURATIONS = COLUMNS, ROWS  # bins

@@ -7,9 +7,9 @@ import os
 import sys
 from pathlib import Path
 
-from app.experiments.cluster import connected_to
 from app.experiments.runner import pending, run_trials
 from app.experiments.store import Store
+from app.experiments.workers import connected_to
 from app.startup.ending import ended, obey_signals
 from app.trials.trial import Result, Trial
 from tests.unit.app.trial_makers import make_outcome, make_trial

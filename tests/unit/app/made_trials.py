@@ -7,12 +7,11 @@ import math
 import numpy as np
 
 from app.experiments.figures.material import Material
-from app.experiments.stored_trial import StoredTrial
+from app.experiments.store import StoredTrial
 from app.trials.experiment import Axis, EngineSpec, Experiment, FigureSpec, Level, Original, Score
-from app.trials.final_map import FinalMap, Grid, Plan
-from app.trials.notes import Moment, Visited
+from app.trials.scores import Moment, Visited
 from app.trials.steps import Explore
-from app.trials.trace import Carried, Goal, Movements, Trace
+from app.trials.trace import Carried, FinalMap, Goal, Grid, Movements, Plan, Trace
 from app.trials.trial import Trial
 from ratslam_core import Pose2
 

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from app.pilot import PilotParams
-from app.pilot.candidates import candidates
-from app.pilot.local_movement import LocalMovement
-from app.views.movements import movements_of
+from app.pilot.local_movement import LocalMovement, candidates
+from app.views.office import movements_of
 from ratslam_core import Odometry
 
 from .pilots import ANGLES, STILL, USUAL

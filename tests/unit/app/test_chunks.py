@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.time_machine.chunks import ENTRY, LINK, Chunks
-from app.time_machine.kept_state import Chunk, KeptArray, KeptState
+from app.time_machine.chunks import ENTRY, LINK, Chunk, Chunks, KeptArray, KeptState
 from disk import State
 
 

@@ -10,12 +10,12 @@ import pytest
 
 from app.cli.command_line import main
 from app.cli.options import ENGINES
-from app.experiments.figures.palette import ENGINE_COLOUR
+from app.experiments.figures.canvas import ENGINE_COLOUR
 from app.experiments.store import Store
-from app.experiments.words import ENGINE_WORDS
+from app.experiments.summary import ENGINE_WORDS
 from app.trials.experiment import catalogue, read_experiment
 from tests.unit.app.trial_makers import make_outcome, make_trial
-from web.messages.command import EngineName
+from web.messages.commands import EngineName
 
 DOCS = Path(__file__).parents[3] / "docs"
 

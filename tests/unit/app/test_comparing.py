@@ -14,7 +14,7 @@ from app.session import Session
 from app.trials.trial import run_trial
 from ratslam_core.params.additions import ADDITIONS
 from web import messages as m
-from web.http.run_state import beside_fields
+from web.http.state import beside_fields
 
 from .engines import an_engine, tell
 from .made_recordings import recorded

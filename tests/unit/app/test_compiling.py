@@ -12,8 +12,7 @@ import psutil
 import pytest
 
 from app.startup import compiling
-from app.startup.compile_part import PARTS, date, kept
-from app.startup.compiling import Compiling, is_compiled
+from app.startup.compiling import PARTS, Compiling, date, is_compiled, kept
 from ratslam_live import command_of
 from tests.patience import PATIENCE_S
 
@@ -89,7 +88,7 @@ def test_only_what_is_missing_is_compiled_and_told(monkeypatch: pytest.MonkeyPat
     work.wait(told.append)
     work.stop()
     assert work
-    assert commands == [command_of("app.startup.compile_part", "cells")]
+    assert commands == [command_of("app.startup.compiling", "cells")]
     assert told == [f"{compiling.WORDS}: {words} done" for words in ("1 function", "2 functions")]
     monkeypatch.setattr(compiling, "is_compiled", lambda _module: True)
     assert not Compiling()

@@ -11,7 +11,7 @@ from pydantic import TypeAdapter
 
 from app.config import Config
 from app.trials.course import Course
-from app.trials.notes import Tagged
+from app.trials.scores import Tagged
 from app.trials.steps import Step
 from sim2d import Place, load_world
 

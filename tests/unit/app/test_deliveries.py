@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.cli import command_line as cli
-from app.headless import Deliveries, deliveries, visiting
+from app.headless import Deliveries, deliveries, loop
+from app.headless.loop import Visit
 from app.headless.report import MACHINE
-from app.headless.visiting import Visit
-from app.trials.tour import order
+from app.trials.steps import order
 from sim2d import load_world
 
 LOOP = load_world("loop")
@@ -59,7 +59,7 @@ def test_a_failure_has_a_reason_in_words(subtests: pytest.Subtests) -> None:
 
 @pytest.mark.slow
 def test_the_report_has_its_shape_and_the_same_run_makes_the_same_report(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.headless.growth.EVERY_S", 30.0)
+    monkeypatch.setattr("app.headless.report.EVERY_S", 30.0)
     monkeypatch.setattr(deliveries, "EVERY_S", 30.0)
     monkeypatch.setattr(deliveries, "HOUR_S", 60.0)
     reports: list[dict[str, Any]] = []
@@ -99,7 +99,7 @@ def test_a_delivery_that_takes_too_long_or_ends_elsewhere_is_a_failure(monkeypat
     assert [list(failure) for failure in failures] == [["at_s", "goal", "reason"]] * 2
     assert failures[0]["at_s"] == 60.0
     assert failures[1]["at_s"] == pytest.approx(60.5)
-    monkeypatch.setattr(visiting, "NEAR_ENOUGH_M", 0.0)
+    monkeypatch.setattr(loop, "NEAR_ENOUGH_M", 0.0)
     strict = run(deliveries=1)
     strict.carry_out()
     assert strict.report()["failures"][0]["reason"].startswith("arrived 0.")

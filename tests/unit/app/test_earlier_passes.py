@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.evaluation.earlier_passes import off_earlier_passes, off_same_estimate
+from app.evaluation.evaluation import off_earlier_passes, off_same_estimate
 from ratslam_core import Pose2
 
 STRAIGHT = np.column_stack([np.arange(0.0, 6.0, 0.03), np.zeros(200), np.zeros(200)])  # 6 m along x

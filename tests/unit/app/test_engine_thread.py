@@ -13,7 +13,7 @@ import pytest
 
 from app.config import Config
 from app.engine import pace
-from app.engine.faults import require_finite, words_of
+from app.engine.watchdog import require_finite, words_of
 from app.engine_thread import EngineThread
 from app.session import PARTS, SECOND
 from app.views.snapshots import Snapshots

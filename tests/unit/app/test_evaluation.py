@@ -12,8 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.evaluation import Coverage, Evaluation, align, alignment, rmse
-from app.evaluation.earlier_passes import EVERY
-from app.evaluation.evaluation import CONSISTENT_WITHIN_S, MOST_TICKS
+from app.evaluation.evaluation import CONSISTENT_WITHIN_S, EVERY, MOST_TICKS
 from ratslam_core import Odometry, Pose2
 from sim2d import FreeSpace, Truth, load_world
 

@@ -12,9 +12,9 @@ import pytest
 from app.experiments import report
 from app.experiments.figures import draw
 from app.experiments.figures.canvas import svg_of
-from app.experiments.page.inline_svg import inlined
+from app.experiments.page.page import inlined
 from app.experiments.report import write_index, write_report_page
-from app.experiments.sentences import found
+from app.experiments.summary import found
 from tests.unit.app.made_trials import experiment, figure, material, trace, trials
 
 COMMAND = "ratslam experiment made --trials 4 && echo '<done>'"

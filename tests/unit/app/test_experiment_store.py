@@ -10,8 +10,7 @@ from typing import Any
 
 import pytest
 
-from app.experiments.outcome import Outcome
-from app.experiments.store import Store, default_path
+from app.experiments.store import Outcome, Store, default_path
 from app.gallery.gallery import StoredGallery
 from app.trials.experiment import catalogue, names
 from app.trials.trial import Trial

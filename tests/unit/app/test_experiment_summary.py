@@ -11,15 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from app.experiments.durations import duration_of, time_words
 from app.experiments.export import table_of, write_csv, write_parquet
-from app.experiments.intervals import Estimate, wilson
 from app.experiments.live import LiveTable
 from app.experiments.opening import open_trial
-from app.experiments.outcome import Outcome
-from app.experiments.store import Store
-from app.experiments.stored_trial import StoredTrial
-from app.experiments.summary import summarise, words
+from app.experiments.runner import duration_of, time_words
+from app.experiments.store import Outcome, Store, StoredTrial
+from app.experiments.summary import Estimate, summarise, wilson, words
 from app.trials.experiment import Score
 from tests.unit.app.trial_makers import SMALL, make_outcome, make_trial
 

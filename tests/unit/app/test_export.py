@@ -24,7 +24,7 @@ from rosbags.highlevel import AnyReader
 from app.config import Config, from_toml
 from app.export import FORMATS, Choices, Window, check_export, export_run
 from app.export.mcap_file import topological_map
-from app.export.pose_graph import g2o_text
+from app.export.text_formats import g2o_text
 from app.session import Session
 from ratslam_core import Odometry, RatSlam
 from sim2d import SONAR_ANGLES_RAD

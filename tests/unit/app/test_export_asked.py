@@ -15,7 +15,7 @@ import pytest
 from app.cli import command_line as cli
 from app.export import FORMATS
 from app.export.page import NOT_KEPT, PageExports
-from app.export.pose_graph import g2o_text
+from app.export.text_formats import g2o_text
 from app.session_snapshot import take_session
 from ratslam_live import command_of
 from web.http.export import Wish

@@ -9,8 +9,7 @@ import pytest
 from matplotlib.collections import LineCollection
 
 from app.experiments.figures import draw, wanted
-from app.experiments.figures.goal_memory_panel import plateau
-from app.experiments.figures.map_panels import broken_path
+from app.experiments.figures.map_panels import broken_path, plateau
 from tests.unit.app.made_trials import RATES, SIZES, figure, loop_times, material
 
 

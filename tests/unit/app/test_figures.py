@@ -11,12 +11,10 @@ import pytest
 from matplotlib.colors import to_hex
 
 from app.experiments.figures import KINDS, draw
-from app.experiments.figures.canvas import png_of, style, svg_of
+from app.experiments.figures.canvas import CYCLE, ENGINE_COLOUR, THEMED, png_of, style, svg_of
 from app.experiments.figures.curves import positions
-from app.experiments.figures.palette import CYCLE, ENGINE_COLOUR, THEMED
 from app.experiments.figures.survival import until
-from app.experiments.intervals import wilson
-from app.experiments.words import value_of
+from app.experiments.summary import value_of, wilson
 from app.trials.experiment import Axis, Level
 from app.trials.figure_options import OPTIONS, Shown
 from tests.unit.app.made_trials import RATES, SIZES, experiment, figure, material

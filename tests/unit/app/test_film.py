@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from app.recordings.formats import film
+from app.recordings.formats import video
 from app.recordings.opening import open_recording
 from app.recordings.recording import Moment, Recording
 from app.recordings.reel import Reel
@@ -41,7 +41,7 @@ def recording(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathF
 
 def grabbed(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Counts the frames that are unpacked from now on."""
-    count, really = [0], film.opened
+    count, really = [0], video.opened
 
     class Counting:
         def __init__(self, path: Path) -> None:
@@ -54,7 +54,7 @@ def grabbed(monkeypatch: pytest.MonkeyPatch) -> list[int]:
         def __getattr__(self, name: str) -> object:
             return getattr(self._video, name)
 
-    monkeypatch.setattr(film, "opened", Counting)
+    monkeypatch.setattr(video, "opened", Counting)
     return count
 
 
@@ -86,7 +86,7 @@ def test_a_jump_that_lands_elsewhere_is_not_believed(
     lands: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recording = open_recording(written(tmp_path / "v.mp4", "mp4v"))
-    straight, really = [image(moment) for moment in recording.moments()], film.opened
+    straight, really = [image(moment) for moment in recording.moments()], video.opened
 
     class Elsewhere:
         """A video whose frames after a jump are not those that their times tell of."""
@@ -112,7 +112,7 @@ def test_a_jump_that_lands_elsewhere_is_not_believed(
         def __getattr__(self, name: str) -> object:
             return getattr(self._video, name)
 
-    monkeypatch.setattr(film, "opened", Elsewhere)
+    monkeypatch.setattr(video, "opened", Elsewhere)
     reel = Reel(recording, budget_bytes=0)
     for number in (300, 120, 390, 119):
         for near in range(number, number + 5):

@@ -7,15 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from app.experiments.outcome import Outcome
-from app.experiments.store import Store
-from app.experiments.stored_trial import StoredTrial
+from app.experiments.store import Outcome, Store, StoredTrial
 from app.experiments.summary import summarise
-from app.gallery.gallery import StoredGallery
-from app.gallery.results import EARLIER, PUBLISHED, QUICK
-from app.trials.chosen import chosen_trial, first_levels
-from app.trials.experiment import find_experiment
-from app.trials.notes import Moment
+from app.gallery.gallery import EARLIER, PUBLISHED, QUICK, StoredGallery
+from app.trials.experiment import chosen_trial, find_experiment, first_levels
+from app.trials.scores import Moment
 from app.trials.trial import Result, Trial
 from web.http.experiments import Card, Cell, Results
 
@@ -106,7 +102,7 @@ def test_what_is_not_of_this_program_and_whole_is_shown_only_for_want_of_better(
     assert seen() == (QUICK, 0.0, [(True, 0)])
     store.add([ended(trial(1), 3)])
     assert seen() == ("", 1.0, [(False, 3)])
-    monkeypatch.setattr("app.gallery.results.code_version", lambda: "later")
+    monkeypatch.setattr("app.gallery.gallery.code_version", lambda: "later")
     assert seen() == (EARLIER, 1.0, [(False, 3)])
 
 

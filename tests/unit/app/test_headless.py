@@ -8,7 +8,8 @@ import pytest
 
 from app.config import Config
 from app.evaluation import Evaluation
-from app.headless import BrainFile, growth, loop, run_headless
+from app.headless import BrainFile, loop, run_headless
+from app.headless.report import Growth
 from disk import state_codec
 from ratslam_core import load_brain
 from sim2d import load_world
@@ -50,7 +51,7 @@ def test_the_report_has_its_shape() -> None:
 def test_headless_is_the_session_and_nothing_else_and_its_growth_is_sampled_at_regular_times(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(growth, "EVERY_S", 6.0)
+    monkeypatch.setattr("app.headless.report.EVERY_S", 6.0)
     report, session = run_headless(OFFICE, 4, 0.3), a_session(180, seed=4)
     map_ = session.brain.experience_map
     found = {name: report[name] for name in ("state_hash", "goals", "kidnaps", "views", "experiences", "links")}
@@ -77,11 +78,11 @@ def test_nothing_simulated_is_a_report_too() -> None:
 
 def test_memory_is_that_of_the_process_without_the_judges_record(monkeypatch: pytest.MonkeyPatch) -> None:
     session = a_session()
-    before = growth.Growth(session).sample(session).rss_mb
+    before = Growth(session).sample(session).rss_mb
     record = np.ones(30_000_000)  # 240 MB
-    during = growth.Growth(session).sample(session).rss_mb
+    during = Growth(session).sample(session).rss_mb
     monkeypatch.setattr(Evaluation, "memory_bytes", record.nbytes)  # as if the judge kept that
-    without = growth.Growth(session).sample(session).rss_mb
+    without = Growth(session).sample(session).rss_mb
     if before is not None and during is not None and without is not None:  # on Linux
         assert (during - before, without - before) == (pytest.approx(240, abs=30), pytest.approx(0, abs=30))
 

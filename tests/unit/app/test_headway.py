@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from app.pilot.headway import Headway
+from app.pilot.route_following import Headway
 from ratslam_core import Odometry
 
 from .pilots import DT, USUAL

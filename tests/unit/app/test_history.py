@@ -15,9 +15,7 @@ from app.pilot import Pilot
 from app.session import Session, is_lost
 from app.views import event_watch
 from app.views.event_watch import PLACES_EVERY_S, EventWatch
-from app.views.history import History
-from app.views.series import SERIES_POINTS
-from app.views.trails import STILL_CELLS
+from app.views.history import SERIES_POINTS, STILL_CELLS, History
 
 from .sessions import a_session
 
@@ -57,7 +55,7 @@ def test_a_map_that_has_diverged_is_told_once() -> None:
 
 
 def test_trail_path_and_series_grow(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.views.trails.TRAIL_S", 20.0)
+    monkeypatch.setattr("app.views.history.TRAIL_S", 20.0)
     session = a_session()
     history, map_ = History(session), session.brain.experience_map
     go_on(session, history, 101)

@@ -7,11 +7,9 @@ import pytest
 
 from app.config import Config
 from app.session import Session
-from app.views.brain_pictures import present_picture, stored_picture
-from app.views.history import History
+from app.views.history import History, Visits
 from app.views.inspection import inspect
-from app.views.senses import senses_of
-from app.views.visits import Visits
+from app.views.senses import present_picture, senses_of, stored_picture
 from web.messages import CellReport, ExperienceReport, Inspect, Report, ViewReport
 
 from .sessions import a_session

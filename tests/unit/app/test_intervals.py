@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from app.experiments.intervals import bootstrap_mean, bootstrap_median, wilson
+from app.experiments.summary import bootstrap_mean, bootstrap_median, wilson
 
 
 def test_wilsons_interval_is_that_of_scipy() -> None:

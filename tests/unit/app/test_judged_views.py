@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 
 from app.config import Config
 from app.evaluation import alignment, rmse
-from app.views.ghost import ghost_of
+from app.views.belief import packet_spread, spread_of
 from app.views.history import History
-from app.views.spread import packet_spread, spread_of
+from app.views.office import ghost_of
 from ratslam_core import Pose2
 from web.messages import Pose
-from web.viewer.fits.poses import compose, into_map, placed
+from web.viewer.fits import compose, into_map, placed
 
 from .sessions import a_session
 

@@ -14,9 +14,8 @@ import pytest
 
 from app.cli import command_line as cli
 from app.engine_thread import EngineThread
+from app.kept_brains import MOST_KEPT, About, BrainKeeper, folder, keep, newest
 from app.kept_brains import keeper as brain_keeper
-from app.kept_brains.files import MOST_KEPT, About, folder, keep, newest
-from app.kept_brains.keeper import BrainKeeper
 from disk import archive, encode, state_codec
 from ratslam_core import Odometry, RatSlam, load_brain
 from tests.patience import PATIENCE_S

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.evaluation.kidnapping import Kidnapping
-from app.headless.kidnap_times import kidnap_times
+from app.headless.run import kidnap_times
 from ratslam_core import Pose2
 
 MINUTES, SEEDS = st.floats(1.0, 600.0), st.integers(0, 2**32 - 1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.places import REACH_M, known_places
+from app.views.office import REACH_M, known_places
 
 from .sessions import OFFICE, a_session
 

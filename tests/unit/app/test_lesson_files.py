@@ -6,15 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from app.gallery.formulas import formula_text
-from app.gallery.lessons import StoredLessons, check_formulas
-from app.lessons.files import ENVIRONMENT, all_lessons, catalogue, check_lesson, find_lesson, read_lesson
-from app.lessons.findings import Finding, told
-from app.lessons.lines import line_of
-from app.lessons.performance import perform
-from app.lessons.report import report_of
+from app.gallery.lessons import StoredLessons, check_formulas, formula_text
+from app.lessons.files import ENVIRONMENT, all_lessons, catalogue, check_lesson, find_lesson, line_of, read_lesson
+from app.lessons.findings import MEASURED, Finding, told
+from app.lessons.performance import perform, report_of
 from app.lessons.schema import Formula, Symbol
-from app.lessons.units import MEASURED
 
 from .lessons_to_give import short_lesson
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.engine.engine import Engine
-from app.engine.teaching import MOST_FROM_ONE, Teaching
+from app.engine.lesson_run import MOST_FROM_ONE, Teaching
 from app.lessons.files import find_lesson
 from app.lessons.performance import perform, perform_round, set_scene
 from app.lessons.schema import Lesson

@@ -5,12 +5,11 @@ from __future__ import annotations
 import pytest
 
 from app.config import Config
-from app.engine.teaching import Teaching
-from app.lessons.performance import perform, rounds_of
-from app.lessons.report import report_of
+from app.engine.lesson_run import Teaching
+from app.lessons.findings import MEASURED
+from app.lessons.performance import perform, report_of, rounds_of
 from app.lessons.schema import Lesson
 from app.lessons.second import OF_SECOND
-from app.lessons.units import MEASURED
 
 from .engines import an_engine, tell
 from .lessons_to_give import SHORT, short_lesson

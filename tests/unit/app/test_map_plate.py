@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 
 from app.config import Config
 from app.evaluation import Evaluation, alignment
+from app.views.arrays import CALM_RAD, calm
 from app.views.history import History
 from app.views.map_layers import map_layer
-from app.views.map_turn import CALM_RAD, calm
 from app.views.snapshots import Snapshots
 from ratslam_core import CellsOnly
 from ratslam_core.params.presets import PRESETS
-from web.viewer.fits.map_fit import MapFit, refit
+from web.viewer.fits import MapFit, refit
 
 from .sessions import a_session
 

@@ -16,13 +16,13 @@ from app.experiments.export import write_csv
 from app.experiments.figures import draw
 from app.experiments.figures.canvas import svg_of
 from app.experiments.report import check_drawing
-from app.experiments.result_table import table_of
+from app.experiments.summary import table_of
 from app.lessons.files import check_lesson, read_lesson
 from app.order_book import Order
 from app.runs.bookmarks import Bookmarks
 from app.runs.header import Beginning, header_of, read_header, written
-from app.runs.order_check import check_order
-from app.situations.python_lines import python_lines
+from app.runs.run_file import check_order
+from app.situations.page import python_lines
 from app.situations.situation import Situation
 from app.startup.ending import ended
 from app.trials.experiment import Level, Score, read_experiment

@@ -9,12 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.recordings.motion import Motion
+from app.recordings.motion import Motion, VisualOdometry
 from app.recordings.recording import About, Moment
-from app.recordings.scan_matching import Walls, points_of
-from app.recordings.scan_odometry import ScanOdometry
-from app.recordings.scan_rules import ScanRules
-from app.recordings.visual_odometry import VisualOdometry
+from app.recordings.scan_odometry import ScanOdometry, ScanRules, Walls, points_of
 from ratslam_core import Odometry, Pose2
 from sim2d import Drive, Simulator, load_world
 

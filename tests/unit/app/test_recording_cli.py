@@ -9,11 +9,10 @@ from pathlib import Path
 import pytest
 
 from app.cli import command_line as cli
-from app.headless.recorded import run_recording
+from app.headless.recorded import HEADER, run_recording
 from app.recordings.motion import lengths
 from app.recordings.opening import Opening, open_recording
 from app.recordings.playing import Player
-from app.recordings.trace import HEADER
 from tests.recordings import N, airsim, drive, image_folder, tub
 
 pytestmark = pytest.mark.slow

@@ -12,13 +12,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recordings.formats.clock import BREAK_S, GOES_ON_S, Clock
-from app.recordings.formats.held import HELD_S, Held
 from app.recordings.formats.lying import by_number
 from app.recordings.formats.pictures import read_picture, unpacked, within
 from app.recordings.formats.problems import TOLD, Problems
 from app.recordings.formats.sensed import Rates, ns_of
-from app.recordings.made_odometry import OdometryErrors, WithMadeOdometry, parse_errors
+from app.recordings.formats.streamed import BREAK_S, GOES_ON_S, HELD_S, Clock, Held
+from app.recordings.motion import OdometryErrors, WithMadeOdometry, parse_errors
 from app.recordings.opening import Opening, open_recording
 from disk.words import plain
 from ratslam_core import Pose2

@@ -19,8 +19,7 @@ from rosbags.rosbag1 import Writer as Bag1
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from app.recordings.formats import ros_messages as ros
-from app.recordings.formats.encodings import decoded
-from app.recordings.formats.ros_packets import Packet
+from app.recordings.formats.ros_messages import Packet, decoded
 from app.recordings.formats.ros_recording import open_ros
 from app.recordings.formats.ros_topics import Choice
 from app.recordings.opening import open_recording

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from app.recordings.formats import image_folder
-from app.recordings.made_odometry import OdometryErrors, WithMadeOdometry
+from app.recordings.motion import OdometryErrors, WithMadeOdometry
 from app.recordings.opening import open_recording
 from app.recordings.recording import Moment, Wanted, every
 from app.recordings.reel import MOST_CURSORS, Reel

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.recordings.recording import About
-from app.recordings.scan_rules import ScanRules
+from app.recordings.scan_odometry import ScanRules
 from app.recordings.scan_ties import ScanTies
 from ratslam_core import ExperienceMap, Odometry, Packet, Pose2, RatSlam, Recognition
 

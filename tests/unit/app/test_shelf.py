@@ -10,10 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from app.time_machine import shelf as shelf_file
-from app.time_machine.chunks import Chunks
-from app.time_machine.kept_state import KeptState
-from app.time_machine.shelf import UNIT, Place, Shelf
+from app.time_machine import chunks as shelf_file
+from app.time_machine.chunks import UNIT, Chunks, KeptState, Place, Shelf
 from disk import State
 from tests.patience import PATIENCE_S, until
 from tests.unit.app.test_chunks import same, states

@@ -6,9 +6,9 @@ from itertools import product
 
 import pytest
 
+from app.cli.trial import SizeAndAmbiguity
 from app.config import Config
 from app.trials.experiment import EngineName
-from app.trials.size_and_ambiguity import SizeAndAmbiguity
 
 ENGINES: list[EngineName] = ["paper", "ours"]
 

@@ -11,10 +11,10 @@ import pytest
 from app.config import Config
 from app.session import Session
 from app.views.history import History
-from app.views.snap_causes import SnapCauses, words_of
+from app.views.reasons import SnapCauses, words_of
 from ratslam_core import LocalViewParams, PoseCells, Recognition
 from ratslam_core.extensions.evidence import ODDS
-from ratslam_core.visual_association import VisualAssociation
+from ratslam_core.localisation import VisualAssociation
 from web.messages import SnapCause, WhyReport
 
 from .sessions import OFFICE

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 from app.session import Session
-from app.views import map_layers, snapshots, throttle
+from app.views import arrays as shared_arrays
+from app.views import map_layers, snapshots
+from app.views.arrays import Slow
 from app.views.history import History
-from app.views.places import known_places
-from app.views.pose_cell_layer import STRONGEST
+from app.views.map_layers import STRONGEST
+from app.views.office import known_places
 from app.views.snapshots import Snapshots
-from app.views.throttle import Slow
 from tests.unit.app.engines import an_engine
 from web import messages as m
 
@@ -138,7 +139,7 @@ def test_what_is_unchanged_is_the_same_object(monkeypatch: pytest.MonkeyPatch) -
 
 def test_a_slow_part_is_built_when_time_has_come_and_something_has_changed(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [100.0]
-    monkeypatch.setattr(throttle.time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(shared_arrays.time, "perf_counter", lambda: now[0])
     built: list[object] = []
 
     def make() -> object:

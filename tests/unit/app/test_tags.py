@@ -7,7 +7,7 @@ import pytest
 from app import session_laws
 from app.orders import MOST_TAGS
 from app.session_snapshot import restore_session, take_session
-from app.views.goal_view import tags_view
+from app.views.office import tags_view
 
 from .engines import an_engine, tell
 from .sessions import OFFICE, a_session

@@ -8,10 +8,9 @@ import pytest
 from app.config import Config
 from app.session import PARTS, SECOND, Session
 from app.stopwatch import KEPT, Stopwatch
-from app.views.attractor_stages import Activity, excited, inhibited, normalised
 from app.views.history import History
 from app.views.snapshots import Snapshots
-from app.views.tick_stages import TITLES, TickRecorder, Walk
+from app.views.tick_stages import TITLES, Activity, TickRecorder, Walk, excited, inhibited, normalised
 from ratslam_core import PoseCellParams, PoseCells
 from ratslam_core.slam import STAGES
 

@@ -10,9 +10,8 @@ import pytest
 
 from app.trials.code_version import code_version
 from app.trials.course import Course
-from app.trials.final_map import placed
 from app.trials.steps import Explore, Kidnap, Tag, Visit
-from app.trials.trace import EVERY_S, Recorder, Trace, trace_of
+from app.trials.trace import EVERY_S, Recorder, Trace, placed, trace_of
 from app.trials.trial import Trial, run_trial, text_of, watched
 from ratslam_core import Pose2
 from sim2d.importers import open_world

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.experiments.outcome import Outcome
+from app.experiments.store import Outcome
 from app.trials.experiment import Experiment
-from app.trials.notes import Moment
+from app.trials.scores import Moment
 from app.trials.steps import Wait
 from app.trials.trial import Result, Trial
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from app.trials.chosen import chosen_trial
-from app.trials.experiment import Experiment, find_experiment
+from app.trials.experiment import Experiment, chosen_trial, find_experiment
 from app.trials.trial import Trial
 
 SHORT = {

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from app.experiments.schema import connected
+from app.experiments.store import connected
 from disk import locks
 from disk.locks import lock, require_record_locks
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core import ExperienceMap, ExperienceMapParams, Odometry, Packet, Pose2, Recognition
-from ratslam_core.laws.experiences import experiences as law
+from ratslam_core.laws.experience_map import experiences as law
 from ratslam_core.pose_graph import experiences
 from ratslam_core.pose_graph.experiences import Experiences
 

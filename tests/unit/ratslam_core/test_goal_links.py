@@ -7,14 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from ratslam_core import GoalMemory, GoalMemoryParams, Packet, goal_links, goal_memory
+from ratslam_core import GoalMemory, GoalMemoryParams, Packet, goal_memory
 from ratslam_core.goal_memory import ARRIVED, REACH, WIDER
 
 from .goal_drives import CELL_M, SHAPE, packet_cells
 from .literal import also_interpreted
 
 
-@also_interpreted(goal_links)
+@also_interpreted(goal_memory)
 def test_a_weaker_packet_takes_part_but_does_not_say_where_the_robot_is() -> None:
     memory = GoalMemory(None, SHAPE, CELL_M)
     for k, x in enumerate((10.0, 11.0, 12.0)):
@@ -27,7 +27,7 @@ def test_a_weaker_packet_takes_part_but_does_not_say_where_the_robot_is() -> Non
     assert memory.times_to(12, 10)[40, 63] == pytest.approx(link, rel=1e-3)
 
 
-@also_interpreted(goal_links)
+@also_interpreted(goal_memory)
 def test_wrong_cells_leave_no_trace() -> None:
     """After a call that was refused, the next one is right."""
     memory, fresh = GoalMemory(None, SHAPE, CELL_M), GoalMemory(None, SHAPE, CELL_M)
@@ -58,7 +58,7 @@ def test_shares_and_strides_are_reached_just_as_they_are() -> None:
         assert len(memory) == links
 
 
-@also_interpreted(goal_links)
+@also_interpreted(goal_memory)
 def test_the_centre_is_that_of_what_is_near_the_strongest() -> None:
     """As far as `near` cells along each axis, round the torus, and no farther."""
     values = np.array([0.5, 0.25])
@@ -67,10 +67,10 @@ def test_the_centre_is_that_of_what_is_near_the_strongest() -> None:
             flats = np.array([y * 64 + x, (y + dy) % 64 * 64 + (x + dx) % 64])
             part = 1 / 3 if max(abs(dx), abs(dy)) <= 3 else 0.0
             expected = (x + part * dx) % 64, (y + part * dy) % 64
-            assert goal_links.centre(flats, values, SHAPE, 3) == pytest.approx(expected)
+            assert goal_memory.centre(flats, values, SHAPE, 3) == pytest.approx(expected)
 
 
-@also_interpreted(goal_links)
+@also_interpreted(goal_memory)
 def test_a_link_takes_twelve_bytes_and_is_never_more_than_half_of_the_room(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(goal_memory, "ROOM", 4)
     memory, plane = GoalMemory(None, SHAPE, CELL_M), 4 * SHAPE[1] * SHAPE[2]
@@ -87,10 +87,10 @@ def test_a_link_takes_twelve_bytes_and_is_never_more_than_half_of_the_room(monke
     assert memory.memory_bytes - plane >= 24 * len(memory)
 
 
-@also_interpreted(goal_links)
+@also_interpreted(goal_memory)
 def test_a_cell_is_in_reach_up_to_the_limit() -> None:
     """Where nothing has been learnt yet, any known cell within the reach will do, on all sides and round the torus."""
-    none = np.full(8, goal_links.FREE)
+    none = np.full(8, goal_memory.FREE)
     for dx, dy, found in (
         *((3, 0, True), (-3, 0, True), (0, 3, True), (0, -3, True), (2, 2, True), (-2, 2, True)),
         *((3, 1, False), (-1, 3, False), (4, 0, False), (0, -4, False), (3, 3, False)),
@@ -98,7 +98,7 @@ def test_a_cell_is_in_reach_up_to_the_limit() -> None:
         T = np.full((64, 64), np.inf)
         there = (1 + dy) % 64, (62 + dx) % 64
         T[there] = 7.0
-        assert goal_links.lowest(T, 62, 1, 3, none) == (there[0] * 64 + there[1] if found else -1)
+        assert goal_memory.lowest(T, 62, 1, 3, none) == (there[0] * 64 + there[1] if found else -1)
 
 
 def test_it_looks_as_far_as_it_may_and_has_arrived_just_at_the_limit() -> None:

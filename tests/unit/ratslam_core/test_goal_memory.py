@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ratslam_core import GoalMemory, GoalMemoryParams, Packet, PoseCells, goal_links, goal_memory
+from ratslam_core import GoalMemory, GoalMemoryParams, Packet, PoseCells, goal_memory
 from ratslam_core.goal_memory import ARRIVED
 
 from .goal_drives import CELL_M, DT, SHAPE, SHORT_AND_SLOW, Place, drive, packet_cells
@@ -83,7 +83,7 @@ def test_small_changes_of_the_parameters_keep_the_route(subtests: pytest.Subtest
                 assert math.dist(way[-1], (40, 30)) <= ARRIVED
 
 
-@also_interpreted(goal_links)
+@also_interpreted(goal_memory)
 def test_it_does_not_point_through_a_wall(monkeypatch: pytest.MonkeyPatch) -> None:
     """Down one corridor and back up the next, 1.5 m away. The goal's corridor is in reach, but its cells are not linked."""
     monkeypatch.setattr(goal_memory, "REACH", 4)

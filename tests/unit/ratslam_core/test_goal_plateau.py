@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ratslam_core import GoalMemory
-from ratslam_core.goal_plateau import lead_s
+from ratslam_core.goal_memory import lead_s
 
 from .goal_drives import CELL_M, SHAPE, drive
 

@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from app.evaluation.alignment import rmse
+from app.evaluation.agreement import rmse
 from ratslam_core import ExperienceMap, ExperienceMapParams, Packet, Pose2
 from ratslam_core.extensions import exact_solver
-from ratslam_core.extensions.graduated_trust import BAR, SIGMA, contradiction, kept
+from ratslam_core.extensions.robust_closures import BAR, SIGMA, contradiction, kept
 from ratslam_core.pose_graph import relaxation
 from ratslam_core.pose_graph.pose_graph import STEP_SIGMA, TURN_CELLS
 

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ratslam_core.solvers.heap import pop, push, twice
+from ratslam_core.solvers.dijkstra import pop, push, twice
 
 TIMES = st.lists(st.one_of(st.none(), st.floats(0.0, 100.0)), min_size=1, max_size=200)  # None: take the first
 

@@ -10,8 +10,7 @@ import pytest
 
 from ratslam_core import KidnapParams, Odometry, RatSlam
 from ratslam_core.extensions import kidnap_detector
-from ratslam_core.extensions.kidnap_detector import FOUND_AGAIN, TIME_POWER, KidnapDetector
-from ratslam_core.extensions.scan_change import MOST
+from ratslam_core.extensions.kidnap_detector import FOUND_AGAIN, MOST, TIME_POWER, KidnapDetector
 from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, Circle, start
 
 STILL = Odometry(0.0, 0.0, 0.1)

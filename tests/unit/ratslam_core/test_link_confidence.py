@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ratslam_core import ExperienceMapParams, Odometry, Packet, Pose2
-from ratslam_core.laws.experiences import transitions as transitions_law
+from ratslam_core.laws.experience_map import transitions as transitions_law
 from ratslam_core.pose_graph.transitions import Transitions
 
 from .drives import EXACT, Robot

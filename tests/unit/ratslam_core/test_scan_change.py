@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratslam_core.extensions import scan_change
-from ratslam_core.extensions.scan_change import MOST, NEAR_M, REACH_M, ScanChange
+from ratslam_core.extensions import kidnap_detector
+from ratslam_core.extensions.kidnap_detector import MOST, NEAR_M, REACH_M, ScanChange
 from tests.unit.ratslam_core.literal import also_interpreted
 
 SCANS = st.lists(st.tuples(st.floats(0, 8), st.floats(0, 8)), min_size=1, max_size=16)
@@ -31,7 +31,7 @@ def test_it_is_the_mean_of_what_each_sonar_changed(scans: list[tuple[float, floa
     assert jump(now, before) == pytest.approx(found, abs=1e-9)
 
 
-@also_interpreted(scan_change)
+@also_interpreted(kidnap_detector)
 def test_without_a_scan_before_there_is_nothing_to_compare() -> None:
     """What is changed afterwards is not what was seen."""
     near, far = np.full(8, 1.0), np.full(8, 1.2)

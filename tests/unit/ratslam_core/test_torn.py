@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ratslam_core import Pose2
-from ratslam_core.extensions.torn import open_way_m, soften, torn
+from ratslam_core.extensions.odometry_edges import open_way_m, soften, torn
 from ratslam_core.pose_graph.transitions import Transitions
 
 

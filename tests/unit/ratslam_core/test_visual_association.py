@@ -19,8 +19,7 @@ from ratslam_core import (
     Recognition,
 )
 from ratslam_core.beats import Tick
-from ratslam_core.localisation import Localisation
-from ratslam_core.visual_association import VisualAssociation
+from ratslam_core.localisation import Localisation, VisualAssociation
 from tests.unit.ratslam_core import literal
 from tests.unit.ratslam_core.drives import LAP, RADIUS_M, STEP_RAD, start
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.ndimage import label
 
 from sim2d import Drive, FreeSpace, Lamp, OfficeParams, Panel, SensorFrame, Simulator, Wall, World, load_world
-from sim2d.geometry.connected_cells import connected
+from sim2d.geometry.grid_cells import connected
 from sim2d.world.world_check import Fault, check_world
 from sim2d.world.world_file import world_from_json
 from sim2d.world.world_writer import WorldText, world_to_json

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim2d import FreeSpace, load_world
+from sim2d.geometry.grid_cells import spread
 from sim2d.geometry.segments import free_cells, inside_ring, nearest_segment
-from sim2d.geometry.spreading import spread
 
 from .rooms import room, wall
 

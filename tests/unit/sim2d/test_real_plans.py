@@ -13,11 +13,9 @@ from scipy.spatial import cKDTree
 from sim2d import FreeSpace, World
 from sim2d.geometry.segments import nearest_segment
 from sim2d.importers import import_file
-from sim2d.importers.floor import choose_floor
 from sim2d.importers.map_yaml import MapYaml, read_map_yaml
-from sim2d.importers.picture import read_picture
-from sim2d.importers.picture_map import SPECK_PX, free_pixels, without_slivers
-from sim2d.importers.trace import ring_area, trace
+from sim2d.importers.picture_map import SPECK_PX, free_pixels, read_picture, without_slivers
+from sim2d.importers.trace import choose_floor, ring_area, trace
 
 OURS = Path(__file__).parents[2] / "data"
 THEIRS = Path(__file__).parents[4] / "shared" / "data" / "worlds"

@@ -17,8 +17,7 @@ from sim2d import Drive, Simulator, load_world
 from sim2d.actors.actors import Actors
 from sim2d.geometry.segments import nearest_segment
 from sim2d.params import SimParams
-from sim2d.physics.robot import Robot
-from sim2d.physics.surroundings import Surroundings
+from sim2d.robot import Robot, Surroundings
 
 DRIVES = st.lists(st.tuples(st.floats(-0.6, 0.6), st.floats(-2.0, 2.0)), min_size=1, max_size=30)
 STEP_S = 4.0 / SimParams().physics_rate_hz  # between two commands of the motors

@@ -6,7 +6,7 @@ import { unframed } from "../../../web/static/model/frames.js";
 import { get } from "../../../web/static/net/post.js";
 
 /**
- * Frames a message as web/panel/packing.py does.
+ * Frames a message as web/panel/panel.py does.
  * @param {object} head
  * @param {[string, string, number[], ArrayBufferView][]} arrays
  * @returns {ArrayBuffer}

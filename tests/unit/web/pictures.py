@@ -11,13 +11,12 @@ from tests.fake_snapshots import fake_reports
 from web.messages import Snapshot
 from web.switches import NAMES, Name
 from web.themes import Theme
-from web.viewer.fits.map_fit import DEPTH as FLOOR_DEPTH
-from web.viewer.fits.map_fit import WIDTH as FLOOR_WIDTH
-from web.viewer.fits.map_fit import MapFit, refit
+from web.viewer.fits import DEPTH as FLOOR_DEPTH
+from web.viewer.fits import WIDTH as FLOOR_WIDTH
+from web.viewer.fits import MapFit, refit
 from web.viewer.primitives.palette import Rgb
 from web.viewer.vector import PlateName, vector_picture
-from web.viewer.vector.labels import width_of
-from web.viewer.vector.sheet import EDGE, TOP, WIDTH
+from web.viewer.vector.sheet import EDGE, TOP, WIDTH, width_of
 
 REPORTS = fake_reports()
 SVG = "{http://www.w3.org/2000/svg}"

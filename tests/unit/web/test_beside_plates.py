@@ -14,7 +14,7 @@ from tests.unit.web.bench import Bench
 from web.http.state import state, to_json
 from web.messages import BesideView, BrainFigures, Changed, Difference, MapLayer, SetGoal, Snapshot
 from web.viewer.camera_views import VIEWS, camera_for, seen_by
-from web.viewer.fits.map_fit import MapFit, refit
+from web.viewer.fits import MapFit, refit
 from web.viewer.plates import map_plate, office_plate, pose_cell_plate
 from web.viewer.pointer import Click
 

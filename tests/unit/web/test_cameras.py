@@ -21,9 +21,8 @@ from tests.unit.web.frames import until
 from web.http.proxy import MOST_CLIENTS
 from web.http.proxy import Cameras as Pages
 from web.viewer.camera_views import FLIGHT_S, VIEWS, Camera, camera_for, corners_of, seen_by
-from web.viewer.cameras import Cameras
-from web.viewer.fits.cell_fit import HEIGHT
-from web.viewer.following import REST_S, Follower, follow_camera
+from web.viewer.cameras import REST_S, Cameras, Follower, follow_camera
+from web.viewer.fits import HEIGHT
 
 TURNED = Camera(np.ones(3), np.zeros(3), 0.5)
 

@@ -30,7 +30,7 @@ from tests.patience import PATIENCE_S, until
 from tests.unit.web.doubles import StubEngine, StubViewer, StubViewers, viser_double
 from tests.unit.web.test_viser_server import PROTOCOL, camera
 from web.http import connections, proxy, server
-from web.http.handshake import WebSocketProtocol
+from web.http.connections import WebSocketProtocol
 from web.http.proxy import ViewersLike
 from web.http.server import Dashboard, ForClass
 from web.latest import Latest

@@ -15,9 +15,7 @@ from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
 from tests.unit.web.crowded import FRAME, judged
 from web.messages import Pose, Snapshot, TimeView
-from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
-from web.viewer.fits.office_fit import OfficeFit
-from web.viewer.fits.poses import compose, into_map, placed
+from web.viewer.fits import DEPTH, WIDTH, MapFit, OfficeFit, compose, into_map, placed, refit
 from web.viewer.marks.outline import clipped
 
 NOW: Any = judged()

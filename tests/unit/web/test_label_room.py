@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tests.unit.web.bench import Bench
 from tests.unit.web.crowded import crowded
 from web.viewer.camera_views import camera_for, seen_by
-from web.viewer.primitives.label_room import ERROR, GAP, GHOST, LEAN_RAD, NEAR, ROBOT, ROUTE, LabelRoom, clear_place
+from web.viewer.primitives.labels import ERROR, GAP, GHOST, LEAN_RAD, NEAR, ROBOT, ROUTE, LabelRoom, clear_place
 
 ROOM = np.array([(-5.0, -4.0), (5.0, 4.0)])
 coordinates = st.floats(-6, 6)

@@ -11,8 +11,7 @@ import pytest
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
 from web.messages import LessonMark, LessonOutcome, LessonPrediction, LessonView, LessonVotes, Predict, SetGoal
-from web.viewer.fits.cell_fit import SIDE, CellFit
-from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.fits import SIDE, CellFit, OfficeFit
 from web.viewer.marks.cell_marks import BELOW, LOWEST, way_between
 from web.viewer.plates.office_plate import ORIGIN
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from web.http import listening
-from web.http.listening import CannotListen, class_socket, listening_socket
+from web.http import connections
+from web.http.connections import CannotListen, class_socket, listening_socket
 
 
 def test_where_one_cannot_listen_is_a_sentence(subtests) -> None:
@@ -88,8 +88,8 @@ def test_the_address_in_the_local_network_is_found_out_and_never_a_public_one(mo
         ("0.0.0.0", "in no network"),
         ("8.8.8.8", "whole internet; if that is meant"),
     ):
-        monkeypatch.setattr(listening.socket, "socket", lambda *_, address=address: Socket(address))
+        monkeypatch.setattr(connections.socket, "socket", lambda *_, address=address: Socket(address))
         with subtests.test(address=address), pytest.raises(CannotListen, match=words):
             class_socket(None, 8001)
-    monkeypatch.setattr(listening.socket, "socket", lambda *_: Socket("192.168.1.5"))
+    monkeypatch.setattr(connections.socket, "socket", lambda *_: Socket("192.168.1.5"))
     assert class_socket(None, 8001).bound == ("192.168.1.5", 8001)  # type: ignore[attr-defined]

@@ -13,9 +13,9 @@ from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
 from tests.unit.web.office_moments import living, tried
 from web.messages import LivingLayer, Movements, Parameter, Refused, SetDoor, TaggedPlace
-from web.panel.office import MOST, tags
-from web.panel.office import office as office_tab
-from web.viewer.fits.office_fit import OfficeFit
+from web.panel.truth import MOST, tags
+from web.panel.truth import office as office_tab
+from web.viewer.fits import OfficeFit
 from web.viewer.marks.movements import ENLARGED, arc_on_plate
 from web.viewer.plates.office_plate import ORIGIN
 from web.viewer.pointer import DOOR_Z

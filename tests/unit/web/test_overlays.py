@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from web.messages import OccupancyPicture
-from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit
+from web.viewer.fits import DEPTH, WIDTH, MapFit
 from web.viewer.plates import overlays
 from web.viewer.plates.pose_cell_plate import way_arrow
 from web.viewer.primitives import images

@@ -15,7 +15,7 @@ from tests.unit.web.frames import read_frame, read_message
 from tests.unit.web.panel_page import Page
 from web.messages import TimeView
 from web.panel import panel as module
-from web.panel.packing import framed, packed
+from web.panel.panel import framed, packed
 
 SNAPSHOT = fake_snapshot(430)
 KINDS = st.sampled_from([np.uint8, np.uint16, np.uint32, np.float32])

@@ -16,9 +16,9 @@ from tests.unit.web.office_moments import living
 from tests.unit.web.panel_page import Page, memory, told
 from web.messages import Belief, Event, Hypothesis, Parameter, Snap, SnapCause
 from web.panel.inspected import LINKS
+from web.panel.part import clock, number, thousands
 from web.panel.senses import RECENT, RecentViews, from_above
 from web.panel.tune import hint, step
-from web.panel.words import clock, number, thousands
 
 SNAPSHOT = fake_snapshot(430)
 CELLS, SENSES = SNAPSHOT.pose_cells, SNAPSHOT.senses

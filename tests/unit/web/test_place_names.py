@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
 from web.messages import KnownPlace, SetGoal, Snapshot
-from web.viewer.marks.place_names import HEIGHT, REACH
-from web.viewer.marks.robot_model import SMALLEST
+from web.viewer.marks.names import HEIGHT, REACH
+from web.viewer.marks.robot import SMALLEST
 
 KITCHEN = KnownPlace("kitchen", 2.0, 6.0, (1.5, -0.5))
 ATTIC = KnownPlace("attic", 8.0, 2.0, None)

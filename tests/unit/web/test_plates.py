@@ -11,7 +11,7 @@ import pytest
 from tests.fake_snapshots import fake_reports, fake_snapshot
 from tests.unit.web.bench import Bench
 from web.messages import Belief, Hypothesis, MapLayer, OccupancyPicture, Pose, Snapshot, TaggedPlace, TimesLayer
-from web.viewer.fits.map_fit import DEPTH, WIDTH
+from web.viewer.fits import DEPTH, WIDTH
 
 PLAIN = fake_snapshot(430)
 NOTHING = np.zeros(0, np.float32)

@@ -12,9 +12,7 @@ import pytest
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
 from web.messages import Accepted, Command, Inspect, Kidnap, Refused, SetGoal
-from web.viewer.fits.cell_fit import CellFit
-from web.viewer.fits.map_fit import MapFit, refit
-from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.fits import CellFit, MapFit, OfficeFit, refit
 from web.viewer.plates.map_plate import NODE_Z
 from web.viewer.plates.map_plate import ORIGIN as MAP_AT
 from web.viewer.plates.office_plate import ORIGIN as OFFICE_AT

@@ -22,7 +22,7 @@ from web.http import proxy as module
 from web.http.proxy import Cameras, ViserProxy
 from web.themes import Themes
 from web.viewer.camera_views import MAP_AT, camera_for, seen_by
-from web.viewer.fits.map_fit import MapFit, refit
+from web.viewer.fits import MapFit, refit
 from web.viewer.plates.map_plate import NODE_Z
 from web.viewer.pointer import NOT_THERE
 from web.viewer.viser_server import client_page

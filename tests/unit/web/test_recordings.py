@@ -142,8 +142,8 @@ def test_another_folder_takes_the_place_of_one_that_was_not_played(sender: Sende
 
 
 def test_a_folder_has_limits(sender: Sender, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("web.http.sent_folder.MAX_RECORDING_BYTES", 10)
-    monkeypatch.setattr("web.http.sent_folder.MOST_FILES", 3)
+    monkeypatch.setattr("web.http.recordings.MAX_RECORDING_BYTES", 10)
+    monkeypatch.setattr("web.http.recordings.MOST_FILES", 3)
     assert sender.put("a").json() == {"room": 6}
     assert sender.put("b").json() == {"room": 2}
     assert sender.put("c").status_code == 413

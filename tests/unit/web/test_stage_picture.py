@@ -17,9 +17,7 @@ from tests.unit.web.doubles import house
 from web.messages import GoalMemoryLayer, OccupancyLayer, OccupancyPicture
 from web.switches import NAMES
 from web.viewer.camera_views import CELLS_AT, LOW_ASPECT, MAP_AT, OFFICE_AT, VIEWS, Camera, camera_for, seen_by, stands
-from web.viewer.fits.cell_fit import SIDE
-from web.viewer.fits.map_fit import MapFit, refit
-from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.fits import SIDE, MapFit, OfficeFit, refit
 from web.viewer.picture import UNITS, picture
 from web.viewer.plates import map_plate, office_plate, pose_cell_plate
 from web.viewer.primitives.palette import BRAINS, DARK, LIGHT, Rgb, mix

@@ -19,11 +19,10 @@ from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.doubles import OURS, PAGE, House, StubEngine, house
 from tests.unit.web.frames import read_message, until
 from web.http import asking, proxy, security
-from web.http import client as client_module
+from web.http import stream as client_module
 from web.http import stream as module
-from web.http.client import Client
 from web.http.proxy import Cameras
-from web.http.stream import Stream
+from web.http.stream import Client, Stream
 from web.latest import Latest
 from web.messages import Drive, Event, Pause, Refused, Snapshot
 from web.panel.panel import Panel, PanelReader

@@ -20,8 +20,7 @@ from web.messages import KnownPlace, Snapshot, TaggedPlace
 from web.themes import THEMES, Theme
 from web.viewer.primitives.palette import DARK, palette_of
 from web.viewer.vector import PlateName, vector_picture
-from web.viewer.vector.labels import Label, laid_out
-from web.viewer.vector.sheet import EDGE, WIDTH
+from web.viewer.vector.sheet import EDGE, WIDTH, Label, laid_out
 
 SNAPSHOT = fake_snapshot(900)
 LONG = "the place where the coffee machine was before they moved it"

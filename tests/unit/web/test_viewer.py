@@ -14,8 +14,8 @@ from viser import _messages
 
 from tests.fake_snapshots import fake_snapshot
 from tests.unit.web.bench import Bench
+from web.latest import Throttle
 from web.messages import RecordingView, Snapshot
-from web.throttle import Throttle
 
 PLAIN = fake_snapshot(430)
 

@@ -16,16 +16,24 @@ from tests.fake_snapshots import fake_snapshot
 from web.cell_owners import owners
 from web.messages import Packet, Pose
 from web.viewer.camera_views import camera_for, seen_by
-from web.viewer.fits.cell_fit import HEIGHT, SIDE, CellFit, broken_where_it_wraps
-from web.viewer.fits.map_fit import DEPTH, LARGEST, WIDTH, MapFit, refit
-from web.viewer.fits.office_fit import OfficeFit
-from web.viewer.marks.pill_layout import overlap, spread
-from web.viewer.marks.route import APART, pill_stops
+from web.viewer.fits import (
+    DEPTH,
+    HEIGHT,
+    LARGEST,
+    SIDE,
+    WIDTH,
+    CellFit,
+    MapFit,
+    OfficeFit,
+    broken_where_it_wraps,
+    refit,
+)
+from web.viewer.marks.route import APART, overlap, pill_stops, spread
 from web.viewer.plates.plate import point_on_plane
 from web.viewer.plates.pose_cell_plate import ORIGIN, PILL_M, pill_places
 from web.viewer.plates.sight import FAR_M, distances, fan_of_view, inside, solid_runs, solids
 from web.viewer.primitives import images, meshes
-from web.viewer.primitives import tone_mapping as paint
+from web.viewer.primitives import palette as paint
 from web.viewer.primitives.palette import DARK, LARGE, LIGHT, mix, palette_of, rgb
 
 WORLD = fake_snapshot(0).world

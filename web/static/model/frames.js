@@ -1,4 +1,4 @@
-// A message with arrays as the server frames it (web/panel/packing.py): the head's length, the head, the arrays.
+// A message with arrays as the server frames it (web/panel/panel.py): the head's length, the head, the arrays.
 
 const KINDS = { u1: Uint8Array, u2: Uint16Array, u4: Uint32Array, f4: Float32Array };
 

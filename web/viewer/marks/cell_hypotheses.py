@@ -10,7 +10,7 @@ import viser
 
 from web.messages import Hypothesis
 from web.messages.told import share_words
-from web.viewer.fits.cell_fit import CellFit
+from web.viewer.fits import CellFit
 from web.viewer.primitives import meshes
 from web.viewer.primitives.labels import Pill
 from web.viewer.primitives.palette import Palette, mix

@@ -8,8 +8,8 @@ import numpy as np
 import viser
 
 from web.messages import LessonMark
-from web.viewer.fits.cell_fit import HEIGHT, SIDE, CellFit, broken_where_it_wraps
-from web.viewer.marks.tags import last_named
+from web.viewer.fits import HEIGHT, SIDE, CellFit, broken_where_it_wraps
+from web.viewer.marks.names import last_named
 from web.viewer.primitives import meshes
 from web.viewer.primitives.labels import Pill
 from web.viewer.primitives.palette import Palette

@@ -9,8 +9,7 @@ import viser
 from numpy.typing import NDArray
 
 from web.viewer.primitives import meshes
-from web.viewer.primitives.label_room import ERROR, LabelRoom
-from web.viewer.primitives.labels import Pill, add_mesh
+from web.viewer.primitives.labels import ERROR, LabelRoom, Pill, add_mesh
 from web.viewer.primitives.palette import Palette
 
 Z, TRUE_Z = 0.2, 0.16

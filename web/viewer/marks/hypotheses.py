@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from web.messages.told import share_words
 from web.viewer.primitives import meshes
-from web.viewer.primitives.label_room import GHOST, LabelRoom
-from web.viewer.primitives.labels import Pill, add_mesh
+from web.viewer.primitives.labels import GHOST, LabelRoom, Pill, add_mesh
 from web.viewer.primitives.palette import Palette, mix
 
 MOST = 4

@@ -9,11 +9,9 @@ import viser
 from numpy.typing import NDArray
 
 from web.messages import CellReport, ExperienceReport, MapLayer, Report, ViewReport, WhyReport
-from web.viewer.fits.cell_fit import HEIGHT, CellFit, broken_where_it_wraps
-from web.viewer.fits.map_fit import MapFit
+from web.viewer.fits import HEIGHT, CellFit, MapFit, broken_where_it_wraps
 from web.viewer.primitives import meshes
-from web.viewer.primitives.label_room import TAG, LabelRoom
-from web.viewer.primitives.labels import Pill, add_mesh
+from web.viewer.primitives.labels import TAG, LabelRoom, Pill, add_mesh
 from web.viewer.primitives.palette import Palette
 
 LINKS, SPOTS, SPOT_CORNERS = 32, 24, 12

@@ -7,8 +7,7 @@ import viser
 from numpy.typing import NDArray
 
 from web.messages import Movements
-from web.viewer.fits.map_fit import MapFit
-from web.viewer.fits.office_fit import OfficeFit
+from web.viewer.fits import MapFit, OfficeFit
 from web.viewer.primitives import meshes
 from web.viewer.primitives.labels import add_mesh
 from web.viewer.primitives.palette import Palette, Rgb, mix

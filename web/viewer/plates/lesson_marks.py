@@ -9,9 +9,9 @@ import viser
 from numpy.typing import NDArray
 
 from web.messages import LessonView, Predict
-from web.viewer.fits.office_fit import DEPTH, WIDTH
+from web.viewer.fits import DEPTH, WIDTH
 from web.viewer.marks.cell_marks import CellMarks
-from web.viewer.marks.tags import TagMarks, last_named
+from web.viewer.marks.names import TagMarks, last_named
 from web.viewer.plates.map_plate import NODE_Z, MapPlate
 from web.viewer.plates.office_plate import OfficePlate
 from web.viewer.plates.plate import point_on_plane

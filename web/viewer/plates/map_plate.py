@@ -22,21 +22,16 @@ from web.messages import (
     TimesLayer,
 )
 from web.messages.told import goal_told, seconds_words
-from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
-from web.viewer.marks.closures import ClosureMarks
-from web.viewer.marks.goal_flag import GoalFlag
+from web.viewer.fits import DEPTH, WIDTH, MapFit, refit
+from web.viewer.marks.graph import ClosureMarks, Links, Nodes
 from web.viewer.marks.hypotheses import Hypotheses
 from web.viewer.marks.inspected import MapMark
-from web.viewer.marks.links import Links
-from web.viewer.marks.nodes import Nodes
-from web.viewer.marks.place_names import PlaceNames
-from web.viewer.marks.route import Route
-from web.viewer.marks.tags import TagMarks
+from web.viewer.marks.names import PlaceNames, TagMarks
+from web.viewer.marks.route import GoalFlag, Route
 from web.viewer.plates.overlays import map_floor
 from web.viewer.plates.plate import FLOOR_Z, TEXT_Z, Plate
 from web.viewer.primitives import images, meshes
-from web.viewer.primitives.label_room import ROBOT
-from web.viewer.primitives.labels import Sign, add_mesh, add_picture
+from web.viewer.primitives.labels import ROBOT, Sign, add_mesh, add_picture
 from web.viewer.primitives.palette import Palette
 
 ORIGIN = (5.85, -2.2, 0.0)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from web.messages import OccupancyPicture
-from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit
+from web.viewer.fits import DEPTH, WIDTH, MapFit
 from web.viewer.primitives.images import Pixels
 from web.viewer.primitives.palette import Palette, Rgb
 

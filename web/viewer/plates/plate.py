@@ -6,8 +6,7 @@ import numpy as np
 import viser
 
 from web.viewer.primitives import images, meshes
-from web.viewer.primitives.label_room import LabelRoom
-from web.viewer.primitives.labels import Sign, add_mesh
+from web.viewer.primitives.labels import LabelRoom, Sign, add_mesh
 from web.viewer.primitives.palette import Palette, Rgb
 
 TITLE_M, SUBTITLE_M = 0.62, 0.36

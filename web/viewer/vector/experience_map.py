@@ -10,16 +10,12 @@ from numpy.typing import NDArray
 
 from web.messages import Pose
 from web.messages.told import seconds_words, share_words
-from web.viewer.fits.judged import wheels_alone, wheels_path
-from web.viewer.fits.map_fit import DEPTH, WIDTH, MapFit, refit
-from web.viewer.fits.poses import on_plate
-from web.viewer.marks.place_names import MOST
+from web.viewer.fits import DEPTH, WIDTH, MapFit, on_plate, refit, wheels_alone, wheels_path
+from web.viewer.marks.names import MOST
 from web.viewer.marks.route import pill_stops
 from web.viewer.plates.map_plate import NO_MAP, grid_step_m, promise, round_up
-from web.viewer.vector import judged
-from web.viewer.vector.ground import draw_occupancy
-from web.viewer.vector.inspected import mark_on_map
-from web.viewer.vector.names import draw_name, draw_pin, draw_pins
+from web.viewer.vector import layers
+from web.viewer.vector.layers import draw_name, draw_occupancy, draw_pin, draw_pins, mark_on_map
 from web.viewer.vector.sheet import Entry, Sheet
 from web.viewer.vector.subject import Subject
 
@@ -44,10 +40,10 @@ def draw_map(subject: Subject) -> str:
     sheet = subject.sheet("Experience map", told, (*low.tolist(), *high.tolist()))
     legend = draw_occupancy(sheet, subject, fit)
     _draw_grid(sheet, low, high, fit.scale)
-    legend += judged.draw_walls(sheet, subject, fit)
+    legend += layers.draw_walls(sheet, subject, fit)
     ghost, truth = subject.judged.ghost, snapshot.truth
     if ghost is not None:
-        judged.draw_path(sheet, palette, fit.to_plate(wheels_path(ghost)[1]))
+        layers.draw_path(sheet, palette, fit.to_plate(wheels_path(ghost)[1]))
     sheet.lines(places[layer.links].reshape(-1, 2, 2), palette.link, 1.4)
     seconds = times.seconds[: len(places)]
     longest = round_up(float(seconds[np.isfinite(seconds)].max(initial=1.0)))
@@ -59,15 +55,15 @@ def draw_map(subject: Subject) -> str:
         sheet.label(((low + high) / 2).tolist(), NO_MAP, palette.text_2)
     sheet.avoid(here.tolist(), ROBOT)
     _draw_goal(sheet, subject, fit)
-    legend += judged.draw_spread(sheet, subject, fit)
+    legend += layers.draw_spread(sheet, subject, fit)
     legend += mark_on_map(sheet, subject, fit, places)
     _draw_names(sheet, subject, fit)
-    legend += judged.draw_closures(sheet, subject, places)
+    legend += layers.draw_closures(sheet, subject, places)
     if ghost is not None and truth is not None:
         _, there, off_m = wheels_alone(ghost, truth)
-        judged.draw_ghost(sheet, palette, on_plate(there, fit), off_m, ROBOT)
-    legend += judged.ghost_entry(ghost, palette)
-    legend += judged.draw_error(sheet, subject, fit)
+        layers.draw_ghost(sheet, palette, on_plate(there, fit), off_m, ROBOT)
+    legend += layers.ghost_entry(ghost, palette)
+    legend += layers.draw_error(sheet, subject, fit)
     legend += _draw_others(sheet, subject, fit)
     sheet.arrow(robot.x, robot.y, robot.heading_rad, palette.robot, ROBOT)
     sheet.scale_bar(palette.ramp[:: max(1, len(palette.ramp) // SHADES)], "0 s", seconds_words(longest))

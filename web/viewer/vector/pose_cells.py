@@ -9,12 +9,9 @@ import numpy as np
 from web.cell_owners import owners
 from web.messages import GoalMemoryLayer, PoseCellLayer, Snap
 from web.messages.told import share_words
-from web.viewer.plates.glass_box import metres_words
-from web.viewer.plates.pose_cell_plate import BELIEVES, LEAST_SHARE, NO_ACTIVITY, PACKETS
+from web.viewer.plates.pose_cell_plate import BELIEVES, LEAST_SHARE, NO_ACTIVITY, PACKETS, metres_words
 from web.viewer.primitives.palette import Palette
-from web.viewer.vector.ground import draw_beneath
-from web.viewer.vector.inspected import mark_among_cells
-from web.viewer.vector.names import draw_cell_marks
+from web.viewer.vector.layers import draw_beneath, draw_cell_marks, mark_among_cells
 from web.viewer.vector.sheet import Entry, Sheet
 from web.viewer.vector.subject import Subject
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 
 from web.messages import BesideView, Hypothesis, Snapshot
 from web.switches import Name
-from web.viewer.fits.judged import Judged, judged
-from web.viewer.fits.overlaid import Overlaid, overlaid
+from web.viewer.fits import Judged, Overlaid, judged, overlaid
 from web.viewer.primitives.palette import BRAINS, Palette, Rgb
 from web.viewer.vector.sheet import Sheet
 

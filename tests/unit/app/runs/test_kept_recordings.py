@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from app.cli.beginnings import cut_off_run
 from app.cli.command_line import main
-from app.cli.earlier import cut_off_run
 from app.commands import carry_out
-from app.recordings import fingerprint as prints
-from app.recordings.fingerprint import fingerprint
-from app.recordings.opening import open_recording
+from app.recordings import opening as prints
+from app.recordings.opening import fingerprint, open_recording
 from app.recordings.playing import Player
 from app.runs.folder import LINES, STATE, all_runs
 from app.runs.replay import ReplayError, newest_state, replay, resumed
@@ -82,8 +81,8 @@ def whole(drive: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, 
     folder = tmp_path_factory.mktemp("runs")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("RATSLAM_RUNS", str(folder))
-        patch.setattr("app.runs.states.SAVE_EVERY_S", 1.0)
-        patch.setattr("app.runs.states.SAVE_PAUSE_S", 0.0)
+        patch.setattr("app.runs.page.SAVE_EVERY_S", 1.0)
+        patch.setattr("app.runs.page.SAVE_PAUSE_S", 0.0)
         return folder, keep_one(drive)[1]
 
 

@@ -15,9 +15,8 @@ import pytest
 from app.cli.command_line import main
 from app.runs.folder import LINES, STATE, all_runs, delete, is_open, tidy
 from app.runs.header import beginning_of
-from app.runs.journal import Journal
+from app.runs.journal import Journal, Lines, line_of
 from app.runs.keeper import RunKeeper
-from app.runs.lines import Lines, line_of
 from app.runs.replay import ReplayError, newest_state, replay, resumed
 from app.runs.run_file import KeptRun, open_run
 from app.session import Session
@@ -62,8 +61,8 @@ def test_it_comes_out_the_same(run: KeptRun, whole: tuple[Path, str]) -> None:
 
 
 def test_it_goes_on_from_its_newest_state(runs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.runs.states.SAVE_EVERY_S", 1.0)
-    monkeypatch.setattr("app.runs.states.SAVE_PAUSE_S", 0.0)
+    monkeypatch.setattr("app.runs.page.SAVE_EVERY_S", 1.0)
+    monkeypatch.setattr("app.runs.page.SAVE_PAUSE_S", 0.0)
     run, end = keep_one(runs, monkeypatch)
     state = newest_state(run)
     assert state is not None

@@ -11,13 +11,12 @@ from pathlib import Path
 import pytest
 
 from app.order_book import Order, carry_out, overtakes
-from app.runs import lines, world_edits
+from app.runs import header, journal
 from app.runs.book import Book
 from app.runs.folder import LINES
-from app.runs.header import beginning_of, header_of, written
-from app.runs.lines import line_of
+from app.runs.header import SIZE, beginning_of, header_of, written
+from app.runs.journal import line_of
 from app.runs.page import Page
-from app.runs.pulse import SIZE
 from app.runs.run_file import KeptRun, open_run
 from app.session import Session
 from app.situations import Situation, file_of, read_situation
@@ -129,9 +128,9 @@ def test_what_overtakes_is_kept_in_memory_and_in_the_file_alone(paper: Paper) ->
 @pytest.mark.parametrize(
     ("module", "limit", "value", "why"),
     [
-        (world_edits, "ORDERS", 50, "at most 50 orders"),
-        (lines, "RUN_BYTES", 40_000, "more than 0 MiB"),
-        (lines, "LINE_PARTS", 400, "more than 400 values"),
+        (header, "ORDERS", 50, "at most 50 orders"),
+        (journal, "RUN_BYTES", 40_000, "more than 0 MiB"),
+        (journal, "LINE_PARTS", 400, "more than 400 values"),
     ],
 )
 def test_a_run_that_grows_too_large_is_kept_up_to_there_and_opens(
@@ -185,8 +184,8 @@ def test_orders_that_are_none_are_refused_by_number(subtests: pytest.Subtests) -
 
 def test_edits_that_would_fill_the_memory_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each edit of a few bytes makes another text of a whole world."""
-    monkeypatch.setattr(world_edits, "EDITED_BYTES", 1_000_000)
-    edit = {"edit": world_edits.edit_of(HEADER.world, HEADER.world)}
+    monkeypatch.setattr(header, "EDITED_BYTES", 1_000_000)
+    edit = {"edit": header.edit_of(HEADER.world, HEADER.world)}
     rows = json.dumps([[tick, "edit_world", edit] for tick in range(100)])
     with pytest.raises(ValueError, match=r"order [0-9]+, of tick .* the worlds of a run"):
         read_situation(text_of(rows, 100))

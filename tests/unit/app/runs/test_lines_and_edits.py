@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.runs.lines import Lines, line_of
-from app.runs.world_edits import edit_of, edited
+from app.runs.header import edit_of, edited
+from app.runs.journal import Lines, line_of
 from sim2d import load_world, world_to_json
 
 VALUES = st.lists(st.dictionaries(st.text(max_size=5), st.integers() | st.text(max_size=20), max_size=3), max_size=8)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from app.order_book import Order
 from app.orders import Orders
-from app.runs.order_check import check_order
+from app.runs.run_file import check_order
 from app.situations import LONGEST_LINK, Situation, file_of, link_of, read_situation
 from sim2d import load_world
 

@@ -18,7 +18,7 @@ from app.runs.header import beginning_of, header_of
 from app.runs.replay import resumed
 from app.session import Session
 from app.situations import Situation, file_of, link_of, read_situation
-from app.situations.python_lines import python_lines
+from app.situations.page import python_lines
 from ratslam_core import load_brain
 from ratslam_core.brain_file import save_brain
 from sim2d import load_world

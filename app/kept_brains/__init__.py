@@ -1,1 +1,0 @@
-"""Brains of running sessions, kept on disk."""
